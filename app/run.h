@@ -1,0 +1,34 @@
+#pragma once
+
+/// @file run.h
+/// The commands of the program on one case.
+
+#include "case/config.h"
+#include "io/console.h"
+#include "io/facts.h"
+#include "mesh/mesh.h"
+
+namespace tribound
+{
+
+/// Exit codes, a contract with scripts.
+enum class ExitCode
+{
+  success = 0,        ///< certified; while there is no bound yet: solved
+  bad_input = 1,      ///< InputError
+  failed = 2,         ///< no convergence, singular matrix, identity violated
+  budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
+};
+
+/// Versions of the program and of the libraries it runs with.
+[[nodiscard]] BuildFacts library_facts();
+
+/// Solves the case on its mesh and writes the results. Throws InputError and SolveError.
+template <int dim>
+[[nodiscard]] ExitCode run(const Config& config, const Mesh<dim>& mesh, const Progress& progress);
+
+/// Reads and verifies everything `run` would, and prints a summary.
+template <int dim>
+void check(const Config& config, const Mesh<dim>& mesh);
+
+}  // namespace tribound

@@ -1,0 +1,98 @@
+/// Reading, verifying and sorting meshes of a million triangles and of half a million tetrahedra.
+
+#include <benchmark/benchmark.h>
+#include <gmsh.h>
+
+#include <filesystem>
+
+#include "mesh/box.h"
+#include "mesh/gmsh.h"
+#include "mesh/mesh.h"
+
+namespace
+{
+
+using namespace tribound;
+
+/// 1 002 528 triangles or 511 104 tetrahedra.
+template <int dim>
+BoxMesh large_box()
+{
+  if constexpr (dim == 2) return {{0, 0}, {2, 1}, {708, 708}, {}};
+  return {{0, 0, 0}, {2, 1, 1}, {44, 44, 44}, {}};
+}
+
+template <int dim>
+void topology(benchmark::State& state)
+{
+  const MeshData<dim> data = box_mesh<dim>(large_box<dim>());
+  for (auto _ : state)
+    benchmark::DoNotOptimize(build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells));
+  state.counters["cells"] = static_cast<double>(data.cells.size());
+}
+
+/// The constructor of Mesh: verification and topology.
+template <int dim>
+void verified_mesh(benchmark::State& state)
+{
+  const MeshData<dim> data = box_mesh<dim>(large_box<dim>());
+  for (auto _ : state)
+  {
+    state.PauseTiming();
+    MeshData<dim> copy = data;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(Mesh<dim>(std::move(copy)));
+  }
+  state.counters["cells"] = static_cast<double>(data.cells.size());
+}
+
+/// The large box as Gmsh would save it, with irregular coordinates so that ASCII files have all digits.
+std::filesystem::path write_large_file(double version, bool binary)
+{
+  const MeshData<2> data = box_mesh<2>(large_box<2>());
+  std::vector<std::size_t> tags;
+  std::vector<double> x;
+  for (const Point<2>& p : data.vertices)
+  {
+    tags.push_back(tags.size() + 1);
+    x.insert(x.end(), {p[0] / 3 + p[0] * p[0] / 7, p[1] / 3 + p[1] * p[1] / 7, 0.0});
+  }
+  std::vector<std::size_t> triangles;
+  for (const auto& cell : data.cells)
+    for (const Index v : cell) triangles.push_back(static_cast<std::size_t>(v) + 1);
+
+  auto file = std::filesystem::temp_directory_path() / "tribound_mesh_bench.msh";
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::option::setNumber("Mesh.MshFileVersion", version);
+  gmsh::option::setNumber("Mesh.Binary", binary);
+  gmsh::model::addDiscreteEntity(2, 1);
+  gmsh::model::mesh::addNodes(2, 1, tags, x);
+  gmsh::model::mesh::addElementsByType(1, 2, {}, triangles);
+  gmsh::write(file.string());
+  gmsh::finalize();
+  return file;
+}
+
+void read_file(benchmark::State& state)
+{
+  const MeshFile source{write_large_file(static_cast<double>(state.range(0)) / 10, state.range(1) != 0), {}};
+  Index n_cells = 0;
+  for (auto _ : state) n_cells = std::get<Mesh<2>>(read_gmsh(source)).n_cells();
+  state.counters["cells"] = n_cells;
+  std::filesystem::remove(source.path);
+}
+
+}  // namespace
+
+BENCHMARK(topology<2>)->Unit(benchmark::kMillisecond);
+BENCHMARK(topology<3>)->Unit(benchmark::kMillisecond);
+BENCHMARK(verified_mesh<2>)->Unit(benchmark::kMillisecond);
+BENCHMARK(verified_mesh<3>)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_file)
+    ->ArgNames({"version", "binary"})
+    ->ArgsProduct({{22, 41}, {0, 1}})
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
+BENCHMARK_MAIN();

@@ -1,0 +1,230 @@
+/// @file solve_bench.cpp
+/// Where the time of a contact solution goes: CPU seconds of every stage on one core, beside MUMPS alone on
+/// the same matrix. See bench/README.md.
+
+#include <fmt/format.h>
+#include <petscksp.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <ctime>
+#include <exception>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "case/config.h"
+#include "contact/elasticity.h"
+#include "contact/nitsche.h"
+#include "mesh/gmsh.h"
+#include "solve/linear_solver.h"
+#include "solve/newton.h"
+#include "solve/petsc.h"
+
+namespace
+{
+
+using namespace tribound;
+
+struct Arguments
+{
+  std::string case_file;  ///< empty: the block
+  int dim = 2;
+  int degree = 2;
+  int thousand_dofs = 100;
+  std::string friction = R"(friction = "tresca", threshold = 0.03)";
+  std::string method = "auto";
+  std::string package = "auto";
+  bool bare = false;
+};
+
+double cpu_seconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+void print(const std::string& stage, double seconds, const std::string& remark = "")
+{
+  fmt::print("{:<34}{:9.3f}  {}\n", stage, seconds, remark);
+}
+
+/// Runs `work` and prints what it took; returns its result.
+template <class Work>
+auto timed(const std::string& stage, Work work)
+{
+  const double begin = cpu_seconds();
+  auto result = work();
+  print(stage, cpu_seconds() - begin);
+  return result;
+}
+
+/// The smallest n such that the box of 2n x n (x n) squares or cubes has the wanted number of dofs.
+int cells_across(int dim, int degree, double n_dofs)
+{
+  const auto dofs = [&](int n)
+  { return dim * (2.0 * degree * n + 1) * (degree * n + 1) * (dim == 3 ? degree * n + 1 : 1); };
+  int n = 1;
+  while (dofs(n) < n_dofs) ++n;
+  return n;
+}
+
+/// A block on a rigid floor, held on the left, pressed down and pulled to the right: T2D and its 3D sibling,
+/// pulled obliquely.
+Config block(const Arguments& a)
+{
+  const int n = cells_across(a.dim, a.degree, 1e3 * a.thousand_dofs);
+  const std::string friction = "boundary.bottom.contact = { " + a.friction + " }\n";
+  const std::string common =
+      fmt::format("degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nsolver.method = \"{}\"\n", a.degree,
+                  a.method) +
+      fmt::format("solver.package = \"{}\"\n", a.package);
+  if (a.dim == 2)
+    return parse_config(common +
+                        fmt::format(R"(
+mesh.box = {{ lower = [0, 0], upper = [2, 1], cells = [{}, {}] }}
+boundary.left.displacement = [0, 0]
+boundary.top.traction = [0, -0.1]
+boundary.right.traction = [0.04, 0.06]
+)",
+                                    2 * n, n) +
+                        friction);
+  return parse_config(common +
+                      fmt::format(R"(
+mesh.box = {{ lower = [0, 0, 0], upper = [2, 1, 1], cells = [{}, {}, {}] }}
+boundary.left.displacement = [0, 0, 0]
+boundary.top.traction = [0, -0.1, 0]
+boundary.right.traction = [0.04, 0.06, 0.02]
+)",
+                                  2 * n, n, n) +
+                      friction);
+}
+
+/// MUMPS through PETSc and nothing else: what one system costs at least.
+void bare_mumps(const SparseMatrix& matrix, std::span<const double> rhs)
+{
+  const Mat a = matrix.handle();
+  Mat factors = nullptr;
+  MatFactorInfo info;
+  MatFactorInfoInitialize(&info);
+  std::vector<double> b(rhs.begin(), rhs.end());
+  std::vector<double> x(b.size());
+  const auto n = static_cast<PetscInt>(b.size());
+  Vec vec_b = nullptr;
+  Vec vec_x = nullptr;
+  VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, b.data(), &vec_b);
+  VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, x.data(), &vec_x);
+  MatGetFactor(a, MATSOLVERMUMPS, MAT_FACTOR_LU, &factors);
+  MatMumpsSetIcntl(factors, 6, 0);  // as LinearSolver does
+  timed("bare MUMPS: analysis", [&] { return MatLUFactorSymbolic(factors, a, nullptr, nullptr, &info); });
+  timed("bare MUMPS: factorisation", [&] { return MatLUFactorNumeric(factors, a, &info); });
+  timed("bare MUMPS: forward, backward", [&] { return MatSolve(factors, vec_b, vec_x); });
+  PetscInt entries = 0;
+  PetscReal flops = 0;
+  MatMumpsGetInfog(factors, 29, &entries);
+  MatMumpsGetRinfog(factors, 3, &flops);
+  fmt::print("    {:.1f} million entries in the factors, {:.2f} Gflop\n",
+             entries < 0 ? -entries : entries / 1e6, flops / 1e9);
+  VecDestroy(&vec_b);
+  VecDestroy(&vec_x);
+  MatDestroy(&factors);
+}
+
+/// The whole Newton loop, step by step.
+template <int dim>
+void newton(const NitscheForm<dim>& form, const Config& config)
+{
+  fmt::print("\n{:<34}{:>9}  {:>6} {:>9} {:>8} {:>9}\n", "Newton loop", "CPU s", "GMRES", "residual",
+             "damping", "new factors");
+  const double begin = cpu_seconds();
+  double before = begin;
+  int factorisations = 0;
+  const auto report = [&](const NewtonStep& step)
+  {
+    const double now = cpu_seconds();
+    print(fmt::format("  step {}{}", step.step, step.step == 1 ? " with all that is made once" : ""),
+          now - before,
+          fmt::format("{:6} {:9.1e} {:8} {:>9}", step.linear_iterations, step.residual, step.damping,
+                      step.factorised ? "yes" : ""));
+    before = now;
+    factorisations += step.factorised ? 1 : 0;
+  };
+  const NewtonResult<dim> result = solve<dim>(form, {}, config.newton, config.solver, report);
+  print("  all", cpu_seconds() - begin,
+        fmt::format("{} steps, {} new factors{}", result.steps.size(), factorisations,
+                    result.status == NewtonStatus::converged ? "" : ", FAILED"));
+}
+
+template <int dim>
+void run(const Config& config, const Mesh<dim>& mesh, bool bare)
+{
+  timed("  topology alone", [&] { return build_topology<dim>(mesh.n_vertices(), mesh.cells()); });
+  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const auto space = timed("space", [&] { return LagrangeSpace<dim>(mesh, config.degree); });
+  const auto form =
+      timed("form: load, contact points", [&] { return NitscheForm<dim>(problem, space, config.gamma0()); });
+  fmt::print("    {} cells, {} dofs, {} contact facets\n", mesh.n_cells(), space.n_dofs(),
+             form.contact_facets().size());
+
+  const auto entries = [&] { return stiffness(problem, space, form.constraints()); };
+  Triplets triplets = timed("stiffness: entries", entries);
+  const auto assemble = [&] { return SparseMatrix(space.n_dofs(), dim, std::move(triplets)); };
+  const auto matrix = timed("stiffness: COO assembly", assemble);
+  auto tangent = timed("stiffness: copy", [&] { return matrix.duplicate(); });
+  const std::vector<double> u(space.n_dofs(), 0.0);
+  const auto contact_entries = [&] { return form.contact_tangent(Linearisation::closed_sticking, u); };
+  Triplets contact_triplets = contact_entries();
+  SparseMatrix contact = timed("contact: pattern, once", [&]
+                               { return SparseMatrix(space.n_dofs(), dim, std::move(contact_triplets)); });
+  timed("contact: entries, each step",
+        [&]
+        {
+          contact.set_values(contact_entries().values);
+          return 0;
+        });
+  for (const char* turn : {"first", "later"})
+    timed(fmt::format("tangent: sum, {}", turn),
+          [&]
+          {
+            tangent.assign_sum(matrix, contact);
+            return 0;
+          });
+
+  std::vector<double> x(space.n_dofs());
+  timed("matrix times vector", [&] { return matrix.multiply(form.load()); });
+  timed("traction at contact points", [&] { return form.traction(u); });
+  if (bare) bare_mumps(tangent, form.load());
+  newton<dim>(form, config);
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  Arguments arguments;
+  CLI::App app("CPU seconds of every stage of a contact solution");
+  app.add_option("--case", arguments.case_file, "Any case file instead of the block");
+  app.add_option("--dim", arguments.dim, "2 or 3")->check(CLI::Range(2, 3))->capture_default_str();
+  app.add_option("--degree", arguments.degree, "p")->check(CLI::Range(1, 4))->capture_default_str();
+  app.add_option("--dofs", arguments.thousand_dofs, "Degrees of freedom, in thousands")
+      ->capture_default_str();
+  app.add_option("--friction", arguments.friction, "Friction law as in a case file")->capture_default_str();
+  app.add_option("--method", arguments.method, "auto, direct or iterative")->capture_default_str();
+  app.add_option("--package", arguments.package, "auto, mumps or umfpack")->capture_default_str();
+  app.add_flag("--bare", arguments.bare, "Also time MUMPS alone");
+  CLI11_PARSE(app, argc, argv);
+
+  const Environment environment;
+  try
+  {
+    const Config config = arguments.case_file.empty() ? block(arguments) : read_config(arguments.case_file);
+    fmt::print("{:<34}{:>9}\n", "Stage", "CPU s");
+    const auto any_mesh = timed("mesh: reading, verification", [&] { return read_mesh(config.mesh); });
+    std::visit([&]<int dim>(const Mesh<dim>& mesh) { run<dim>(config, mesh, arguments.bare); }, any_mesh);
+  }
+  catch (const std::exception& error)
+  {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,26 @@
+# The program, the library with its headers, and the package that find_package(tribound) looks for.
+
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tribound)
+
+set_target_properties(tribound PROPERTIES VERSION ${PROJECT_VERSION}
+                                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+install(TARGETS tribound EXPORT tribound)
+if(TARGET tribound_app)
+  # Only a shared library needs it: the installed tree may be moved.
+  set_target_properties(tribound_app PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS tribound_app)
+endif()
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tribound FILES_MATCHING PATTERN "*.h")
+
+install(EXPORT tribound NAMESPACE tribound:: FILE tribound-targets.cmake DESTINATION ${package_dir})
+get_target_property(library_type tribound TYPE)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/tribound-config.cmake.in
+                              ${PROJECT_BINARY_DIR}/tribound-config.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/tribound-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/tribound-config-version.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindGmsh.cmake DESTINATION ${package_dir})
+install(FILES LICENSE COPYING DESTINATION ${CMAKE_INSTALL_DOCDIR})

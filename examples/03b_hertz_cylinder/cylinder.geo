@@ -1,0 +1,39 @@
+// The lower right quarter of a disc of radius R that touches the plane y = 0 in the origin. Where it may come into contact
+// the disc is cut straight; how far its surface is from the plane there is the gap of the case file. In small displacements that
+// is the same problem, and the normal does not jump from facet to facet.
+
+R = 10;        // mm
+cap = 0.15;    // angle of the part of the surface that may come into contact
+h = 0.025;     // mesh size at the contact
+H = 1.0;       // and far from it
+
+Point(1) = {0, R, 0, H};                              // centre
+c = R*(1 - Cos(cap));
+Point(2) = {0, c, 0, h};                              // first point of contact
+Point(3) = {R*Sin(cap), c, 0, h};
+Point(4) = {R, R, 0, H};
+Line(1) = {2, 3};
+Circle(2) = {3, 1, 4};
+Line(3) = {4, 1};
+Line(4) = {1, 2};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+
+// Size h within 1 mm of the point of contact, growing to H at 9 mm.
+Field[1] = Distance;
+Field[1].NodesList = {2};
+Field[2] = Threshold;
+Field[2].IField = 1;
+Field[2].LcMin = h;
+Field[2].LcMax = H;
+Field[2].DistMin = 1;
+Field[2].DistMax = 9;
+Background Field = 2;
+Mesh.CharacteristicLengthFromPoints = 0;
+Mesh.CharacteristicLengthExtendFromBoundary = 0;
+
+Physical Surface("cylinder") = {1};
+Physical Curve("contact") = {1};
+Physical Curve("free") = {2};
+Physical Curve("top") = {3};
+Physical Curve("symmetry") = {4};

@@ -1,0 +1,211 @@
+#include "case/config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "case/node.h"
+#include "case/physics.h"
+#include "case/table_reader.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+constexpr auto mesh_hint =
+    "file = \"block.msh\", or box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }";
+
+template <class T, class Convert>
+std::vector<T> components(const TableReader& table, std::string_view key, const Convert& convert)
+{
+  std::vector<T> values;
+  for (const Node& item : to_components(table.require(key, mesh_hint), "one number per dimension"))
+    values.push_back(convert(item));
+  return values;
+}
+
+BoxMesh read_box(const Node& node)
+{
+  const TableReader table(node, {"lower", "upper", "cells"});
+  BoxMesh box{
+      .lower = components<double>(table, "lower", to_number),
+      .upper = components<double>(table, "upper", to_number),
+      .cells = components<int>(table, "cells", integer_from(1, "the number of cells in this direction")),
+      .where = node.where};
+  const std::size_t dim = box.lower.size();
+  if (box.upper.size() != dim || box.cells.size() != dim)
+    throw InputError(node.where,
+                     fmt::format("lower, upper and cells have {}, {} and {} numbers", dim, box.upper.size(),
+                                 box.cells.size()),
+                     "each has 2 in 2D, 3 in 3D");
+  double n_simplices = dim == 2 ? 2.0 : 6.0;
+  for (std::size_t i = 0; i < dim; ++i)
+  {
+    if (!(box.lower[i] < box.upper[i]))
+      throw InputError(
+          table.find("upper")->where,
+          fmt::format("upper[{}] = {} is not above lower[{}] = {}", i, box.upper[i], i, box.lower[i]),
+          "lower and upper are opposite corners of the box");
+    n_simplices *= box.cells[i];
+  }
+  if (n_simplices > static_cast<double>(std::numeric_limits<Index>::max()))
+    throw InputError(table.find("cells")->where, fmt::format("makes {:.3g} simplices", n_simplices),
+                     fmt::format("at most {}", std::numeric_limits<Index>::max()));
+  return box;
+}
+
+MeshSource read_mesh_source(const Node& node, const std::filesystem::path& case_directory)
+{
+  const TableReader table(node, {"file", "box"});
+  const Node* file = table.find("file");
+  const Node* box = table.find("box");
+  const std::string hint = fmt::format("one of them: {}", mesh_hint);
+  if (file == nullptr && box == nullptr) throw InputError(node.where, "neither file nor box is given", hint);
+  if (file != nullptr && box != nullptr) throw InputError(box->where, "box stands beside file", hint);
+  if (box != nullptr) return read_box(*box);
+  const std::string path = to_text(*file);
+  if (path.empty()) throw InputError(file->where, "is empty", mesh_hint);
+  return MeshFile{case_directory / path, file->where};
+}
+
+NitscheConfig read_nitsche(const Node& node)
+{
+  const TableReader table(node, {"gamma0"});
+  NitscheConfig nitsche;
+  table.read("gamma0", nitsche.gamma0, number_in(positive, "the dimensionless penalty, such as 10"));
+  return nitsche;
+}
+
+NewtonConfig read_newton(const Node& node)
+{
+  const TableReader table(node, {"stopping", "gamma_lin", "tolerance", "max_steps", "damping"});
+  NewtonConfig newton;
+  table.read("stopping", newton.stopping, one_of<Stopping>({"adaptive", "tolerance"}));
+  table.read("gamma_lin", newton.gamma_lin,
+             number_in(positive, "the share of the linearisation in the error, such as 0.1"));
+  table.read("tolerance", newton.tolerance,
+             number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
+  table.read("max_steps", newton.max_steps, integer_from(1, "a number of steps, such as 50"));
+  table.read("damping", newton.damping, to_bool);
+  return newton;
+}
+
+AdaptConfig read_adapt(const Node& node)
+{
+  const TableReader table(
+      node, {"tolerance", "marking", "theta", "max_levels", "max_dofs", "max_cells", "max_time"});
+  AdaptConfig adapt;
+  table.read("tolerance", adapt.tolerance, number_in(positive, "a relative error, such as 0.01"));
+  table.read("marking", adapt.marking, one_of<Marking>({"doerfler", "maximum"}));
+  table.read(
+      "theta", adapt.theta,
+      number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true}, "such as 0.5; 1 marks every cell"));
+  table.read("max_levels", adapt.max_levels, integer_from(0, "0 solves on the given mesh only"));
+  table.read("max_dofs", adapt.max_dofs, integer_from(1L, "a number of unknowns, such as 2_000_000"));
+  table.read("max_cells", adapt.max_cells, integer_from(1L, "a number of cells, such as 500_000"));
+  table.read("max_time", adapt.max_time, number_in(positive, "seconds, such as 600"));
+  return adapt;
+}
+
+CertifyConfig read_certify(const Node& node)
+{
+  const TableReader table(node, {"contact_rule"});
+  CertifyConfig certify;
+  table.read("contact_rule", certify.contact_rule, one_of<ContactRule>({"resolved", "reference"}));
+  return certify;
+}
+
+SolverConfig read_solver(const Node& node)
+{
+  const TableReader table(node, {"method", "package", "tolerance", "max_iterations"});
+  SolverConfig solver;
+  table.read("method", solver.method, one_of<LinearMethod>({"auto", "direct", "iterative"}));
+  table.read("package", solver.package, one_of<DirectPackage>({"auto", "mumps", "umfpack"}));
+  table.read("tolerance", solver.tolerance,
+             number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
+  table.read("max_iterations", solver.max_iterations, integer_from(1, "a number of iterations, such as 500"));
+  return solver;
+}
+
+OutputConfig read_output(const Node& node)
+{
+  const TableReader table(node, {"directory", "vtu"});
+  OutputConfig output;
+  table.read("directory", output.directory, to_text);
+  if (output.directory.empty())
+    throw InputError(table.find("directory")->where, "is empty", "a directory to write to, such as \"out\"");
+  table.read("vtu", output.vtu, to_bool);
+  return output;
+}
+
+Config read_document(const Node& document, std::string file)
+{
+  const TableReader root(document, {"title", "degree", "mesh", "material", "load", "boundary", "nitsche",
+                                    "newton", "adapt", "certify", "solver", "output"});
+  Config config;
+  const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
+  config.file = std::move(file);
+  root.read("title", config.title, to_text);
+  root.read("degree", config.degree, integer_from(1, "the polynomial degree p", 4));
+  config.mesh =
+      read_mesh_source(root.require("mesh", fmt::format("[mesh] with {}", mesh_hint)), case_directory);
+  config.materials = read_materials(root.require("material", "[material] with E = 210e9 and nu = 0.3"));
+  root.read("load", config.loads, read_loads);
+  root.read("boundary", config.boundaries, read_boundaries);
+  root.read("nitsche", config.nitsche, read_nitsche);
+  root.read("newton", config.newton, read_newton);
+  root.read("adapt", config.adapt, read_adapt);
+  root.read("certify", config.certify, read_certify);
+  root.read("solver", config.solver, read_solver);
+  root.read("output", config.output, read_output);
+  return config;
+}
+
+}  // namespace
+
+double default_gamma0(int degree)
+{
+  return degree <= 3 ? 10.0 : std::max(10.0, 3.0 * degree * degree);
+}
+
+std::string friction_name(const Config& config)
+{
+  constexpr std::array names = {"none", "tresca", "coulomb"};
+  static_assert(names.size() == std::variant_size_v<FrictionLaw>);
+  std::array<bool, names.size()> used{};
+  for (const BoundaryConfig& boundary : config.boundaries)
+    if (boundary.contact) used[boundary.contact->friction.index()] = true;
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (used[i]) text += (text.empty() ? "" : "+") + std::string(names[i]);
+  return text;
+}
+
+Config parse_config(std::string_view text, std::string name, std::span<const std::string> overrides)
+{
+  Node document = parse_toml(text, name);
+  for (const std::string& assignment : overrides) apply_override(document, assignment);
+  // The document itself stands nowhere in particular.
+  document.where.line = document.where.column = 0;
+  return read_document(document, std::move(name));
+}
+
+Config read_config(const std::filesystem::path& file, std::span<const std::string> overrides)
+{
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file))
+    throw InputError({.file = file.string()},
+                     stream ? "is a directory" : fmt::format("cannot be read: {}", std::strerror(errno)),
+                     "the path of a case file, such as examples/01_tresca_block/case.toml");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_config(text, file.string(), overrides);
+}
+
+}  // namespace tribound

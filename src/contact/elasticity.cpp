@@ -1,0 +1,291 @@
+#include "contact/elasticity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "fem/quadrature.h"
+#include "mesh/geometry.h"
+
+namespace tribound
+{
+
+void Triplets::reserve(std::size_t n)
+{
+  rows.reserve(n);
+  cols.reserve(n);
+  values.reserve(n);
+}
+
+namespace
+{
+
+/// R_ij = integral over the reference cell of (grad phi_i)(grad phi_j)^T, [i * n + j].
+template <int dim>
+std::vector<Tensor<dim>> reference_stiffness(const LagrangeBasis<dim>& basis)
+{
+  const Quadrature<dim> rule = quadrature<dim>(2 * basis.degree() - 2);
+  const Tabulation<dim> table = basis.tabulate(rule.points);
+  const int n = basis.n_nodes();
+  std::vector<Tensor<dim>> reference(static_cast<std::size_t>(n) * n, Tensor<dim>::Zero());
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    const auto gradients = table.gradients_at(q);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        reference[i * n + j] += rule.weights[q] * gradients[i] * gradients[j].transpose();
+  }
+  return reference;
+}
+
+/// The block a(phi_j e_b, phi_i e_a) = lambda S_ab + mu S_ba + mu tr(S) delta_ab, where
+/// S = (d_a phi_i, d_b phi_j)_T = det J J^{-T} R_ij J^{-1}.
+template <int dim>
+Tensor<dim> stiffness_block(const Material& material, const CellMap<dim>& map, const Tensor<dim>& reference)
+{
+  const Tensor<dim> s = map.det * (map.inverse_transpose * reference * map.inverse_transpose.transpose());
+  Tensor<dim> block = material.lambda * s + material.mu * s.transpose();
+  block.diagonal().array() += material.mu * s.trace();
+  return block;
+}
+
+/// A node seen from a cell.
+struct LocalNode
+{
+  Index cell;
+  int local;
+};
+
+/// The cells around each node: those of node i are cells[begin[i]] ... cells[begin[i + 1] - 1].
+struct NodeCells
+{
+  std::vector<Index> begin;
+  std::vector<LocalNode> cells;
+
+  [[nodiscard]] std::span<const LocalNode> around(Index node) const
+  {
+    return std::span(cells).subspan(begin[node], begin[node + 1] - begin[node]);
+  }
+};
+
+template <int dim>
+NodeCells cells_around_nodes(const LagrangeSpace<dim>& space)
+{
+  const Index n_cells = space.mesh().n_cells();
+  NodeCells result{std::vector<Index>(space.n_nodes() + 1, 0), {}};
+  for (Index c = 0; c < n_cells; ++c)
+    for (const Index node : space.cell_nodes(c)) ++result.begin[node + 1];
+  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+
+  std::vector<Index> next(result.begin.begin(), result.begin.end() - 1);
+  result.cells.resize(result.begin.back());
+  for (Index c = 0; c < n_cells; ++c)
+  {
+    const std::span<const Index> nodes = space.cell_nodes(c);
+    for (std::size_t i = 0; i < nodes.size(); ++i) result.cells[next[nodes[i]]++] = {c, static_cast<int>(i)};
+  }
+  return result;
+}
+
+/// The rows of the stiffness that belong to one node, one block for each node that shares a cell with it.
+template <int dim>
+class BlockRow
+{
+ public:
+  BlockRow(const Problem<dim>& problem, const LagrangeSpace<dim>& space)
+      : problem_(&problem),
+        space_(&space),
+        reference_(reference_stiffness(space.basis())),
+        place_(space.n_nodes(), -1)
+  {
+  }
+
+  void assemble(std::span<const LocalNode> cells)
+  {
+    find_neighbours(cells);
+    const int n = space_->basis().n_nodes();
+    for (const auto& [c, i] : cells)
+    {
+      const CellMap<dim> map = cell_map(space_->mesh(), c);
+      const Material& material = problem_->material(space_->mesh().region(c));
+      const std::span<const Index> nodes = space_->cell_nodes(c);
+      for (int j = 0; j < n; ++j)
+        blocks_[place_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
+    }
+    for (const Index j : neighbours_) place_[j] = -1;
+  }
+
+  /// Nodes in ascending order, and the block of each.
+  [[nodiscard]] std::span<const Index> neighbours() const { return neighbours_; }
+  [[nodiscard]] std::span<const Tensor<dim>> blocks() const { return blocks_; }
+
+ private:
+  void find_neighbours(std::span<const LocalNode> cells)
+  {
+    neighbours_.clear();
+    for (const LocalNode& cell : cells)
+      for (const Index j : space_->cell_nodes(cell.cell))
+        if (std::exchange(place_[j], 0) < 0) neighbours_.push_back(j);
+    std::ranges::sort(neighbours_);
+    for (std::size_t k = 0; k < neighbours_.size(); ++k) place_[neighbours_[k]] = static_cast<Index>(k);
+    blocks_.assign(neighbours_.size(), Tensor<dim>::Zero());
+  }
+
+  const Problem<dim>* problem_;
+  const LagrangeSpace<dim>* space_;
+  std::vector<Tensor<dim>> reference_;
+  std::vector<Index> place_;  ///< per node: its place among the neighbours, or -1
+  std::vector<Index> neighbours_;
+  std::vector<Tensor<dim>> blocks_;
+};
+
+}  // namespace
+
+template <int dim>
+Triplets stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                   const Constraints& constraints)
+{
+  const NodeCells cells = cells_around_nodes(space);
+  BlockRow<dim> row(problem, space);
+  Triplets entries;
+  for (Index i = 0; i < space.n_nodes(); ++i)
+  {
+    row.assemble(cells.around(i));
+    for (int a = 0; a < dim; ++a)
+    {
+      const Index row_dof = dim * i + a;
+      for (std::size_t k = 0; k < row.neighbours().size(); ++k)
+        for (int b = 0; b < dim; ++b)
+        {
+          const Index col_dof = dim * row.neighbours()[k] + b;
+          if (row_dof == col_dof || !(constraints.fixed[row_dof] || constraints.fixed[col_dof]))
+            entries.add(row_dof, col_dof, row.blocks()[k](a, b));
+        }
+    }
+  }
+  return entries;
+}
+
+template <int dim>
+std::vector<double> apply_stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                                    std::span<const double> u)
+{
+  const Mesh<dim>& mesh = space.mesh();
+  const Quadrature<dim> rule = quadrature<dim>(2 * space.degree() - 2);
+  const Tabulation<dim> table = space.basis().tabulate(rule.points);
+  std::vector<double> result(space.n_dofs(), 0.0);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const CellMap<dim> map = cell_map(mesh, c);
+    const Material& material = problem.material(mesh.region(c));
+    const std::span<const Index> nodes = space.cell_nodes(c);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      // (sigma(u), grad phi_i)_T, with J^{-1} moved from the test function to sigma
+      const auto gradients = table.gradients_at(q);
+      const Tensor<dim> stress =
+          sigma<dim>(material, gradient_at<dim>(nodes, u, gradients, map.inverse_transpose));
+      const Tensor<dim> pulled_back = rule.weights[q] * map.det * (stress * map.inverse_transpose);
+      for (int i = 0; i < table.n_nodes; ++i)
+      {
+        const Point<dim> force = pulled_back * gradients[i];
+        for (int a = 0; a < dim; ++a) result[dim * nodes[i] + a] += force[a];
+      }
+    }
+  }
+  return result;
+}
+
+template <int dim>
+StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                         std::span<const double> u)
+{
+  const Mesh<dim>& mesh = space.mesh();
+  const Quadrature<dim> rule = quadrature<dim>(2 * space.degree() - 2);
+  const Tabulation<dim> table = space.basis().tabulate(rule.points);
+  double energy = 0;
+  double sigma_squared = 0;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const CellMap<dim> map = cell_map(mesh, c);
+    const Material& material = problem.material(mesh.region(c));
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      const Tensor<dim> gradient =
+          gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose);
+      const Tensor<dim> stress = sigma<dim>(material, gradient);
+      energy += rule.weights[q] * map.det * stress.cwiseProduct(gradient).sum();
+      sigma_squared += rule.weights[q] * map.det * stress.squaredNorm();
+    }
+  }
+  return {energy, std::sqrt(sigma_squared)};
+}
+
+namespace
+{
+
+/// load_i += weight f . phi_i at one point of a cell.
+template <int dim>
+void add_point_load(std::span<const Index> nodes, std::span<const double> values, const Point<dim>& force,
+                    std::span<double> load)
+{
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (int a = 0; a < dim; ++a) load[static_cast<std::size_t>(dim) * nodes[i] + a] += values[i] * force[a];
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<double> assemble_load(const Problem<dim>& problem, const LagrangeSpace<dim>& space)
+{
+  const Mesh<dim>& mesh = space.mesh();
+  const int degree = data_quadrature_degree(space.degree());
+  std::vector<double> load(space.n_dofs(), 0.0);
+
+  // (f, phi_i)
+  const Quadrature<dim> cell_rule = quadrature<dim>(degree);
+  const Tabulation<dim> cell_table = space.basis().tabulate(cell_rule.points);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    if (problem.body_force_is_zero(mesh.region(c))) continue;
+    const CellMap<dim> map = cell_map(mesh, c);
+    for (int q = 0; q < cell_rule.size(); ++q)
+      add_point_load<dim>(
+          space.cell_nodes(c), cell_table.values_at(q),
+          cell_rule.weights[q] * map.det * problem.body_force(mesh.region(c), map(cell_rule.points[q])),
+          load);
+  }
+
+  // (g_N, phi_i)_N
+  const Quadrature<dim - 1> facet_rule = quadrature<dim - 1>(degree);
+  const FacetTabulation<dim> facet_table = tabulate_on_facets<dim>(space.basis(), facet_rule.points);
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    if (!boundary.is_loaded()) continue;
+    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
+    for (int q = 0; q < facet_rule.size(); ++q)
+    {
+      const Point<dim> x = map(facet_to_cell<dim>(facet.local, facet_rule.points[q]));
+      add_point_load<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
+                          scale * facet_rule.weights[q] * boundary.load(x, geometry.normal), load);
+    }
+  }
+  return load;
+}
+
+template Triplets stiffness(const Problem<2>&, const LagrangeSpace<2>&, const Constraints&);
+template Triplets stiffness(const Problem<3>&, const LagrangeSpace<3>&, const Constraints&);
+template std::vector<double> apply_stiffness(const Problem<2>&, const LagrangeSpace<2>&,
+                                             std::span<const double>);
+template std::vector<double> apply_stiffness(const Problem<3>&, const LagrangeSpace<3>&,
+                                             std::span<const double>);
+template StressNorms stress_norms(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
+template StressNorms stress_norms(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
+template std::vector<double> assemble_load(const Problem<2>&, const LagrangeSpace<2>&);
+template std::vector<double> assemble_load(const Problem<3>&, const LagrangeSpace<3>&);
+
+}  // namespace tribound

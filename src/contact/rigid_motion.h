@@ -1,0 +1,29 @@
+#pragma once
+
+/// @file rigid_motion.h
+/// Whether the boundary conditions hold every body: a motion that nothing stops is an error of the case, to
+/// be named before a factorisation fails on it.
+
+#include <span>
+
+#include "case/problem.h"
+#include "fem/space.h"
+
+namespace tribound
+{
+
+/// Throws InputError naming the body and the motion when a part of the mesh that is connected through facets
+///  * can move rigidly although its displacement conditions hold and all contact is closed (and sticking,
+///    where there is friction): the first Newton step would be singular; or
+///  * is driven by its loads into a rigid motion that contact, which only pushes and whose friction is
+///    limited, cannot resist: there is no solution. Exact for frictionless contact and in 2D for Coulomb's
+///    law; for Coulomb's law in 3D the cone of friction is replaced by an eight-sided one around it, and
+///    Tresca's bound is tested only against the sliding in which the loads do most work. So what is refused
+///    has no solution, but some cases without one pass.
+/// Bodies that displacement conditions hold by themselves pass at once.
+/// `load`: L(phi_i) for every degree of freedom.
+template <int dim>
+void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                         std::span<const double> load);
+
+}  // namespace tribound

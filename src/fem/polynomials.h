@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file polynomials.h
+/// Orthonormal polynomials on the reference simplex (Dubiner/Koornwinder), ordered by degree.
+
+#include <span>
+
+#include "base/types.h"
+
+namespace tribound
+{
+
+/// dim P^degree(R^k) = binomial(degree + k, k).
+[[nodiscard]] constexpr int polynomial_dimension(int k, int degree)
+{
+  int n = 1;
+  for (int i = 1; i <= k; ++i) n = n * (degree + i) / i;
+  return degree < 0 ? 0 : n;
+}
+
+/// Values at x of an orthonormal basis of P^degree on the reference k-simplex; the first
+/// polynomial_dimension(k, m) of them span P^m, so that truncation is the L2 projection.
+template <int k>
+void orthonormal_values(int degree, const Point<k>& x, std::span<double> values);
+
+/// Values and gradients.
+template <int k>
+void orthonormal_gradients(int degree, const Point<k>& x, std::span<double> values,
+                           std::span<Point<k>> gradients);
+
+}  // namespace tribound

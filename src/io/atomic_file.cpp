@@ -1,0 +1,155 @@
+#include "io/atomic_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+constexpr std::size_t buffer_size = 1 << 20;
+
+/// Unique among the processes that may write to the same directory.
+std::filesystem::path temporary_name(const std::filesystem::path& path)
+{
+  std::filesystem::path name = path;
+  name.replace_filename("." + path.filename().string() + "." + std::to_string(::getpid()) + ".part");
+  return name;
+}
+
+std::string reason(int error)
+{
+  return std::generic_category().message(error);
+}
+
+std::string hint_for(int error)
+{
+  switch (error)
+  {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return "free some space, or choose another output.directory";
+    case ENOENT:
+      return "create the directory first, or choose another output.directory";
+    default:
+      return "choose an output.directory that you may write to";
+  }
+}
+
+/// The directory and those above it that do not exist, innermost first.
+std::vector<std::filesystem::path> missing_directories(std::filesystem::path directory)
+{
+  std::vector<std::filesystem::path> missing;
+  std::error_code error;
+  for (; !directory.empty() && !std::filesystem::exists(directory, error);
+       directory = directory.parent_path())
+    missing.push_back(directory);
+  return missing;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path)
+    : path_(std::move(path)), temporary_(temporary_name(path_)), file_(std::fopen(temporary_.c_str(), "wb"))
+{
+  if (!file_) fail(errno);
+  std::setvbuf(file_.get(), nullptr, _IOFBF, buffer_size);
+}
+
+AtomicFile::~AtomicFile()
+{
+  if (!file_) return;
+  file_.reset();
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes)
+{
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail(errno);
+  position_ += bytes.size();
+}
+
+void AtomicFile::overwrite(std::uint64_t position, std::span<const std::byte> bytes)
+{
+  if (::fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) fail(errno);
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail(errno);
+  if (::fseeko(file_.get(), 0, SEEK_END) != 0) fail(errno);
+}
+
+void AtomicFile::flush()
+{
+  if (std::fflush(file_.get()) != 0) fail(errno);
+}
+
+void AtomicFile::commit()
+{
+  flush();
+  // fclose reports errors of delayed writing, as network file systems have them.
+  const int closed = std::fclose(file_.release());
+  const int error = errno;
+  std::error_code renamed;
+  if (closed == 0) std::filesystem::rename(temporary_, path_, renamed);
+  if (closed == 0 && !renamed) return;
+
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+  fail(closed == 0 ? renamed.value() : error);
+}
+
+void AtomicFile::fail(int error) const
+{
+  throw InputError({.file = path_.string(), .key = {}}, "cannot write this file: " + reason(error),
+                   hint_for(error));
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text)
+{
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+void prepare_output_directory(const std::filesystem::path& directory)
+{
+  const Where where{.file = directory.string(), .key = "output.directory"};
+  std::error_code error;
+  if (std::filesystem::exists(directory, error) && !std::filesystem::is_directory(directory, error))
+    throw InputError(where, "exists and is not a directory", "choose another output.directory");
+
+  const std::vector<std::filesystem::path> missing = missing_directories(directory);
+  const auto undo = [&]
+  {
+    std::error_code ignored;
+    for (const std::filesystem::path& created : missing) std::filesystem::remove(created, ignored);
+  };
+  std::filesystem::create_directories(directory, error);
+  if (error)
+  {
+    undo();
+    throw InputError(where, "cannot create this directory: " + error.message(), hint_for(error.value()));
+  }
+  try
+  {
+    AtomicFile probe(directory / "probe");
+    probe.write("probe");
+    probe.flush();
+  }
+  catch (const InputError& failure)
+  {
+    undo();
+    throw InputError(where, "cannot write to this directory: " + failure.problem(), failure.hint());
+  }
+}
+
+}  // namespace tribound

@@ -1,0 +1,173 @@
+#include "io/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+namespace tribound
+{
+
+namespace
+{
+
+std::string count(long n, std::string_view singular, std::string_view plural)
+{
+  return fmt::format("{} {}", n, n == 1 ? singular : plural);
+}
+
+/// A line with a caption in the first column.
+std::string line(std::string_view caption, std::string_view text)
+{
+  return fmt::format("{:<14}{}\n", caption, text);
+}
+
+/// The same, or nothing for an empty text.
+std::string line_if_any(std::string_view caption, std::string_view text)
+{
+  return text.empty() ? std::string{} : line(caption, text);
+}
+
+/// Width of the widest name in a list of regions or boundaries.
+template <typename Parts>
+std::size_t name_width(const Parts& parts)
+{
+  std::size_t width = 0;
+  for (const auto& part : parts) width = std::max(width, part.name.size());
+  return width;
+}
+
+std::string mesh_line(const MeshFacts& mesh)
+{
+  return line("mesh",
+              fmt::format("{}, {}, h from {:.4g} to {:.4g}", count(mesh.vertices, "vertex", "vertices"),
+                          count(mesh.cells, "cell", "cells"), mesh.smallest_cell, mesh.largest_cell));
+}
+
+std::string method_line(const CaseFacts& facts, const MeshFacts& mesh)
+{
+  return line("method", fmt::format("{}D, degree {}, {} free degrees of freedom, gamma_0 = {:g}",
+                                    facts.dimension, facts.degree, mesh.free_dofs, facts.gamma0));
+}
+
+std::string resultants_line(std::string_view caption, std::string_view boundary, const Resultants& r)
+{
+  return line(caption, fmt::format("{}: normal {:.8g}, tangential {:.8g}, force ({:.8g})", boundary, r.normal,
+                                   r.tangential, fmt::join(r.force, ", ")));
+}
+
+std::string bound_line(const LevelRecord& level)
+{
+  if (!level.bound) return {};
+  return line("bound", fmt::format("{:.6g}, {:.3g} of ||sigma||", level.bound->total_sharp,
+                                   level.bound->total_sharp / level.figures.sigma_norm));
+}
+
+void print(const std::string& text)
+{
+  fmt::print(stdout, "{}", text);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+std::string header_text(const CaseFacts& facts, const MeshFacts& mesh)
+{
+  return line("case", facts.title.empty() ? facts.file : facts.title) + mesh_line(mesh) +
+         method_line(facts, mesh);
+}
+
+std::string newton_text(const NewtonStep& step)
+{
+  const std::string solver = step.linear_iterations == 0
+                                 ? std::string("direct")
+                                 : count(step.linear_iterations, "iteration", "iterations");
+  return fmt::format("  step {:>2}  residual {:.3e}  damping {:<8.4g}  {}{}, {:.2f} s\n", step.step,
+                     step.residual, step.damping, solver, step.factorised ? " + factorisation" : "",
+                     step.seconds);
+}
+
+std::string summary_text(const RunRecord& run, const std::string& directory)
+{
+  std::string text;
+  if (!run.levels.empty())
+  {
+    const LevelRecord& last = run.levels.back();
+    text += line("newton", count(static_cast<long>(last.newton.size()), "step", "steps"));
+    for (const Resultants& part : last.figures.boundary_contact)
+      text += resultants_line("contact", part.boundary, part);
+    if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
+    text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
+    text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
+                                       last.figures.sigma_norm));
+    text += bound_line(last);
+  }
+  text += line("status", to_string(run.status) + (run.reason.empty() ? "" : ": " + run.reason));
+  text += line_if_any("results", directory);
+  return text;
+}
+
+std::string check_text(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver)
+{
+  const char* unit = facts.dimension == 2 ? "area" : "volume";
+  std::string text = header_text(facts, mesh);
+  text += line_if_any("solver", solver);
+  text += "regions\n";
+  for (const RegionFacts& region : mesh.regions)
+    text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", region.name, name_width(mesh.regions),
+                        count(region.cells, "cell", "cells"), unit, region.measure, region.material);
+  text += "boundaries\n";
+  for (const BoundaryFacts& boundary : mesh.boundaries)
+    text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", boundary.name, name_width(mesh.boundaries),
+                        count(boundary.facets, "facet", "facets"), facts.dimension == 2 ? "length" : "area",
+                        boundary.measure, boundary.condition);
+  return text;
+}
+
+std::string info_text(const BuildFacts& build)
+{
+  const std::string threads =
+      build.blas_threads > 0 ? ", " + count(build.blas_threads, "thread", "threads") : std::string{};
+  return line("tribound", build.version) + line("compiler", build.compiler) +
+         line_if_any("PETSc", build.petsc) + line_if_any("MUMPS", build.mumps) +
+         line_if_any("Gmsh", build.gmsh) +
+         line_if_any("BLAS", build.blas.empty() ? "" : build.blas + threads) + line_if_any("MPI", build.mpi) +
+         line_if_any("Eigen", build.eigen) +
+         line_if_any("features", fmt::format("{}", fmt::join(build.features, ", ")));
+}
+
+void print_header(const CaseFacts& facts, const MeshFacts& mesh)
+{
+  print(header_text(facts, mesh));
+}
+
+void print_summary(const RunRecord& run, const std::string& directory)
+{
+  print(summary_text(run, directory));
+}
+
+void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver)
+{
+  print(check_text(facts, mesh, solver));
+}
+
+void print_info(const BuildFacts& build)
+{
+  print(info_text(build));
+}
+
+Progress::Progress(bool quiet) : shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+void Progress::operator()(const NewtonStep& step) const
+{
+  if (shown_) fmt::print(stderr, "{}", newton_text(step));
+}
+
+void Progress::stage(const std::string& text) const
+{
+  if (shown_) fmt::print(stderr, "{}\n", text);
+}
+
+}  // namespace tribound

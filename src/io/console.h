@@ -1,0 +1,47 @@
+#pragma once
+
+/// @file console.h
+/// What a user sees: results on stdout, progress on stderr.
+
+#include <string>
+#include <vector>
+
+#include "io/facts.h"
+#include "io/report.h"
+#include "solve/newton.h"
+
+namespace tribound
+{
+
+/// The texts of the program; each ends with a newline.
+[[nodiscard]] std::string header_text(const CaseFacts& facts, const MeshFacts& mesh);
+[[nodiscard]] std::string newton_text(const NewtonStep& step);
+/// Resultants, largest displacement, status, and where the files are.
+[[nodiscard]] std::string summary_text(const RunRecord& run, const std::string& directory);
+/// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
+[[nodiscard]] std::string check_text(const CaseFacts& facts, const MeshFacts& mesh,
+                                     const std::string& solver);
+/// `tribound info`.
+[[nodiscard]] std::string info_text(const BuildFacts& build);
+
+void print_header(const CaseFacts& facts, const MeshFacts& mesh);
+void print_summary(const RunRecord& run, const std::string& directory);
+void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver);
+void print_info(const BuildFacts& build);
+
+/// One line per Newton step on stderr, where somebody can be watching: stderr is a terminal and the user has
+/// not asked for quiet.
+class Progress
+{
+ public:
+  explicit Progress(bool quiet);
+
+  void operator()(const NewtonStep& step) const;
+  /// A line about a stage, such as "reading block.msh".
+  void stage(const std::string& text) const;
+
+ private:
+  bool shown_;
+};
+
+}  // namespace tribound

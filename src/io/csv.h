@@ -1,0 +1,68 @@
+#pragma once
+
+/// @file csv.h
+/// Rows of comma-separated values (RFC 4180).
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tribound
+{
+
+/// Builds a table row by row. Numbers are printed with the fewest digits that read back as the same number.
+class CsvTable
+{
+ public:
+  /// Starts with the line of column names, separated by commas.
+  explicit CsvTable(std::string_view columns) : text_(columns) { end_row(); }
+
+  void add(std::string_view value)
+  {
+    separate();
+    if (value.find_first_of(",\"\n") == std::string_view::npos)
+    {
+      text_ += value;
+      return;
+    }
+    text_ += '"';
+    for (const char c : value) text_.append(c == '"' ? 2 : 1, c);
+    text_ += '"';
+  }
+  /// -0 is written as 0: the sign of nothing is no result.
+  void add(double value)
+  {
+    separate();
+    fmt::format_to(std::back_inserter(text_), "{}", value + 0.0);
+  }
+  void add(long value)
+  {
+    separate();
+    fmt::format_to(std::back_inserter(text_), "{}", value);
+  }
+  void add(int value) { add(static_cast<long>(value)); }
+  /// An unknown number leaves its cell empty.
+  void add(std::optional<double> value) { value ? add(*value) : add(std::string_view{}); }
+
+  void end_row()
+  {
+    text_ += '\n';
+    row_is_empty_ = true;
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void separate()
+  {
+    if (!row_is_empty_) text_ += ',';
+    row_is_empty_ = false;
+  }
+
+  std::string text_;
+  bool row_is_empty_ = true;
+};
+
+}  // namespace tribound

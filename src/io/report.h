@@ -1,0 +1,137 @@
+#pragma once
+
+/// @file report.h
+/// What a run is reported by: convergence.csv, newton.csv, certificate.json. Plain data in, text out; what is
+/// not known is absent, never zero.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contact/nitsche.h"
+#include "io/facts.h"
+#include "solve/newton.h"
+
+namespace tribound
+{
+
+/// The global components of the bound, method section 5, stress units times length^(dim/2).
+struct Components
+{
+  double osc = 0.0;
+  double str = 0.0;
+  double neu = 0.0;
+  double lin1 = 0.0;
+  double cnt = 0.0;
+  double frc = 0.0;
+  double lin2n = 0.0;
+  double lin2t = 0.0;
+  double total = 0.0;        ///< plain sums, as in the paper
+  double total_sharp = 0.0;  ///< with the sharper b_T: the bound
+};
+
+/// The identities of method section 4, each relative to ||sigma_h||.
+struct Identities
+{
+  double divergence = 0.0;
+  double jump = 0.0;
+  double neumann = 0.0;
+  double contact = 0.0;
+  double symmetry = 0.0;
+};
+
+/// What the contact traction adds up to; forces (per unit depth in 2D).
+struct Resultants
+{
+  std::string boundary;       ///< name of the boundary group; empty for the whole of Gamma_C
+  std::vector<double> force;  ///< integral of T, acts on the body
+  double normal = 0.0;        ///< integral of T^n, negative in compression
+  double tangential = 0.0;    ///< 2D: integral of T.t with t = n turned by +90 degrees; 3D: |integral of T^t|
+  double abs_tangential = 0.0;  ///< integral of |T^t|
+};
+
+/// The figures by which a discrete solution is compared with others.
+struct SolutionFigures
+{
+  double energy = 0.0;            ///< a(u, u), not halved
+  double sigma_norm = 0.0;        ///< ||sigma(u)||
+  double max_displacement = 0.0;  ///< largest |u| at a node
+  Resultants contact;
+  std::vector<Resultants> boundary_contact;  ///< of every boundary group with contact
+};
+
+/// The figures of u with the contact traction t at the contact points of the form.
+template <int dim>
+[[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const double> u,
+                                               std::span<const Point<dim>> t);
+
+/// A Newton step with the bound after it.
+struct NewtonRecord
+{
+  NewtonStep step;
+  std::optional<Components> bound;
+  bool accepted = false;  ///< whether its iterate was taken as the solution on the level
+};
+
+/// Seconds of wall time on a level.
+struct LevelTimes
+{
+  double solve = 0.0;
+  std::optional<double> certify;
+  double level = 0.0;  ///< everything, output included
+};
+
+struct LevelRecord
+{
+  int level = 0;
+  long cells = 0;
+  long dofs = 0;  ///< free ones
+  std::vector<NewtonRecord> newton;
+  SolutionFigures figures;
+  std::optional<Components> bound;
+  std::optional<Identities> identities;
+  LevelTimes times;
+};
+
+enum class RunStatus
+{
+  uncertified,  ///< solved, no bound computed
+  certified,    ///< bound below the tolerance, identities hold
+  failed,       ///< no convergence, or an identity violated
+  budget        ///< the bound holds, the tolerance was not reached
+};
+
+[[nodiscard]] const char* to_string(RunStatus status);
+
+struct RunRecord
+{
+  CaseFacts facts;
+  MeshFacts mesh;  ///< the first mesh
+  BuildFacts build;
+  RunStatus status = RunStatus::uncertified;
+  std::string reason;  ///< why the run is not certified, or what failed; empty when certified
+  std::vector<LevelRecord> levels;
+  std::vector<std::pair<std::string, double>> constants;         ///< used in the bound, by name
+  std::vector<std::pair<std::string, std::string>> assumptions;  ///< what the result rests on, by topic
+  std::vector<std::string> covered;                              ///< errors that the bound covers
+  std::vector<std::string> not_covered;                          ///< errors that it does not
+  std::vector<std::pair<std::string, double>> times;             ///< s per stage of the whole run
+};
+
+/// A row per level; the columns are those of docs/output.md. Unknown cells are empty.
+[[nodiscard]] std::string convergence_csv(const RunRecord& run);
+
+/// A row per Newton step of every level.
+[[nodiscard]] std::string newton_csv(const RunRecord& run);
+
+/// The certificate, JSON with the fields of docs/output.md; unknown numbers are null.
+[[nodiscard]] std::string certificate_json(const RunRecord& run);
+
+/// Writes convergence.csv, newton.csv and certificate.json, the last one last. Throws InputError when a file
+/// cannot be written.
+void write_report(const std::filesystem::path& directory, const RunRecord& run);
+
+}  // namespace tribound

@@ -1,0 +1,33 @@
+#include "mesh/mesh.h"
+
+#include <utility>
+
+#include "mesh/verify.h"
+
+namespace tribound
+{
+
+template <int dim>
+Mesh<dim>::Mesh(MeshData<dim> data)
+{
+  check_arrays(data);
+  check_shapes(data);
+  Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
+  check_facets(data, topology);
+  check_conformity(data, topology);
+  boundary_ = find_boundary(data, topology);
+  check_vertices(data, topology);
+
+  vertices_ = std::move(data.vertices);
+  cells_ = std::move(data.cells);
+  regions_ = std::move(data.regions);
+  region_names_ = std::move(data.region_names);
+  boundary_names_ = std::move(data.boundary_names);
+  source_ = std::move(data.source);
+  topology_ = std::make_unique<const Topology<dim>>(std::move(topology));
+}
+
+template class Mesh<2>;
+template class Mesh<3>;
+
+}  // namespace tribound

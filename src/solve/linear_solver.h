@@ -1,0 +1,65 @@
+#pragma once
+
+/// @file linear_solver.h
+/// Linear systems of a Newton loop: factorisations kept as preconditioners, or multigrid.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "case/config.h"
+#include "solve/petsc.h"
+
+struct _p_KSP;
+
+namespace tribound
+{
+
+struct KspDeleter
+{
+  void operator()(_p_KSP* ksp) const;
+};
+
+/// What solving one linear system took.
+struct LinearSolve
+{
+  int iterations = 0;       ///< of GMRES
+  bool factorised = false;  ///< whether a new factorisation or multigrid hierarchy was made
+};
+
+/// Direct or iterative, as configured or by dimension and size: factorisations in 2D at every size that fits,
+/// in 3D up to 30 000 degrees of freedom.
+[[nodiscard]] LinearMethod choose_method(const SolverConfig& config, int dim, Index n_dofs);
+
+/// Solves the linear systems of one Newton loop by flexible GMRES, preconditioned by a factorisation (then
+/// one iteration is the rule) or by smoothed-aggregation multigrid with rigid body modes. The preconditioner
+/// is kept for the next systems as long as the additional iterations cost less than a new one.
+class LinearSolver
+{
+ public:
+  /// `nodes`: positions of the nodes; degree of freedom dim * node + component.
+  template <int dim>
+  LinearSolver(const SolverConfig& config, std::span<const Point<dim>> nodes);
+
+  /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off. Throws SolveError when A is
+  /// singular or the iteration stalls.
+  LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x);
+
+  [[nodiscard]] LinearMethod method() const { return method_; }
+
+ private:
+  void configure(const SparseMatrix& a);
+  void configure_direct();
+  void configure_multigrid(const SparseMatrix& a);
+  void prepare(const SparseMatrix& a);
+
+  SolverConfig config_;
+  LinearMethod method_;
+  int dim_;
+  std::vector<double> coordinates_;
+  std::unique_ptr<_p_KSP, KspDeleter> ksp_;
+  int reuse_budget_ =
+      0;  ///< iterations with the old preconditioner that cost less than a new one; 0: none yet
+};
+
+}  // namespace tribound

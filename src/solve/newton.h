@@ -1,0 +1,53 @@
+#pragma once
+
+/// @file newton.h
+/// The generalised Newton method of section 2 with damping and running traction.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+#include "case/config.h"
+#include "contact/nitsche.h"
+
+namespace tribound
+{
+
+struct NewtonStep
+{
+  int step = 0;               ///< 1-based
+  double residual = 0.0;      ///< relative, after the step
+  double damping = 1.0;       ///< alpha
+  int linear_iterations = 0;  ///< GMRES iterations; 0 for a direct solve
+  bool factorised = false;    ///< whether a new factorisation (or preconditioner) was made
+  double seconds = 0.0;
+};
+
+enum class NewtonStatus
+{
+  converged,
+  diverged,
+  too_many_steps
+};
+
+template <int dim>
+struct NewtonResult
+{
+  NewtonStatus status = NewtonStatus::too_many_steps;
+  std::string message;               ///< what happened, at which step; empty when converged
+  std::vector<double> u;             ///< u^k, dofs of the space
+  std::vector<Point<dim>> traction;  ///< t^k at the contact points of the form
+  std::vector<NewtonStep> steps;
+};
+
+/// Solves the discrete problem. `start` is a solution carried from a coarser mesh (then the first step
+/// linearises there), or empty (then the first step is closed and sticking). `progress` is called after each
+/// step. Throws SolveError when a matrix is singular.
+template <int dim>
+[[nodiscard]] NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
+                                      const NewtonConfig& newton, const SolverConfig& solver,
+                                      const std::function<void(const NewtonStep&)>& progress = {});
+
+}  // namespace tribound

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file tribound.h
+/// All of Tribound, in the order of the method.
+
+// The problem: what the case file says, and what holds where.
+#include "base/error.h"
+#include "base/version.h"
+#include "case/config.h"
+#include "case/problem.h"
+
+// The mesh.
+#include "mesh/box.h"
+#include "mesh/geometry.h"
+#include "mesh/gmsh.h"
+#include "mesh/mesh.h"
+
+// The discrete problem: P^p Lagrange elements and the Nitsche form.
+#include "contact/elasticity.h"
+#include "contact/nitsche.h"
+#include "contact/projection.h"
+#include "contact/rigid_motion.h"
+#include "fem/space.h"
+
+// Its solution by the generalised Newton method.
+#include "solve/newton.h"
+#include "solve/petsc.h"
+
+// The equilibrated stress, its identities and the components of the bound.
+#include "certify/checks.h"
+#include "certify/equilibrate.h"
+#include "certify/estimate.h"

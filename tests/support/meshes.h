@@ -1,0 +1,113 @@
+#pragma once
+
+/// @file meshes.h
+/// Meshes for tests: boxes moved, mapped, renumbered and put together.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/box.h"
+#include "mesh/mesh.h"
+
+namespace tribound::test
+{
+
+/// The structured box between two corners.
+template <int dim>
+MeshData<dim> box(const Point<dim>& lower, const Point<dim>& upper, const std::array<int, dim>& cells)
+{
+  return box_mesh<dim>({.lower = {lower.data(), lower.data() + dim},
+                        .upper = {upper.data(), upper.data() + dim},
+                        .cells = {cells.begin(), cells.end()},
+                        .where = {}});
+}
+
+/// The mesh with every vertex x at map(x).
+template <int dim, class Map>
+MeshData<dim> mapped(MeshData<dim> data, Map map)
+{
+  for (Point<dim>& x : data.vertices) x = map(x);
+  return data;
+}
+
+/// The same mesh with vertices and cells in random order and the vertices of each cell in a random order of
+/// positive orientation.
+template <int dim>
+MeshData<dim> renumbered(MeshData<dim> data, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::vector<Index> number(data.vertices.size());  // new number of each vertex
+  std::iota(number.begin(), number.end(), 0);
+  std::ranges::shuffle(number, random);
+  std::vector<Point<dim>> vertices(data.vertices.size());
+  for (std::size_t v = 0; v < number.size(); ++v) vertices[number[v]] = data.vertices[v];
+  data.vertices = std::move(vertices);
+  for (TaggedFacet<dim>& facet : data.facets)
+    for (Index& v : facet.vertices) v = number[v];
+
+  std::vector<std::size_t> order(data.cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::shuffle(order, random);
+  std::vector<Cell<dim>> cells;
+  std::vector<int> regions;
+  for (const std::size_t c : order)
+  {
+    Cell<dim> cell = data.cells[c];
+    for (Index& v : cell) v = number[v];
+    for (int i = 0, n = static_cast<int>(random() % 12); i < n; ++i)  // three-cycles keep the orientation
+    {
+      const std::size_t first = dim == 2 ? 0 : random() % 2;
+      std::rotate(cell.begin() + first, cell.begin() + first + 1, cell.begin() + first + 3);
+    }
+    cells.push_back(cell);
+    regions.push_back(data.regions[c]);
+  }
+  data.cells = std::move(cells);
+  data.regions = std::move(regions);
+  return data;
+}
+
+/// The mesh with bent sides and cells that all differ, numbered at random.
+template <int dim>
+MeshData<dim> distorted(MeshData<dim> data, unsigned seed)
+{
+  const auto bend = [](const Point<dim>& x) -> Point<dim>
+  {
+    Point<dim> y = x;
+    for (int a = 0; a < dim; ++a) y[a] += 0.06 * std::sin(3 * x[(a + 1) % dim] + a) + 0.03 * x[a] * x[a];
+    return y;
+  };
+  return renumbered(mapped(std::move(data), bend), seed);
+}
+
+/// Both meshes side by side, not connected; boundaries and regions of `b` get names with `suffix` behind.
+template <int dim>
+MeshData<dim> side_by_side(MeshData<dim> a, const MeshData<dim>& b, const std::string& suffix)
+{
+  const auto first_vertex = static_cast<Index>(a.vertices.size());
+  const auto first_region = static_cast<int>(a.region_names.size());
+  const auto first_boundary = static_cast<int>(a.boundary_names.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (Cell<dim> cell : b.cells)
+  {
+    for (Index& v : cell) v += first_vertex;
+    a.cells.push_back(cell);
+  }
+  for (const int region : b.regions) a.regions.push_back(region + first_region);
+  for (TaggedFacet<dim> facet : b.facets)
+  {
+    for (Index& v : facet.vertices) v += first_vertex;
+    facet.tag += first_boundary;
+    a.facets.push_back(facet);
+  }
+  for (const std::string& name : b.region_names) a.region_names.push_back(name + suffix);
+  for (const std::string& name : b.boundary_names) a.boundary_names.push_back(name + suffix);
+  return a;
+}
+
+}  // namespace tribound::test

@@ -1,0 +1,245 @@
+// Every way to get a case file wrong, with the message that helps.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "case/config.h"
+
+namespace tribound
+{
+namespace
+{
+
+using testing::HasSubstr;
+
+const std::string mesh = "mesh.file = 'a.msh'\n";
+const std::string material = "material = {E = 1, nu = 0.3}\n";
+const std::string head = mesh + material;  // the case goes on in line 3
+
+struct BadCase
+{
+  std::string name;
+  std::string text;
+  std::string place;    ///< how the message begins
+  std::string problem;  ///< in the message
+  std::string hint;     ///< in the message
+};
+
+void PrintTo(const BadCase& bad, std::ostream* out)
+{
+  *out << bad.text;
+}
+
+class BadCaseFile : public testing::TestWithParam<BadCase>
+{
+};
+
+TEST_P(BadCaseFile, IsRejectedWithPlaceProblemAndHint)
+{
+  const BadCase& bad = GetParam();
+  try
+  {
+    (void)parse_config(bad.text, "case.toml");
+    FAIL() << "accepted";
+  }
+  catch (const InputError& error)
+  {
+    const std::string message = error.what();
+    EXPECT_EQ(message.substr(0, bad.place.size()), bad.place) << message;
+    EXPECT_THAT(message, HasSubstr(bad.problem));
+    EXPECT_THAT(error.hint(), HasSubstr(bad.hint));
+    EXPECT_FALSE(error.hint().empty()) << message;
+  }
+}
+
+std::vector<BadCase> syntax()
+{
+  return {
+      {"NotToml", "degree = \n", "case.toml:1:", "not valid TOML", "quotes"},
+      {"OpenString", "title = \"abc\ndegree = 1\n", "case.toml:1:", "not valid TOML", "quotes"},
+      {"OpenTable", head + "[newton\nmax_steps = 3\n", "case.toml:3:", "not valid TOML", "header"},
+      {"BoundaryTwice", head + "[boundary.top]\npressure = 1\n[boundary.top]\npressure = 2\n",
+       "case.toml:5:", "boundary \"top\" is given twice", "into one table"},
+      {"TableTwice", head + "[newton]\n[newton]\n", "case.toml:4:", "newton: is given twice", "keep one"},
+      {"KeyTwice", head + "degree = 1\ndegree = 2\n", "case.toml:4:", "degree: is given twice", "keep one"},
+      {"UnknownTopKey", "degre = 2\n" + head, "case.toml:1:1: degre: ", "unknown key",
+       "did you mean \"degree\"? allowed here: title, degree, mesh"},
+      {"UnknownTable", head + "[plasticity]\n", "case.toml:3:2: plasticity: ", "unknown key",
+       "allowed here: "},
+      {"UnknownNestedKey", head + "[adapt]\ntolerence = 1\n",
+       "case.toml:4:1: adapt.tolerence: ", "unknown key", "did you mean \"tolerance\"?"},
+      {"UnknownMaterialKey", mesh + "[material]\nE = 1\nnue = 0.3\n", "case.toml:4:1: material.nue: ",
+       "unknown key", "did you mean \"nu\"? allowed here: E, nu, plane, or tables of single regions"},
+      {"UnknownContactKey", head + "[boundary.a]\ncontact = {fricton = 'none'}\n",
+       "case.toml:4:12: boundary.a.contact.fricton: ", "unknown key", "did you mean \"friction\"?"},
+      {"UnknownBoundaryKey", head + "[boundary.a]\ndisplacment = [0, 0]\n",
+       "case.toml:4:1: boundary.a.displacment: ", "unknown key", "did you mean \"displacement\"?"},
+      {"NotATable", head + "newton = 3\n", "case.toml:3:10: newton: ", "must be a table, found the integer 3",
+       "stopping, gamma_lin"},
+      {"BoundaryNotATable", head + "boundary = 'top'\n",
+       "case.toml:3:12: boundary: ", "must be a table, found the string \"top\"", "[boundary.top]"},
+      {"QuotedName", head + "[boundary.\"left wall\"]\nforce = 1\n",
+       "case.toml:4:1: boundary.\"left wall\".force: ", "unknown key", "traction"},
+  };
+}
+
+std::vector<BadCase> values()
+{
+  return {
+      {"TitleNotText", "title = 5\n" + head,
+       "case.toml:1:9: title: ", "must be a string, found the integer 5", "quotes"},
+      {"DegreeZero", "degree = 0\n" + head, "case.toml:1:10: degree: ", "an integer from 1 to 4, found 0",
+       "polynomial degree"},
+      {"DegreeFive", "degree = 5\n" + head, "case.toml:1:10: degree: ", "found 5", "degree"},
+      {"DegreeNotInteger", "degree = 2.0\n" + head,
+       "case.toml:1:10: degree: ", "must be an integer, found the number 2", "degree"},
+      {"YoungZero", mesh + "material = {E = 0, nu = 0.3}\n",
+       "case.toml:2:17: material.E: ", "must be positive, found 0", "Young's modulus"},
+      {"YoungText", mesh + "material = {E = '210e9', nu = 0.3}\n",
+       "case.toml:2:17: material.E: ", "must be a number, found the string \"210e9\"", "without quotes"},
+      {"YoungInfinite", mesh + "material = {E = inf, nu = 0.3}\n",
+       "case.toml:2:17: material.E: ", "must be a finite number, found the number inf", "an ordinary number"},
+      {"PoissonHalf", mesh + "[material]\nE = 1\nnu = 0.5\n",
+       "case.toml:4:6: material.nu: ", "must lie in (-1, 0.5), found 0.5", "0.499"},
+      {"PoissonLow", mesh + "[material.steel]\nE = 1\nnu = -1\n",
+       "case.toml:4:6: material.steel.nu: ", "must lie in (-1, 0.5), found -1", "such as 0.3"},
+      {"PlaneUnknown", mesh + "[material]\nE = 1\nnu = 0\nplane = 'stres'\n",
+       "case.toml:5:9: material.plane: ", "unknown value \"stres\"",
+       "did you mean \"stress\"? one of \"strain\", \"stress\""},
+      {"BodyNotArray", head + "load.body = -9.81\n",
+       "case.toml:3:13: load.body: ", "must be an array of 2 or 3, found the number -9.81", "per dimension"},
+      {"BodyTooShort", head + "load.body = [1]\n", "case.toml:3:13: load.body: ", "found an array of 1",
+       "per dimension"},
+      {"BodyWithBool", head + "load.body = [0, true]\n",
+       "case.toml:3:17: load.body[1]: ", "must be a number or a formula, found true", "such as"},
+      {"BodyFormula", head + "load.body = [0, 'grav*y']\n",
+       "case.toml:3:17: load.body[1]: ", "unknown name \"grav\" at character 1", "allowed are x, y, z"},
+      {"DisplacementLength", head + "[boundary.a]\ndisplacement = [0, 0, 0, 0]\n",
+       "case.toml:4:16: boundary.a.displacement: ", "found an array of 4", "\"free\" per dimension"},
+      {"TractionDate", head + "[boundary.a]\ntraction = 2024-01-01\n",
+       "case.toml:4:12: boundary.a.traction: ", "found a date or time", "per dimension"},
+      {"PressureArray", head + "[boundary.a]\npressure = [1, 2]\n", "case.toml:4:12: boundary.a.pressure: ",
+       "must be a number or a formula, found an array of 2", "such as"},
+      {"PressureComma", head + "[boundary.a]\npressure = '1,5'\n",
+       "case.toml:4:12: boundary.a.pressure: ", "has 2 results", "decimal sign"},
+      {"Gamma0", head + "[nitsche]\ngamma0 = 0\n", "case.toml:4:10: nitsche.gamma0: ", "must be positive",
+       "such as 10"},
+      {"Stopping", head + "[newton]\nstopping = 'never'\n",
+       "case.toml:4:12: newton.stopping: ", "unknown value \"never\"", "one of \"adaptive\", \"tolerance\""},
+      {"GammaLin", head + "[newton]\ngamma_lin = -0.1\n",
+       "case.toml:4:13: newton.gamma_lin: ", "must be positive, found -0.1", "0.1"},
+      {"NewtonTolerance", head + "[newton]\ntolerance = 0\n",
+       "case.toml:4:13: newton.tolerance: ", "must lie in (0, 1), found 0", "1e-10"},
+      {"MaxSteps", head + "[newton]\nmax_steps = 0\n",
+       "case.toml:4:13: newton.max_steps: ", "an integer of at least 1, found 0", "50"},
+      {"AdaptTolerance", head + "[adapt]\ntolerance = -1\n",
+       "case.toml:4:13: adapt.tolerance: ", "must be positive", "0.01"},
+      {"ThetaZero", head + "[adapt]\ntheta = 0\n",
+       "case.toml:4:9: adapt.theta: ", "must lie in (0, 1], found 0", "0.5"},
+      {"ThetaLarge", head + "[adapt]\ntheta = 1.5\n", "case.toml:4:9: adapt.theta: ", "found 1.5", "0.5"},
+      {"Marking", head + "[adapt]\nmarking = 'dorfler'\n",
+       "case.toml:4:11: adapt.marking: ", "unknown value \"dorfler\"", "did you mean \"doerfler\"?"},
+      {"MaxLevels", head + "[adapt]\nmax_levels = -1\n",
+       "case.toml:4:14: adapt.max_levels: ", "an integer of at least 0, found -1", "given mesh"},
+      {"MaxDofs", head + "[adapt]\nmax_dofs = 0\n", "case.toml:4:12: adapt.max_dofs: ", "found 0",
+       "2_000_000"},
+      {"MaxTime", head + "[adapt]\nmax_time = 0\n", "case.toml:4:12: adapt.max_time: ", "must be positive",
+       "seconds"},
+      {"ContactRule", head + "[certify]\ncontact_rule = 1\n", "case.toml:4:16: certify.contact_rule: ",
+       "must be a string, found the integer 1", "one of \"resolved\", \"reference\""},
+      {"SolverMethod", head + "[solver]\nmethod = 'lu'\n", "case.toml:4:10: solver.method: ",
+       "unknown value \"lu\"", "one of \"auto\", \"direct\", \"iterative\""},
+      {"SolverIterations", head + "[solver]\nmax_iterations = 1e3\n",
+       "case.toml:4:18: solver.max_iterations: ", "must be an integer, found the number 1000", "500"},
+      {"Vtu", head + "[output]\nvtu = 1\n",
+       "case.toml:4:7: output.vtu: ", "must be true or false, found the integer 1", "without quotes"},
+      {"NoDirectory", head + "[output]\ndirectory = ''\n", "case.toml:4:13: output.directory: ", "is empty",
+       "\"out\""},
+  };
+}
+
+std::vector<BadCase> combinations()
+{
+  const std::string box = "mesh.box = {lower = [0, 0], upper = [2, 1], cells = [4, 2]}\n";
+  return {
+      {"NoMesh", material, "case.toml: mesh: ", "is missing", "[mesh] with file"},
+      {"EmptyMesh", "[mesh]\n[material]\nE = 1\nnu = 0\n", "case.toml:1:1: mesh: ", "neither file nor box",
+       "one of them"},
+      {"FileAndBox", mesh + box + material, "case.toml:2:12: mesh.box: ", "box stands beside file",
+       "one of them"},
+      {"EmptyFile", "mesh.file = ''\n" + material, "case.toml:1:13: mesh.file: ", "is empty", "file = "},
+      {"BoxWithoutCells", "mesh.box = {lower = [0, 0], upper = [2, 1]}\n" + material,
+       "case.toml:1:12: mesh.box.cells: ", "is missing", "cells = [4, 2]"},
+      {"BoxLengths", "mesh.box = {lower = [0, 0], upper = [2, 1, 1], cells = [4, 2]}\n" + material,
+       "case.toml:1:12: mesh.box: ", "lower, upper and cells have 2, 3 and 2 numbers", "2 in 2D, 3 in 3D"},
+      {"BoxFlat", "mesh.box = {lower = [0, 1], upper = [2, 1], cells = [4, 2]}\n" + material,
+       "case.toml:1:37: mesh.box.upper: ", "upper[1] = 1 is not above lower[1] = 1", "opposite corners"},
+      {"BoxNoCells", "mesh.box = {lower = [0, 0], upper = [2, 1], cells = [4, 0]}\n" + material,
+       "case.toml:1:57: mesh.box.cells[1]: ", "an integer of at least 1, found 0", "number of cells"},
+      {"BoxTooFine", "mesh.box = {lower = [0, 0], upper = [2, 1], cells = [99999, 99999]}\n" + material,
+       "case.toml:1:53: mesh.box.cells: ", "makes 2e+10 simplices", "at most 2147483647"},
+      {"NoMaterial", mesh, "case.toml: material: ", "is missing", "[material] with E"},
+      {"EmptyMaterial", mesh + "[material]\n", "case.toml:2:1: material.E: ", "is missing",
+       "Young's modulus"},
+      {"NoPoisson", mesh + "[material]\nE = 1\n", "case.toml:2:1: material.nu: ", "is missing", "nu = 0.3"},
+      {"NoYoungInRegion", mesh + "[material.steel]\nnu = 0.3\n",
+       "case.toml:2:1: material.steel.E: ", "is missing", "Young's modulus"},
+      {"EmptyLoad", head + "[load.steel]\n", "case.toml:3:1: load.steel.body: ", "is missing", "body = "},
+      {"EmptyBoundary", head + "[boundary.top]\n", "case.toml:3:11: boundary.top: ",
+       "nothing is given on this boundary", "traction-free is traction = [0, 0]"},
+      {"ContactAndDisplacement", head + "[boundary.a]\ncontact = {}\ndisplacement = [0, 'free']\n",
+       "case.toml:5:16: boundary.a.displacement: ", "stands beside contact", "split the group"},
+      {"ContactAndPressure", head + "[boundary.a]\ncontact = {}\npressure = 1\n",
+       "case.toml:5:12: boundary.a.pressure: ", "stands beside contact", "split the group"},
+      {"TractionOnFixed", head + "[boundary.a]\ndisplacement = [0, 'free']\ntraction = [1, 2]\n",
+       "case.toml:5:13: boundary.a.traction[0]: ", "is not 0, but displacement fixes this component",
+       "displacement[0] to \"free\""},
+      {"TractionLength", head + "[boundary.a]\ndisplacement = [0, 'free']\ntraction = [0, 2, 0]\n",
+       "case.toml:5:12: boundary.a.traction: ", "has 3 components, displacement has 2", "one per dimension"},
+      {"PressureOnFixed", head + "[boundary.a]\ndisplacement = [0, 0]\npressure = 2\n",
+       "case.toml:5:12: boundary.a.pressure: ", "has no effect", "\"free\""},
+      {"FrictionUnknown", head + "[boundary.a]\ncontact = {friction = 'trseca'}\n",
+       "case.toml:4:23: boundary.a.contact.friction: ", "unknown value \"trseca\"",
+       "did you mean \"tresca\"?"},
+      {"TrescaWithoutThreshold", head + "[boundary.a]\ncontact = {friction = 'tresca'}\n",
+       "case.toml:4:11: boundary.a.contact.threshold: ", "is missing", "tangential stress"},
+      {"CoulombWithoutCoefficient", head + "[boundary.a]\ncontact = {friction = 'coulomb'}\n",
+       "case.toml:4:11: boundary.a.contact.coefficient: ", "is missing", "coefficient = 0.3"},
+      {"CoulombWithThreshold",
+       head + "[boundary.a]\ncontact = {friction = 'coulomb', coefficient = 0.3, threshold = 1}\n",
+       "case.toml:4:65: boundary.a.contact.threshold: ", "does not belong to friction = \"coulomb\"",
+       "\"tresca\""},
+      {"ThresholdWithoutLaw", head + "[boundary.a]\ncontact = {threshold = 1}\n",
+       "case.toml:4:24: boundary.a.contact.threshold: ", "does not belong to friction = \"none\"",
+       "\"tresca\""},
+      {"ThresholdNegative", head + "[boundary.a]\ncontact = {friction = 'tresca', threshold = -1}\n",
+       "case.toml:4:45: boundary.a.contact.threshold: ", "must not be negative, found the integer -1",
+       "max(0"},
+      {"ThresholdFormulaNegative",
+       head + "[boundary.a]\ncontact = {friction = 'tresca', threshold = '1 - 2'}\n",
+       "case.toml:4:45: boundary.a.contact.threshold: ", "must not be negative, found the string \"1 - 2\"",
+       "max(0"},
+      {"CoefficientNegative", head + "[boundary.a]\ncontact = {friction = 'coulomb', coefficient = -0.1}\n",
+       "case.toml:4:48: boundary.a.contact.coefficient: ", "must not be negative, found -0.1", "0.3"},
+      {"GapNegative", head + "[boundary.a]\ncontact = {gap = -0.1}\n",
+       "case.toml:4:18: boundary.a.contact.gap: ", "must not be negative", "max(0"},
+      {"ContactNotATable", head + "[boundary.a]\ncontact = true\n",
+       "case.toml:4:11: boundary.a.contact: ", "must be a table, found true", "friction, threshold"},
+  };
+}
+
+std::string name_of(const testing::TestParamInfo<BadCase>& info)
+{
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Syntax, BadCaseFile, testing::ValuesIn(syntax()), name_of);
+INSTANTIATE_TEST_SUITE_P(Values, BadCaseFile, testing::ValuesIn(values()), name_of);
+INSTANTIATE_TEST_SUITE_P(Combinations, BadCaseFile, testing::ValuesIn(combinations()), name_of);
+
+}  // namespace
+}  // namespace tribound

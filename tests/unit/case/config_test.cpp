@@ -1,0 +1,259 @@
+#include "case/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <variant>
+
+namespace tribound
+{
+namespace
+{
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr auto complete_case = R"toml(
+title = "Block on a rigid floor, Tresca friction"
+degree = 2
+
+[mesh]
+file = "block.msh"
+
+[material]
+E = 1.0
+nu = 0.3
+
+[load]
+body = [0, "-9.81*2400*1e-6"]
+
+[boundary.left]
+displacement = [0, "free"]
+
+[boundary.top]
+traction = [0, -0.1]
+
+[boundary.right]
+pressure = "9810*max(0, 9-y)"
+
+[boundary.bottom]
+contact = { friction = "tresca", threshold = 0.03, gap = 0 }
+
+[nitsche]
+gamma0 = 12
+
+[newton]
+stopping = "tolerance"
+gamma_lin = 0.2
+
+[adapt]
+tolerance = 0.02
+marking = "maximum"
+theta = 0.75
+max_levels = 3
+max_dofs = 3_000_000
+max_cells = 1000
+max_time = 60
+
+[certify]
+contact_rule = "reference"
+
+[solver]
+method = "iterative"
+package = "umfpack"
+tolerance = 1e-8
+max_iterations = 7
+
+[output]
+directory = "results"
+vtu = false
+)toml";
+
+const Point<2> somewhere(0.25, 4.0);
+
+TEST(Config, ReadsEveryKey)
+{
+  const Config config = parse_config(complete_case, "cases/block.toml");
+  EXPECT_EQ(config.file, "cases/block.toml");
+  EXPECT_EQ(config.title, "Block on a rigid floor, Tresca friction");
+  EXPECT_EQ(config.degree, 2);
+  EXPECT_EQ(std::get<MeshFile>(config.mesh).path, "cases/block.msh");
+  EXPECT_EQ(config.gamma0(), 12.0);
+  EXPECT_EQ(config.newton.stopping, Stopping::tolerance);
+  EXPECT_EQ(config.newton.gamma_lin, 0.2);
+  EXPECT_EQ(config.adapt.tolerance, 0.02);
+  EXPECT_EQ(config.adapt.marking, Marking::maximum);
+  EXPECT_EQ(config.adapt.theta, 0.75);
+  EXPECT_EQ(config.adapt.max_levels, 3);
+  EXPECT_EQ(config.adapt.max_dofs, 3'000'000);
+  EXPECT_EQ(config.adapt.max_cells, 1000);
+  EXPECT_EQ(config.adapt.max_time, 60.0);
+  EXPECT_EQ(config.certify.contact_rule, ContactRule::reference);
+  EXPECT_EQ(config.solver.method, LinearMethod::iterative);
+  EXPECT_EQ(config.solver.package, DirectPackage::umfpack);
+  EXPECT_EQ(config.solver.tolerance, 1e-8);
+  EXPECT_EQ(config.solver.max_iterations, 7);
+  EXPECT_EQ(config.output.directory, "results");
+  EXPECT_FALSE(config.output.vtu);
+}
+
+TEST(Config, ReadsMaterialAndLoad)
+{
+  const Config config = parse_config(complete_case);
+  ASSERT_EQ(config.materials.size(), 1u);
+  EXPECT_EQ(config.materials[0].region, "");
+  EXPECT_EQ(config.materials[0].E, 1.0);
+  EXPECT_EQ(config.materials[0].nu, 0.3);
+  EXPECT_EQ(config.materials[0].plane, PlaneModel::strain);
+  ASSERT_EQ(config.loads.size(), 1u);
+  ASSERT_EQ(config.loads[0].body.size(), 2u);
+  EXPECT_DOUBLE_EQ(config.loads[0].body[1](somewhere), -9.81 * 2400 * 1e-6);
+}
+
+TEST(Config, ReadsBoundariesInTheOrderOfTheFile)
+{
+  const Config config = parse_config(complete_case);
+  ASSERT_EQ(config.boundaries.size(), 4u);
+  const BoundaryConfig& left = config.boundaries[0];
+  const BoundaryConfig& top = config.boundaries[1];
+  const BoundaryConfig& right = config.boundaries[2];
+  const BoundaryConfig& bottom = config.boundaries[3];
+  EXPECT_EQ(left.name, "left");
+  EXPECT_EQ(left.where.line, 15);
+  ASSERT_EQ(left.displacement.size(), 2u);
+  EXPECT_TRUE(left.displacement[0] && left.displacement[0]->is_zero());
+  EXPECT_FALSE(left.displacement[1]);
+  EXPECT_EQ(top.name, "top");
+  EXPECT_EQ(top.traction[1](somewhere), -0.1);
+  EXPECT_EQ(right.name, "right");
+  EXPECT_DOUBLE_EQ((*right.pressure)(somewhere), 9810 * 5.0);
+  EXPECT_EQ(bottom.name, "bottom");
+  EXPECT_EQ(std::get<Tresca>(bottom.contact->friction).threshold(somewhere), 0.03);
+  EXPECT_TRUE(bottom.contact->gap.is_zero());
+}
+
+constexpr auto small_case = R"toml(
+[mesh]
+box = { lower = [0, 0, -1], upper = [1, 2, 3.5], cells = [2, 3, 4] }
+[material.soft]
+E = 1
+nu = 0.25
+[material]
+plane = "stress"
+E = 7
+nu = 0
+[material."hard one"]
+E = 2
+nu = -0.5
+plane = "strain"
+[load.soft]
+body = [1, 2, "3*x"]
+[boundary.bottom]
+contact = {}
+)toml";
+
+TEST(Config, HasTheDefaultsOfTheHeader)
+{
+  const Config config = parse_config(small_case);
+  EXPECT_EQ(config.title, "");
+  EXPECT_EQ(config.degree, 1);
+  EXPECT_EQ(config.gamma0(), 10.0);
+  EXPECT_EQ(config.newton.stopping, Stopping::adaptive);
+  EXPECT_EQ(config.newton.tolerance, 1e-10);
+  EXPECT_EQ(config.newton.max_steps, 50);
+  EXPECT_EQ(config.adapt.max_dofs, 2'000'000);
+  EXPECT_FALSE(config.adapt.max_cells);
+  EXPECT_FALSE(config.adapt.max_time);
+  EXPECT_EQ(config.certify.contact_rule, ContactRule::resolved);
+  EXPECT_EQ(config.solver.method, LinearMethod::automatic);
+  EXPECT_EQ(config.solver.package, DirectPackage::automatic);
+  EXPECT_EQ(config.output.directory, "out");
+  EXPECT_TRUE(config.output.vtu);
+  EXPECT_TRUE(std::holds_alternative<Frictionless>(config.boundaries[0].contact->friction));
+  EXPECT_TRUE(config.boundaries[0].contact->gap.is_zero());
+}
+
+TEST(Config, ReadsABox)
+{
+  const Config config = parse_config(small_case);
+  const auto& box = std::get<BoxMesh>(config.mesh);
+  EXPECT_THAT(box.lower, ElementsAre(0, 0, -1));
+  EXPECT_THAT(box.upper, ElementsAre(1, 2, 3.5));
+  EXPECT_THAT(box.cells, ElementsAre(2, 3, 4));
+}
+
+TEST(Config, ReadsMaterialsOfRegions)
+{
+  const Config config = parse_config(small_case);
+  ASSERT_EQ(config.materials.size(), 3u);
+  EXPECT_EQ(config.materials[0].region, "");
+  EXPECT_EQ(config.materials[0].E, 7.0);
+  EXPECT_EQ(config.materials[1].region, "soft");
+  EXPECT_EQ(config.materials[1].plane, PlaneModel::stress) << "inherited from [material]";
+  EXPECT_EQ(config.materials[2].region, "hard one");
+  EXPECT_EQ(config.materials[2].nu, -0.5);
+  EXPECT_EQ(config.materials[2].plane, PlaneModel::strain);
+  ASSERT_EQ(config.loads.size(), 1u);
+  EXPECT_EQ(config.loads[0].region, "soft");
+}
+
+TEST(Config, ATableInMaterialIsARegionWhateverItsName)
+{
+  const Config config = parse_config(
+      "mesh.file = 'a.msh'\n[material.E]\nE = 2\nnu = 0\n[material.plane]\nE = 3\nnu = 0\n"
+      "[load.body]\nbody = [0, 1]\n");
+  ASSERT_EQ(config.materials.size(), 2u);
+  EXPECT_EQ(config.materials[0].region, "E");
+  EXPECT_EQ(config.materials[1].region, "plane");
+  ASSERT_EQ(config.loads.size(), 1u);
+  EXPECT_EQ(config.loads[0].region, "body");
+}
+
+TEST(Config, GammaDefaultGrowsWithTheDegree)
+{
+  EXPECT_EQ(default_gamma0(1), 10.0);
+  EXPECT_EQ(default_gamma0(3), 10.0);
+  EXPECT_EQ(default_gamma0(4), 48.0);
+}
+
+TEST(Config, NamesTheFrictionLaws)
+{
+  EXPECT_EQ(friction_name(parse_config(complete_case)), "tresca");
+  EXPECT_EQ(friction_name(parse_config(small_case)), "none");
+  EXPECT_EQ(friction_name(Config{}), "");
+  const std::string two = std::string(small_case) +
+                          "[boundary.left.contact]\nfriction = \"coulomb\"\ncoefficient = 0.5\n"
+                          "[boundary.right]\ncontact = { friction = \"coulomb\", coefficient = 0 }\n";
+  EXPECT_EQ(friction_name(parse_config(two)), "none+coulomb");
+}
+
+TEST(Config, ReadsAFile)
+{
+  const auto directory = std::filesystem::path(testing::TempDir()) / "tribound_config_test";
+  std::filesystem::create_directories(directory);
+  const auto file = directory / "case.toml";
+  std::ofstream(file) << complete_case;
+  const Config config = read_config(file);
+  EXPECT_EQ(config.degree, 2);
+  EXPECT_EQ(std::get<MeshFile>(config.mesh).path, directory / "block.msh");
+  std::filesystem::remove_all(directory);
+}
+
+TEST(Config, AFileThatCannotBeReadIsNamed)
+{
+  try
+  {
+    (void)read_config("no/such/case.toml");
+    FAIL() << "accepted";
+  }
+  catch (const InputError& error)
+  {
+    EXPECT_THAT(error.what(), HasSubstr("no/such/case.toml: cannot be read: No such file or directory"));
+  }
+  EXPECT_THROW((void)read_config(testing::TempDir()), InputError);
+}
+
+}  // namespace
+}  // namespace tribound

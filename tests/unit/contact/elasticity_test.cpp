@@ -1,0 +1,152 @@
+/// @file elasticity_test.cpp
+/// Stiffness and loads against Hooke's law in its inverse form and against integrals in closed form.
+
+#include "contact/elasticity.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <type_traits>
+#include <vector>
+
+#include "support/discrete_case.h"
+#include "support/fields.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+constexpr double E = 2.5;
+constexpr double nu = 0.3;
+
+template <int dim>
+MeshData<dim> grid()
+{
+  if constexpr (dim == 2)
+    return box<2>({0, 0}, {2, 1}, {3, 2});
+  else
+    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1});
+}
+
+std::string toml(int p, const std::string& rest)
+{
+  return "degree = " + std::to_string(p) + "\n" + rest;
+}
+
+const std::string plane_strain = "material = { E = 2.5, nu = 0.3 }\n";
+const std::string plane_stress = "material = { E = 2.5, nu = 0.3, plane = \"stress\" }\n";
+
+/// eps from sigma: in 3D and for plane stress (1+nu)/E sigma - nu/E tr(sigma) I, for plane strain with
+/// sigma_zz = nu tr(sigma) added to the trace.
+template <int dim>
+Tensor<dim> strain(const Tensor<dim>& stress, bool is_plane_strain)
+{
+  const double trace = stress.trace() * (is_plane_strain ? 1 + nu : 1);
+  return (1 + nu) / E * stress - nu / E * trace * Tensor<dim>::Identity();
+}
+
+template <int dim>
+void expect_linear_fields_exact(int p, const std::string& material, bool is_plane_strain)
+{
+  const DiscreteCase<dim> c(toml(p, material), distorted(grid<dim>(), p));
+  Tensor<dim> stress = Tensor<dim>::Identity() * 0.4;
+  stress(0, 1) = stress(1, 0) = 0.7;
+  stress(dim - 1, dim - 1) = -1.1;
+  const Tensor<dim> eps = strain<dim>(stress, is_plane_strain);
+  Tensor<dim> gradient = eps;
+  gradient(0, 1) += 0.2;
+  gradient(1, 0) -= 0.2;  // a rotation does no work
+  const std::vector<double> u =
+      interpolate<dim>(c.space, [&](const Point<dim>& x) -> Point<dim> { return gradient * x; });
+
+  double volume = 0;
+  for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
+    volume += determinant<dim>(points_of(c.mesh.vertices(), c.mesh.cell(cell))) / (dim == 2 ? 2 : 6);
+  const double energy = volume * stress.cwiseProduct(eps).sum();
+  const StressNorms norms = stress_norms<dim>(c.problem, c.space, u);
+  EXPECT_NEAR(norms.energy, energy, 1e-12 * energy);
+  EXPECT_NEAR(norms.sigma, stress.norm() * std::sqrt(volume), 1e-12 * stress.norm());
+  const std::vector<double> ku = apply_stiffness<dim>(c.problem, c.space, u);
+  EXPECT_NEAR(std::inner_product(u.begin(), u.end(), ku.begin(), 0.0), energy, 1e-12 * energy);
+}
+
+TEST(Elasticity, LinearFieldsHaveTheExactEnergy)
+{
+  for (int p = 1; p <= 4; ++p)
+  {
+    expect_linear_fields_exact<2>(p, plane_strain, true);
+    expect_linear_fields_exact<2>(p, plane_stress, false);
+    expect_linear_fields_exact<3>(p, plane_strain, false);
+  }
+}
+
+template <class T>
+class Stiffness : public ::testing::Test
+{
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Stiffness, Dimensions);
+
+TYPED_TEST(Stiffness, MatrixAndCellwiseProductAgree)
+{
+  constexpr int dim = TypeParam::value;
+  const std::string clamp = dim == 2 ? "boundary.left.displacement = [0, \"free\"]"
+                                     : "boundary.left.displacement = [0, \"free\", 0]";
+  for (int p = 1; p <= 4; ++p)
+  {
+    const DiscreteCase<dim> c(toml(p, plane_strain + clamp), distorted(grid<dim>(), p));
+    const Constraints& constraints = c.form.constraints();
+    ASSERT_GT(constraints.n_fixed(), 0);
+    const std::vector<double> u = random_free_vector(constraints, 1.0, p);
+    const Triplets matrix = stiffness(c.problem, c.space, constraints);
+    const std::vector<double> expected = free_part(constraints, apply_stiffness<dim>(c.problem, c.space, u));
+    EXPECT_LE(distance(multiply(matrix, u), expected), 1e-12 * norm(expected)) << "degree " << p;
+  }
+}
+
+TYPED_TEST(Stiffness, FixedDegreesOfFreedomHaveAPositiveDiagonalOnly)
+{
+  constexpr int dim = TypeParam::value;
+  const std::string clamp = dim == 2 ? "boundary.left.displacement = [0, \"free\"]"
+                                     : "boundary.left.displacement = [0, \"free\", 0]";
+  const DiscreteCase<dim> c(toml(2, plane_strain + clamp), grid<dim>());
+  const Constraints& constraints = c.form.constraints();
+  const Triplets matrix = stiffness(c.problem, c.space, constraints);
+  Index n_diagonal = 0;
+  for (std::size_t k = 0; k < matrix.values.size(); ++k)
+  {
+    const int row = matrix.rows[k];
+    const int col = matrix.cols[k];
+    if (row < 0 || col < 0 || (!constraints.fixed[row] && !constraints.fixed[col])) continue;
+    EXPECT_EQ(row, col);
+    EXPECT_GT(matrix.values[k], 0);
+    ++n_diagonal;
+  }
+  EXPECT_EQ(n_diagonal, constraints.n_fixed());
+}
+
+/// L(v) for v = (xy, x): body force (1, y), traction (0, 3) on the right, pressure 2 x on top.
+TEST(Load, AgreesWithIntegralsInClosedForm)
+{
+  for (int p = 2; p <= 4; ++p)
+  {
+    const DiscreteCase<2> c(toml(p, plane_strain) +
+                                "load.body = [1, \"y\"]\nboundary.right.traction = [0, 3]\n"
+                                "boundary.top.pressure = \"2*x\"",
+                            renumbered(grid<2>(), p));
+    const std::vector<double> v =
+        interpolate<2>(c.space, [](const Point<2>& x) { return Point<2>(x[0] * x[1], x[0]); });
+    const double body = 1.0 + 1.0;    // xy + xy over [0, 2] x [0, 1]
+    const double right = 3.0 * 2.0;   // 3 x at x = 2
+    const double top = -2 * 8.0 / 3;  // -2 x x over [0, 2]
+    const auto load = c.form.load();
+    EXPECT_NEAR(std::inner_product(v.begin(), v.end(), load.begin(), 0.0), body + right + top, 1e-12);
+  }
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,334 @@
+/// @file nitsche_test.cpp
+/// The tangent of the contact form against central differences of its tractions, for every friction law and
+/// contact state.
+
+#include "contact/nitsche.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ostream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "support/discrete_case.h"
+#include "support/fields.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// A friction law with parameters that make the displacements of `background` stick or slip.
+struct Law
+{
+  std::string name;
+  std::string sticking;
+  std::string slipping;
+};
+
+const Law frictionless{"none", "friction = \"none\"", "friction = \"none\""};
+const Law tresca{"tresca", "friction = \"tresca\", threshold = \"100 + x\"",
+                 "friction = \"tresca\", threshold = \"0.02 + 0.01*x\""};
+const Law coulomb{"coulomb", "friction = \"coulomb\", coefficient = 2",
+                  "friction = \"coulomb\", coefficient = 0.2"};
+
+void PrintTo(const Law& law, std::ostream* out)
+{
+  *out << law.name;
+}
+
+template <int dim>
+std::string contact_case(int p, const std::string& law)
+{
+  const std::string clamped = dim == 2 ? "[0, 0]" : "[0, 0, 0]";
+  const std::string roller = dim == 2 ? "[0, \"free\"]" : "[0, \"free\", \"free\"]";
+  return "degree = " + std::to_string(p) +
+         "\nmaterial = { E = 1, nu = 0.3 }\n"
+         "boundary.top.displacement = " +
+         clamped + "\nboundary.left.displacement = " + roller +
+         "\nboundary.bottom.contact = { gap = \"0.01 + 0.005*x\", " + law + " }\n";
+}
+
+template <int dim>
+MeshData<dim> bent_block(unsigned seed)
+{
+  if constexpr (dim == 2)
+    return distorted(box<2>({0, 0}, {2, 1}, {4, 2}), seed);
+  else
+    return distorted(box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 2}), seed);
+}
+
+/// Everything in `status` with a margin: pushed into the obstacle below (or pulled off it) and aside, in 3D
+/// across the coordinate axes, and shaken a little.
+template <int dim>
+std::vector<double> displaced(const DiscreteCase<dim>& c, ContactStatus status, unsigned seed)
+{
+  const double down = status == ContactStatus::open ? -0.1 : 0.1;
+  Point<dim> background = Point<dim>::Zero();
+  background[0] = 0.05;
+  background[dim - 1] = 0.03;
+  background[1] = -down;
+  std::vector<double> u = interpolate<dim>(c.space, [&](const Point<dim>&) { return background; });
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-5e-4, 5e-4);
+  for (double& value : u) value += uniform(random);
+  return u;
+}
+
+/// The statuses at the contact points of the form.
+template <int dim>
+std::vector<ContactStatus> statuses(const NitscheForm<dim>& form, std::span<const double> u)
+{
+  const FacetTabulation<dim> table = tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
+  std::vector<ContactStatus> result;
+  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
+    for (const ContactState<dim>& state : form.contact_states(u, static_cast<int>(k), table))
+      result.push_back(state.status);
+  return result;
+}
+
+/// (T(u), phi_i)_C for free i.
+template <int dim>
+std::vector<double> contact_forces(const NitscheForm<dim>& form, std::span<const double> u)
+{
+  std::vector<double> forces(form.space().n_dofs(), 0.0);
+  form.add_contact_load(form.traction(u), forces);
+  return free_part(form.constraints(), forces);
+}
+
+/// a(u, phi_i) - (T(u), phi_i)_C for free i.
+template <int dim>
+std::vector<double> residual(const DiscreteCase<dim>& c, std::span<const double> u)
+{
+  const std::vector<double> ku = free_part(c.form.constraints(), apply_stiffness<dim>(c.problem, c.space, u));
+  return sum(ku, -1, contact_forces(c.form, u));
+}
+
+template <int dim>
+void expect_tangent_agrees_with_differences(int p, const Law& law, ContactStatus status)
+{
+  const std::string parameters = status == ContactStatus::slip ? law.slipping : law.sticking;
+  const DiscreteCase<dim> c(contact_case<dim>(p, parameters), bent_block<dim>(p));
+  const Constraints& constraints = c.form.constraints();
+  const std::vector<double> u = displaced(c, status, 1);
+  const ContactStatus expected =
+      law.name == "none" && status == ContactStatus::stick ? ContactStatus::slip : status;
+  for (const ContactStatus s : statuses(c.form, u)) ASSERT_EQ(s, expected);
+
+  constexpr double h = 1e-6;
+  const std::vector<double> w = random_free_vector(constraints, 1.0, 2);
+  const std::vector<double> ahead = sum(u, h, w);
+  const std::vector<double> behind = sum(u, -h, w);
+  const auto difference = [&](const auto& f)
+  {
+    std::vector<double> d = sum(f(ahead), -1, f(behind));
+    for (double& x : d) x /= 2 * h;
+    return d;
+  };
+
+  const Triplets tangent = c.form.contact_tangent(Linearisation::newton, u);
+  const std::vector<double> contact = multiply(tangent, w);
+  const std::vector<double> by_difference =
+      difference([&](const std::vector<double>& v) { return contact_forces(c.form, v); });
+  EXPECT_LE(norm(sum(contact, 1, by_difference)), 1e-7 * norm(contact));
+
+  const std::vector<double> whole = sum(multiply(stiffness(c.problem, c.space, constraints), w), 1, contact);
+  const std::vector<double> whole_by_difference =
+      difference([&](const std::vector<double>& v) { return residual(c, v); });
+  EXPECT_LE(distance(whole, whole_by_difference), 1e-7 * norm(whole));
+  // A threshold does not fall with the pressure: Tresca's tangent lives on open contact, too.
+  const bool is_zero = status == ContactStatus::open && law.name != "tresca";
+  EXPECT_EQ(norm(contact) == 0, is_zero);
+}
+
+class Tangent : public ::testing::TestWithParam<std::tuple<Law, ContactStatus, int>>
+{
+};
+
+TEST_P(Tangent, AgreesWithDifferencesIn2D)
+{
+  const auto& [law, status, p] = GetParam();
+  expect_tangent_agrees_with_differences<2>(p, law, status);
+}
+
+TEST_P(Tangent, AgreesWithDifferencesIn3D)
+{
+  const auto& [law, status, p] = GetParam();
+  expect_tangent_agrees_with_differences<3>(p, law, status);
+}
+
+std::string test_name(const ::testing::TestParamInfo<Tangent::ParamType>& info)
+{
+  const auto& [law, status, p] = info.param;
+  const std::array names{"open", "stick", "slip"};
+  return law.name + "_" + names[static_cast<int>(status)] + "_P" + std::to_string(p);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllLaws, Tangent,
+                         ::testing::Combine(::testing::Values(frictionless, tresca, coulomb),
+                                            ::testing::Values(ContactStatus::open, ContactStatus::stick,
+                                                              ContactStatus::slip),
+                                            ::testing::Range(1, 5)),
+                         test_name);
+
+template <int dim>
+void expect_linearised_traction_agrees(const Law& law, ContactStatus status)
+{
+  const std::string parameters = status == ContactStatus::slip ? law.slipping : law.sticking;
+  const DiscreteCase<dim> c(contact_case<dim>(2, parameters), bent_block<dim>(7));
+  const NitscheForm<dim>& form = c.form;
+  const std::vector<double> u = displaced(c, status, 1);
+  const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
+  constexpr double h = 1e-6;
+
+  const std::vector<Point<dim>> at_u = form.traction(u);
+  const std::vector<Point<dim>> ahead = form.traction(sum(u, h, step));
+  const std::vector<Point<dim>> behind = form.traction(sum(u, -h, step));
+  const std::vector<Point<dim>> same = form.linearised_traction(Linearisation::newton, u, u);
+  const std::vector<Point<dim>> there = form.linearised_traction(Linearisation::newton, u, sum(u, 1, step));
+  ASSERT_EQ(at_u.size(), form.n_contact_points());
+  for (std::size_t i = 0; i < at_u.size(); ++i)
+  {
+    EXPECT_LE((same[i] - at_u[i]).norm(), 1e-13 * (1 + at_u[i].norm()));
+    const Point<dim> expected = at_u[i] + (ahead[i] - behind[i]) / (2 * h);
+    EXPECT_LE((there[i] - expected).norm(), 1e-6 * (1 + expected.norm()));
+  }
+}
+
+TEST(LinearisedTraction, AgreesWithDifferences)
+{
+  for (const Law& law : {frictionless, tresca, coulomb})
+    for (const ContactStatus status : {ContactStatus::open, ContactStatus::stick, ContactStatus::slip})
+    {
+      SCOPED_TRACE(law.name);
+      expect_linearised_traction_agrees<2>(law, status);
+      expect_linearised_traction_agrees<3>(law, status);
+    }
+}
+
+/// A block with flat bottom of the friction law, moved by (0.02, -0.1) and stretched upwards by 1 %: with
+/// E = 1, nu = 0.25 in plane strain, lambda = mu = 0.4 and sigma_yy = 1.2 * 0.01, sigma_xy = 0; facets of
+/// length 0.5, gamma = gamma_0 1.2 / 0.5.
+struct FlatBlock
+{
+  explicit FlatBlock(const std::string& law)
+      : c("degree = 2\nnitsche.gamma0 = 20\nmaterial = { E = 1, nu = 0.25 }\n"
+          "boundary.top.displacement = [0, 0]\nboundary.bottom.contact = { gap = 0.04, " +
+              law + " }",
+          renumbered(box<2>({0, 0}, {2, 1}, {4, 2}), 3)),
+        u(interpolate<2>(c.space, [](const Point<2>& x) { return Point<2>(0.02, -0.1 + 0.01 * x[1]); }))
+  {
+  }
+
+  static constexpr double gamma = 20 * 1.2 / 0.5;
+  static constexpr double normal = 0.012 - gamma * (0.1 - 0.04);  ///< P^n
+  static constexpr double tangential = -gamma * 0.02;             ///< P^t along x
+
+  DiscreteCase<2> c;
+  std::vector<double> u;
+};
+
+void expect_constant(std::span<const Point<2>> traction, const Point<2>& expected)
+{
+  ASSERT_FALSE(traction.empty());
+  for (const Point<2>& t : traction) EXPECT_LE((t - expected).norm(), 1e-12) << t.transpose();
+}
+
+TEST(Traction, ClosedFormOnAFlatBottom)
+{
+  using F = FlatBlock;
+  const auto traction = [](const std::string& law)
+  {
+    const FlatBlock block(law);
+    return block.c.form.traction(block.u);
+  };
+  expect_constant(traction("friction = \"none\""), {0, -F::normal});
+  expect_constant(traction("friction = \"tresca\", threshold = 5"), {F::tangential, -F::normal});
+  expect_constant(traction("friction = \"tresca\", threshold = 0.3"), {-0.3, -F::normal});
+  expect_constant(traction("friction = \"coulomb\", coefficient = 0.5"), {F::tangential, -F::normal});
+  expect_constant(traction("friction = \"coulomb\", coefficient = 0.1"), {0.1 * F::normal, -F::normal});
+}
+
+TEST(Traction, ClosedAndStickingInTheFirstStep)
+{
+  using F = FlatBlock;
+  const auto traction = [](const std::string& law, double scale)
+  {
+    const FlatBlock block(law);
+    const std::vector<double> zero(block.u.size(), 0.0);
+    return block.c.form.linearised_traction(Linearisation::closed_sticking, zero, sum(zero, scale, block.u));
+  };
+  const std::string slippery = "friction = \"coulomb\", coefficient = 0.001";
+  expect_constant(traction("friction = \"none\"", 1), {0, -F::normal});
+  expect_constant(traction(slippery, 1), {F::tangential, -F::normal});
+  // also where contact would open
+  expect_constant(traction(slippery, 0), {0, -F::gamma * 0.04});
+}
+
+TEST(ContactStates, ClosedFormOnAFlatBottom)
+{
+  const FlatBlock block("friction = \"coulomb\", coefficient = 0.1");
+  const std::vector<Point<1>> middle{Point<1>(0.5)};
+  const auto table = tabulate_on_facets<2>(block.c.space.basis(), middle);
+  for (int k = 0; k < 4; ++k)
+  {
+    const auto states = block.c.form.contact_states(block.u, k, table);
+    ASSERT_EQ(states.size(), 1u);
+    EXPECT_NEAR(std::fmod(states[0].point[0], 0.5), 0.25, 1e-14);
+    EXPECT_LE((states[0].normal - Point<2>(0, -1)).norm(), 1e-14);
+    EXPECT_NEAR(states[0].pressure, -FlatBlock::normal, 1e-12);
+    EXPECT_NEAR(states[0].limit, -0.1 * FlatBlock::normal, 1e-12);
+    EXPECT_EQ(states[0].status, ContactStatus::slip);
+    EXPECT_NEAR(states[0].gap, 0.04 - 0.1, 1e-14);
+    EXPECT_LE((states[0].slip - Point<2>(0.02, 0)).norm(), 1e-14);
+  }
+}
+
+TEST(ContactResultants, OfAConstantTraction)
+{
+  const FlatBlock block("friction = \"none\"");
+  const std::vector<Point<2>> t(block.c.form.n_contact_points(), Point<2>(0.3, 0.5));
+  const ContactResultants<2> sum = contact_resultants<2>(block.c.form, t);
+  EXPECT_LE((sum.force - Point<2>(0.6, 1.0)).norm(), 1e-13);
+  EXPECT_NEAR(sum.normal, -1.0, 1e-13);
+  EXPECT_NEAR(sum.tangential, 0.6, 1e-13);  // n = (0, -1) turned by +90 degrees is (1, 0)
+  EXPECT_NEAR(sum.abs_tangential, 0.6, 1e-13);
+  EXPECT_EQ(contact_resultants<2>(block.c.form, t, 99).normal, 0);
+}
+
+TEST(ContactTangent, PatternDoesNotDependOnTheState)
+{
+  const DiscreteCase<3> c(contact_case<3>(2, coulomb.slipping), bent_block<3>(4));
+  const Triplets open = c.form.contact_tangent(Linearisation::newton, displaced(c, ContactStatus::open, 1));
+  const Triplets slip = c.form.contact_tangent(Linearisation::newton, displaced(c, ContactStatus::slip, 1));
+  const std::vector<double> zero(c.space.n_dofs(), 0.0);
+  const Triplets first = c.form.contact_tangent(Linearisation::closed_sticking, zero);
+  EXPECT_FALSE(open.rows.empty());
+  EXPECT_EQ(open.rows, slip.rows);
+  EXPECT_EQ(open.cols, slip.cols);
+  EXPECT_EQ(first.rows, slip.rows);
+  EXPECT_EQ(first.cols, slip.cols);
+}
+
+TEST(ContactTangent, FixedDegreesOfFreedomHaveNoEntries)
+{
+  const DiscreteCase<2> c(contact_case<2>(3, tresca.slipping), bent_block<2>(4));
+  const Triplets tangent =
+      c.form.contact_tangent(Linearisation::newton, displaced(c, ContactStatus::slip, 1));
+  int n_dropped = 0;
+  for (std::size_t k = 0; k < tangent.values.size(); ++k)
+    for (const int dof : {tangent.rows[k], tangent.cols[k]})
+    {
+      n_dropped += dof < 0;
+      EXPECT_TRUE(dof < 0 || !c.form.constraints().fixed[dof]);
+    }
+  EXPECT_GT(n_dropped, 0);
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,63 @@
+#pragma once
+
+/// @file box_case.h
+/// Everything that the output of a small case needs, from the text of the case.
+
+#include <functional>
+#include <string_view>
+#include <variant>
+
+#include "case/config.h"
+#include "case/problem.h"
+#include "contact/nitsche.h"
+#include "fem/space.h"
+#include "mesh/box.h"
+#include "mesh/mesh.h"
+
+namespace tribound::testing
+{
+
+template <int dim>
+struct BoxCase
+{
+  Config config;
+  Mesh<dim> mesh;
+  Problem<dim> problem;
+  LagrangeSpace<dim> space;
+  NitscheForm<dim> form;
+
+  /// `change` may alter the mesh before it is built.
+  explicit BoxCase(std::string_view text, const std::function<void(MeshData<dim>&)>& change = {})
+      : config(parse_config(text)),
+        mesh(changed_mesh(std::get<BoxMesh>(config.mesh), change)),
+        problem(config, mesh.region_names(), mesh.boundary_names()),
+        space(mesh, config.degree),
+        form(problem, space, config.gamma0())
+  {
+  }
+
+  BoxCase(const BoxCase&) = delete;
+  BoxCase& operator=(const BoxCase&) = delete;
+
+  /// Nodal interpolant of f.
+  [[nodiscard]] std::vector<double> interpolate(const std::function<Point<dim>(const Point<dim>&)>& f) const
+  {
+    std::vector<double> u;
+    for (const Point<dim>& x : space.node_points())
+    {
+      const Point<dim> value = f(x);
+      u.insert(u.end(), value.begin(), value.end());
+    }
+    return u;
+  }
+
+ private:
+  static Mesh<dim> changed_mesh(const BoxMesh& box, const std::function<void(MeshData<dim>&)>& change)
+  {
+    MeshData<dim> data = box_mesh<dim>(box);
+    if (change) change(data);
+    return Mesh<dim>(std::move(data));
+  }
+};
+
+}  // namespace tribound::testing

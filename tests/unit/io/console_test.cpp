@@ -1,0 +1,90 @@
+#include "io/console.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tribound
+{
+namespace
+{
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const CaseFacts facts{"Block", "case.toml", 2, 2, "tresca", 10.0};
+const MeshFacts mesh{15,
+                     16,
+                     80,
+                     0.5,
+                     0.75,
+                     {{"box", 16, 2.0, "E = 1, nu = 0.3, plane strain"}},
+                     {{"bottom", 4, 2.0, "contact, Tresca friction, threshold 0.03, gap 0"},
+                      {"top", 1, 2.0, "traction-free"}}};
+
+TEST(Console, Header)
+{
+  EXPECT_EQ(header_text(facts, mesh),
+            "case          Block\n"
+            "mesh          15 vertices, 16 cells, h from 0.5 to 0.75\n"
+            "method        2D, degree 2, 80 free degrees of freedom, gamma_0 = 10\n");
+}
+
+TEST(Console, CheckNamesRegionsAndBoundaries)
+{
+  EXPECT_EQ(check_text(facts, mesh, "direct (MUMPS)"),
+            header_text(facts, mesh) +
+                "solver        direct (MUMPS)\n"
+                "regions\n"
+                "  box  16 cells, area 2: E = 1, nu = 0.3, plane strain\n"
+                "boundaries\n"
+                "  bottom  4 facets, length 2: contact, Tresca friction, threshold 0.03, gap 0\n"
+                "  top     1 facet, length 2: traction-free\n");
+}
+
+TEST(Console, NewtonStep)
+{
+  EXPECT_EQ(newton_text({3, 1.25e-5, 0.5, 0, true, 0.125}),
+            "  step  3  residual 1.250e-05  damping 0.5       direct + factorisation, 0.12 s\n");
+  EXPECT_THAT(newton_text({1, 1.0, 1.0, 1, false, 0.0}), HasSubstr("1 iteration,"));
+}
+
+TEST(Console, SummaryOfAFailedRun)
+{
+  RunRecord run;
+  run.status = RunStatus::failed;
+  run.reason = "no convergence in 50 steps";
+  EXPECT_EQ(summary_text(run, ""), "status        failed: no convergence in 50 steps\n");
+}
+
+TEST(Console, Summary)
+{
+  RunRecord run;
+  LevelRecord level;
+  level.newton.resize(5);
+  level.figures = {0.0137,
+                   0.116,
+                   0.084,
+                   {"", {-0.04, 0.11}, -0.11, -0.04, 0.05},
+                   {{"bottom", {-0.04, 0.11}, -0.11, -0.04, 0.05}}};
+  run.levels = {level};
+  EXPECT_EQ(summary_text(run, "out"),
+            "newton        5 steps\n"
+            "contact       bottom: normal -0.11, tangential -0.04, force (-0.04, 0.11)\n"
+            "max |u|       0.084\n"
+            "energy        a(u, u) = 0.0137, ||sigma|| = 0.116\n"
+            "status        uncertified\n"
+            "results       out\n");
+}
+
+TEST(Console, InfoLeavesOutWhatIsUnknown)
+{
+  BuildFacts build = build_facts();
+  build.blas = "OpenBLAS 0.3.21";
+  build.blas_threads = 1;
+  EXPECT_THAT(info_text(build), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
+                                      HasSubstr("OpenBLAS 0.3.21, 1 thread\n"), Not(HasSubstr("PETSc"))));
+}
+
+}  // namespace
+}  // namespace tribound

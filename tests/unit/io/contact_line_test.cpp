@@ -1,0 +1,231 @@
+#include "io/contact_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "unit/io/box_case.h"
+
+namespace tribound
+{
+namespace
+{
+
+using testing::BoxCase;
+
+constexpr const char* two_contacts = R"(
+degree = 2
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, 0]
+[boundary.bottom]
+contact = { friction = "tresca", threshold = 0.03, gap = 0.25 }
+[boundary.top]
+contact = { friction = "none", gap = 0.5 }
+)";
+
+/// Columns by name, numbers only.
+class Table
+{
+ public:
+  explicit Table(const std::string& csv)
+  {
+    std::istringstream in(csv);
+    std::string line;
+    std::getline(in, line);
+    names_ = split(line);
+    while (std::getline(in, line)) rows_.push_back(split(line));
+  }
+
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+  [[nodiscard]] const std::string& text(std::size_t row, const std::string& name) const
+  {
+    return rows_[row].at(std::ranges::find(names_, name) - names_.begin());
+  }
+  [[nodiscard]] double operator()(std::size_t row, const std::string& name) const
+  {
+    return std::stod(text(row, name));
+  }
+
+ private:
+  static std::vector<std::string> split(const std::string& line)
+  {
+    std::istringstream in(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    return cells;
+  }
+
+  std::vector<std::string> names_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+TEST(ContactCsv, RunsAlongEachBoundary)
+{
+  const BoxCase<2> box(two_contacts);
+  const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], 0.01); });
+  const Table table(contact_csv(box.form, u));
+  const std::size_t n = 4 * box.form.n_facet_points();
+  ASSERT_EQ(table.size(), 2 * n);
+
+  std::map<std::string, double> previous;
+  for (std::size_t row = 0; row < table.size(); ++row)
+  {
+    const std::string& boundary = table.text(row, "boundary");
+    const bool bottom = boundary == "bottom";
+    EXPECT_EQ(table(row, "y"), bottom ? 0.0 : 1.0);
+    EXPECT_EQ(table(row, "ny"), bottom ? -1.0 : 1.0);
+    EXPECT_NEAR(table(row, "arc"), table(row, "x"), 1e-15) << "both chains start at x = 0";
+    if (previous.contains(boundary))
+    {
+      EXPECT_GT(table(row, "arc"), previous[boundary]);
+    }
+    previous[boundary] = table(row, "arc");
+    EXPECT_NEAR(table(row, "gap"), bottom ? 0.25 + 0.01 : 0.5 - 0.01, 1e-15);
+    EXPECT_NEAR(table(row, "slip_x"), 0.1 * table(row, "x"), 1e-15);
+    EXPECT_NEAR(table(row, "slip_y"), 0.0, 1e-15);
+  }
+}
+
+TEST(ContactCsv, StatesAreThoseOfTheForm)
+{
+  const BoxCase<2> box(two_contacts);
+  const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); });
+  const Table table(contact_csv(box.form, u));
+  const auto traction = box.form.traction(u);
+  // Sorted along the boundary, the points of a facet need not be in the order of the rule.
+  double sum = 0.0;
+  for (const Point<2>& t : traction) sum += t[0] - 3.0 * t[1];
+  double table_sum = 0.0;
+  for (std::size_t row = 0; row < table.size(); ++row)
+  {
+    table_sum += table(row, "traction_x") - 3.0 * table(row, "traction_y");
+    EXPECT_GE(table(row, "pressure"), 0.0);
+    const double status = table(row, "status");
+    EXPECT_TRUE(status == 0.0 || status == 1.0 || status == 2.0);
+  }
+  EXPECT_NEAR(table_sum, sum, 1e-12 * std::abs(sum));
+}
+
+TEST(ContactCsv, NumbersReadBackExactly)
+{
+  const BoxCase<2> box(two_contacts);
+  const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(x[0] / 3.0, -x[0] / 7.0); });
+  const Table table(contact_csv(box.form, u));
+  std::vector<double> written;
+  for (std::size_t row = 0; row < table.size(); ++row) written.push_back(table(row, "traction_x"));
+  std::vector<double> computed;
+  for (const Point<2>& t : box.form.traction(u)) computed.push_back(t[0]);
+  std::ranges::sort(written);
+  std::ranges::sort(computed);
+  EXPECT_EQ(written, computed);
+}
+
+TEST(ContactChains, OnePieceAroundACorner)
+{
+  // The top is joined to the right side: the chain starts at the upper left corner and ends below.
+  const BoxCase<2> box(
+      two_contacts,
+      [](MeshData<2>& data)
+      {
+        const auto number = [&data](const std::string& name) {
+          return static_cast<int>(std::ranges::find(data.boundary_names, name) - data.boundary_names.begin());
+        };
+        for (auto& facet : data.facets)
+          if (facet.tag == number("right")) facet.tag = number("top");
+      });
+  int tag = 0;
+  while (box.problem.boundary(tag).name != "top") ++tag;
+  const auto links = contact_chains(box.form, tag);
+  ASSERT_EQ(links.size(), 6u);
+  EXPECT_EQ(links[0].arc, 0.0);
+  EXPECT_NEAR(links[5].arc, 2.5, 1e-15);
+
+  const Table table(contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0)));
+  for (std::size_t row = 0; row < table.size(); ++row)
+    if (table.text(row, "boundary") == "top")
+    {
+      EXPECT_NEAR(table(row, "arc"), table(row, "x") + 1.0 - table(row, "y"), 1e-14);
+    }
+}
+
+TEST(ContactChains, ClosedAndInTwoPieces)
+{
+  // A square hole is cut out of a square; its four sides are given to the bottom group, which is a closed
+  // chain then, beside the open one of the bottom itself.
+  const BoxCase<2> box(
+      R"(
+degree = 1
+mesh = { box = { lower = [0, 0], upper = [3, 3], cells = [3, 3] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, 0]
+[boundary.bottom]
+contact = { friction = "none", gap = 0 }
+)",
+      [](MeshData<2>& data)
+      {
+        const int bottom =
+            static_cast<int>(std::ranges::find(data.boundary_names, "bottom") - data.boundary_names.begin());
+        data.cells.erase(data.cells.begin() + 8, data.cells.begin() + 10);
+        data.regions.resize(data.cells.size());
+        for (const auto& [a, b] : {std::array{5, 6}, std::array{6, 10}, std::array{10, 9}, std::array{9, 5}})
+          data.facets.push_back({{a, b}, bottom});
+      });
+  int tag = 0;
+  while (box.problem.boundary(tag).name != "bottom") ++tag;
+  const auto links = contact_chains(box.form, tag);
+  ASSERT_EQ(links.size(), 7u);
+  std::vector<double> arcs;
+  for (const ChainLink& link : links) arcs.push_back(link.arc);
+  EXPECT_THAT(arcs, ::testing::Pointwise(::testing::DoubleNear(1e-14), {0., 1., 2., 3., 4., 5., 6.}));
+
+  const Table table(contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0)));
+  for (std::size_t row = 1; row < table.size(); ++row)
+  {
+    const double distance =
+        std::hypot(table(row, "x") - table(row - 1, "x"), table(row, "y") - table(row - 1, "y"));
+    const double step = table(row, "arc") - table(row - 1, "arc");
+    const bool new_chain = table(row - 1, "y") == 0.0 && table(row, "y") > 0.0;
+    if (!new_chain)
+    {
+      EXPECT_LE(distance, step + 1e-14) << "row " << row;
+    }
+  }
+}
+
+TEST(ContactCsv, InThreeDimensions)
+{
+  const BoxCase<3> box(R"(
+degree = 1
+mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [2, 2, 2] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.top]
+displacement = [0, 0, 0]
+[boundary.back]
+contact = { friction = "coulomb", coefficient = 0.5, gap = 0 }
+)");
+  const auto u = box.interpolate([](const Point<3>&) { return Point<3>(0.0, 0.0, -0.1); });
+  const std::string csv = contact_csv(box.form, u);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
+            "slip_y,slip_z");
+  const Table table(csv);
+  ASSERT_EQ(table.size(), 8u * box.form.n_facet_points());
+  for (std::size_t row = 0; row < table.size(); ++row)
+  {
+    EXPECT_EQ(table(row, "z"), 0.0);
+    EXPECT_EQ(table(row, "nz"), -1.0);
+    EXPECT_NEAR(table(row, "gap"), -0.1, 1e-15);
+    EXPECT_GT(table(row, "pressure"), 0.0);
+    EXPECT_NEAR(table(row, "limit"), 0.5 * table(row, "pressure"), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace tribound

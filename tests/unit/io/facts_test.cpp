@@ -1,0 +1,66 @@
+#include "io/facts.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/io/box_case.h"
+
+namespace tribound
+{
+namespace
+{
+
+using testing::BoxCase;
+
+TEST(Facts, MaterialInEngineersConstants)
+{
+  EXPECT_EQ(describe(lame(2.1e5, 0.3, PlaneModel::strain), 2), "E = 210000, nu = 0.3, plane strain");
+  EXPECT_EQ(describe(lame(2.1e5, 0.3, PlaneModel::stress), 2), "E = 210000, nu = 0.3, plane stress");
+  EXPECT_EQ(describe(lame(1.0, -0.25, PlaneModel::strain), 3), "E = 1, nu = -0.25");
+}
+
+TEST(Facts, MeshAndBoundary)
+{
+  const BoxCase<2> box(R"(
+title = "Block"
+degree = 2
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, "free"]
+traction = [0, 0.5]
+[boundary.right]
+traction = [0, "x*y"]
+[boundary.bottom]
+contact = { friction = "tresca", threshold = 0.03, gap = 0 }
+)");
+  const CaseFacts facts = case_facts(box.config, 2);
+  EXPECT_EQ(facts.title, "Block");
+  EXPECT_EQ(facts.friction, "tresca");
+  EXPECT_EQ(facts.gamma0, 10.0);
+
+  const MeshFacts mesh = mesh_facts(box.problem, box.space, box.form.constraints());
+  EXPECT_EQ(mesh.vertices, 15);
+  EXPECT_EQ(mesh.cells, 16);
+  EXPECT_EQ(mesh.free_dofs, 2 * 9 * 5 - 5);
+  EXPECT_NEAR(mesh.smallest_cell, std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(mesh.largest_cell, std::sqrt(0.5), 1e-15);
+  ASSERT_EQ(mesh.regions.size(), 1u);
+  EXPECT_EQ(mesh.regions[0].cells, 16);
+  EXPECT_NEAR(mesh.regions[0].measure, 2.0, 1e-14);
+  ASSERT_EQ(mesh.boundaries.size(), 4u);
+  for (const BoundaryFacts& boundary : mesh.boundaries)
+  {
+    const bool side = boundary.name == "left" || boundary.name == "right";
+    EXPECT_EQ(boundary.facets, side ? 2 : 4) << boundary.name;
+    EXPECT_NEAR(boundary.measure, side ? 1.0 : 2.0, 1e-15) << boundary.name;
+    const std::string expected = boundary.name == "left"    ? "displacement (0, free), traction (0, 0.5)"
+                                 : boundary.name == "right" ? "traction (0, varies)"
+                                 : boundary.name == "bottom"
+                                     ? "contact, Tresca friction, threshold 0.03, gap 0"
+                                     : "traction-free";
+    EXPECT_EQ(boundary.condition, expected) << boundary.name;
+  }
+}
+
+}  // namespace
+}  // namespace tribound

@@ -1,0 +1,128 @@
+#include "io/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace tribound
+{
+namespace
+{
+
+using nlohmann::json;
+
+std::vector<std::string> lines(const std::string& text)
+{
+  std::istringstream in(text);
+  std::vector<std::string> result;
+  for (std::string line; std::getline(in, line);) result.push_back(line);
+  return result;
+}
+
+RunRecord uncertified_run()
+{
+  RunRecord run;
+  run.facts = {"Block, \"Tresca\"", "case.toml", 2, 2, "tresca", 10.0};
+  run.reason = "the bound is not computed";
+  LevelRecord level;
+  level.cells = 16;
+  level.dofs = 24;
+  level.newton = {{{1, 0.5, 1.0, 0, true, 0.25}, {}, false}, {{2, 1e-12, 0.5, 3, false, 0.125}, {}, true}};
+  level.figures.energy = 0.1;
+  level.figures.sigma_norm = 0.5;
+  level.figures.max_displacement = 1.0 / 3.0;
+  level.figures.contact = {"", {0.25, 2.0}, -2.0, 0.25, 0.375};
+  level.figures.boundary_contact = {{"bottom", {0.25, 2.0}, -2.0, 0.25, 0.375}};
+  level.times = {1.5, {}, 2.0};
+  run.levels = {level};
+  return run;
+}
+
+RunRecord certified_run()
+{
+  RunRecord run = uncertified_run();
+  run.status = RunStatus::certified;
+  run.reason.clear();
+  LevelRecord& level = run.levels[0];
+  level.bound = Components{1, 2, 3, 4, 5, 6, 7, 8, 20, 10};
+  level.identities = Identities{1e-14, 2e-14, 3e-14, 4e-14, 5e-14};
+  level.newton[1].bound = level.bound;
+  level.times.certify = 0.25;
+  return run;
+}
+
+TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
+{
+  EXPECT_THAT(lines(convergence_csv(uncertified_run())),
+              ::testing::ElementsAre(
+                  "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,total_sharp,"
+                  "relative,energy,contact_normal,contact_tangential,t_solve,t_certify,t_level",
+                  "0,16,24,2,,,,,,,,,,,,0.1,-2,0.25,1.5,,2"));
+}
+
+TEST(Report, ConvergenceOfACertifiedRun)
+{
+  EXPECT_EQ(lines(convergence_csv(certified_run()))[1],
+            "0,16,24,2,1,2,3,4,5,6,7,8,20,10,20,0.1,-2,0.25,1.5,0.25,2");
+}
+
+TEST(Report, NewtonTable)
+{
+  EXPECT_THAT(lines(newton_csv(certified_run())),
+              ::testing::ElementsAre(
+                  "level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,accepted",
+                  "0,1,0.5,1,,,,,,,,,,0", "0,2,1e-12,0.5,1,2,3,4,5,6,7,8,20,1"));
+}
+
+TEST(Report, CertificateOfAnUncertifiedRun)
+{
+  const json certificate = json::parse(certificate_json(uncertified_run()));
+  EXPECT_EQ(certificate["schema"], "1");
+  EXPECT_EQ(certificate["title"], "Block, \"Tresca\"");
+  EXPECT_EQ(certificate["status"], "uncertified");
+  EXPECT_EQ(certificate["reason"], "the bound is not computed");
+  EXPECT_EQ(certificate["d"], 2);
+  EXPECT_EQ(certificate["p"], 2);
+  for (const char* unknown : {"bound", "bound_plain", "relative", "components", "identities"})
+    EXPECT_TRUE(certificate.at(unknown).is_null()) << unknown;
+  EXPECT_EQ(certificate["max_displacement"].get<double>(), 1.0 / 3.0) << "numbers must survive the text";
+  EXPECT_EQ(certificate["contact"]["normal"], -2.0);
+  EXPECT_EQ(certificate["contact"]["boundaries"]["bottom"]["abs_tangential"], 0.375);
+  EXPECT_EQ(certificate["levels"].size(), 1u);
+  EXPECT_EQ(certificate["levels"][0]["newton"][1]["linear_iterations"], 3);
+}
+
+TEST(Report, CertificateOfACertifiedRun)
+{
+  const json certificate = json::parse(certificate_json(certified_run()));
+  EXPECT_EQ(certificate["status"], "certified");
+  EXPECT_TRUE(certificate["reason"].is_null());
+  EXPECT_EQ(certificate["bound"], 10.0);
+  EXPECT_EQ(certificate["bound_plain"], 20.0);
+  EXPECT_EQ(certificate["relative"], 20.0);
+  EXPECT_EQ(certificate["components"]["lin2t"], 8.0);
+  EXPECT_EQ(certificate["identities"]["jump"], 2e-14);
+}
+
+TEST(Report, CertificateWithoutALevelHasNoFigures)
+{
+  RunRecord run;
+  run.status = RunStatus::failed;
+  run.reason = "singular matrix";
+  const json certificate = json::parse(certificate_json(run));
+  EXPECT_EQ(certificate["status"], "failed");
+  EXPECT_FALSE(certificate.contains("energy"));
+  EXPECT_TRUE(certificate["levels"].empty());
+}
+
+TEST(Report, NamesThatAreNotUtf8DoNotSpoilTheCertificate)
+{
+  RunRecord run = uncertified_run();
+  run.facts.title = "\xff block";
+  EXPECT_EQ(json::parse(certificate_json(run))["title"], "\xef\xbf\xbd block");
+}
+
+}  // namespace
+}  // namespace tribound

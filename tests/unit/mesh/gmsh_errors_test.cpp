@@ -1,0 +1,191 @@
+/// Files that must be refused, each with what the message has to say.
+
+#include <algorithm>
+
+#include "unit/mesh/mesh_testing.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using testing_mesh::Directory;
+using testing_mesh::expect_input_error;
+using testing_mesh::message_of;
+
+/// A file of MSH 2.2 from its nodes ("x y z") and its elements (what follows the number).
+std::string msh(const std::vector<std::string>& nodes, const std::vector<std::string>& elements,
+                const std::string& names = "")
+{
+  std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + "$Nodes\n" + std::to_string(nodes.size()) + "\n";
+  for (std::size_t i = 0; i < nodes.size(); ++i) text += std::to_string(i + 1) + " " + nodes[i] + "\n";
+  text += "$EndNodes\n$Elements\n" + std::to_string(elements.size()) + "\n";
+  for (std::size_t i = 0; i < elements.size(); ++i) text += std::to_string(i + 1) + " " + elements[i] + "\n";
+  return text + "$EndElements\n";
+}
+
+const std::vector<std::string> square = {"0 0 0", "1 0 0", "1 1 0", "0 1 0"};
+const std::string names =
+    "$PhysicalNames\n3\n2 1 \"steel\"\n2 2 \"rubber\"\n1 3 \"foot\"\n$EndPhysicalNames\n";
+
+const std::string rectangle_geo = R"(
+Point(1) = {0, 0, 0, 1}; Point(2) = {1, 0, 0, 1}; Point(3) = {1, 1, 0, 1}; Point(4) = {0, 1, 0, 1};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+)";
+
+struct BadFile
+{
+  std::string name;
+  std::string file;
+  std::string content;
+  std::vector<std::string> words;
+};
+
+void PrintTo(const BadFile& bad, std::ostream* out)
+{
+  *out << bad.name;
+}
+
+class BadMesh : public testing::TestWithParam<BadFile>
+{
+};
+
+TEST_P(BadMesh, IsRefused)
+{
+  const Directory directory;
+  const MeshFile source = directory.write(GetParam().file, GetParam().content);
+  std::vector<std::string> messages;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  for (int attempt = 0; attempt < 2; ++attempt)
+    messages.push_back(message_of([&] { (void)read_gmsh(source); }));
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(messages[0], messages[1]) << "the first failure has left a trace";
+  EXPECT_THAT(messages[0], testing::HasSubstr(GetParam().file));
+  for (const std::string& word : GetParam().words) EXPECT_THAT(messages[0], testing::HasSubstr(word));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Gmsh, BadMesh,
+    testing::ValuesIn(std::vector<BadFile>{
+        {"UnknownSuffix", "block.stl", "solid", {"case.toml:3: mesh.file: ", "neither a .msh nor a .geo"}},
+        {"Empty", "block.msh", "", {"case.toml:3", "is empty"}},
+        {"NoMesh", "block.msh", "hello\n", {"case.toml:3", "is not a Gmsh mesh", "$MeshFormat"}},
+        {"UnknownVersion",
+         "block.msh",
+         "$MeshFormat\n9.3 0 8\n$EndMeshFormat\n",
+         {"Gmsh cannot read the file"}},
+        {"CutOff", "block.msh", msh(square, {"2 2 1 1 1 2 3"}).substr(0, 60), {"block.msh: "}},
+        {"CutOffInElements",
+         "block.msh",
+         msh(square, {"2 2 1 1 1 2 3", "2 2 1 1 1 3 4"}).substr(0, 112),
+         {"block.msh: "}},
+        {"UnknownNode", "block.msh", msh(square, {"2 2 1 1 1 2 9"}), {"Gmsh cannot read the file"}},
+        {"SyntaxError",
+         "block.geo",
+         "Point(1) = {0, 0;\n",
+         {"Gmsh cannot read the file", "line 1", "syntax error"}},
+        {"UnknownPoint",
+         "block.geo",
+         "Point(1) = {0, 0, 0};\nLine(1) = {1, 2};\n",
+         {"Gmsh cannot", "point 2"}},
+        {"NoCells", "block.geo", "Point(1) = {0, 0, 0};\n", {"neither triangles nor tetrahedra"}},
+        {"OnlyLines",
+         "block.msh",
+         msh(square, {"1 2 1 1 1 2"}),
+         {"neither triangles nor tetrahedra", "gmsh -2"}},
+        {"Quadrangles",
+         "block.msh",
+         msh(square, {"3 2 1 1 1 2 3 4"}),
+         {"not simplices", "Quadrilateral", "Mesh.RecombineAll=0"}},
+        {"Recombined",
+         "block.geo",
+         rectangle_geo + "Recombine Surface{1}; Transfinite Surface{1};\n",
+         {"not simplices", "Quadrilateral"}},
+        {"SecondOrder",
+         "block.geo",
+         rectangle_geo + "Mesh.ElementOrder = 2;\n",
+         {"elements of order 2", "Triangle 6", "straight", "-order 1"}},
+        {"NotInThePlane",
+         "block.msh",
+         msh({"0 0 0", "1 0 0", "1 1 0.5"}, {"2 2 1 1 1 2 3"}),
+         {"node 3 at (1, 1, 0.5)", "z = 0"}},
+        {"NoGroup",
+         "block.geo",
+         rectangle_geo +
+             "Translate {2, 0, 0} { Duplicata { Surface{1}; } }\nPhysical Surface(\"steel\") = {1};\n",
+         {"triangles are in no physical group", "surface", "corners (2"}},
+        {"TwoGroups",
+         "block.geo",
+         rectangle_geo + "Physical Surface(\"steel\") = {1}; Physical Surface(\"rubber\") = {1};\n",
+         {"surface 1 is in two physical groups", "\"steel\"", "\"rubber\""}},
+        {"TwoBoundaryGroups",
+         "block.geo",
+         rectangle_geo + "Physical Curve(\"top\") = {1, 2}; Physical Curve(\"side\") = {2, 3};\n",
+         {"curve 2 is in two physical groups", "\"top\"", "\"side\""}},
+        {"SharedElementaryTag",
+         "block.msh",
+         msh(square, {"2 2 1 7 1 2 3", "2 2 2 7 1 3 4"}, names),
+         {"surface 7 is in two physical groups", "elementary tags"}},
+        {"MixedOrientation",
+         "block.msh",
+         msh(square, {"2 2 1 1 1 2 3", "2 2 1 1 1 4 3"}, names),
+         {"triangle 1 of region \"steel\"", "inverted"}},
+        {"UnusedNode",
+         "block.msh",
+         "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 1 0\n1 0 0 0 1 1 0 0 "
+         "0\n$EndEntities\n$Nodes\n1 4 1 4\n"
+         "2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n7 8 0\n$EndNodes\n$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 "
+         "3\n$EndElements\n",
+         {"node 4 at (7, 8, 0) belongs to no cell"}},
+        {"BoundaryInside",
+         "block.msh",
+         msh(square, {"2 2 1 1 1 2 3", "2 2 1 1 1 3 4", "1 2 3 1 1 3"}, names),
+         {"of group \"foot\" lies inside the domain"}},
+        {"BoundaryElsewhere",
+         "block.msh",
+         msh(square, {"2 2 1 1 1 2 3", "1 2 3 1 1 4"}, names),
+         {"of group \"foot\"", "block.msh: "}},
+        {"Unmerged",
+         "block.msh",
+         msh({"0 0 0", "1 0 0", "1 1 0", "0 0 0", "1 1 0", "0 1 0"}, {"2 2 1 1 1 2 3", "2 2 1 1 4 5 6"},
+             names),
+         {"vertices 0 and 3 are both at (0, 0)", "Coherence"}},
+        {"EmptyGroup",
+         "block.msh",
+         "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 5 "
+         "\"foot\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n"
+         "1 0 0 0 1 1 0 1 5 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 "
+         "0 0\n0 1 0\n"
+         "$EndNodes\n$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n",
+         {"physical group \"foot\" has no edges"}},
+        {"NoNewline",
+         "block.geo",
+         rectangle_geo + "Physical Surface(\"steel\") = {1};",
+         {"newline", "last statement"}},
+    }),
+    [](const auto& info) { return info.param.name; });
+
+TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
+{
+  expect_input_error(
+      [] {
+        (void)read_gmsh({"nowhere/block.msh", {.file = "case.toml", .key = "mesh.file", .line = 3}});
+      },
+      {"case.toml:3: mesh.file: mesh file \"nowhere/block.msh\" does not exist", "relative to"});
+}
+
+TEST(Gmsh, ADirectoryIsNotAFile)
+{
+  const Directory directory;
+  std::filesystem::create_directory(directory / "block.msh");
+  expect_input_error([&] { (void)read_gmsh({directory / "block.msh", {}}); }, {"is a directory"});
+}
+
+}  // namespace
+
+}  // namespace tribound

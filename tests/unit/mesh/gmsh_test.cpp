@@ -1,0 +1,195 @@
+/// Meshes from files that are in order: every version, regions and boundaries, orientation, left-over nodes.
+
+#include <gmsh.h>
+
+#include "unit/mesh/mesh_testing.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using testing_mesh::boundary_measure;
+using testing_mesh::Directory;
+using testing_mesh::volume;
+
+/// Two regions side by side, four boundary groups, one of them of two curves; point 9 is a left-over.
+const std::string plane_geo = R"(
+Point(1) = {0, 0, 0, 0.4}; Point(2) = {1, 0, 0, 0.4}; Point(3) = {3, 0, 0, 0.4};
+Point(4) = {3, 1, 0, 0.4}; Point(5) = {1, 1, 0, 0.4}; Point(6) = {0, 1, 0, 0.4}; Point(9) = {5, 5, 0, 0.4};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 1};
+Line(7) = {2, 5};
+Curve Loop(1) = {1, 7, 5, 6}; Plane Surface(1) = {1};
+Curve Loop(2) = {2, 3, 4, -7}; Plane Surface(2) = {2};
+Physical Curve("foot") = {1, 2}; Physical Curve("end") = {3}; Physical Curve(17) = {4, 5};
+Physical Surface("steel") = {1}; Physical Surface("rubber") = {2};
+)";
+
+const std::string solid_geo = R"(
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 2, 1, 1}; Box(2) = {2, 0, 0, 1, 1, 1}; Coherence;
+Mesh.MeshSizeMax = 0.5;
+Physical Volume("long") = {1}; Physical Volume("short") = {2};
+Physical Surface("floor") = Surface In BoundingBox {-0.1, -0.1, -0.1, 3.1, 1.1, 0.1};
+)";
+
+/// Meshes a .geo by Gmsh itself and saves it.
+MeshFile saved(const Directory& directory, const std::string& geo, double version, bool binary,
+               bool all = false)
+{
+  const MeshFile source = directory.write("source.geo", geo);
+  MeshFile result = source;
+  result.path.replace_extension(".msh");
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::open(source.path.string());
+  gmsh::model::mesh::generate(gmsh::model::getDimension());
+  gmsh::option::setNumber("Mesh.MshFileVersion", version);
+  gmsh::option::setNumber("Mesh.Binary", binary);
+  gmsh::option::setNumber("Mesh.SaveAll", all);
+  gmsh::write(result.path.string());
+  gmsh::finalize();
+  return result;
+}
+
+int position(std::span<const std::string> names, const std::string& name)
+{
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+void expect_plane(const AnyMesh& any)
+{
+  ASSERT_TRUE(std::holds_alternative<Mesh<2>>(any));
+  const auto& mesh = std::get<Mesh<2>>(any);
+  EXPECT_THAT(mesh.region_names(), testing::UnorderedElementsAre("steel", "rubber"));
+  EXPECT_THAT(mesh.boundary_names(), testing::UnorderedElementsAre("foot", "end", "17"));
+  EXPECT_NEAR(volume(mesh), 3, 1e-12);
+  const auto measure = [&](const std::string& name)
+  { return boundary_measure(mesh, position(mesh.boundary_names(), name)); };
+  EXPECT_NEAR(measure("foot"), 3, 1e-12);
+  EXPECT_NEAR(measure("end"), 1, 1e-12);
+  EXPECT_NEAR(measure("17"), 3, 1e-12);
+  EXPECT_NEAR(boundary_measure(mesh, -1), 1, 1e-12);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const bool is_left = cell_map(mesh, c)(Point<2>::Constant(1.0 / 3))[0] < 1;
+    EXPECT_EQ(mesh.region(c), position(mesh.region_names(), is_left ? "steel" : "rubber"));
+  }
+}
+
+void expect_solid(const AnyMesh& any)
+{
+  ASSERT_TRUE(std::holds_alternative<Mesh<3>>(any));
+  const auto& mesh = std::get<Mesh<3>>(any);
+  EXPECT_THAT(mesh.region_names(), testing::UnorderedElementsAre("long", "short"));
+  EXPECT_THAT(mesh.boundary_names(), testing::ElementsAre("floor"));
+  EXPECT_NEAR(volume(mesh), 3, 1e-12);
+  EXPECT_NEAR(boundary_measure(mesh, 0), 3, 1e-12);
+  EXPECT_NEAR(boundary_measure(mesh, -1), 11, 1e-12);
+}
+
+/// A version of the format, binary or not.
+class GmshFormat : public testing::TestWithParam<std::pair<double, bool>>
+{
+};
+
+TEST_P(GmshFormat, IsRead)
+{
+  const auto [version, binary] = GetParam();
+  const Directory directory;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  if (version > 1)  // version 1 has no names
+  {
+    expect_plane(read_gmsh(saved(directory, plane_geo, version, binary)));
+    expect_solid(read_gmsh(saved(directory, solid_geo, version, binary)));
+  }
+  else
+  {
+    const auto mesh = std::get<Mesh<2>>(read_gmsh(saved(directory, plane_geo, version, binary)));
+    EXPECT_NEAR(volume(mesh), 3, 1e-12);
+    EXPECT_EQ(mesh.region_names().size(), 2U);
+    EXPECT_THAT(mesh.boundary_names(), testing::Contains("17"));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Gmsh, GmshFormat,
+                         testing::Values(std::pair{1.0, false}, std::pair{2.2, false}, std::pair{2.2, true},
+                                         std::pair{4.0, false}, std::pair{4.1, false}, std::pair{4.1, true}),
+                         [](const auto& info)
+                         {
+                           return "Version" + std::to_string(static_cast<int>(10 * info.param.first)) +
+                                  (info.param.second ? "Binary" : "Ascii");
+                         });
+
+TEST(Gmsh, GeometriesAreMeshed)
+{
+  const Directory directory;
+  expect_plane(read_gmsh(directory.write("plane.geo", plane_geo)));
+  expect_solid(read_gmsh(directory.write("solid.geo", solid_geo)));
+}
+
+TEST(Gmsh, AGeometryThatMeshesItselfIsNotMeshedAgain)
+{
+  const Directory directory;
+  expect_plane(read_gmsh(directory.write("plane.geo", plane_geo + "Mesh 2;\n")));
+}
+
+TEST(Gmsh, SurfacesOrientedDownAreTurned)
+{
+  const Directory directory;
+  std::string geo = plane_geo;
+  geo.replace(geo.find("{1, 7, 5, 6}"), 12, "{-6, -5, -7, -1}");
+  const auto file = saved(directory, geo, 4.1, false);
+  expect_plane(read_gmsh(file));
+}
+
+TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
+{
+  const Directory directory;
+  const std::string geo = plane_geo.substr(0, plane_geo.find("Physical"));
+  for (const MeshFile& file : {saved(directory, geo, 4.1, false), directory.write("bare.geo", geo)})
+  {
+    const auto mesh = std::get<Mesh<2>>(read_gmsh(file));
+    EXPECT_THAT(mesh.region_names(), testing::ElementsAre("domain"));
+    EXPECT_THAT(mesh.boundary_names(), testing::IsEmpty());
+    EXPECT_NEAR(volume(mesh), 3, 1e-12);
+  }
+}
+
+TEST(Gmsh, PointsOfTheGeometryThatNoCellUsesAreDropped)
+{
+  const Directory directory;
+  expect_plane(read_gmsh(saved(directory, plane_geo, 4.1, false, true)));
+}
+
+TEST(Gmsh, SparseNodeTagsAreFine)
+{
+  const Directory directory;
+  const auto mesh =
+      std::get<Mesh<2>>(read_gmsh(directory.write("sparse.msh",
+                                                  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n"
+                                                  "7 0 0 0\n900000 1 0 0\n80000000 0 1 0\n$EndNodes\n"
+                                                  "$Elements\n1\n1 2 2 1 1 7 900000 80000000\n"
+                                                  "$EndElements\n")));
+  EXPECT_EQ(mesh.n_vertices(), 3);
+  EXPECT_NEAR(volume(mesh), 0.5, 1e-15);
+  EXPECT_THAT(mesh.region_names(), testing::ElementsAre("1"));
+}
+
+TEST(Gmsh, ReadingTwiceGivesTheSame)
+{
+  const Directory directory;
+  const MeshFile file = saved(directory, solid_geo, 4.1, true);
+  const auto first = std::get<Mesh<3>>(read_gmsh(file));
+  const auto second = std::get<Mesh<3>>(read_gmsh(file));
+  EXPECT_TRUE(std::ranges::equal(first.cells(), second.cells()));
+  EXPECT_TRUE(std::ranges::equal(first.vertices(), second.vertices()));
+}
+
+}  // namespace
+
+}  // namespace tribound

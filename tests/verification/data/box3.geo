@@ -1,0 +1,19 @@
+// (0,2) x (0,1) x (0,1), tetrahedra of different sizes.
+Point(1) = {0, 0, 0, 0.4};
+Point(2) = {2, 0, 0, 0.7};
+Point(3) = {2, 1, 0, 0.6};
+Point(4) = {0, 1, 0, 0.8};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+sides[] = Extrude {0, 0, 1} { Surface{1}; };
+Physical Volume("box") = {sides[1]};
+Physical Surface("back") = {1};
+Physical Surface("front") = {sides[0]};
+Physical Surface("bottom") = {sides[2]};
+Physical Surface("right") = {sides[3]};
+Physical Surface("top") = {sides[4]};
+Physical Surface("left") = {sides[5]};

@@ -1,0 +1,115 @@
+#pragma once
+
+/// @file manufactured.h
+/// Smooth exact solutions, given as formulas, and the error against them. Shares no integration with the
+/// library's own norms but the quadrature rules.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/discrete_case.h"
+
+namespace tribound::test
+{
+
+/// A solution on the box (0, upper) with contact at the bottom y = 0 and prescribed displacement elsewhere.
+template <int dim>
+struct Manufactured
+{
+  std::string name;
+  Material material;
+  std::array<double, dim> upper;
+  std::array<std::string, dim> u;
+  std::array<std::string, dim * dim> gradient;  ///< row by row
+  std::array<std::string, dim> body;            ///< f = -div sigma(u)
+  std::string contact;                          ///< TOML
+};
+
+/// u and grad u as functions.
+template <int dim>
+class ExactField
+{
+ public:
+  explicit ExactField(const Manufactured<dim>& solution)
+  {
+    for (const std::string& text : solution.u) u_.emplace_back(text, Where{});
+    for (const std::string& text : solution.gradient) gradient_.emplace_back(text, Where{});
+  }
+
+  [[nodiscard]] Point<dim> value(const Point<dim>& x) const
+  {
+    Point<dim> result;
+    for (int a = 0; a < dim; ++a) result[a] = u_[a](x);
+    return result;
+  }
+
+  [[nodiscard]] Tensor<dim> gradient(const Point<dim>& x) const
+  {
+    Tensor<dim> result;
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b) result(a, b) = gradient_[a * dim + b](x);
+    return result;
+  }
+
+ private:
+  std::vector<Expression> u_;
+  std::vector<Expression> gradient_;
+};
+
+/// The case with degree p on a uniform mesh, n cells along y.
+template <int dim>
+std::string manufactured_case(const Manufactured<dim>& solution, int p, int n)
+{
+  const auto& [lambda, mu, plane] = solution.material;
+  std::array<int, dim> cells;
+  for (int a = 0; a < dim; ++a)
+    cells[a] = static_cast<int>(std::lround(n * solution.upper[a] / solution.upper[1]));
+  std::string toml = fmt::format("degree = {}\n", p);
+  toml += fmt::format("mesh.box = {{ lower = {}, upper = {}, cells = {} }}\n", std::array<double, dim>{},
+                      solution.upper, cells);
+  toml += fmt::format("material = {{ E = {:.17g}, nu = {:.17g} }}\n",
+                      mu * (3 * lambda + 2 * mu) / (lambda + mu), lambda / (2 * (lambda + mu)));
+  toml += fmt::format("load.body = {}\nnewton.tolerance = 1e-11\n", solution.body);
+  for (const char* side : {"left", "right", "top", "back", "front"})
+    if (dim == 3 || (side[0] != 'b' && side[0] != 'f'))
+      toml += fmt::format("boundary.{}.displacement = {}\n", side, solution.u);
+  return toml + "boundary.bottom.contact = " + solution.contact + "\n";
+}
+
+/// ||u - u_h||_en = (sigma(e), eps(e))^(1/2) and the same of u.
+struct EnergyError
+{
+  double error;
+  double exact;
+};
+
+template <int dim>
+EnergyError energy_error(const DiscreteCase<dim>& c, std::span<const double> u, const ExactField<dim>& exact)
+{
+  const Quadrature<dim> rule = quadrature<dim>(2 * c.space.degree() + 6);
+  const Tabulation<dim> table = c.space.basis().tabulate(rule.points);
+  const Material& material = c.problem.material(0);
+  const auto density = [&](const Tensor<dim>& g) { return sigma<dim>(material, g).cwiseProduct(g).sum(); };
+  EnergyError sum{0, 0};
+  for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
+  {
+    const CellMap<dim> map = cell_map(c.mesh, cell);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      const Tensor<dim> discrete =
+          gradient_at<dim>(c.space.cell_nodes(cell), u, table.gradients_at(q), map.inverse_transpose);
+      const Tensor<dim> g = exact.gradient(map(rule.points[q]));
+      sum.error += rule.weights[q] * map.det * density(g - discrete);
+      sum.exact += rule.weights[q] * map.det * density(g);
+    }
+  }
+  return {std::sqrt(sum.error), std::sqrt(sum.exact)};
+}
+
+}  // namespace tribound::test

@@ -1,0 +1,79 @@
+/// @file newton_test.cpp
+/// The damped Newton method on the block of problem T2D: converges in at most 20 steps for every friction
+/// law, mesh and degree. Prints the steps.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "support/discrete_case.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+constexpr std::size_t most_steps = 20;
+
+std::string block(int p, int ny, const std::string& contact)
+{
+  return fmt::format(R"(degree = {}
+mesh.box = {{ lower = [0, 0], upper = [2, 1], cells = [{}, {}] }}
+material = {{ E = 1.0, nu = 0.3 }}
+boundary.left.displacement = [0, 0]
+boundary.top.traction = [0, -0.1]
+boundary.right.traction = [0.04, 0.06]
+boundary.bottom.contact = {}
+)",
+                     p, 2 * ny, ny, contact);
+}
+
+/// Steps and damped steps on the three meshes with p = 1 and 2.
+void check_steps(const std::string& name, const std::string& contact)
+{
+  fmt::print("{:<22}", name);
+  for (const int p : {1, 2})
+    for (const int ny : {4, 8, 16})
+    {
+      SCOPED_TRACE(fmt::format("{}, p = {}, {} x {}", name, p, 2 * ny, ny));
+      const DiscreteCase<2> c(block(p, ny, contact));
+      const NewtonResult<2> newton = c.solve();
+      EXPECT_EQ(newton.status, NewtonStatus::converged) << newton.message;
+      EXPECT_LE(newton.steps.size(), most_steps);
+      const auto damped =
+          std::ranges::count_if(newton.steps, [](const NewtonStep& step) { return step.damping < 1; });
+      fmt::print(" {:>6} ({:>2})", newton.steps.size(), damped);
+    }
+  fmt::print("\n");
+}
+
+void print_header()
+{
+  fmt::print("{:<22}", "steps (damped)");
+  for (const int p : {1, 2})
+    for (const int ny : {4, 8, 16}) fmt::print(" {:>11}", fmt::format("p{} {}x{}", p, 2 * ny, ny));
+  fmt::print("\n");
+}
+
+TEST(NewtonSteps, Tresca)
+{
+  print_header();
+  for (int i = 1; i <= 10; ++i)
+    check_steps(fmt::format("Tresca s = {:.2f}", 0.01 * i),
+                fmt::format("{{ friction = \"tresca\", threshold = {} }}", 0.01 * i));
+}
+
+TEST(NewtonSteps, Coulomb)
+{
+  print_header();
+  for (const double mu_F : {0.2, 0.5, 1.0})
+    check_steps(fmt::format("Coulomb mu_F = {}", mu_F),
+                fmt::format("{{ friction = \"coulomb\", coefficient = {} }}", mu_F));
+}
+
+}  // namespace
+
+}  // namespace tribound::test
