@@ -16,6 +16,7 @@
 #include "mesh/gmsh.h"
 #include "run.h"
 #include "solve/petsc.h"
+#include "verify.h"
 
 namespace
 {
@@ -27,6 +28,7 @@ struct Arguments
   std::string case_file;
   std::vector<std::string> overrides;
   bool quiet = false;
+  int refinements = 2;  ///< of verify
 };
 
 void add_case_arguments(CLI::App& command, Arguments& arguments)
@@ -56,6 +58,15 @@ void check_command(const Arguments& arguments)
   std::visit([&](const auto& m) { check(config, m); }, mesh);
 }
 
+ExitCode verify_command(const Arguments& arguments)
+{
+  const Progress progress(arguments.quiet);
+  const Config config = read_config(arguments.case_file, arguments.overrides);
+  const AnyMesh mesh = read_mesh(config.mesh);
+  const Environment environment;
+  return std::visit([&](const auto& m) { return verify(config, m, arguments.refinements, progress); }, mesh);
+}
+
 void info_command()
 {
   const Environment environment;
@@ -65,9 +76,10 @@ void info_command()
 /// What is wrong with the command line. CLI11 says that a command is missing even where one is misspelt.
 InputError usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<char*> words)
 {
-  const std::vector<std::string> commands = {"run", "check", "info"};
+  const std::vector<std::string> commands = {"run", "check", "verify", "info"};
   const std::string hint =
-      "tribound run case.toml, tribound check case.toml or tribound info; more: tribound --help";
+      "tribound run case.toml, tribound check case.toml, tribound verify case.toml or tribound info; "
+      "more: tribound --help";
   if (!app.get_subcommands().empty()) return {{}, error.what(), hint};
   if (words.size() < 2) return {{}, "a command is missing", hint};
   const std::string near = closest(words[1], commands);
@@ -92,9 +104,17 @@ int main(int argc, char** argv)
   Arguments arguments;
   CLI::App* run = app.add_subcommand("run", "Solve a case and write its results");
   CLI::App* check = app.add_subcommand("check", "Read and verify a case without solving it");
+  CLI::App* verify = app.add_subcommand(
+      "verify", "Compare the bound of a case with the error it bounds (slow: for small cases)");
   CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
   add_case_arguments(*run, arguments);
   add_case_arguments(*check, arguments);
+  add_case_arguments(*verify, arguments);
+  verify
+      ->add_option("--refinements", arguments.refinements,
+                   "Uniform refinements of the mesh on which the error is looked for")
+      ->check(CLI::Range(1, 5))
+      ->capture_default_str();
   try
   {
     app.parse(argc, argv);
@@ -109,6 +129,7 @@ int main(int argc, char** argv)
   {
     if (*run) return static_cast<int>(run_command(arguments));
     if (*check) check_command(arguments);
+    if (*verify) return static_cast<int>(verify_command(arguments));
     if (*info) info_command();
     return 0;
   }

@@ -14,12 +14,14 @@
 #include "mesh/geometry.h"
 #include "mesh/gmsh.h"
 #include "mesh/mesh.h"
+#include "mesh/refine.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "contact/elasticity.h"
 #include "contact/nitsche.h"
 #include "contact/projection.h"
 #include "contact/rigid_motion.h"
+#include "fem/nested.h"
 #include "fem/space.h"
 
 // Its solution by the generalised Newton method.
@@ -30,3 +32,6 @@
 #include "certify/checks.h"
 #include "certify/equilibrate.h"
 #include "certify/estimate.h"
+
+// What the bound is compared with.
+#include "certify/true_error.h"

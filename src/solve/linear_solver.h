@@ -27,6 +27,14 @@ struct LinearSolve
   bool factorised = false;  ///< whether a new factorisation or multigrid hierarchy was made
 };
 
+/// What is known about a matrix. Of a symmetric positive definite one a direct solver computes half the
+/// factors.
+enum class MatrixKind
+{
+  general,
+  positive_definite
+};
+
 /// Direct or iterative, as configured or by dimension and size: factorisations in 2D at every size that fits,
 /// in 3D up to 30 000 degrees of freedom.
 [[nodiscard]] LinearMethod choose_method(const SolverConfig& config, int dim, Index n_dofs);
@@ -39,7 +47,8 @@ class LinearSolver
  public:
   /// `nodes`: positions of the nodes; degree of freedom dim * node + component.
   template <int dim>
-  LinearSolver(const SolverConfig& config, std::span<const Point<dim>> nodes);
+  LinearSolver(const SolverConfig& config, std::span<const Point<dim>> nodes,
+               MatrixKind kind = MatrixKind::general);
 
   /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off. Throws SolveError when A is
   /// singular or the iteration stalls.
@@ -49,12 +58,13 @@ class LinearSolver
 
  private:
   void configure(const SparseMatrix& a);
-  void configure_direct();
+  void configure_direct(const SparseMatrix& a);
   void configure_multigrid(const SparseMatrix& a);
   void prepare(const SparseMatrix& a);
 
   SolverConfig config_;
   LinearMethod method_;
+  MatrixKind kind_;
   int dim_;
   std::vector<double> coordinates_;
   std::unique_ptr<_p_KSP, KspDeleter> ksp_;

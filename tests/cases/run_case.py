@@ -11,7 +11,9 @@ EXPECTED.json holds a list of runs:
           "set": ["degree=1"],       overrides, passed on with --set
           "command": "run",          or "check", "info", ...; or "arguments": [...] instead of a case
           "exit": 0,
+          "options": ["--quiet"],    appended as they stand
           "certificate": { "energy": [0.0137, 1e-8] },     value and relative tolerance; dotted names
+          "verification": { ... },   the same for verify.json
           "contact_csv": { "slip_x": [[1.25e-3, 2.72e-5, 0.05], ...] },   x, value there, relative tolerance
           "output": ["text"],        must appear in what the program prints
           "files": false } ] }       false: nothing may be written
@@ -46,7 +48,7 @@ def difference(found, value, relative, absolute=0.0):
     return None if found == value else f"is {found!r}, expected {value!r}"
 
 
-def certificate_differences(file, expected):
+def json_differences(file, expected):
     document = json.loads(file.read_text())
     for name, entry in expected.items():
         value, *tolerances = entry if isinstance(entry, list) else [entry, 0.0]
@@ -85,6 +87,7 @@ def run(program, expected, run_data, directory):
         arguments = [run_data.get("command", "run"), str(case), "--set", f'output.directory="{directory}"']
     for override in run_data.get("set", []):
         arguments = [*arguments, "--set", override]
+    arguments = [*arguments, *run_data.get("options", [])]
     result = subprocess.run(
         [program, *arguments], cwd=expected["folder"], capture_output=True, text=True, timeout=TIME_LIMIT
     )
@@ -100,7 +103,9 @@ def run(program, expected, run_data, directory):
     if not run_data.get("files", True) and directory.exists():
         yield f"has written {[file.name for file in directory.iterdir()]}"
     if "certificate" in run_data:
-        yield from certificate_differences(directory / "certificate.json", run_data["certificate"])
+        yield from json_differences(directory / "certificate.json", run_data["certificate"])
+    if "verification" in run_data:
+        yield from json_differences(directory / "verify.json", run_data["verification"])
     if "contact_csv" in run_data:
         yield from contact_differences(directory / "contact.csv", run_data["contact_csv"])
 

@@ -60,7 +60,7 @@ TYPED_TEST(Space, FunctionsAreContinuousAcrossFacets)
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const Quadrature<dim - 1> rule = quadrature<dim - 1>(4);
-  for (int p = 1; p <= 4; ++p)
+  for (int p = 1; p <= 6; ++p)
   {
     const Mesh<dim> mesh(distorted<dim>(grid<dim>(), p));
     const LagrangeSpace<dim> space(mesh, p);
@@ -90,7 +90,7 @@ TYPED_TEST(Space, FunctionsAreContinuousAcrossFacets)
 TYPED_TEST(Space, InterpolationReproducesPolynomials)
 {
   constexpr int dim = TypeParam::value;
-  for (int p = 1; p <= 4; ++p)
+  for (int p = 1; p <= 6; ++p)
   {
     const Mesh<dim> mesh(distorted<dim>(grid<dim>(), 10 + p));
     const LagrangeSpace<dim> space(mesh, p);
@@ -115,7 +115,7 @@ TYPED_TEST(Space, NumberOfNodesByEulersFormula)
   const Index c = mesh.n_cells();
   const Index f = ((dim + 1) * c + static_cast<Index>(mesh.boundary().size())) / 2;
   const Index e = dim == 2 ? v + c - 1 : v + f - c - 1;
-  for (int p = 1; p <= 4; ++p)
+  for (int p = 1; p <= 6; ++p)
   {
     const Index inside_triangle = (p - 1) * (p - 2) / 2;
     const Index inside_tetrahedron = (p - 1) * (p - 2) * (p - 3) / 6;

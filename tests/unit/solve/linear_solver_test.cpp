@@ -92,6 +92,22 @@ TEST(LinearSolver, ADirectSolveTakesOneIteration)
   EXPECT_LE(solver.solve(system.matrix(), system.b, 1e-10 * norm(system.b), x).iterations, 2);
 }
 
+TEST(LinearSolver, HalfTheFactorsOfAPositiveDefiniteMatrixWillDo)
+{
+  const System<3> system;
+  const SparseMatrix a = system.matrix();
+  const SolverConfig config = direct(DirectPackage::mumps);
+  LinearSolver solver(config, std::span<const Point<3>>(system.nodes), MatrixKind::positive_definite);
+  std::vector<double> x(system.x.size(), 0.0);
+  for (int i = 0; i < 2; ++i)
+  {
+    const LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+    EXPECT_EQ(solve.factorised, i == 0);
+    EXPECT_LE(solve.iterations, 2);
+    EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
+  }
+}
+
 /// Systems that change little are solved with old factors, and as exactly.
 TEST(LinearSolver, KeepsFactorsForSimilarSystems)
 {

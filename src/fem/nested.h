@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file nested.h
+/// Functions carried to a space that contains theirs.
+
+#include <span>
+#include <vector>
+
+#include "fem/space.h"
+#include "mesh/geometry.h"
+#include "mesh/refine.h"
+
+namespace tribound
+{
+
+/// The reference coordinates of x in a cell.
+template <int dim>
+[[nodiscard]] Point<dim> reference_point(const CellMap<dim>& map, const Point<dim>& x)
+{
+  return map.inverse_transpose.transpose() * (x - map.origin);
+}
+
+/// The degrees of freedom of u, a function of `coarse`, in `fine`, a space on the refined mesh of `coarse`.
+/// Exact up to round-off where the degree of `fine` is not below that of `coarse`.
+template <int dim>
+[[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
+                                                     std::span<const double> u, const Refined<dim>& refined,
+                                                     const LagrangeSpace<dim>& fine);
+
+}  // namespace tribound

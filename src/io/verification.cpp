@@ -1,0 +1,170 @@
+#include "io/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema_version = "1";
+
+std::string line(std::string_view caption, std::string_view text)
+{
+  return fmt::format("{:<14}{}\n", caption, text);
+}
+
+std::string number_or_dash(const std::optional<double>& value)
+{
+  return value ? fmt::format("{:.4f}", *value) : "-";
+}
+
+std::string iterate_line(const VerifiedIterate& iterate)
+{
+  return fmt::format("{:>4}  {:>9.3e}  {:>12.6g}  {:>12.6g}  {:>12.6g}  {:>11}  {:>10.1e}\n",
+                     iterate.step.step, iterate.step.residual, iterate.bound_plain, iterate.bound,
+                     iterate.dual_norm, number_or_dash(iterate.effectivity()), iterate.identities);
+}
+
+std::string richer_text(const Verification& v)
+{
+  const double sigma_norm = v.iterates.back().sigma_norm;
+  const std::string where =
+      fmt::format("degree {} on {} cells, {} free degrees of freedom, {} Newton steps", v.richer_degree,
+                  v.richer.cells, v.richer.dofs, v.richer.newton_steps);
+  if (!v.richer.error) return line("richer", where) + line("", "no solution: " + v.richer.failure);
+  const double bound = v.iterates.back().bound;
+  return line("richer", where) + line("energy error", fmt::format("{:.6g}", v.richer.error->energy)) +
+         line("stress error",
+              fmt::format("{:.6g}, {:.3g} of ||sigma||; bound / error = {:.4g}", v.richer.error->stress,
+                          v.richer.error->stress / sigma_norm, bound / v.richer.error->stress));
+}
+
+std::string status_text(const Verification& v)
+{
+  const std::string problem = violation(v);
+  if (!problem.empty()) return problem;
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (const VerifiedIterate& iterate : v.iterates)
+    if (const auto e = iterate.effectivity())
+    {
+      smallest = std::min(smallest, *e);
+      largest = std::max(largest, *e);
+    }
+  return largest == 0 ? std::string("bound and dual norm are both round-off")
+                      : fmt::format("the bound holds at every iterate, effectivity {:.4f} to {:.4f}",
+                                    smallest, largest);
+}
+
+Json json(const std::optional<double>& value)
+{
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json(const VerifiedIterate& iterate)
+{
+  return {{"step", iterate.step.step},
+          {"residual", iterate.step.residual},
+          {"damping", iterate.step.damping},
+          {"bound", iterate.bound},
+          {"bound_plain", iterate.bound_plain},
+          {"dual_norm", iterate.dual_norm},
+          {"effectivity", json(iterate.effectivity())},
+          {"sigma_norm", iterate.sigma_norm},
+          {"identities", iterate.identities}};
+}
+
+Json json(const RicherSolution& richer, int degree)
+{
+  Json object{{"degree", degree},         {"cells", richer.cells},
+              {"dofs", richer.dofs},      {"newton_steps", richer.newton_steps},
+              {"energy_error", nullptr},  {"stress_error", nullptr},
+              {"failure", richer.failure}};
+  if (!richer.error) return object;
+  object["energy_error"] = richer.error->energy;
+  object["stress_error"] = richer.error->stress;
+  return object;
+}
+
+}  // namespace
+
+std::string violation(const Verification& verification)
+{
+  for (const VerifiedIterate& iterate : verification.iterates)
+    if (const auto e = iterate.effectivity(); e && *e < 1)
+      return fmt::format(
+          "the guarantee is violated: after Newton step {} the bound {:.9g} is below the dual norm of the "
+          "residual, "
+          "which is at least {:.9g} (effectivity {:.6f})",
+          iterate.step.step, iterate.bound, iterate.dual_norm, *e);
+  return {};
+}
+
+std::string verification_text(const Verification& v, const std::string& directory)
+{
+  std::string text =
+      line("dual norm",
+           fmt::format("from below, degree {} on {} cells ({} refinements), {} degrees of freedom",
+                       v.dual_space.degree, v.dual_space.cells, v.refinements, v.dual_space.dofs)) +
+      fmt::format("{:>4}  {:>9}  {:>12}  {:>12}  {:>12}  {:>11}  {:>10}\n", "step", "residual", "plain bound",
+                  "bound", "dual norm", "effectivity", "identities");
+  for (const VerifiedIterate& iterate : v.iterates) text += iterate_line(iterate);
+  const VerifiedIterate& last = v.iterates.back();
+  text += line("||sigma||", fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}", last.sigma_norm,
+                                        last.bound / last.sigma_norm));
+  return text + richer_text(v) + line("status", status_text(v)) + line("results", directory);
+}
+
+std::string verification_json(const Verification& v)
+{
+  const VerifiedIterate& last = v.iterates.back();
+  Json object{{"schema", schema_version},
+              {"title", v.facts.title},
+              {"file", v.facts.file},
+              {"d", v.facts.dimension},
+              {"p", v.facts.degree},
+              {"friction", v.facts.friction},
+              {"gamma0", v.facts.gamma0},
+              {"cells", v.mesh.cells},
+              {"dofs", v.mesh.free_dofs},
+              {"guarantee", violation(v).empty() ? "holds" : "violated"},
+              {"converged", v.converged},
+              {"bound", last.bound},
+              {"bound_plain", last.bound_plain},
+              {"dual_norm", last.dual_norm},
+              {"effectivity", json(last.effectivity())},
+              {"sigma_norm", last.sigma_norm},
+              {"refinements", v.refinements},
+              {"dual_space",
+               {{"degree", v.dual_space.degree}, {"cells", v.dual_space.cells}, {"dofs", v.dual_space.dofs}}},
+              {"richer_solution", json(v.richer, v.richer_degree)},
+              {"iterates", Json::array()},
+              {"times", Json::object()}};
+  for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(iterate));
+  for (const auto& [stage, seconds] : v.times) object["times"][stage] = seconds;
+  return object.dump(2) + "\n";
+}
+
+void write_verification(const std::filesystem::path& directory, const Verification& verification)
+{
+  write_file(directory / "verify.json", verification_json(verification));
+}
+
+void print_verification(const Verification& verification, const std::string& directory)
+{
+  fmt::print(stdout, "{}", verification_text(verification, directory));
+  std::fflush(stdout);
+}
+
+}  // namespace tribound

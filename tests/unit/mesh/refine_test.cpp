@@ -1,0 +1,196 @@
+/// Uniform refinement: conforming, tags and measures inherited, children inside their parents, shapes
+/// bounded.
+
+#include "mesh/refine.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <type_traits>
+
+#include "support/meshes.h"
+#include "unit/mesh/mesh_testing.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using testing_mesh::boundary_measure;
+using testing_mesh::volume;
+
+template <int dim>
+MeshData<dim> grid()
+{
+  if constexpr (dim == 2)
+    return box<2>({0, 0}, {2, 1}, {3, 2});
+  else
+    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 2, 1});
+}
+
+/// Two regions, a boundary group in pieces, a part of the boundary in no group, all cells different.
+template <int dim>
+Mesh<dim> irregular_mesh()
+{
+  MeshData<dim> data = grid<dim>();
+  data.region_names.push_back("inclusion");
+  for (std::size_t c = 0; c < data.cells.size(); c += 3) data.regions[c] = 1;
+  std::erase_if(data.facets, [](const TaggedFacet<dim>& facet) { return facet.tag == 1; });
+  data.source = {.file = "grid.msh"};
+  return Mesh<dim>(distorted(std::move(data), 3));
+}
+
+template <class T>
+class Refine : public ::testing::Test
+{
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Refine, Dimensions);
+
+/// Coordinates as a key: the same for points that differ by round-off.
+template <int dim>
+std::array<long, dim> key(const Point<dim>& x)
+{
+  std::array<long, dim> rounded;
+  for (int i = 0; i < dim; ++i) rounded[i] = std::lround(x[i] * 1e9);
+  return rounded;
+}
+
+/// Facets told apart by the coordinates of their centres alone.
+template <int dim>
+std::map<std::array<long, dim>, int> cells_per_facet_centre(const Mesh<dim>& mesh)
+{
+  std::map<std::array<long, dim>, int> count;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (int i = 0; i <= dim; ++i)
+    {
+      Point<dim> centre = Point<dim>::Zero();
+      for (const Index v : facet_vertices(mesh.cell(c), i)) centre += mesh.vertex(v) / dim;
+      ++count[key<dim>(centre)];
+    }
+  return count;
+}
+
+TYPED_TEST(Refine, IsConformingByCoordinates)
+{
+  constexpr int dim = TypeParam::value;
+  const Refined<dim> refined = refine_uniformly(irregular_mesh<dim>(), 2);  // verifies itself, too
+  std::set<std::array<long, dim>> places;
+  for (const Point<dim>& x : refined.mesh.vertices()) places.insert(key<dim>(x));
+  EXPECT_EQ(places.size(), static_cast<std::size_t>(refined.mesh.n_vertices()));
+
+  std::size_t n_outer = 0;
+  for (const auto& [centre, n] : cells_per_facet_centre(refined.mesh))
+  {
+    EXPECT_TRUE(n == 1 || n == 2) << n;
+    n_outer += n == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(n_outer, refined.mesh.boundary().size());
+}
+
+TYPED_TEST(Refine, CountsAreThoseOfTheFormula)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh = irregular_mesh<dim>();
+  for (const int times : {1, 2})
+  {
+    const Mesh<dim> refined = refine_uniformly(mesh, times).mesh;
+    const EntityCounts n = count_after_refinement(mesh, times);
+    EXPECT_EQ(n.vertices, refined.n_vertices());
+    EXPECT_EQ(n.edges, refined.topology().edges.size());
+    EXPECT_EQ(n.facets, refined.topology().facets.size());
+    EXPECT_EQ(n.cells, refined.n_cells());
+    EXPECT_EQ(n.cells, mesh.n_cells() * std::pow(1 << dim, times));
+  }
+}
+
+TYPED_TEST(Refine, NamesRegionsAndBoundariesAreInherited)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const Refined<dim> refined = refine_uniformly(mesh, 2);
+  EXPECT_TRUE(std::ranges::equal(mesh.region_names(), refined.mesh.region_names()));
+  EXPECT_TRUE(std::ranges::equal(mesh.boundary_names(), refined.mesh.boundary_names()));
+  EXPECT_EQ(refined.mesh.source().file, "grid.msh");
+  EXPECT_NEAR(volume(refined.mesh), volume(mesh), 1e-13);
+  const std::size_t n_children = std::size_t{1} << (2 * (dim - 1));
+  EXPECT_EQ(refined.mesh.boundary().size(), n_children * mesh.boundary().size());
+  for (int tag = -1; tag < 2 * dim; ++tag)
+    EXPECT_NEAR(boundary_measure(refined.mesh, tag), boundary_measure(mesh, tag), 1e-13) << tag;
+}
+
+TYPED_TEST(Refine, DescendantsFillTheirAncestors)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const Refined<dim> refined = refine_uniformly(mesh, 2);
+  std::vector<double> filled(mesh.n_cells(), 0.0);
+  for (Index c = 0; c < refined.mesh.n_cells(); ++c)
+  {
+    const Index ancestor = refined.ancestor(c);
+    const CellMap<dim> map = cell_map(mesh, ancestor);
+    filled[ancestor] += cell_map(refined.mesh, c).det / map.det;
+    EXPECT_EQ(refined.mesh.region(c), mesh.region(ancestor));
+    for (const Index v : refined.mesh.cell(c))
+    {
+      const Point<dim> xhat = map.inverse_transpose.transpose() * (refined.mesh.vertex(v) - map.origin);
+      EXPECT_GE(xhat.minCoeff(), -1e-12);
+      EXPECT_LE(xhat.sum(), 1 + 1e-12);
+    }
+  }
+  for (const double share : filled) EXPECT_NEAR(share, 1.0, 1e-12);
+}
+
+/// The smallest angle between two edges of a triangle or two faces of a tetrahedron, degrees.
+template <int dim>
+double smallest_angle(const Mesh<dim>& mesh)
+{
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (int i = 0; i <= dim; ++i)
+      for (int j = i + 1; j <= dim; ++j)
+      {
+        const double cosine = -facet_geometry(mesh, c, i).normal.dot(facet_geometry(mesh, c, j).normal);
+        smallest = std::min(smallest, std::acos(cosine) * 180 / std::numbers::pi);
+      }
+  return smallest;
+}
+
+TEST(RefineShapes, TrianglesStaySimilar)
+{
+  const Mesh<2> mesh = irregular_mesh<2>();
+  EXPECT_NEAR(smallest_angle(refine_uniformly(mesh, 4).mesh), smallest_angle(mesh), 1e-9);
+}
+
+/// Of a tetrahedron of any shape the children differ from it once; from then on no new shapes worth the name
+/// appear. The meshes: Kuhn's tetrahedra, distorted ones, a flat one.
+TEST(RefineShapes, AnglesOfTetrahedraAreBoundedOverFourLevels)
+{
+  MeshData<3> flat = mapped(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
+                            [](const Point<3>& x) {
+                              return Point<3>{x[0] + 0.4 * x[1], x[1], 0.2 * x[2]};
+                            });
+  for (MeshData<3> data : {box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
+                           distorted(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), 7), std::move(flat)})
+  {
+    const Mesh<3> mesh(std::move(data));
+    std::array<double, 5> angle{smallest_angle(mesh)};
+    for (int level = 1; level <= 4; ++level)
+      angle[level] = smallest_angle(refine_uniformly(mesh, level).mesh);
+    EXPECT_GE(angle[1], 0.5 * angle[0]);
+    for (int level = 2; level <= 4; ++level) EXPECT_GE(angle[level], angle[1] * (1 - 1e-9)) << level;
+  }
+}
+
+TEST(RefineSize, TooManyCellsAreRefused)
+{
+  const Mesh<3> mesh(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}));
+  testing_mesh::expect_input_error([&] { (void)refine_uniformly(mesh, 9); }, {"9 times", "8.05e+08 cells"});
+}
+
+}  // namespace
+
+}  // namespace tribound::test
