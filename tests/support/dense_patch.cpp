@@ -2,12 +2,9 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "fem/polynomials.h"
-#include "fem/quadrature.h"
+#include "support/dense_data.h"
 
 namespace tribound::test
 {
@@ -17,138 +14,6 @@ namespace
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// One cell with everything at its volume quadrature points; stresses are written in the orthonormal
-/// polynomials of the vertices in ascending order, as Stress<dim> wants them.
-template <int dim>
-struct DenseCell
-{
-  Cell<dim> vertices;  ///< ascending
-  Point<dim> origin;
-  Tensor<dim> inverse;                           ///< xhat = inverse (x - origin)
-  double det;                                    ///< dim! |T|
-  std::array<Point<dim>, dim + 1> hat_gradient;  ///< of the hat function of vertices[i]
-  std::vector<Point<dim>> x;                     ///< quadrature points
-  std::vector<double> weight;
-  std::vector<Tensor<dim>> sigma;             ///< sigma(u^k)
-  std::vector<Point<dim>> f;                  ///< body force
-  std::vector<VectorXd> phi;                  ///< basis of P^p(T)
-  std::vector<std::vector<Point<dim>>> dphi;  ///< its gradients
-
-  [[nodiscard]] Point<dim> reference(const Point<dim>& point) const { return inverse * (point - origin); }
-  /// Position of a vertex, or -1.
-  [[nodiscard]] int find(Index v) const
-  {
-    const auto it = std::ranges::find(vertices, v);
-    return it == vertices.end() ? -1 : static_cast<int>(it - vertices.begin());
-  }
-  /// psi_a at a point, a = vertices[i].
-  [[nodiscard]] double hat(int i, const Point<dim>& point) const
-  {
-    const Point<dim> xhat = reference(point);
-    return i == 0 ? 1 - xhat.sum() : xhat[i - 1];
-  }
-  [[nodiscard]] VectorXd basis(int p, const Point<dim>& point) const
-  {
-    VectorXd values(polynomial_dimension(dim, p));
-    orthonormal_values<dim>(p, reference(point), std::span(values.data(), values.size()));
-    return values / std::sqrt(det);
-  }
-};
-
-template <int dim>
-DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u, Index c)
-{
-  const LagrangeSpace<dim>& space = form.space();
-  const Mesh<dim>& mesh = space.mesh();
-  DenseCell<dim> cell;
-  cell.vertices = mesh.cell(c);
-  std::ranges::sort(cell.vertices);
-  cell.origin = mesh.vertex(cell.vertices[0]);
-  Tensor<dim> jacobian;
-  for (int j = 0; j < dim; ++j) jacobian.col(j) = mesh.vertex(cell.vertices[j + 1]) - cell.origin;
-  cell.inverse = jacobian.inverse();
-  cell.det = std::abs(jacobian.determinant());
-  cell.hat_gradient[0].setZero();
-  for (int j = 0; j < dim; ++j)
-  {
-    cell.hat_gradient[j + 1] = cell.inverse.row(j).transpose();
-    cell.hat_gradient[0] -= cell.hat_gradient[j + 1];
-  }
-
-  const int p = space.degree();
-  const int n = polynomial_dimension(dim, p);
-  const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
-  const Tabulation<dim> table = space.basis().tabulate(rule.points);
-  const CellMap<dim> map = cell_map(mesh, c);
-  std::vector<double> values(n);
-  std::vector<Point<dim>> gradients(n);
-  for (int q = 0; q < rule.size(); ++q)
-  {
-    const Point<dim> x = map(rule.points[q]);
-    cell.x.push_back(x);
-    cell.weight.push_back(rule.weights[q] * map.det);
-    cell.sigma.push_back(
-        sigma<dim>(form.problem().material(mesh.region(c)),
-                   gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose)));
-    cell.f.push_back(form.problem().body_force(mesh.region(c), x));
-    orthonormal_gradients<dim>(p, cell.reference(x), values, gradients);
-    cell.phi.push_back(cell.basis(p, x));
-    auto& dphi = cell.dphi.emplace_back();
-    for (const Point<dim>& g : gradients) dphi.push_back(cell.inverse.transpose() * g / std::sqrt(cell.det));
-  }
-  return cell;
-}
-
-/// A point of a rule on a facet.
-template <int dim>
-struct FacetPoint
-{
-  Point<dim> x;
-  double weight;
-  VectorXd theta;  ///< basis of P^p(F)
-};
-
-/// A point where a boundary facet prescribes the traction of the patches.
-template <int dim>
-struct DataPoint
-{
-  FacetPoint<dim> at;
-  std::array<Point<dim>, 2> traction;  ///< dis: g_N or T(u); lin: 0 or t^k - T(u)
-};
-
-/// A facet seen from its first cell; a boundary facet with its condition and traction.
-template <int dim>
-struct DenseFacet
-{
-  std::array<Index, dim> vertices;
-  std::array<Index, 2> cells;
-  Point<dim> normal;  ///< out of cells[0]
-  std::vector<FacetPoint<dim>> points;
-  const BoundaryCondition<dim>* condition = nullptr;  ///< null inside
-  std::vector<Point<dim>> traction;                   ///< g_N or T(u) at the points
-  std::vector<DataPoint<dim>> data;                   ///< what t of the patches is integrated from
-
-  [[nodiscard]] bool contains(Index v) const { return std::ranges::find(vertices, v) != vertices.end(); }
-};
-
-/// The points of a rule on local facet `local`; moments of theta do not depend on its numbering.
-template <int dim>
-std::vector<FacetPoint<dim>> points_on(const Mesh<dim>& mesh, Index cell, int local, int p,
-                                       const Quadrature<dim - 1>& rule)
-{
-  const CellMap<dim> map = cell_map(mesh, cell);
-  const double scale = facet_geometry(mesh, cell, local).measure * (dim - 1);
-  std::vector<FacetPoint<dim>> points;
-  for (int q = 0; q < rule.size(); ++q)
-  {
-    VectorXd theta(polynomial_dimension(dim - 1, p));
-    orthonormal_values<dim - 1>(p, rule.points[q], std::span(theta.data(), theta.size()));
-    points.push_back(
-        {map(facet_to_cell<dim>(local, rule.points[q])), rule.weights[q] * scale, theta / std::sqrt(scale)});
-  }
-  return points;
-}
 
 /// A rigid motion translation + spin (x - a).
 template <int dim>
@@ -172,13 +37,13 @@ class DenseKernel
         mutation_(mutation),
         p_(form.space().degree()),
         n_(polynomial_dimension(dim, p_)),
-        m_(polynomial_dimension(dim, p_ - 1))
+        m_(polynomial_dimension(dim, p_ - 1)),
+        cells_(dense_cells(form, u)),
+        facets_(dense_facets(form, u, t, mutation))
   {
-    for (Index c = 0; c < mesh_.n_cells(); ++c) cells_.push_back(make_cell(form, u, c));
-    make_facets(u, t);
   }
 
-  Stress<dim> run();
+  [[nodiscard]] Stress<dim> run() const;
 
  private:
   struct Patch
@@ -200,8 +65,6 @@ class DenseKernel
     void close_row() { ++n; }
   };
 
-  void make_facets(std::span<const double> u, std::span<const Point<dim>> t);
-  void coarsen(const BoundaryFacet& boundary, std::span<const double> u, int contact, DenseFacet<dim>& facet);
   Patch make_patch(Index vertex) const;
   std::vector<Motion<dim>> admissible(const Patch& patch, bool translations, bool rotations) const;
   double residual(const Patch& patch, const Motion<dim>& z) const;
@@ -215,6 +78,7 @@ class DenseKernel
   void add_facets(const Patch& patch, System& system) const;
   void add_trace(const Patch& patch, const DenseFacet<dim>& facet, int r, int i, System& system) const;
   MatrixXd target(const Patch& patch) const;
+  MatrixXd solve(const Patch& patch) const;
   [[nodiscard]] int column(std::size_t place, int r, int c) const
   {
     return ((static_cast<int>(place) * dim + r) * dim + c) * n_;
@@ -229,56 +93,6 @@ class DenseKernel
   std::vector<DenseCell<dim>> cells_;
   std::vector<DenseFacet<dim>> facets_;  ///< as numbered by the topology
 };
-
-template <int dim>
-void DenseKernel<dim>::make_facets(std::span<const double> u, std::span<const Point<dim>> t)
-{
-  const Topology<dim>& topology = mesh_.topology();
-  facets_.resize(topology.facets.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f)
-  {
-    DenseFacet<dim>& facet = facets_[f];
-    facet.vertices = topology.facets[f];
-    facet.cells = topology.facet_cells[f];
-    const auto& of_cell = topology.cell_facets[facet.cells[0]];
-    const auto local = static_cast<int>(std::ranges::find(of_cell, static_cast<Index>(f)) - of_cell.begin());
-    facet.normal = facet_geometry(mesh_, facet.cells[0], local).normal;
-    facet.points = points_on(mesh_, facet.cells[0], local, p_, form_.facet_rule());
-  }
-  const std::vector<Point<dim>> T = form_.traction(u);
-  int contact = 0;
-  for (const BoundaryFacet& boundary : mesh_.boundary())
-  {
-    DenseFacet<dim>& facet = facets_[topology.cell_facets[boundary.cell][boundary.local]];
-    facet.condition = &form_.problem().boundary(boundary.tag);
-    for (std::size_t q = 0; q < facet.points.size(); ++q)
-    {
-      const std::size_t i = contact * facet.points.size() + q;
-      facet.traction.push_back(
-          facet.condition->contact ? T[i] : facet.condition->load(facet.points[q].x, facet.normal));
-      const bool running = facet.condition->contact && mutation_ != Mutation::t_replaced_by_T;
-      const Point<dim> lin = running ? Point<dim>(t[i] - T[i]) : Point<dim>(Point<dim>::Zero());
-      facet.data.push_back({facet.points[q], {facet.traction[q], lin}});
-    }
-    if (!facet.condition->contact) continue;
-    if (mutation_ == Mutation::coarse_rule_for_t) coarsen(boundary, u, contact, facet);
-    ++contact;
-  }
-}
-
-/// T(u) enters t with another rule; t^k - T(u) does not change.
-template <int dim>
-void DenseKernel<dim>::coarsen(const BoundaryFacet& boundary, std::span<const double> u, int contact,
-                               DenseFacet<dim>& facet)
-{
-  const Quadrature<dim - 1> wrong = quadrature<dim - 1>(p_);
-  const auto table = tabulate_on_facets<dim>(form_.space().basis(), wrong.points);
-  const auto points = points_on(mesh_, boundary.cell, boundary.local, p_, wrong);
-  const std::vector<ContactState<dim>> states = form_.contact_states(u, contact, table);
-  for (DataPoint<dim>& point : facet.data) point.traction[0].setZero();
-  for (std::size_t q = 0; q < points.size(); ++q)
-    facet.data.push_back({points[q], {states[q].traction, Point<dim>::Zero()}});
-}
 
 template <int dim>
 typename DenseKernel<dim>::Patch DenseKernel<dim>::make_patch(Index vertex) const
@@ -574,8 +388,34 @@ MatrixXd DenseKernel<dim>::target(const Patch& patch) const
   return result;
 }
 
+/// sigma_a = G + the smallest correction that meets all conditions; these depend on each other
+/// (compatibility), hence the rank-revealing decomposition.
 template <int dim>
-Stress<dim> DenseKernel<dim>::run()
+MatrixXd DenseKernel<dim>::solve(const Patch& patch) const
+{
+  const MatrixXd goal = target(patch);
+  const auto n_rows = patch.cells.size() * m_ * (dim + dim * (dim - 1) / 2) +
+                      (patch.facets.size() + patch.outer.size()) * dim * polynomial_dimension(dim - 1, p_);
+  System system{MatrixXd::Zero(n_rows, goal.rows()), MatrixXd::Zero(n_rows, 2)};
+  add_divergence(patch, system);
+  add_symmetry(patch, system);
+  add_facets(patch, system);
+  MatrixXd rows = system.rows.topRows(system.n);
+  MatrixXd rhs = system.rhs.topRows(system.n);
+  for (int i = 0; i < system.n; ++i)
+  {
+    const double norm = rows.row(i).norm();
+    rows.row(i) /= norm;
+    rhs.row(i) /= norm;
+  }
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+  decomposition.setThreshold(1e-10);
+  decomposition.compute(rows);
+  return goal + decomposition.solve(rhs - rows * goal);
+}
+
+template <int dim>
+Stress<dim> DenseKernel<dim>::run() const
 {
   Stress<dim> stress;
   stress.degree = p_;
@@ -583,33 +423,13 @@ Stress<dim> DenseKernel<dim>::run()
   stress.dis.assign(mesh_.n_cells() * stress.block_size(), 0.0);
   stress.lin.assign(mesh_.n_cells() * stress.block_size(), 0.0);
   for (Index c = 0; c < mesh_.n_cells(); ++c) stress.lin_place.push_back(c);
-  const int n_rows_of_facet = dim * polynomial_dimension(dim - 1, p_);
   const BoundaryFacet& first = form_.contact_facets().front().facet;
   const Index left_out = mesh_.cell(first.cell)[(first.local + 1) % (dim + 1)];
   for (Index a = 0; a < mesh_.n_vertices(); ++a)
   {
     if (mutation_ == Mutation::one_patch_left_out && a == left_out) continue;
     const Patch patch = make_patch(a);
-    const MatrixXd goal = target(patch);
-    const auto n_rows = patch.cells.size() * m_ * (dim + dim * (dim - 1) / 2) +
-                        (patch.facets.size() + patch.outer.size()) * n_rows_of_facet;
-    System system{MatrixXd::Zero(n_rows, goal.rows()), MatrixXd::Zero(n_rows, 2)};
-    add_divergence(patch, system);
-    add_symmetry(patch, system);
-    add_facets(patch, system);
-    MatrixXd rows = system.rows.topRows(system.n);
-    MatrixXd rhs = system.rhs.topRows(system.n);
-    for (int i = 0; i < system.n; ++i)
-    {
-      const double norm = rows.row(i).norm();
-      rows.row(i) /= norm;
-      rhs.row(i) /= norm;
-    }
-    // sigma_a = G + the smallest correction; the conditions depend on each other (compatibility).
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-    decomposition.setThreshold(1e-10);
-    decomposition.compute(rows);
-    const MatrixXd sigma = goal + decomposition.solve(rhs - rows * goal);
+    const MatrixXd sigma = solve(patch);
     for (std::size_t k = 0; k < patch.cells.size(); ++k)
       for (std::size_t i = 0; i < stress.block_size(); ++i)
       {
