@@ -28,27 +28,25 @@ class BodyMoments
   {
     const Mesh<dim>& mesh = form.space().mesh();
     const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
-    constexpr int m = Sizes<dim, p>::multiplier;
     std::vector<double> chi(m * rule.size());
-    for (int q = 0; q < rule.size(); ++q)
-      orthonormal_values<dim>(p - 1, rule.points[q], std::span(chi).subspan(m * q, m));
+    std::vector<Point<dim>> points(rule.size());
     for (Index c = 0; c < mesh.n_cells(); ++c)
     {
       if (form.problem().body_force_is_zero(mesh.region(c))) continue;
       if (moments_.empty()) moments_.resize(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1));
+      // The points of the cell's own numbering, as for L(v): collapsed rules are not symmetric.
       const Frame<dim> frame = make_frame(mesh, c);
       for (int q = 0; q < rule.size(); ++q)
       {
-        const Point<dim>& xhat = rule.points[q];
-        const Point<dim> f = form.problem().body_force(mesh.region(c), frame.origin + frame.jacobian * xhat);
-        const double weight = rule.weights[q] * std::sqrt(frame.det);
-        for (int a = 0; a <= dim; ++a)
-        {
-          const double hat = a == 0 ? 1 - xhat.sum() : xhat[a - 1];
-          for (int r = 0; r < dim; ++r)
-            for (int i = 0; i < m; ++i)
-              moments_[c * (dim + 1) + a][r * m + i] += weight * hat * f[r] * chi[m * q + i];
-        }
+        points[q] = in_frame<dim>(frame.local, rule.points[q]);
+        orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
+      }
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim> f =
+            form.problem().body_force(mesh.region(c), frame.origin + frame.jacobian * points[q]);
+        add(&moments_[static_cast<std::size_t>(c) * (dim + 1)], points[q],
+            rule.weights[q] * std::sqrt(frame.det) * f, &chi[m * q]);
       }
     }
   }
@@ -59,6 +57,19 @@ class BodyMoments
   }
 
  private:
+  static constexpr int m = Sizes<dim, p>::multiplier;
+
+  /// The share of one point in the moments of all vertices.
+  static void add(Vector* moments, const Point<dim>& xhat, const Point<dim>& weighted_f, const double* chi)
+  {
+    for (int a = 0; a <= dim; ++a)
+    {
+      const double hat = a == 0 ? 1 - xhat.sum() : xhat[a - 1];
+      for (int r = 0; r < dim; ++r)
+        for (int i = 0; i < m; ++i) moments[a][r * m + i] += hat * weighted_f[r] * chi[i];
+    }
+  }
+
   std::vector<Vector> moments_;
 };
 

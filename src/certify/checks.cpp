@@ -30,16 +30,14 @@ struct Tables
   int n;       ///< dim P^p(T)
   int n_less;  ///< dim P^{p-1}(T)
   Quadrature<dim> data_rule;
-  std::vector<double> chi;                          ///< P^{p-1} at the points of data_rule, [q * n_less + i]
-  std::array<std::vector<double>, dim> derivative;  ///< (d_k phi_j, chi_i), [i * n + j]
-  Quadrature<dim - 1> jump_rule;                    ///< exact to degree 2p
+  std::array<std::vector<double>, dim> derivative;    ///< (d_k phi_j, chi_i), [i * n + j]
+  Quadrature<dim - 1> jump_rule;                      ///< exact to degree 2p
   std::array<std::vector<double>, dim + 1> on_facet;  ///< phi at its points, [q * n + j]
 
   explicit Tables(int degree)
       : n(polynomial_dimension(dim, degree)),
         n_less(polynomial_dimension(dim, degree - 1)),
         data_rule(quadrature<dim>(data_quadrature_degree(degree))),
-        chi(static_cast<std::size_t>(n_less) * data_rule.size()),
         jump_rule(quadrature<dim - 1>(2 * degree))
   {
     std::vector<double> phi(n);
@@ -48,7 +46,6 @@ struct Tables
     for (int q = 0; q < data_rule.size(); ++q)
     {
       orthonormal_gradients<dim>(degree, data_rule.points[q], phi, gradients);
-      std::copy_n(phi.begin(), n_less, &chi[q * n_less]);
       for (int k = 0; k < dim; ++k)
         for (int i = 0; i < n_less; ++i)
           for (int j = 0; j < n; ++j)
@@ -83,8 +80,11 @@ class CellStress
     inverse_ = jacobian_.inverse();
   }
 
-  [[nodiscard]] double det() const { return det_; }
-  [[nodiscard]] Point<dim> physical(const Point<dim>& xhat) const { return origin_ + jacobian_ * xhat; }
+  /// The basis of P^{p-1}(T) at a point of space, up to the factor 1/sqrt(det J).
+  void truncated_basis_at(const Point<dim>& x, std::span<double> values) const
+  {
+    orthonormal_values<dim>(degree_ - 1, inverse_ * (x - origin_), values);
+  }
   /// Which of the ascending vertices lies opposite to the facet, the cell's vertex `opposite` being that one.
   [[nodiscard]] int facet_opposite(Index opposite) const
   {
@@ -158,20 +158,25 @@ class CellStress
   double det_;
 };
 
-/// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself.
+/// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The rule has its points where L(v)
+/// has them, in the numbering of the cell: collapsed rules are not symmetric.
 template <int dim>
 double squared_divergence_defect(const Problem<dim>& problem, int region, const Tables<dim>& tables,
-                                 const CellStress<dim>& sigma)
+                                 const CellStress<dim>& sigma, const CellMap<dim>& map)
 {
   std::vector<Point<dim>> moments = sigma.divergence(tables);
   if (!problem.body_force_is_zero(region))
+  {
+    std::vector<double> chi(tables.n_less);
     for (int q = 0; q < tables.data_rule.size(); ++q)
     {
-      const Point<dim> f = problem.body_force(region, sigma.physical(tables.data_rule.points[q]));
+      const Point<dim> x = map(tables.data_rule.points[q]);
+      const Point<dim> f = problem.body_force(region, x);
+      sigma.truncated_basis_at(x, chi);
       for (int i = 0; i < tables.n_less; ++i)
-        moments[i] +=
-            tables.data_rule.weights[q] * std::sqrt(sigma.det()) * tables.chi[q * tables.n_less + i] * f;
+        moments[i] += tables.data_rule.weights[q] * std::sqrt(map.det) * chi[i] * f;
     }
+  }
   double sum = 0;
   for (const Point<dim>& moment : moments) sum += moment.squaredNorm();
   return sum;
@@ -212,8 +217,9 @@ double check_cells(const NitscheForm<dim>& form, const Stress<dim>& stress, cons
     const CellStress<dim> sigma(mesh, stress, c);
     norm_squared += sigma.squared_norm();
     squares.symmetry += sigma.squared_skew_part(tables.n_less);
-    squares.divergence += std::pow(cell_diameter(mesh, c), 2) *
-                          squared_divergence_defect(form.problem(), mesh.region(c), tables, sigma);
+    squares.divergence +=
+        std::pow(cell_diameter(mesh, c), 2) *
+        squared_divergence_defect(form.problem(), mesh.region(c), tables, sigma, cell_map(mesh, c));
   }
   return norm_squared;
 }

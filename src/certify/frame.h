@@ -52,6 +52,19 @@ template <std::size_t n>
   return number;
 }
 
+/// A point given in the reference coordinates of Mesh::cell, in those of the frame whose vertices are
+/// local[0], local[1], ... of the cell.
+template <int dim>
+[[nodiscard]] Point<dim> in_frame(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
+{
+  std::array<double, dim + 1> lambda;  // of the cell's own vertices
+  lambda[0] = 1 - in_cell.sum();
+  for (int i = 0; i < dim; ++i) lambda[i + 1] = in_cell[i];
+  Point<dim> sorted;
+  for (int i = 0; i < dim; ++i) sorted[i] = lambda[local[i + 1]];
+  return sorted;
+}
+
 template <int dim>
 [[nodiscard]] Frame<dim> make_frame(const Mesh<dim>& mesh, Index c)
 {

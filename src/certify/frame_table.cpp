@@ -9,23 +9,6 @@
 namespace tribound
 {
 
-namespace
-{
-
-/// The point in the coordinates of the frame whose vertices are local[0], local[1], ... of the cell.
-template <int dim>
-Point<dim> in_frame(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
-{
-  std::array<double, dim + 1> lambda;  // of the cell's own vertices
-  lambda[0] = 1 - in_cell.sum();
-  for (int i = 0; i < dim; ++i) lambda[i + 1] = in_cell[i];
-  Point<dim> sorted;
-  for (int i = 0; i < dim; ++i) sorted[i] = lambda[local[i + 1]];
-  return sorted;
-}
-
-}  // namespace
-
 template <int dim>
 FrameTable<dim>::FrameTable(int degree, std::span<const Point<dim>> points)
     : n_points_(static_cast<int>(points.size())), n_(polynomial_dimension(dim, degree))
