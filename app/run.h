@@ -14,7 +14,7 @@ namespace tribound
 /// Exit codes, a contract with scripts.
 enum class ExitCode
 {
-  success = 0,        ///< certified; while there is no bound yet: solved
+  success = 0,        ///< certified: the identities hold, the tolerance is reached
   bad_input = 1,      ///< InputError
   failed = 2,         ///< no convergence, singular matrix, identity violated
   budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
@@ -23,7 +23,8 @@ enum class ExitCode
 /// Versions of the program and of the libraries it runs with.
 [[nodiscard]] BuildFacts library_facts();
 
-/// Solves the case on its mesh and writes the results. Throws InputError and SolveError.
+/// Solves the case on its mesh, certifies every Newton iterate and writes the results. Throws InputError and
+/// SolveError.
 template <int dim>
 [[nodiscard]] ExitCode run(const Config& config, const Mesh<dim>& mesh, const Progress& progress);
 

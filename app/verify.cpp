@@ -81,32 +81,19 @@ class Stages
 };
 
 template <int dim>
-VerifiedIterate verified_iterate(const NitscheForm<dim>& form, const NewtonResult<dim>& newton,
-                                 DualNorm<dim>& dual_norm)
+VerifiedIterate verified_iterate(const NitscheForm<dim>& form, const NewtonIterate<dim>& newton,
+                                 ContactRule rule, DualNorm<dim>& dual_norm)
 {
   const Stress<dim> stress = equilibrate<dim>(form, newton.u, newton.traction);
-  const Estimate eta = estimate<dim>(form, newton.u, stress);
+  const Estimate eta = estimate<dim>(form, newton.u, stress, rule);
   VerifiedIterate iterate;
-  iterate.step = newton.steps.back();
+  iterate.step = newton.step;
   iterate.bound = eta.total_sharp;
   iterate.bound_plain = eta.total;
   iterate.dual_norm = dual_norm(newton.u);
   iterate.sigma_norm = stress_norms<dim>(form.problem(), form.space(), newton.u).sigma;
   iterate.identities = check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
   return iterate;
-}
-
-/// Every iterate of the loop that ended in `last`; the loop is run again, stopped earlier.
-template <int dim>
-std::vector<VerifiedIterate> verified_iterates(const NitscheForm<dim>& form, const NewtonResult<dim>& last,
-                                               const Config& config, DualNorm<dim>& dual_norm)
-{
-  std::vector<VerifiedIterate> iterates;
-  NewtonConfig newton = config.newton;
-  for (newton.max_steps = 1; newton.max_steps < static_cast<int>(last.steps.size()); ++newton.max_steps)
-    iterates.push_back(verified_iterate<dim>(form, solve<dim>(form, {}, newton, config.solver), dual_norm));
-  iterates.push_back(verified_iterate<dim>(form, last, dual_norm));
-  return iterates;
 }
 
 template <int dim>
@@ -139,16 +126,18 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   print_header(result.facts, result.mesh);
 
   Stages stages(progress);
-  const NewtonResult<dim> newton =
-      stages.time("solve", "solving",
-                  [&] { return solve<dim>(form, {}, config.newton, config.solver, std::cref(progress)); });
-  result.converged = newton.status == NewtonStatus::converged;
   DualNorm<dim> dual_norm(form, dual_space(config, refinements));
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
                        dual_norm.space().n_dofs()};
-  result.iterates =
-      stages.time("iterates", fmt::format("bound and dual norm of {} iterates", newton.steps.size()),
-                  [&] { return verified_iterates<dim>(form, newton, config, dual_norm); });
+  const NewtonObserver<dim> observer = [&](const NewtonIterate<dim>& iterate)
+  {
+    result.iterates.push_back(verified_iterate(form, iterate, config.certify.contact_rule, dual_norm));
+    progress(iterate.step);
+  };
+  const NewtonResult<dim> newton =
+      stages.time("iterates", "solving, with bound and dual norm of every iterate",
+                  [&] { return solve<dim>(form, {}, config.newton, config.solver, observer); });
+  result.converged = newton.status == NewtonStatus::converged;
 
   result.richer_degree = solution_space(config, refinements).degree;
   if (result.converged)

@@ -139,8 +139,9 @@ void newton(const NitscheForm<dim>& form, const Config& config)
   const double begin = cpu_seconds();
   double before = begin;
   int factorisations = 0;
-  const auto report = [&](const NewtonStep& step)
+  const auto report = [&](const NewtonIterate<dim>& iterate)
   {
+    const NewtonStep& step = iterate.step;
     const double now = cpu_seconds();
     print(fmt::format("  step {}{}", step.step, step.step == 1 ? " with all that is made once" : ""),
           now - before,

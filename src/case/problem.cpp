@@ -241,6 +241,12 @@ Point<dim> Problem<dim>::body_force(int region, const Point<dim>& x) const
 }
 
 template <int dim>
+bool Problem<dim>::body_force_is_constant(int region) const
+{
+  return std::ranges::all_of(body_[region], &Expression::is_constant);
+}
+
+template <int dim>
 bool Problem<dim>::body_force_is_zero(int region) const
 {
   return std::ranges::all_of(body_[region], &Expression::is_zero);

@@ -69,6 +69,8 @@ class Problem
   [[nodiscard]] const Material& material(int region) const { return materials_[region]; }
   /// f(x) in the region; force per volume.
   [[nodiscard]] Point<dim> body_force(int region, const Point<dim>& x) const;
+  /// Whether f is the same everywhere in the region.
+  [[nodiscard]] bool body_force_is_constant(int region) const;
   /// Whether f vanishes identically in the region.
   [[nodiscard]] bool body_force_is_zero(int region) const;
 

@@ -5,48 +5,58 @@
 /// size: the multipliers of a patch, whose graph is a path or cycle in 2D and the edges of a triangulated
 /// sphere in 3D.
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "base/types.h"
+#include "certify/small_dense.h"
 
 namespace tribound
 {
 
-/// Usage: reset, add blocks, order, (add to the diagonal of the last pivot), factor, solve. Storage is kept
-/// from one matrix to the next, so that a loop over patches allocates nothing once it has met the largest of
-/// them.
+/// Usage: reset, connect, order; then the blocks have the names that order() gave them: add to them, factor,
+/// solve. Storage is kept from one matrix to the next, so that a loop over patches allocates nothing once it
+/// has met the largest of them.
 template <int n>
 class BlockCholesky
 {
  public:
-  using Matrix = Eigen::Matrix<double, n, n, Eigen::RowMajor>;
-  using Columns = Eigen::Matrix<double, n, 2>;  ///< two right-hand sides
+  using Matrix = Dense<n, n>;
+  using Vector = DenseVector<n>;
 
   void reset(int n_blocks)
   {
     n_ = n_blocks;
     words_ = (n_ + 63) / 64;
-    place_.assign(static_cast<std::size_t>(n_) * n_, -1);
-    used_ = 0;
-    for (int i = 0; i < n_; ++i) block(i, i);
+    adjacency_.assign(static_cast<std::size_t>(n_) * words_, 0);
   }
 
-  /// Block (i, j) with i <= j of the upper triangle, zero when first asked for.
-  Matrix& block(int i, int j)
+  /// There will be a block (i, j).
+  void connect(int i, int j)
+  {
+    adjacency_[i * words_ + j / 64] |= std::uint64_t{1} << (j % 64);
+    adjacency_[j * words_ + i / 64] |= std::uint64_t{1} << (i % 64);
+  }
+
+  /// Orders by minimum degree and makes room for all blocks, which become 0. Returns each block's place in
+  /// the order: its new name.
+  std::span<const int> order()
+  {
+    sequence_.clear();
+    rank_.assign(n_, -1);
+    for (int step = 0; step < n_; ++step) eliminate_symbolically(least_connected(), step);
+    collect_rows();
+    return rank_;
+  }
+
+  /// Block (i, j), i <= j, of the upper triangle; i and j are connected.
+  [[nodiscard]] Matrix& block(int i, int j)
   {
     assert(i <= j);
-    int& place = place_[i * n_ + j];
-    if (place < 0)
-    {
-      if (used_ == static_cast<int>(pool_.size())) pool_.emplace_back();
-      place = used_++;
-      pool_[place].setZero();
-    }
-    return pool_[place];
+    return pool_[place_[i * n_ + j]];
   }
 
   /// Replaces `count` rows and columns of block row i, from `begin` on, by those of a multiple of the
@@ -54,73 +64,59 @@ class BlockCholesky
   template <int count>
   void decouple(int i, int begin)
   {
-    for (int j = 0; j < n_; ++j)
-    {
-      if (i < j && place_[i * n_ + j] >= 0) block(i, j).template middleRows<count>(begin).setZero();
-      if (j < i && place_[j * n_ + i] >= 0) block(j, i).template middleCols<count>(begin).setZero();
-    }
     Matrix& diagonal = block(i, i);
-    const double scale = diagonal.trace() / n;
-    diagonal.template middleRows<count>(begin).setZero();
-    diagonal.template middleCols<count>(begin).setZero();
+    double scale = 0;
+    for (int k = 0; k < n; ++k) scale += diagonal(k, k) / n;
+    for (int e = 0; e < row_begin_[i + 1]; ++e)
+    {
+      if (e >= row_begin_[i])
+        for (int k = begin; k < begin + count; ++k) std::fill_n(pool_[e].row(k), n, 0.0);
+      if (columns_[e] == i)
+        for (int k = 0; k < n; ++k) std::fill_n(pool_[e].row(k) + begin, count, 0.0);
+    }
     for (int k = begin; k < begin + count; ++k) diagonal(k, k) = scale;
   }
 
-  /// Chooses the order of elimination by minimum degree. Returns the block that comes last.
-  int order()
-  {
-    adjacency_.assign(static_cast<std::size_t>(n_) * words_, 0);
-    for (int i = 0; i < n_; ++i)
-      for (int j = i + 1; j < n_; ++j)
-        if (place_[i * n_ + j] >= 0) connect(i, j);
-    sequence_.clear();
-    eliminated_.assign(n_, 0);
-    for (int step = 0; step < n_; ++step) eliminate_symbolically(least_connected());
-    return sequence_.back();
-  }
-
-  /// A = U^T U blockwise. Returns false if a pivot is not positive definite.
+  /// A = U^T U. Returns false if a pivot is not positive definite.
   [[nodiscard]] bool factor()
   {
-    rank_.assign(n_, 0);
-    for (int s = 0; s < n_; ++s) rank_[sequence_[s]] = s;
-    pivots_.resize(std::max<std::size_t>(pivots_.size(), n_));
-    rows_.clear();
-    row_begin_.assign(1, 0);
-    n_row_blocks_ = 0;
-    for (const int k : sequence_)
+    for (int i = 0; i < n_; ++i)
     {
-      pivots_[k].compute(block(k, k));
-      if (pivots_[k].info() != Eigen::Success) return false;
-      eliminate(k);
+      const int begin = row_begin_[i] + 1;
+      const int end = row_begin_[i + 1];
+      const Matrix& pivot = pool_[begin - 1];
+      if (!cholesky<n>(pool_[begin - 1].data(), stride, reciprocal_[i].data())) return false;
+      for (int e = begin; e < end; ++e)
+        solve_transposed<n, stride>(pivot.data(), stride, reciprocal_[i].data(), pool_[e].data(), stride);
+      for (int e = begin; e < end; ++e)
+        for (int f = e; f < end; ++f)
+          subtract_transposed_product<n, stride, n>(block(columns_[e], columns_[f]).data(), stride,
+                                                    pool_[e].data(), stride, pool_[f].data(), stride);
     }
     return true;
   }
 
-  /// Solves in place for two right-hand sides per block.
-  void solve(std::vector<Columns>& x) const
+  /// Solves in place.
+  void solve(std::span<Vector> x) const
   {
-    for (int s = 0; s < n_; ++s)
+    for (int i = 0; i < n_; ++i)
     {
-      const int k = sequence_[s];
-      pivots_[k].matrixL().solveInPlace(x[k]);
-      for (int e = row_begin_[s]; e < row_begin_[s + 1]; ++e)
-        x[rows_[e]].noalias() -= row_blocks_[e].transpose() * x[k];
+      const int diagonal = row_begin_[i];
+      solve_transposed<n>(pool_[diagonal].data(), stride, reciprocal_[i].data(), x[i].data());
+      for (int e = diagonal + 1; e < row_begin_[i + 1]; ++e)
+        subtract_transposed_times<n, stride>(x[columns_[e]].data(), pool_[e].data(), stride, x[i].data());
     }
-    for (int s = n_ - 1; s >= 0; --s)
+    for (int i = n_ - 1; i >= 0; --i)
     {
-      const int k = sequence_[s];
-      for (int e = row_begin_[s]; e < row_begin_[s + 1]; ++e) x[k].noalias() -= row_blocks_[e] * x[rows_[e]];
-      pivots_[k].matrixU().solveInPlace(x[k]);
+      const int diagonal = row_begin_[i];
+      for (int e = diagonal + 1; e < row_begin_[i + 1]; ++e)
+        subtract_times<n, stride>(x[i].data(), pool_[e].data(), stride, x[columns_[e]].data());
+      solve_upper<n>(pool_[diagonal].data(), stride, reciprocal_[i].data(), x[i].data());
     }
   }
 
  private:
-  void connect(int i, int j)
-  {
-    adjacency_[i * words_ + j / 64] |= std::uint64_t{1} << (j % 64);
-    adjacency_[j * words_ + i / 64] |= std::uint64_t{1} << (i % 64);
-  }
+  static constexpr int stride = Matrix::stride;
 
   [[nodiscard]] int least_connected() const
   {
@@ -128,7 +124,7 @@ class BlockCholesky
     int best_degree = n_ + 1;
     for (int i = 0; i < n_; ++i)
     {
-      if (eliminated_[i]) continue;
+      if (rank_[i] >= 0) continue;
       int degree = 0;
       for (int w = 0; w < words_; ++w) degree += std::popcount(adjacency_[i * words_ + w]);
       if (degree >= best_degree) continue;
@@ -138,60 +134,61 @@ class BlockCholesky
     return best;
   }
 
-  /// Joins the neighbours of k to each other and takes k out of the graph.
-  void eliminate_symbolically(int k)
+  /// Calls `visit` for the neighbours of k that are not yet eliminated when k is.
+  template <class Visit>
+  void for_later_neighbours(int k, Visit visit) const
   {
-    for (int i = 0; i < n_; ++i)
-    {
-      if (!(adjacency_[k * words_ + i / 64] >> (i % 64) & 1)) continue;
-      for (int w = 0; w < words_; ++w) adjacency_[i * words_ + w] |= adjacency_[k * words_ + w];
-      adjacency_[i * words_ + i / 64] &= ~(std::uint64_t{1} << (i % 64));
-      adjacency_[i * words_ + k / 64] &= ~(std::uint64_t{1} << (k % 64));
-    }
-    eliminated_[k] = 1;
+    for (int w = 0; w < words_; ++w)
+      for (std::uint64_t word = adjacency_[k * words_ + w]; word != 0; word &= word - 1)
+        visit(64 * w + std::countr_zero(word));
+  }
+
+  /// Joins the neighbours of k to each other and takes k out of their rows.
+  void eliminate_symbolically(int k, int step)
+  {
+    for_later_neighbours(k,
+                         [&](int i)
+                         {
+                           for (int w = 0; w < words_; ++w)
+                             adjacency_[i * words_ + w] |= adjacency_[k * words_ + w];
+                           adjacency_[i * words_ + i / 64] &= ~(std::uint64_t{1} << (i % 64));
+                           adjacency_[i * words_ + k / 64] &= ~(std::uint64_t{1} << (k % 64));
+                         });
+    rank_[k] = step;
     sequence_.push_back(k);
   }
 
-  /// U(k, i) = L^{-1} A(k, i) for the later neighbours i of k, and A(i, j) -= U(k, i)^T U(k, j).
-  void eliminate(int k)
+  /// Row i: the diagonal, then the later neighbours in ascending order.
+  void collect_rows()
   {
-    const int begin = row_begin_.back();
+    columns_.clear();
+    row_begin_.assign(1, 0);
+    place_.resize(std::max(place_.size(), static_cast<std::size_t>(n_) * n_));
+    reciprocal_.resize(std::max(reciprocal_.size(), static_cast<std::size_t>(n_)));
     for (int i = 0; i < n_; ++i)
     {
-      if (rank_[i] <= rank_[k]) continue;
-      const int place = k < i ? place_[k * n_ + i] : place_[i * n_ + k];
-      if (place < 0) continue;
-      if (n_row_blocks_ == static_cast<int>(row_blocks_.size())) row_blocks_.emplace_back();
-      Matrix& row = row_blocks_[n_row_blocks_++];
-      if (k < i)
-        row = pool_[place];
-      else
-        row = pool_[place].transpose();
-      pivots_[k].matrixL().solveInPlace(row);
-      rows_.push_back(i);
+      columns_.push_back(i);
+      for_later_neighbours(sequence_[i], [&](int k) { columns_.push_back(rank_[k]); });
+      std::sort(columns_.begin() + row_begin_.back(), columns_.end());
+      for (int e = row_begin_.back(); e < static_cast<int>(columns_.size()); ++e)
+        place_[i * n_ + columns_[e]] = e;
+      row_begin_.push_back(static_cast<int>(columns_.size()));
     }
-    row_begin_.push_back(static_cast<int>(rows_.size()));
-    for (int e = begin; e < row_begin_.back(); ++e)
-      for (int f = e; f < row_begin_.back(); ++f)
-        block(rows_[e], rows_[f]).noalias() -= row_blocks_[e].transpose() * row_blocks_[f];
+    pool_.resize(std::max(pool_.size(), columns_.size()));
+    std::fill_n(pool_.begin(), columns_.size(), Matrix{});
   }
 
   int n_ = 0;
   int words_ = 0;
-  std::vector<int> place_;  ///< position of block (i, j) in pool_, or -1
-  std::vector<Matrix, Eigen::aligned_allocator<Matrix>> pool_;
-  int used_ = 0;
-
   std::vector<std::uint64_t> adjacency_;  ///< bit rows
-  std::vector<char> eliminated_;
-  std::vector<int> sequence_;  ///< blocks in order of elimination
-  std::vector<int> rank_;      ///< its inverse
+  std::vector<int> sequence_;             ///< blocks in order of elimination
+  std::vector<int> rank_;                 ///< its inverse; -1 for those to come
 
-  std::vector<Eigen::LLT<Matrix>> pivots_;
-  std::vector<Matrix, Eigen::aligned_allocator<Matrix>> row_blocks_;  ///< U(k, .) off the diagonal
-  int n_row_blocks_ = 0;
-  std::vector<int> rows_;       ///< column of each of them
-  std::vector<int> row_begin_;  ///< per step of the elimination
+  std::vector<int> row_begin_;  ///< of the rows in columns_ and pool_
+  std::vector<int> columns_;
+  std::vector<int> place_;                         ///< position of block (i, j) in columns_ and pool_
+  std::vector<Matrix> pool_;                       ///< A, then U
+  std::vector<std::array<double, n>> reciprocal_;  ///< of the diagonal of U
 };
 
 }  // namespace tribound

@@ -1,5 +1,6 @@
 #include "certify/cell_operator.h"
 
+#include "base/error.h"
 #include "contact/elasticity.h"
 
 namespace tribound
@@ -12,43 +13,33 @@ void CellOperator<dim, p>::build(const Frame<dim>& frame)
   couple(frame);
 }
 
+/// A(r, s) = delta_rs (B_U B_U^T - D_c D_c^T / 2) + D_s D_r^T / 2 with D_c = sum_k J^{-1}(k, c) D_k: row r of
+/// a stress sees entry (r, c) of a skew tensor through d_c and row c through -d_r.
 template <int dim, int p>
 void CellOperator<dim, p>::factor(const Frame<dim>& frame)
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int m = S::multiplier;
-  for (int c = 0; c < dim; ++c)
-  {
-    derivative_[c].setZero();
-    for (int k = 0; k < dim; ++k)
-      derivative_[c] += frame.inverse(k, c) * ref.derivative[k].template leftCols<m>();
-  }
-
-  // B_U B_U^T is the same block for every row of sigma.
   const Tensor<dim> metric = frame.inverse * frame.inverse.transpose();
-  Truncated full = Truncated::Zero();
+  Dense<m, m> diagonal;
   for (int k = 0; k < dim; ++k)
-    for (int l = 0; l < dim; ++l) full += metric(k, l) * ref.derivative_derivative[k][l];
-
-  // B_U B_L^T B_L B_U^T: row r sees entry (r, c) of a skew tensor through d_c and row c through -d_r.
-  UMatrix a;
+    for (int l = 0; l < dim; ++l) add_multiple(diagonal, metric(k, l), ref.divergence[k][l]);
   for (int r = 0; r < dim; ++r)
-    for (int s = 0; s < dim; ++s)
+    for (int s = r; s < dim; ++s)
     {
-      Truncated block = Truncated::Zero();
-      if (r == s)
-      {
-        block = full;
-        for (int c = 0; c < dim; ++c)
-          if (c != r) block -= 0.5 * derivative_[c] * derivative_[c].transpose();
-      }
-      else
-        block = 0.5 * derivative_[s] * derivative_[r].transpose();
-      a.template block<m, m>(r * m, s * m) = block;
+      Dense<m, m> block;
+      if (r == s) block = diagonal;
+      if constexpr (p > 1)
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l)
+            add_multiple(block, frame.inverse(k, s) * frame.inverse(l, r), ref.truncated_divergence[k][l]);
+      for (int i = 0; i < m; ++i) std::copy_n(block.row(i), m, factor_.row(r * m + i) + s * m);
     }
-  factor_.compute(a);
+  if (!cholesky<S::u>(factor_.data(), factor_.stride, reciprocal_.data()))
+    throw SolveError("a cell is too flat for an equilibrated stress");
 }
 
+/// C(a, b) = delta_ab (B_U N^T - ...) + grad_a lambda D_b E'^T / 2, times -|grad lambda|^{-1/2}.
 template <int dim, int p>
 void CellOperator<dim, p>::couple(const Frame<dim>& frame)
 {
@@ -59,135 +50,157 @@ void CellOperator<dim, p>::couple(const Frame<dim>& frame)
   {
     const double scale = -1 / std::sqrt(frame.grad_norm[f]);
     const Point<dim> direction = scale * (frame.inverse * frame.grad[f]);
-    Block<m, n> divergence = Block<m, n>::Zero();
-    for (int k = 0; k < dim; ++k) divergence += direction[k] * ref.derivative_trace[k][f];
-    const Block<m, n> truncated = ref.trace[f].template leftCols<m>().transpose();
-
-    auto& rotation = rotation_coupling_[f];
-    rotation.setZero();
-    auto& coupling = half_coupling_[f];
-    coupling.setZero();
-    for (int r = 0; r < dim; ++r) coupling.template block<m, n>(r * m, r * n) = divergence;
-    for (int i = 0; i < S::pairs; ++i)
+    Dense<m, n> diagonal;
+    std::array<Dense<m, n>, dim> skew;
+    for (int k = 0; k < dim; ++k)
     {
-      const auto [r, c] = skew_pairs<dim>[i];
-      rotation.template block<m, n>(i * m, r * n) = scale * frame.grad[f][c] * truncated;
-      rotation.template block<m, n>(i * m, c * n) = -scale * frame.grad[f][r] * truncated;
-      // C_U - B_U B_L^T C_L / 2, pair by pair
-      for (const int s : {r, c})
-      {
-        const auto block = rotation.template block<m, n>(i * m, s * n);
-        coupling.template block<m, n>(r * m, s * n).noalias() -= 0.5 * derivative_[c] * block;
-        coupling.template block<m, n>(c * m, s * n).noalias() += 0.5 * derivative_[r] * block;
-      }
+      add_multiple(diagonal, direction[k], ref.coupling[k][f]);
+      if constexpr (p > 1)
+        for (int b = 0; b < dim; ++b)
+          add_multiple(skew[b], scale * frame.inverse(k, b), ref.truncated_coupling[k][f]);
     }
-    factor_.matrixL().solveInPlace(coupling);
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        for (int i = 0; i < m; ++i)
+        {
+          double* const target = coupling_.row(a * m + i) + f * facet_stride + b * n;
+          for (int j = 0; j < n; ++j)
+            target[j] = frame.grad[f][a] * skew[b](i, j) + (a == b ? diagonal(i, j) : 0);
+        }
   }
+  solve_transposed<S::u, all_facets>(factor_.data(), factor_.stride, reciprocal_.data(), coupling_.data(),
+                                     all_facets);
 }
 
+/// N N^T - C_L^T C_L / 2 has the blocks (delta_st grad_f.grad_g (E_f E_g^T - E'_f E'_g^T / 2)
+/// + grad_f[t] grad_g[s] E'_f E'_g^T / 2) / (|grad_f| |grad_g|)^{1/2}.
 template <int dim, int p>
 void CellOperator<dim, p>::condense(const Frame<dim>& frame)
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int n = S::facet;
   for (int f = 0; f <= dim; ++f)
-    for (int g = f; g <= dim; ++g)
+    for (int g = 0; g <= dim; ++g)
     {
-      BlockMatrix& s = schur_[f][g];
-      s.noalias() = -0.5 * rotation_coupling_[f].transpose() * rotation_coupling_[g];
-      s.noalias() -= half_coupling_[f].transpose() * half_coupling_[g];
-      const double scale =
-          frame.grad[f].dot(frame.grad[g]) / std::sqrt(frame.grad_norm[f] * frame.grad_norm[g]);
-      for (int r = 0; r < dim; ++r) s.template block<n, n>(r * n, r * n) += scale * ref.trace_trace[f][g];
+      const double scale = 1 / std::sqrt(frame.grad_norm[f] * frame.grad_norm[g]);
+      const double product = scale * frame.grad[f].dot(frame.grad[g]);
+      for (int s = 0; s < dim; ++s)
+        for (int t = 0; t < dim; ++t)
+        {
+          const double skew = scale * frame.grad[f][t] * frame.grad[g][s];
+          for (int i = 0; i < n; ++i)
+          {
+            double* const target = schur_.row(f * S::block + s * n + i) + g * facet_stride + t * n;
+            for (int j = 0; j < n; ++j)
+              target[j] =
+                  skew * ref.truncated_schur[f][g](i, j) + (s == t ? product * ref.schur[f][g](i, j) : 0);
+          }
+        }
     }
+  for (int f = 0; f <= dim; ++f)
+    subtract_transposed_product<S::block, all_facets, S::u>(schur_.row(f * S::block), all_facets,
+                                                            coupling_.data() + f * facet_stride, all_facets,
+                                                            coupling_.data(), all_facets);
 }
 
 template <int dim, int p>
-auto CellOperator<dim, p>::u_from_rotation(const RotationVector& x) const -> UVector
-{
-  constexpr int m = S::multiplier;
-  UVector result = UVector::Zero();
-  for (int i = 0; i < S::pairs; ++i)
-  {
-    const auto [r, c] = skew_pairs<dim>[i];
-    result.template segment<m>(r * m) += derivative_[c] * x.template segment<m>(i * m);
-    result.template segment<m>(c * m) -= derivative_[r] * x.template segment<m>(i * m);
-  }
-  return result;
-}
-
-template <int dim, int p>
-auto CellOperator<dim, p>::rotation_from_u(const UVector& x) const -> RotationVector
-{
-  constexpr int m = S::multiplier;
-  RotationVector result;
-  for (int i = 0; i < S::pairs; ++i)
-  {
-    const auto [r, c] = skew_pairs<dim>[i];
-    result.template segment<m>(i * m) = derivative_[c].transpose() * x.template segment<m>(r * m) -
-                                        derivative_[r].transpose() * x.template segment<m>(c * m);
-  }
-  return result;
-}
-
-template <int dim, int p>
-auto CellOperator<dim, p>::reduce(const UVector& r_u, const RotationVector& r_rotation) const -> UVector
+auto CellOperator<dim, p>::reduce(const UVector& r_u) const -> UVector
 {
   UVector reduced = r_u;
-  if (p == 1) reduced -= 0.5 * u_from_rotation(r_rotation);  // r_rotation = 0 for p >= 2
-  factor_.matrixL().solveInPlace(reduced);
+  solve_transposed<S::u>(factor_.data(), factor_.stride, reciprocal_.data(), reduced.data());
   return reduced;
 }
 
 template <int dim, int p>
-auto CellOperator<dim, p>::divergence(const DiscreteStress<dim, p>& sigma) const -> UVector
+void CellOperator<dim, p>::subtract_load(FacetVectors& load, const Frame<dim>& frame, const UVector& r_u,
+                                         const Tensor<dim>& w) const
 {
-  constexpr int m = S::multiplier;
-  UVector result = UVector::Zero();
-  for (int r = 0; r < dim; ++r)
-    for (int c = 0; c < dim; ++c)
-      result.template segment<m>(r * m) += derivative_[c] * sigma.col(dim * r + c);
+  const UVector reduced = reduce(r_u);
+  subtract_transposed_times<S::u, all_facets>(load.data(), coupling_.data(), all_facets, reduced.data());
+  if constexpr (p == 1)  // C_L^T w: constant rotations have no part in B_U B_L^T
+    for (int f = 0; f <= dim; ++f)
+    {
+      const Point<dim> direction =
+          moment_of_one<dim, p>(frame) / std::sqrt(frame.grad_norm[f]) * (w * frame.grad[f]);
+      for (int s = 0; s < dim; ++s)
+        for (int j = 0; j < S::facet; ++j)
+          load(f, s * S::facet + j) -= direction[s] * reference<dim, p>().trace[f](j, 0);
+    }
+}
+
+template <int dim, int p>
+auto CellOperator<dim, p>::divergence(const Frame<dim>& frame, const DiscreteStress<dim, p>& sigma) const
+    -> UVector
+{
+  UVector result;
+  if constexpr (p > 1)
+  {
+    constexpr int m = S::multiplier;
+    for (int r = 0; r < dim; ++r)
+      for (int k = 0; k < dim; ++k)
+      {
+        std::array<double, m> row{};  // minus the contravariant component k of row r
+        for (int c = 0; c < dim; ++c)
+          for (int j = 0; j < m; ++j) row[j] += frame.inverse(k, c) * sigma[(dim * r + c) * m + j];
+        const auto& derivative = reference<dim, p>().derivative[k];
+        for (int i = 0; i < m; ++i)
+          for (int j = 0; j < m; ++j) result[r * m + i] += derivative(i, j) * row[j];
+      }
+  }
   return result;
 }
 
 template <int dim, int p>
 StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& frame, const UVector& r_u,
-                                                            const RotationVector& r_rotation,
+                                                            const Tensor<dim>& w,
                                                             const FacetVectors& mu) const
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int m = S::multiplier;
   constexpr int n = S::facet;
-  UVector eta_u = reduce(r_u, r_rotation);
-  for (int f = 0; f <= dim; ++f) eta_u -= half_coupling_[f] * mu[f];
-  factor_.matrixU().solveInPlace(eta_u);
-  RotationVector eta_rotation = r_rotation - rotation_from_u(eta_u);
-  for (int f = 0; f <= dim; ++f) eta_rotation -= rotation_coupling_[f] * mu[f];
-  eta_rotation *= 0.5;
+  using Column = DenseVector<S::stress>;
+  UVector eta = reduce(r_u);
+  subtract_times<S::u, all_facets>(eta.data(), coupling_.data(), all_facets, mu.data());
+  solve_upper<S::u>(factor_.data(), factor_.stride, reciprocal_.data(), eta.data());
 
-  StressCoefficients<dim, p> result = StressCoefficients<dim, p>::Zero();
-  for (int r = 0; r < dim; ++r)
-    for (int k = 0; k < dim; ++k)
-    {
-      // B_U^T: entry (r, c) gets D_c^T eta_r with D_c = sum_k J^{-1}(k, c) Dhat_k
-      const Eigen::Matrix<double, S::stress, 1> column =
-          ref.derivative[k].transpose() * eta_u.template segment<m>(r * m);
-      for (int c = 0; c < dim; ++c) result.col(dim * r + c) -= frame.inverse(k, c) * column;
-    }
-  for (int i = 0; i < S::pairs; ++i)
+  StressCoefficients<dim, p> result{};
+  const auto add = [&](int r, int c, double factor, const Column& column)
   {
-    const auto [r, c] = skew_pairs<dim>[i];
-    result.col(dim * r + c).template head<m>() -= eta_rotation.template segment<m>(i * m);
-    result.col(dim * c + r).template head<m>() += eta_rotation.template segment<m>(i * m);
-  }
-  for (int f = 0; f <= dim; ++f)
-    for (int r = 0; r < dim; ++r)
+    for (int j = 0; j < S::stress; ++j) result[(dim * r + c) * S::stress + j] += factor * column[j];
+  };
+  for (int r = 0; r < dim; ++r)
+  {
+    for (int k = 0; k < dim; ++k)  // B_U^T: entry (r, c) gets sum_k J^{-1}(k, c) D_k^T eta_r
     {
-      // N^T: entry (r, c) gets n_c |grad lambda|^{1/2} E^T mu_r
-      const Eigen::Matrix<double, S::stress, 1> column =
-          ref.trace[f].transpose() * mu[f].template segment<n>(r * n) / std::sqrt(frame.grad_norm[f]);
-      for (int c = 0; c < dim; ++c) result.col(dim * r + c) += frame.grad[f][c] * column;
+      Column column;
+      subtract_transposed_times<m, Column::stride>(column.data(), ref.derivative[k].data(), Column::stride,
+                                                   eta.data() + r * m);
+      for (int c = 0; c < dim; ++c) add(r, c, frame.inverse(k, c), column);
     }
+    for (int f = 0; f <= dim; ++f)  // N^T: entry (r, c) gets n_c |grad lambda|^{1/2} E^T mu_r
+    {
+      Column column;
+      subtract_transposed_times<n, Column::stride>(column.data(), ref.trace[f].data(), Column::stride,
+                                                   mu.row(f) + r * n);
+      const double scale = -1 / std::sqrt(frame.grad_norm[f]);
+      for (int c = 0; c < dim; ++c) add(r, c, scale * frame.grad[f][c], column);
+    }
+  }
+  for (const auto& [r, c] : skew_pairs<dim>)
+  {
+    for (int j = 0; j < m; ++j)
+    {
+      double& upper = result[(dim * r + c) * S::stress + j];
+      double& lower = result[(dim * c + r) * S::stress + j];
+      upper = lower = (upper + lower) / 2;
+    }
+    if constexpr (p == 1)
+    {
+      const double moment = w(r, c) * moment_of_one<dim, p>(frame);
+      result[(dim * r + c) * S::stress] += moment;
+      result[(dim * c + r) * S::stress] -= moment;
+    }
+  }
   return result;
 }
 
@@ -196,40 +209,55 @@ DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const Material& 
                                        std::span<const Index> nodes, std::span<const double> u)
 {
   using S = Sizes<dim, p>;
-  constexpr int n_nodes = S::stress;
   const Reference<dim, p>& ref = reference<dim, p>();
   const auto& nodal = ref.nodal_derivative[permutation_number(frame.local)];
-  Eigen::Matrix<double, n_nodes, dim> values;
-  for (int i = 0; i < n_nodes; ++i)
-    for (int a = 0; a < dim; ++a) values(i, a) = u[static_cast<std::size_t>(dim) * nodes[i] + a];
-
-  std::array<Eigen::Matrix<double, S::multiplier, dim>, dim> reference_gradient;  // [k](., a): d_k u_a
-  for (int k = 0; k < dim; ++k) reference_gradient[k] = nodal[k].lazyProduct(values);
+  std::array<std::array<DenseVector<S::multiplier>, dim>, dim> gradient;  // minus d_k u_a: [k][a]
+  for (int a = 0; a < dim; ++a)
+  {
+    std::array<double, S::stress> values;
+    for (int i = 0; i < S::stress; ++i) values[i] = u[static_cast<std::size_t>(dim) * nodes[i] + a];
+    for (int k = 0; k < dim; ++k)
+      subtract_transposed_times<S::stress, padded(S::multiplier)>(gradient[k][a].data(), nodal[k].data(),
+                                                                  nodal[k].stride, values.data());
+  }
   DiscreteStress<dim, p> result;
-  const double scale = std::sqrt(frame.det);  // basis functions on the cell are chi / sqrt(det)
+  const double scale = -std::sqrt(frame.det);  // basis functions on the cell are chi / sqrt(det)
   for (int j = 0; j < S::multiplier; ++j)
   {
     Tensor<dim> hat;
-    for (int k = 0; k < dim; ++k) hat.col(k) = scale * reference_gradient[k].row(j).transpose();
+    for (int k = 0; k < dim; ++k)
+      for (int a = 0; a < dim; ++a) hat(a, k) = scale * gradient[k][a][j];
     const Tensor<dim> stress = sigma<dim>(material, hat * frame.inverse);
     for (int r = 0; r < dim; ++r)
-      for (int c = 0; c < dim; ++c) result(j, dim * r + c) = stress(r, c);
+      for (int c = 0; c < dim; ++c) result[(dim * r + c) * S::multiplier + j] = stress(r, c);
   }
   return result;
 }
 
-#define TRIBOUND_INSTANTIATE(dim, p)                                                          \
-  template class CellOperator<dim, p>;                                                        \
-  template DiscreteStress<dim, p> discrete_stress<dim, p>(const Frame<dim>&, const Material&, \
-                                                          std::span<const Index>, std::span<const double>);
+template class CellOperator<2, 1>;
+template class CellOperator<2, 2>;
+template class CellOperator<2, 3>;
+template class CellOperator<2, 4>;
+template class CellOperator<3, 1>;
+template class CellOperator<3, 2>;
+template class CellOperator<3, 3>;
+template class CellOperator<3, 4>;
 
-TRIBOUND_INSTANTIATE(2, 1)
-TRIBOUND_INSTANTIATE(2, 2)
-TRIBOUND_INSTANTIATE(2, 3)
-TRIBOUND_INSTANTIATE(2, 4)
-TRIBOUND_INSTANTIATE(3, 1)
-TRIBOUND_INSTANTIATE(3, 2)
-TRIBOUND_INSTANTIATE(3, 3)
-TRIBOUND_INSTANTIATE(3, 4)
+template DiscreteStress<2, 1> discrete_stress<2, 1>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<2, 2> discrete_stress<2, 2>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<2, 3> discrete_stress<2, 3>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<2, 4> discrete_stress<2, 4>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 1> discrete_stress<3, 1>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 2> discrete_stress<3, 2>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 3> discrete_stress<3, 3>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 4> discrete_stress<3, 4>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
 
 }  // namespace tribound

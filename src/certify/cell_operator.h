@@ -10,9 +10,10 @@
 ///     N sigma = g - S mu,                S = N N^T - C^T (B B^T)^{-1} C,   g = N G - C^T (B B^T)^{-1} r.
 ///
 /// B_L B_L^T = 2 I, so the rotations go first; then B_U B_U^T becomes A = B_U B_U^T - B_U B_L^T B_L B_U^T / 2
-/// and C becomes C_U - B_U B_L^T C_L / 2, both of size dim * dim P^{p-1}.
+/// and C becomes C_U - B_U B_L^T C_L / 2, both of size dim * dim P^{p-1}; N N^T becomes N N^T - C_L^T C_L
+/// / 2. All of these are sums of a few reference matrices (certify/reference.h), and for the stress itself
+/// the rotations only mean that its truncation to P^{p-1} is symmetric, up to w (p = 1).
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <span>
 
@@ -34,13 +35,13 @@ inline constexpr auto skew_pairs = []
   return pairs;
 }();
 
-/// A stress on a cell: column dim * r + c holds the coefficients of entry (r, c).
+/// A stress on a cell: coefficient j of entry (r, c) at (dim * r + c) * n + j, n = dim P^p.
 template <int dim, int p>
-using StressCoefficients = Eigen::Matrix<double, Sizes<dim, p>::stress, dim * dim>;
+using StressCoefficients = std::array<double, dim * dim * Sizes<dim, p>::stress>;
 
-/// sigma(u) on a cell: the same with polynomials of degree p-1.
+/// sigma(u) on a cell: the same with n = dim P^{p-1}.
 template <int dim, int p>
-using DiscreteStress = Eigen::Matrix<double, Sizes<dim, p>::multiplier, dim * dim>;
+using DiscreteStress = std::array<double, dim * dim * Sizes<dim, p>::multiplier>;
 
 /// What an elimination leaves that does not depend on the data.
 template <int dim, int p>
@@ -48,58 +49,51 @@ class CellOperator
 {
  public:
   using S = Sizes<dim, p>;
-  using BlockMatrix = Block<S::block, S::block>;
-  using UMatrix = Block<S::u, S::u>;
-  using UVector = Eigen::Matrix<double, S::u, 1>;
-  using RotationVector = Eigen::Matrix<double, S::rotation, 1>;
-  using FacetVector = Eigen::Matrix<double, S::block, 1>;
-  using FacetVectors = std::array<FacetVector, dim + 1>;
+  using UVector = DenseVector<S::u>;
+  using FacetVectors = Dense<dim + 1, S::block>;  ///< row f: facet f
+  /// Columns of all facets, those of facet f from f * facet_stride on.
+  static constexpr int facet_stride = padded(S::block);
+  static constexpr int all_facets = (dim + 1) * facet_stride;
 
-  /// Factors A and forms the couplings C of all facets.
+  /// Factors A and forms the couplings C of all facets. Throws SolveError for a cell without volume.
   void build(const Frame<dim>& frame);
   /// Forms S; build() has been called.
   void condense(const Frame<dim>& frame);
 
-  /// Block S(f, g) of facets f <= g; S(g, f) is its transpose.
-  [[nodiscard]] const BlockMatrix& schur(int f, int g) const { return schur_[f][g]; }
+  /// The rows of S that belong to facet f, distance all_facets.
+  [[nodiscard]] const double* schur(int f) const { return schur_.row(f * S::block); }
 
-  /// C^T (B B^T)^{-1} r for the facet f, r = (r_u, r_rotation); the argument is reduce(r_u, r_rotation).
-  [[nodiscard]] FacetVector facet_part(int f, const UVector& reduced) const
-  {
-    return half_coupling_[f].transpose() * reduced;
-  }
-  /// L^{-1} (r_u - B_U B_L^T r_rotation / 2) with A = L L^T.
-  [[nodiscard]] UVector reduce(const UVector& r_u, const RotationVector& r_rotation) const;
-  /// The share of r_rotation itself: C_L^T r_rotation / 2 on facet f.
-  [[nodiscard]] FacetVector rotation_part(int f, const RotationVector& r_rotation) const
-  {
-    return 0.5 * rotation_coupling_[f].transpose() * r_rotation;
-  }
+  /// load -= C^T (B B^T)^{-1} r with r = (r_u, -2 w), w the skew tensor of p = 1.
+  void subtract_load(FacetVectors& load, const Frame<dim>& frame, const UVector& r_u,
+                     const Tensor<dim>& w) const;
 
   /// The moments of the divergence of a discrete stress on U.
-  [[nodiscard]] UVector divergence(const DiscreteStress<dim, p>& sigma) const;
+  [[nodiscard]] UVector divergence(const Frame<dim>& frame, const DiscreteStress<dim, p>& sigma) const;
 
-  /// sigma - G = -B^T eta - N^T mu for the data r and the multipliers mu.
+  /// sigma - G = -B^T eta - N^T mu for the data r = (r_u, -2 w) and the multipliers mu, G being symmetric.
   [[nodiscard]] StressCoefficients<dim, p> correction(const Frame<dim>& frame, const UVector& r_u,
-                                                      const RotationVector& r_rotation,
-                                                      const FacetVectors& mu) const;
+                                                      const Tensor<dim>& w, const FacetVectors& mu) const;
 
  private:
-  using Truncated = Block<S::multiplier, S::multiplier>;
-
   void factor(const Frame<dim>& frame);
   void couple(const Frame<dim>& frame);
-  /// B_U B_L^T x.
-  [[nodiscard]] UVector u_from_rotation(const RotationVector& x) const;
-  /// B_L B_U^T x.
-  [[nodiscard]] RotationVector rotation_from_u(const UVector& x) const;
+  /// L^{-1} r_u with A = L L^T.
+  [[nodiscard]] UVector reduce(const UVector& r_u) const;
 
-  Eigen::LLT<UMatrix> factor_;                                           ///< of A
-  std::array<Truncated, dim> derivative_;                                ///< (d_c chi_j, chi_i) on the cell
-  std::array<Block<S::u, S::block>, dim + 1> half_coupling_;             ///< L^{-1} C
-  std::array<Block<S::rotation, S::block>, dim + 1> rotation_coupling_;  ///< C_L
-  std::array<std::array<BlockMatrix, dim + 1>, dim + 1> schur_;
+  Dense<S::u, S::u> factor_;             ///< U with A = U^T U
+  std::array<double, S::u> reciprocal_;  ///< of its diagonal
+  Dense<S::u, all_facets> coupling_;     ///< U^{-T} C
+  Dense<(dim + 1) * S::block, all_facets> schur_;
 };
+
+/// The moment of 1 on the cell: its coefficient on the constant of the orthonormal basis.
+template <int dim, int p>
+[[nodiscard]] double moment_of_one(const Frame<dim>& frame)
+{
+  double sum = 0;
+  for (int v = 0; v <= dim; ++v) sum += reference<dim, p>().hat_moment(0, v);
+  return std::sqrt(frame.det) * sum;
+}
 
 /// sigma(u) in a cell in the orthonormal basis of P^{p-1}; nodes in the order of the space's basis.
 template <int dim, int p>

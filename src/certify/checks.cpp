@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "fem/polynomials.h"
 #include "fem/quadrature.h"
@@ -12,15 +14,56 @@ namespace tribound
 
 double IdentityDefects::largest(int degree) const
 {
-  const double all = std::max({divergence, jump, neumann, contact});
-  return degree == 1 ? all : std::max(all, symmetry);
+  double worst = 0;
+  for (const double defect : {divergence, jump, neumann, contact, degree == 1 ? 0 : symmetry})
+    if (!std::isnan(worst) && !(defect <= worst)) worst = defect;  // nan, too
+  return worst;
 }
 
 namespace
 {
 
-/// sigma_h = sigma_dis + sigma_lin as a function on one cell, in the coordinates of its vertices in ascending
-/// order.
+/// Tables on the reference cell whose vertices are in ascending order.
+template <int dim>
+struct Tables
+{
+  int n;       ///< dim P^p(T)
+  int n_less;  ///< dim P^{p-1}(T)
+  Quadrature<dim> data_rule;
+  std::vector<double> chi;                          ///< P^{p-1} at the points of data_rule, [q * n_less + i]
+  std::array<std::vector<double>, dim> derivative;  ///< (d_k phi_j, chi_i), [i * n + j]
+  Quadrature<dim - 1> jump_rule;                    ///< exact to degree 2p
+  std::array<std::vector<double>, dim + 1> on_facet;  ///< phi at its points, [q * n + j]
+
+  explicit Tables(int degree)
+      : n(polynomial_dimension(dim, degree)),
+        n_less(polynomial_dimension(dim, degree - 1)),
+        data_rule(quadrature<dim>(data_quadrature_degree(degree))),
+        chi(static_cast<std::size_t>(n_less) * data_rule.size()),
+        jump_rule(quadrature<dim - 1>(2 * degree))
+  {
+    std::vector<double> phi(n);
+    std::vector<Point<dim>> gradients(n);
+    for (auto& matrix : derivative) matrix.assign(static_cast<std::size_t>(n_less) * n, 0.0);
+    for (int q = 0; q < data_rule.size(); ++q)
+    {
+      orthonormal_gradients<dim>(degree, data_rule.points[q], phi, gradients);
+      std::copy_n(phi.begin(), n_less, &chi[q * n_less]);
+      for (int k = 0; k < dim; ++k)
+        for (int i = 0; i < n_less; ++i)
+          for (int j = 0; j < n; ++j)
+            derivative[k][i * n + j] += data_rule.weights[q] * phi[i] * gradients[j][k];
+    }
+    for (int f = 0; f <= dim; ++f)
+      for (const Point<dim - 1>& s : jump_rule.points)
+      {
+        orthonormal_values<dim>(degree, facet_to_cell<dim>(f, s), phi);
+        on_facet[f].insert(on_facet[f].end(), phi.begin(), phi.end());
+      }
+  }
+};
+
+/// sigma_h = sigma_dis + sigma_lin on one cell, in the coordinates of its vertices in ascending order.
 template <int dim>
 class CellStress
 {
@@ -28,20 +71,25 @@ class CellStress
   CellStress(const Mesh<dim>& mesh, const Stress<dim>& stress, Index cell)
       : degree_(stress.degree),
         n_(stress.n),
-        coefficients_(stress.dis_in(cell).begin(), stress.dis_in(cell).end())
+        coefficients_(stress.dis_in(cell).begin(), stress.dis_in(cell).end()),
+        vertices_(mesh.cell(cell))
   {
     const std::span<const double> lin = stress.lin_in(cell);
     for (std::size_t i = 0; i < lin.size(); ++i) coefficients_[i] += lin[i];
-    Cell<dim> vertices = mesh.cell(cell);
-    std::ranges::sort(vertices);
-    origin_ = mesh.vertex(vertices[0]);
-    for (int j = 0; j < dim; ++j) jacobian_.col(j) = mesh.vertex(vertices[j + 1]) - origin_;
+    std::ranges::sort(vertices_);
+    origin_ = mesh.vertex(vertices_[0]);
+    for (int j = 0; j < dim; ++j) jacobian_.col(j) = mesh.vertex(vertices_[j + 1]) - origin_;
     det_ = std::abs(jacobian_.determinant());
     inverse_ = jacobian_.inverse();
   }
 
   [[nodiscard]] double det() const { return det_; }
   [[nodiscard]] Point<dim> physical(const Point<dim>& xhat) const { return origin_ + jacobian_ * xhat; }
+  /// Which of the ascending vertices lies opposite to the facet, the cell's vertex `opposite` being that one.
+  [[nodiscard]] int facet_opposite(Index opposite) const
+  {
+    return static_cast<int>(std::ranges::find(vertices_, opposite) - vertices_.begin());
+  }
   [[nodiscard]] double squared_norm() const
   {
     double sum = 0;
@@ -49,42 +97,47 @@ class CellStress
     return sum;
   }
 
-  [[nodiscard]] Tensor<dim> at(const Point<dim>& x) const
+  /// sigma_h n from the values of the basis at a point.
+  [[nodiscard]] Point<dim> normal_trace(const double* basis, const Point<dim>& normal) const
   {
-    std::vector<double> values(n_);
-    orthonormal_values<dim>(degree_, inverse_ * (x - origin_), values);
-    Tensor<dim> sigma;
+    Point<dim> trace = Point<dim>::Zero();
     for (int r = 0; r < dim; ++r)
       for (int c = 0; c < dim; ++c)
       {
-        sigma(r, c) = 0;
-        for (int j = 0; j < n_; ++j) sigma(r, c) += coefficient(r, c, j) * values[j] / std::sqrt(det_);
+        double entry = 0;
+        for (int j = 0; j < n_; ++j) entry += coefficient(r, c, j) * basis[j];
+        trace[r] += entry * normal[c] / std::sqrt(det_);
       }
-    return sigma;
+    return trace;
   }
-
-  [[nodiscard]] Point<dim> divergence(const Point<dim>& xhat) const
+  /// sigma_h n at a point of space.
+  [[nodiscard]] Point<dim> normal_trace_at(const Point<dim>& x, const Point<dim>& normal) const
   {
     std::vector<double> values(n_);
-    std::vector<Point<dim>> gradients(n_);
-    orthonormal_gradients<dim>(degree_, xhat, values, gradients);
-    Point<dim> result = Point<dim>::Zero();
-    for (int j = 0; j < n_; ++j)
-    {
-      const Point<dim> gradient = inverse_.transpose() * gradients[j] / std::sqrt(det_);
-      for (int r = 0; r < dim; ++r)
-        for (int c = 0; c < dim; ++c) result[r] += coefficient(r, c, j) * gradient[c];
-    }
+    orthonormal_values<dim>(degree_, inverse_ * (x - origin_), values);
+    return normal_trace(values.data(), normal);
+  }
+
+  /// The coefficients of div sigma_h in the orthonormal basis of P^{p-1}(T).
+  [[nodiscard]] std::vector<Point<dim>> divergence(const Tables<dim>& tables) const
+  {
+    std::vector<Point<dim>> result(tables.n_less, Point<dim>::Zero());
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < tables.n_less; ++i)
+        for (int r = 0; r < dim; ++r)
+          for (int c = 0; c < dim; ++c)
+            for (int j = 0; j < n_; ++j)
+              result[i][r] += inverse_(k, c) * tables.derivative[k][i * n_ + j] * coefficient(r, c, j);
     return result;
   }
 
   /// ||Pi^{p-1} skew sigma_h||^2: the skew part of the leading coefficients.
-  [[nodiscard]] double squared_skew_part() const
+  [[nodiscard]] double squared_skew_part(int n_less) const
   {
     double sum = 0;
     for (int r = 0; r < dim; ++r)
       for (int c = 0; c < dim; ++c)
-        for (int j = 0; j < polynomial_dimension(dim, degree_ - 1); ++j)
+        for (int j = 0; j < n_less; ++j)
           sum += std::pow((coefficient(r, c, j) - coefficient(c, r, j)) / 2, 2);
     return sum;
   }
@@ -98,56 +151,47 @@ class CellStress
   int degree_;
   int n_;
   std::vector<double> coefficients_;
+  Cell<dim> vertices_;  ///< ascending
   Point<dim> origin_;
   Tensor<dim> jacobian_;
   Tensor<dim> inverse_;
   double det_;
 };
 
-/// Moments of div sigma_h + f against the orthonormal basis of P^{p-1}(T): their squares add up to the norm
-/// of the projection, and div sigma_h is of degree p-1 itself.
+/// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself.
 template <int dim>
-double squared_divergence_defect(const Problem<dim>& problem, int region, int degree,
+double squared_divergence_defect(const Problem<dim>& problem, int region, const Tables<dim>& tables,
                                  const CellStress<dim>& sigma)
 {
-  const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(degree));
-  const int n = polynomial_dimension(dim, degree - 1);
-  std::vector<double> chi(n);
-  std::vector<Point<dim>> moments(n, Point<dim>::Zero());
-  for (int q = 0; q < rule.size(); ++q)
-  {
-    orthonormal_values<dim>(degree - 1, rule.points[q], chi);
-    const Point<dim> value =
-        sigma.divergence(rule.points[q]) + problem.body_force(region, sigma.physical(rule.points[q]));
-    for (int i = 0; i < n; ++i) moments[i] += rule.weights[q] * std::sqrt(sigma.det()) * chi[i] * value;
-  }
+  std::vector<Point<dim>> moments = sigma.divergence(tables);
+  if (!problem.body_force_is_zero(region))
+    for (int q = 0; q < tables.data_rule.size(); ++q)
+    {
+      const Point<dim> f = problem.body_force(region, sigma.physical(tables.data_rule.points[q]));
+      for (int i = 0; i < tables.n_less; ++i)
+        moments[i] +=
+            tables.data_rule.weights[q] * std::sqrt(sigma.det()) * tables.chi[q * tables.n_less + i] * f;
+    }
   double sum = 0;
   for (const Point<dim>& moment : moments) sum += moment.squaredNorm();
   return sum;
 }
 
-/// A facet with the points of the data rule on it.
-template <int dim>
-struct FacetPoints
-{
-  std::vector<Point<dim>> x;
-  double scale;  ///< |F| / |reference facet|
-};
-
-/// sum over the free components of ||Pi^p_F (sigma_h n - t)||_F^2 with t at the points of the rule.
+/// sum over the free components of ||Pi^p_F (sigma_h n - t)||_F^2 with t at the points x of the rule.
 template <int dim>
 double squared_trace_defect(const CellStress<dim>& sigma, int degree, const Quadrature<dim - 1>& rule,
-                            const FacetPoints<dim>& points, const Point<dim>& normal,
-                            std::span<const Point<dim>> t, const BoundaryCondition<dim>& boundary)
+                            std::span<const Point<dim>> x, std::span<const Point<dim>> t,
+                            const FacetGeometry<dim>& geometry, const BoundaryCondition<dim>& boundary)
 {
   const int n = polynomial_dimension(dim - 1, degree);
+  const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
   std::vector<double> theta(n);
   std::vector<Point<dim>> moments(n, Point<dim>::Zero());
   for (int q = 0; q < rule.size(); ++q)
   {
     orthonormal_values<dim - 1>(degree, rule.points[q], theta);
-    const Point<dim> value = sigma.at(points.x[q]) * normal - t[q];
-    for (int i = 0; i < n; ++i) moments[i] += rule.weights[q] * std::sqrt(points.scale) * theta[i] * value;
+    const Point<dim> value = sigma.normal_trace_at(x[q], geometry.normal) - t[q];
+    for (int i = 0; i < n; ++i) moments[i] += rule.weights[q] * std::sqrt(scale) * theta[i] * value;
   }
   double sum = 0;
   for (const Point<dim>& moment : moments)
@@ -156,64 +200,94 @@ double squared_trace_defect(const CellStress<dim>& sigma, int degree, const Quad
   return sum;
 }
 
+/// Sums of squares on the cells, and the square of the norm of sigma_h.
+template <int dim>
+double check_cells(const NitscheForm<dim>& form, const Stress<dim>& stress, const Tables<dim>& tables,
+                   IdentityDefects& squares)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  double norm_squared = 0;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const CellStress<dim> sigma(mesh, stress, c);
+    norm_squared += sigma.squared_norm();
+    squares.symmetry += sigma.squared_skew_part(tables.n_less);
+    squares.divergence += std::pow(cell_diameter(mesh, c), 2) *
+                          squared_divergence_defect(form.problem(), mesh.region(c), tables, sigma);
+  }
+  return norm_squared;
+}
+
+/// sum h_F ||[sigma_h n]||_F^2 over the facets between two cells. Seen from both, the vertices of the facet
+/// come in the same, ascending order.
+template <int dim>
+double check_jumps(const Mesh<dim>& mesh, const Stress<dim>& stress, const Tables<dim>& tables)
+{
+  const Topology<dim>& topology = mesh.topology();
+  const auto opposite = [&](Index cell, Index facet)
+  {
+    const auto& facets = topology.cell_facets[cell];
+    return mesh.cell(cell)[std::ranges::find(facets, facet) - facets.begin()];
+  };
+  double sum = 0;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (int local = 0; local <= dim; ++local)
+    {
+      const Index facet = topology.cell_facets[c][local];
+      const auto& [first, second] = topology.facet_cells[facet];
+      if (first != c || second < 0) continue;
+      const FacetGeometry<dim> geometry = facet_geometry(mesh, c, local);
+      const CellStress<dim> here(mesh, stress, first);
+      const CellStress<dim> there(mesh, stress, second);
+      const double* const phi_here = tables.on_facet[here.facet_opposite(opposite(first, facet))].data();
+      const double* const phi_there = tables.on_facet[there.facet_opposite(opposite(second, facet))].data();
+      for (int q = 0; q < tables.jump_rule.size(); ++q)
+        sum += geometry.diameter * tables.jump_rule.weights[q] * geometry.measure * (dim - 1) *
+               (here.normal_trace(phi_here + q * tables.n, geometry.normal) -
+                there.normal_trace(phi_there + q * tables.n, geometry.normal))
+                   .squaredNorm();
+    }
+  return sum;
+}
+
+template <int dim>
+void check_boundary(const NitscheForm<dim>& form, std::span<const Point<dim>> t, const Stress<dim>& stress,
+                    IdentityDefects& squares)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  const Quadrature<dim - 1>& rule = form.facet_rule();
+  std::size_t contact_point = 0;
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    std::vector<Point<dim>> x;
+    std::vector<Point<dim>> traction;
+    for (const Point<dim - 1>& s : rule.points)
+    {
+      x.push_back(map(facet_to_cell<dim>(facet.local, s)));
+      traction.push_back(boundary.contact ? t[contact_point++] : boundary.load(x.back(), geometry.normal));
+    }
+    const double defect =
+        geometry.diameter * squared_trace_defect<dim>(CellStress<dim>(mesh, stress, facet.cell),
+                                                      stress.degree, rule, x, traction, geometry, boundary);
+    (boundary.contact ? squares.contact : squares.neumann) += defect;
+  }
+}
+
 }  // namespace
 
 template <int dim>
 IdentityDefects check_identities(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
                                  const Stress<dim>& stress)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Topology<dim>& topology = mesh.topology();
+  const Tables<dim> tables(stress.degree);
   IdentityDefects squares;
-  double norm_squared = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-  {
-    const CellStress<dim> sigma(mesh, stress, c);
-    norm_squared += sigma.squared_norm();
-    squares.symmetry += sigma.squared_skew_part();
-    squares.divergence += std::pow(cell_diameter(mesh, c), 2) *
-                          squared_divergence_defect(form.problem(), mesh.region(c), stress.degree, sigma);
-  }
-
-  const Quadrature<dim - 1>& rule = form.facet_rule();
-  const auto points_of = [&](Index cell, int local, const FacetGeometry<dim>& geometry)
-  {
-    FacetPoints<dim> points{{}, geometry.measure * (dim - 1)};
-    const CellMap<dim> map = cell_map(mesh, cell);
-    for (const Point<dim - 1>& s : rule.points) points.x.push_back(map(facet_to_cell<dim>(local, s)));
-    return points;
-  };
-
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-    for (int local = 0; local <= dim; ++local)
-    {
-      const auto& [first, second] = topology.facet_cells[topology.cell_facets[c][local]];
-      if (first != c || second < 0) continue;
-      const FacetGeometry<dim> geometry = facet_geometry(mesh, c, local);
-      const FacetPoints<dim> points = points_of(c, local, geometry);
-      const CellStress<dim> here(mesh, stress, first);
-      const CellStress<dim> there(mesh, stress, second);
-      for (int q = 0; q < rule.size(); ++q)
-        squares.jump += geometry.diameter * rule.weights[q] * points.scale *
-                        ((here.at(points.x[q]) - there.at(points.x[q])) * geometry.normal).squaredNorm();
-    }
-
-  std::size_t contact_point = 0;
-  for (const BoundaryFacet& facet : mesh.boundary())
-  {
-    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    const FacetPoints<dim> points = points_of(facet.cell, facet.local, geometry);
-    std::vector<Point<dim>> traction;
-    for (const Point<dim>& x : points.x)
-      traction.push_back(boundary.contact ? t[contact_point++] : boundary.load(x, geometry.normal));
-    const double defect = geometry.diameter *
-                          squared_trace_defect<dim>(CellStress<dim>(mesh, stress, facet.cell), stress.degree,
-                                                    rule, points, geometry.normal, traction, boundary);
-    (boundary.contact ? squares.contact : squares.neumann) += defect;
-  }
-
-  const auto relative = [&](double sum) { return norm_squared > 0 ? std::sqrt(sum / norm_squared) : 0; };
+  const double norm_squared = check_cells(form, stress, tables, squares);
+  squares.jump = check_jumps(form.space().mesh(), stress, tables);
+  check_boundary(form, t, stress, squares);
+  const auto relative = [&](double sum) { return sum == 0 ? 0 : std::sqrt(sum / norm_squared); };
   return {relative(squares.divergence), relative(squares.jump), relative(squares.neumann),
           relative(squares.contact), relative(squares.symmetry)};
 }

@@ -22,7 +22,7 @@ struct IdentityDefects
   double contact = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
   double symmetry = 0;    ///< ||Pi^{p-1} skew sigma_h|| (does not hold for p = 1, see the method)
 
-  /// The largest of those that hold at this degree.
+  /// The largest of those that hold at this degree; nan where one is.
   [[nodiscard]] double largest(int degree) const;
 };
 

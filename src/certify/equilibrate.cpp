@@ -8,8 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "certify/cell_window.h"
 #include "certify/patch.h"
-#include "fem/quadrature.h"
 
 namespace tribound
 {
@@ -44,300 +44,176 @@ std::vector<Index> vertices_by_locality(const Mesh<dim>& mesh)
   return order;
 }
 
-/// Moments of psi_a f on U for every vertex of every cell, or nothing where f = 0. Formulas of the case are
-/// evaluated by one thread only.
-template <int dim, int p>
-class BodyMoments
-{
- public:
-  using Vector = Eigen::Matrix<double, Sizes<dim, p>::u, 1>;
-
-  explicit BodyMoments(const NitscheForm<dim>& form)
-  {
-    const Mesh<dim>& mesh = form.space().mesh();
-    const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
-    constexpr int m = Sizes<dim, p>::multiplier;
-    std::vector<double> chi(m * rule.size());
-    for (int q = 0; q < rule.size(); ++q)
-      orthonormal_values<dim>(p - 1, rule.points[q], std::span(chi).subspan(m * q, m));
-    for (Index c = 0; c < mesh.n_cells(); ++c)
-    {
-      if (form.problem().body_force_is_zero(mesh.region(c))) continue;
-      if (moments_.empty())
-        moments_.assign(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1), Vector::Zero());
-      const Frame<dim> frame = make_frame(mesh, c);
-      for (int q = 0; q < rule.size(); ++q)
-      {
-        const Point<dim>& xhat = rule.points[q];
-        const Point<dim> f = form.problem().body_force(mesh.region(c), frame.origin + frame.jacobian * xhat);
-        const double weight = rule.weights[q] * std::sqrt(frame.det);
-        for (int a = 0; a <= dim; ++a)
-        {
-          const double hat = a == 0 ? 1 - xhat.sum() : xhat[a - 1];
-          for (int r = 0; r < dim; ++r)
-            for (int i = 0; i < m; ++i)
-              moments_[c * (dim + 1) + a][r * m + i] += weight * hat * f[r] * chi[m * q + i];
-        }
-      }
-    }
-  }
-
-  [[nodiscard]] Vector operator()(Index cell, int vertex) const
-  {
-    return moments_.empty() ? Vector(Vector::Zero())
-                            : moments_[static_cast<std::size_t>(cell) * (dim + 1) + vertex];
-  }
-
- private:
-  std::vector<Vector, Eigen::aligned_allocator<Vector>> moments_;
-};
-
-/// What the patches leave for their cells; column 0 is dis, column 1 lin.
-template <int dim, int p>
-struct PatchResults
-{
-  using FacetColumns = Eigen::Matrix<double, Sizes<dim, p>::block, 2>;
-
-  explicit PatchResults(const Mesh<dim>& mesh)
-      : facet(mesh.topology().facets.size() * dim),
-        outer(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1)),
-        y(mesh.n_vertices()),
-        w(mesh.n_vertices())
-  {
-  }
-
-  std::vector<FacetColumns, Eigen::aligned_allocator<FacetColumns>> facet;  ///< [dim * facet + its vertex]
-  std::vector<FacetColumns, Eigen::aligned_allocator<FacetColumns>>
-      outer;                                      ///< [(dim + 1) * cell + vertex opposite]
-  std::vector<std::array<RigidField<dim>, 2>> y;  ///< y_a per vertex
-  std::vector<std::array<Tensor<dim>, 2>> w;      ///< w_a per vertex
-};
-
-/// The cells that a stretch of vertices needs: prepared when first asked for, forgotten after their last
-/// vertex.
-template <int dim, int p>
-class CellWindow
-{
- public:
-  CellWindow(const NitscheForm<dim>& form, std::span<const double> u, const BodyMoments<dim, p>& body)
-      : form_(form), u_(u), body_(body), slot_(form.space().mesh().n_cells(), -1)
-  {
-  }
-
-  const PreparedCell<dim, p>& get(Index cell)
-  {
-    if (slot_[cell] >= 0) return *pool_[slot_[cell]];
-    if (free_.empty())
-    {
-      free_.push_back(static_cast<int>(pool_.size()));
-      pool_.push_back(std::make_unique<PreparedCell<dim, p>>());
-    }
-    slot_[cell] = free_.back();
-    free_.pop_back();
-    PreparedCell<dim, p>& prepared = *pool_[slot_[cell]];
-    prepare(cell, prepared);
-    prepared.op.condense(prepared.frame);
-    return prepared;
-  }
-  void forget(Index cell)
-  {
-    free_.push_back(slot_[cell]);
-    slot_[cell] = -1;
-  }
-
-  /// Everything but the Schur complement.
-  void prepare(Index cell, PreparedCell<dim, p>& prepared) const
-  {
-    const LagrangeSpace<dim>& space = form_.space();
-    prepared.frame = make_frame(space.mesh(), cell);
-    prepared.op.build(prepared.frame);
-    prepared.sigma = discrete_stress<dim, p>(
-        prepared.frame, form_.problem().material(space.mesh().region(cell)), space.cell_nodes(cell), u_);
-    prepared.divergence = prepared.op.divergence(prepared.sigma);
-    for (int a = 0; a <= dim; ++a) prepared.body[a] = body_(cell, a);
-  }
-
- private:
-  const NitscheForm<dim>& form_;
-  std::span<const double> u_;
-  const BodyMoments<dim, p>& body_;
-  std::vector<int> slot_;  ///< per cell: place in pool_, or -1
-  std::vector<std::unique_ptr<PreparedCell<dim, p>>> pool_;
-  std::vector<int> free_;
-};
-
-/// The two passes: patches leave multipliers, cells turn them into stresses.
+/// The patches write their shares into the cells, and a cell with all of them gives its stress. Every thread
+/// has a stretch of the vertices; cells with vertices in several of them come last.
 template <int dim, int p>
 class Equilibration
 {
  public:
   Equilibration(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t)
-      : form_(form), mesh_(form.space().mesh()), u_(u), data_(form, u, t), body_(form), results_(mesh_)
+      : mesh_(form.space().mesh()), data_(form, u, t), body_(form), source_{form, u, body_}
   {
   }
 
   Stress<dim> run(int n_threads)
   {
-    const std::vector<Index> order = vertices_by_locality(mesh_);
-    Stress<dim> stress = empty_stress();
-    std::exception_ptr failure;
-#pragma omp parallel num_threads(n_threads)
-    {
-      const std::size_t n = omp_get_num_threads();
-      const std::size_t i = omp_get_thread_num();
-      try
-      {
-        solve_patches(std::span(order).subspan(order.size() * i / n,
-                                               order.size() * (i + 1) / n - order.size() * i / n));
-      }
-      catch (...)
-      {
-#pragma omp critical
-        failure = std::current_exception();
-      }
-#pragma omp barrier
-      if (!failure) recover(stress);
-    }
-    if (failure) std::rethrow_exception(failure);
-    return stress;
+    prepare_stress();
+    divide(n_threads);
+    in_parallel(n_threads, [&](int stretch) { solve_patches(stretch); });
+    in_parallel(n_threads, [&](int stretch) { recover_shared_cells(stretch, n_threads); });
+    return std::move(stress_);
   }
 
  private:
   using S = Sizes<dim, p>;
+  using Window = CellWindow<dim, p>;
+  using Shares = typename Window::Shares;
 
-  Stress<dim> empty_stress() const;
-  void solve_patches(std::span<const Index> vertices);
-  void store(Index vertex, const Patch<dim, p>& patch);
-  void recover(Stress<dim>& stress) const;
-  void recover_cell(Index cell, const PreparedCell<dim, p>& prepared, Stress<dim>& stress) const;
+  void prepare_stress();
+  void divide(int n_stretches);
+  template <class Work>
+  void in_parallel(int n_threads, Work work);
+  void solve_patches(int stretch);
+  void recover_shared_cells(int stretch, int n_stretches);
+  void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
 
-  const NitscheForm<dim>& form_;
   const Mesh<dim>& mesh_;
-  std::span<const double> u_;
   FacetData<dim, p> data_;
   BodyMoments<dim, p> body_;
-  PatchResults<dim, p> results_;
+  CellSource<dim, p> source_;
+  Stress<dim> stress_;
+  std::vector<Index> order_;         ///< of the vertices
+  std::vector<std::size_t> begin_;   ///< of the stretches in order_
+  std::vector<int> stretch_;         ///< per vertex
+  std::vector<Index> shared_cells_;  ///< with vertices in several stretches
+  std::vector<int> shared_place_;    ///< per cell: place in shared_cells_ and shares_, or -1
+  std::vector<Shares> shares_;
 };
 
 template <int dim, int p>
-Stress<dim> Equilibration<dim, p>::empty_stress() const
+void Equilibration<dim, p>::prepare_stress()
 {
-  Stress<dim> stress;
-  stress.degree = p;
-  stress.n = S::stress;
-  stress.dis.resize(mesh_.n_cells() * stress.block_size());
-  stress.lin_place.assign(mesh_.n_cells(), -1);
+  stress_.degree = p;
+  stress_.n = S::stress;
+  stress_.dis.resize(mesh_.n_cells() * stress_.block_size());
+  stress_.lin_place.assign(mesh_.n_cells(), -1);
   int n_lin = 0;
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (std::ranges::any_of(mesh_.cell(c), [&](Index v) { return data_.on_contact(v); }))
-      stress.lin_place[c] = n_lin++;
-  stress.lin.resize(n_lin * stress.block_size());
-  return stress;
+      stress_.lin_place[c] = n_lin++;
+  stress_.lin.resize(n_lin * stress_.block_size());
 }
 
 template <int dim, int p>
-void Equilibration<dim, p>::solve_patches(std::span<const Index> vertices)
+void Equilibration<dim, p>::divide(int n_stretches)
 {
-  const Topology<dim>& topology = mesh_.topology();
-  CellWindow<dim, p> window(form_, u_, body_);
-  Patch<dim, p> patch(mesh_, data_);
-  std::vector<std::uint8_t> visits(mesh_.n_cells(), 0);  // vertices of the stretch that still need the cell
-  const auto cells_around = [&](Index v)
-  {
-    const auto begin = topology.vertex_cells_begin[v];
-    return std::span(topology.vertex_cells).subspan(begin, topology.vertex_cells_begin[v + 1] - begin);
-  };
-  for (const Index v : vertices)
-    for (const Index c : cells_around(v)) ++visits[c];
-  for (const Index v : vertices)
-  {
-    patch.begin(v);
-    for (const Index c : cells_around(v)) patch.add_cell(c, window.get(c));
-    patch.solve();
-    store(v, patch);
-    for (const Index c : cells_around(v))
-      if (--visits[c] == 0) window.forget(c);
-  }
-}
-
-template <int dim, int p>
-void Equilibration<dim, p>::store(Index vertex, const Patch<dim, p>& patch)
-{
-  for (std::size_t i = 0; i < patch.facets().size(); ++i)
-  {
-    const auto& vertices = mesh_.topology().facets[patch.facets()[i]];
-    const auto v = std::ranges::find(vertices, vertex) - vertices.begin();
-    results_.facet[static_cast<std::size_t>(patch.facets()[i]) * dim + v] =
-        patch.multipliers(static_cast<int>(i));
-  }
-  for (const auto& part : patch.cells())
-    results_.outer[static_cast<std::size_t>(part.cell) * (dim + 1) + part.vertex] = part.outer;
-  for (int column = 0; column < 2; ++column)
-  {
-    results_.y[vertex][column] = patch.y(column);
-    results_.w[vertex][column] = patch.w(column);
-  }
-}
-
-template <int dim, int p>
-void Equilibration<dim, p>::recover(Stress<dim>& stress) const
-{
-  const CellWindow<dim, p> window(form_, u_, body_);
-  const auto prepared = std::make_unique<PreparedCell<dim, p>>();
-#pragma omp for schedule(static)
+  order_ = vertices_by_locality(mesh_);
+  stretch_.resize(mesh_.n_vertices());
+  for (int s = 0; s <= n_stretches; ++s) begin_.push_back(order_.size() * s / n_stretches);
+  for (int s = 0; s < n_stretches; ++s)
+    for (std::size_t i = begin_[s]; i < begin_[s + 1]; ++i) stretch_[order_[i]] = s;
+  shared_place_.assign(mesh_.n_cells(), -1);
   for (Index c = 0; c < mesh_.n_cells(); ++c)
   {
-    window.prepare(c, *prepared);
-    recover_cell(c, *prepared, stress);
+    const Cell<dim>& cell = mesh_.cell(c);
+    if (std::ranges::all_of(cell, [&](Index v) { return stretch_[v] == stretch_[cell[0]]; })) continue;
+    shared_place_[c] = static_cast<int>(shared_cells_.size());
+    shared_cells_.push_back(c);
+  }
+  shares_.resize(shared_cells_.size());
+}
+
+/// Calls work(i) for i < n_threads; throws what one of them threw.
+template <int dim, int p>
+template <class Work>
+void Equilibration<dim, p>::in_parallel(int n_threads, Work work)
+{
+  std::exception_ptr failure;
+#pragma omp parallel for num_threads(n_threads) schedule(static, 1)
+  for (int i = 0; i < n_threads; ++i) try
+    {
+      work(i);
+    }
+    catch (...)
+    {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  if (failure) std::rethrow_exception(failure);
+}
+
+template <int dim, int p>
+void Equilibration<dim, p>::solve_patches(int stretch)
+{
+  const Topology<dim>& topology = mesh_.topology();
+  const auto in_stretch = [&](Index v) { return stretch_[v] == stretch; };
+  Window window(source_);
+  Patch<dim, p> patch(mesh_, data_);
+  for (std::size_t i = begin_[stretch]; i < begin_[stretch + 1]; ++i)
+  {
+    const Index v = order_[i];
+    const auto begin = topology.vertex_cells_begin[v];
+    const auto cells =
+        std::span(topology.vertex_cells).subspan(begin, topology.vertex_cells_begin[v + 1] - begin);
+    patch.begin(v);
+    for (const Index c : cells)
+    {
+      auto& slot = window.get(c);
+      if (slot.waiting == 0)
+        slot.waiting = static_cast<int>(std::ranges::count_if(mesh_.cell(c), in_stretch));
+      Shares& shares = shared_place_[c] < 0 ? slot.shares : shares_[shared_place_[c]];
+      patch.add_cell(c, slot.cell, shares[slot.cell.frame.find(v)]);
+    }
+    patch.solve();
+    for (const Index c : cells)
+    {
+      auto& slot = window.get(c);
+      if (--slot.waiting > 0) continue;
+      if (shared_place_[c] < 0) recover(c, slot.cell, slot.shares);
+      window.forget(c);
+    }
+  }
+}
+
+template <int dim, int p>
+void Equilibration<dim, p>::recover_shared_cells(int stretch, int n_stretches)
+{
+  const auto prepared = std::make_unique<PreparedCell<dim, p>>();
+  for (std::size_t i = stretch; i < shared_cells_.size(); i += n_stretches)
+  {
+    source_.prepare(shared_cells_[i], *prepared);
+    recover(shared_cells_[i], *prepared, shares_[i]);
   }
 }
 
 /// sigma = sum of the patch stresses of the cell's vertices: the data of the cell problem add up, psi_a to 1.
 template <int dim, int p>
-void Equilibration<dim, p>::recover_cell(Index cell, const PreparedCell<dim, p>& prepared,
-                                         Stress<dim>& stress) const
+void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares)
 {
   constexpr int m = S::multiplier;
   const Frame<dim>& frame = prepared.frame;
-  const auto& hat = reference<dim, p>().hat_moment;
-  const auto& numbers = mesh_.topology().cell_facets[cell];
-  const double scale = std::sqrt(frame.det);
-  for (int column = 0; column < 2; ++column)
+  for (int problem = 0; problem < 2; ++problem)
   {
-    if (column == 1 && stress.lin_place[cell] < 0) return;
-    Eigen::Matrix<double, S::u, 1> r_u = Eigen::Matrix<double, S::u, 1>::Zero();
-    Eigen::Matrix<double, S::rotation, 1> r_rotation = Eigen::Matrix<double, S::rotation, 1>::Zero();
-    const double sign = column == 0 ? 1 : -1;
-    if (column == 0) r_u = prepared.divergence;
+    if (problem == 1 && stress_.lin_place[cell] < 0) return;
+    DenseVector<S::u> r_u;
+    if (problem == 0) r_u = prepared.divergence;
+    Tensor<dim> w = Tensor<dim>::Zero();
+    typename CellOperator<dim, p>::FacetVectors mu;
     for (int a = 0; a <= dim; ++a)
     {
-      if (column == 0) r_u += prepared.body[a];
-      const RigidField<dim>& y = results_.y[frame.vertices[a]][column];
-      for (int v = 0; v <= dim; ++v)
-      {
-        const Point<dim> value =
-            y.translation + y.gradient * (mesh_.vertex(frame.vertices[v]) - mesh_.vertex(frame.vertices[a]));
-        for (int r = 0; r < dim; ++r) r_u.template segment<m>(r * m) += sign * scale * value[r] * hat.col(v);
-      }
-      if (p == 1)
-        for (int i = 0; i < S::pairs; ++i)
-          r_rotation[i] -=
-              2 * results_.w[frame.vertices[a]][column](skew_pairs<dim>[i][0], skew_pairs<dim>[i][1]) *
-              scale * hat.row(0).sum();
+      if (problem == 0) add_multiple(r_u, 1, prepared.body[a]);
+      if (problem == 1 && !data_.on_contact(frame.vertices[a])) continue;
+      const CellShare<dim, p>& share = shares[a][problem];
+      add_moments(r_u, prepared, a, share.y, problem == 0 ? 1 : -1);
+      w += share.w;
+      add_multiple(mu, 1, share.mu);
     }
-
-    typename CellOperator<dim, p>::FacetVectors mu;
-    for (int f = 0; f <= dim; ++f)
-    {
-      mu[f] = results_.outer[static_cast<std::size_t>(cell) * (dim + 1) + f].col(column);
-      const auto facet = static_cast<std::size_t>(numbers[frame.local[f]]);
-      for (int v = 0; v < dim; ++v) mu[f] += results_.facet[facet * dim + v].col(column);
-    }
-    StressCoefficients<dim, p> sigma = prepared.op.correction(frame, r_u, r_rotation, mu);
-    if (column == 0) sigma.template topRows<m>() += prepared.sigma;
-    double* const target = column == 0 ? &stress.dis[cell * stress.block_size()]
-                                       : &stress.lin[stress.lin_place[cell] * stress.block_size()];
-    std::copy_n(sigma.data(), sigma.size(), target);
+    StressCoefficients<dim, p> sigma = prepared.op.correction(frame, r_u, w, mu);
+    if (problem == 0)
+      for (int entry = 0; entry < dim * dim; ++entry)
+        for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
+    std::ranges::copy(sigma, problem == 0 ? &stress_.dis[cell * stress_.block_size()]
+                                          : &stress_.lin[stress_.lin_place[cell] * stress_.block_size()]);
   }
 }
 

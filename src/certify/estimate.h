@@ -5,10 +5,11 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "certify/stress.h"
-#include "contact/nitsche.h"
+#include "certify/contact_terms.h"
+#include "certify/data_terms.h"
 
 namespace tribound
 {
@@ -31,17 +32,63 @@ struct BoundComponents
   [[nodiscard]] double total_sharp() const;
 };
 
-struct Estimate
+/// The components in the order of all tables.
+inline constexpr std::array<std::pair<const char*, double BoundComponents::*>, 8> component_names{
+    {{"osc", &BoundComponents::osc},
+     {"str", &BoundComponents::str},
+     {"neu", &BoundComponents::neu},
+     {"lin1", &BoundComponents::lin1},
+     {"cnt", &BoundComponents::cnt},
+     {"frc", &BoundComponents::frc},
+     {"lin2n", &BoundComponents::lin2n},
+     {"lin2t", &BoundComponents::lin2t}}};
+
+/// What the cells add up to.
+struct Bound
 {
-  std::vector<BoundComponents> cells;
   BoundComponents global;  ///< (sum of squares over the cells)^{1/2}, component by component
-  double total = 0;        ///< (sum_T total_T^2)^{1/2}
+  double total = 0;        ///< (sum_T total_T^2)^{1/2}, as in the paper
   double total_sharp = 0;  ///< the bound: ||R(u^k)||_* <= total_sharp
 };
 
-/// Evaluates every component of the iterate u on every cell.
+struct Estimate : Bound
+{
+  std::vector<BoundComponents> cells;
+};
+
+/// Evaluates every component on every cell, for the iterates on one mesh.
+template <int dim>
+class Estimator
+{
+ public:
+  /// Evaluates what depends on the data alone.
+  explicit Estimator(const NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved);
+
+  /// The components of the iterate u with its equilibrated stress. Cells are shared out to `n_threads`
+  /// threads (0: as many as OpenMP offers).
+  [[nodiscard]] Estimate operator()(std::span<const double> u, const Stress<dim>& stress,
+                                    int n_threads = 0) const;
+
+ private:
+  void stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
+                    Estimate& result) const;
+  void contact_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
+
+  const NitscheForm<dim>& form_;
+  DataTerms data_;
+  ContactTerms<dim> contact_;
+  Quadrature<dim> rule_;          ///< exact to degree 2p
+  FrameTable<dim> stress_table_;  ///< basis of the stress at its points
+  std::vector<double>
+      gradient_;  ///< reference derivatives of the space's basis, [(k n_nodes + i) n_points + q]
+};
+
+/// The components of one iterate.
 template <int dim>
 [[nodiscard]] Estimate estimate(const NitscheForm<dim>& form, std::span<const double> u,
-                                const Stress<dim>& stress);
+                                const Stress<dim>& stress, ContactRule rule = ContactRule::resolved)
+{
+  return Estimator<dim>(form, rule)(u, stress);
+}
 
 }  // namespace tribound

@@ -76,14 +76,6 @@ void add_point(typename FacetData<dim, p>::Moments& moments, const FacetTable<di
         moments[v][c * n + i] += weight * table.hat[q][v] * table.basis[q][i] * t[c];
 }
 
-template <int dim, int p>
-typename FacetData<dim, p>::Moments zero_moments()
-{
-  typename FacetData<dim, p>::Moments moments;
-  for (auto& moment : moments) moment.setZero();
-  return moments;
-}
-
 }  // namespace
 
 template <int dim, int p>
@@ -110,13 +102,13 @@ FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const doubl
     const int opposite = static_cast<int>(std::ranges::find(frame.local, facet.local) - frame.local.begin());
     const double scale = std::sqrt(frame.facet_scale(opposite));  // |F| / |Fhat| times theta's normalisation
     condition.moments = static_cast<int>(discretisation_.size());
-    Moments& moments = discretisation_.emplace_back(zero_moments<dim, p>());
+    Moments& moments = discretisation_.emplace_back();
     if (boundary.contact)
     {
       for (Index v : frame.vertices)
         if (v != mesh.cell(facet.cell)[facet.local]) on_contact_[v] = 1;
       condition.contact = static_cast<int>(linearisation_.size());
-      Moments& difference = linearisation_.emplace_back(zero_moments<dim, p>());
+      Moments& difference = linearisation_.emplace_back();
       for (int q = 0; q < rule.size(); ++q, ++contact_point)
       {
         add_point<dim, p>(moments, table, q, scale * rule.weights[q], t_u[contact_point]);

@@ -21,8 +21,9 @@ class FacetData
 {
  public:
   using S = Sizes<dim, p>;
+  using FacetVector = DenseVector<S::block>;
   /// Moments for each vertex of the facet; entry c * S::facet + i belongs to component c.
-  using Moments = std::array<Eigen::Matrix<double, S::block, 1>, dim>;
+  using Moments = std::array<FacetVector, dim>;
 
   /// u is the Newton iterate and t its running traction t^k at the contact points of the form.
   FacetData(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t);

@@ -13,32 +13,32 @@ template <int dim, int p>
 void Patch<dim, p>::begin(Index vertex)
 {
   vertex_ = vertex;
+  n_problems_ = data_.on_contact(vertex) ? 2 : 1;
   size_ = 0;
-  cells_.clear();
-  facets_.clear();
-  facet_scale_.clear();
+  n_cells_ = 0;
+  found_.clear();
   fixed_facets_.clear();
 }
 
 template <int dim, int p>
-void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared)
+void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
+                             std::span<CellShare<dim, p>, 2> shares)
 {
   const Frame<dim>& frame = prepared.frame;
-  CellPart& part = cells_.emplace_back();
-  part.cell = cell;
+  if (n_cells_ == static_cast<int>(cells_.size())) cells_.push_back({0, {}, nullptr, shares, {}, {}, {}});
+  CellPart& part = cells_[n_cells_++];
   part.vertex = frame.find(vertex_);
   part.prepared = &prepared;
+  part.shares = shares;
   const auto& numbers = mesh_.topology().cell_facets[cell];
   for (int f = 0; f <= dim; ++f)
   {
     part.facets[f] = -1;
     if (f == part.vertex) continue;
     const Index facet = numbers[frame.local[f]];
-    const auto known = std::ranges::find(facets_, facet);
-    part.facets[f] = static_cast<int>(known - facets_.begin());
-    if (known != facets_.end()) continue;
-    facets_.push_back(facet);
-    facet_scale_.push_back(frame.facet_scale(f));
+    const auto known = std::ranges::find(found_, facet, &PatchFacet::number);
+    part.facets[f] = static_cast<int>(known - found_.begin());
+    if (known == found_.end()) found_.push_back({facet, frame.facet_scale(f)});
   }
   size_ = std::max(size_, 1 / frame.grad_norm[part.vertex]);  // the height of the cell above the vertex
 }
@@ -46,29 +46,44 @@ void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared)
 template <int dim, int p>
 void Patch<dim, p>::solve()
 {
+  order_facets();
   find_rigid_motions();
-  find_multipliers_of_divergence();
-  find_skew_part();
+  const Moments moments = integrate();
+  find_divergence_part(moments);
+  find_skew_part(moments);
   assemble();
-  const int last = matrix_.order();
-  fix_rigid_motions(last);
+  fix_rigid_motions(static_cast<int>(facets_.size()) - 1);
   if (!matrix_.factor())
     throw SolveError("the patch of vertex " + std::to_string(vertex_) + " has no equilibrated stress");
-  matrix_.solve(x_);
-  for (std::size_t k = 0; k < cells_.size(); ++k)
+  for (int problem = 0; problem < n_problems_; ++problem)
   {
-    FacetColumns& outer = cells_[k].outer;
-    outer = condensed_[k].outer_load;
-    for (int f = 0; f <= dim; ++f)
-      if (f != cells_[k].vertex) outer.noalias() -= condensed_[k].coupling[f] * x_[cells_[k].facets[f]];
-    condensed_[k].outer.matrixU().solveInPlace(outer);
+    matrix_.solve(std::span(x_[problem]).first(facets_.size()));
+    for (int k = 0; k < n_cells_; ++k) recover(cells_[k], problem);
   }
+}
+
+/// Renames the facets by the order of elimination.
+template <int dim, int p>
+void Patch<dim, p>::order_facets()
+{
+  matrix_.reset(static_cast<int>(found_.size()));
+  for (int k = 0; k < n_cells_; ++k)
+    for (int f = 0; f <= dim; ++f)
+      for (int g = f + 1; g <= dim; ++g)
+        if (f != cells_[k].vertex && g != cells_[k].vertex)
+          matrix_.connect(cells_[k].facets[f], cells_[k].facets[g]);
+  const std::span<const int> rank = matrix_.order();
+  for (int k = 0; k < n_cells_; ++k)
+    for (int& facet : cells_[k].facets)
+      if (facet >= 0) facet = rank[facet];
+  facets_.resize(found_.size());
+  for (std::size_t i = 0; i < found_.size(); ++i) facets_[rank[i]] = found_[i];
 }
 
 template <int dim, int p>
 void Patch<dim, p>::find_rigid_motions()
 {
-  for (const Index facet : facets_)
+  for (const auto& [facet, scale] : facets_)
   {
     if (!data_.is_boundary(facet) || !data_.fixes_any(facet)) continue;
     FixedFacet<dim>& fixed = fixed_facets_.emplace_back();
@@ -78,34 +93,19 @@ void Patch<dim, p>::find_rigid_motions()
   motions_ = RigidMotions<dim>(mesh_.vertex(vertex_), size_, fixed_facets_);
 }
 
-/// Coefficients of motion i in U on a cell (for p = 1 of its mean).
-template <int dim, int p>
-auto Patch<dim, p>::moments_on_cell(const Frame<dim>& frame, int motion) const -> UVector
-{
-  const auto& hat = reference<dim, p>().hat_moment;
-  UVector moments = UVector::Zero();
-  const double scale = std::sqrt(frame.det);
-  for (int v = 0; v <= dim; ++v)
-  {
-    const Point<dim> z = scale * motions_(motion, mesh_.vertex(frame.vertices[v]));
-    for (int c = 0; c < dim; ++c)
-      moments.template segment<S::multiplier>(c * S::multiplier) += z[c] * hat.col(v);
-  }
-  return moments;
-}
-
 /// Coefficients of motion i in P^p(F)^d.
 template <int dim, int p>
-Eigen::Matrix<double, Sizes<dim, p>::block, 1> Patch<dim, p>::moments_on_facet(Index facet, int motion) const
+auto Patch<dim, p>::moments_on_facet(int place, int motion) const -> FacetVector
 {
   const auto& hat = reference<dim, p>().facet_hat_moment;
-  Eigen::Matrix<double, S::block, 1> moments = Eigen::Matrix<double, S::block, 1>::Zero();
-  const auto place = std::ranges::find(facets_, facet) - facets_.begin();
-  const double scale = std::sqrt(facet_scale_[place]);
+  FacetVector moments;
+  const double scale = std::sqrt(facets_[place].scale);
   for (int v = 0; v < dim; ++v)
   {
-    const Point<dim> z = scale * motions_(motion, mesh_.vertex(mesh_.topology().facets[facet][v]));
-    for (int c = 0; c < dim; ++c) moments.template segment<S::facet>(c * S::facet) += z[c] * hat.col(v);
+    const Point<dim> z =
+        scale * motions_(motion, mesh_.vertex(mesh_.topology().facets[facets_[place].number][v]));
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < S::facet; ++i) moments[c * S::facet + i] += z[c] * hat(i, v);
   }
   return moments;
 }
@@ -114,13 +114,45 @@ Eigen::Matrix<double, Sizes<dim, p>::block, 1> Patch<dim, p>::moments_on_facet(I
 template <int dim, int p>
 auto Patch<dim, p>::raw_load(const CellPart& part) const -> UVector
 {
+  constexpr int m = S::multiplier;
   const PreparedCell<dim, p>& cell = *part.prepared;
-  UVector load = -cell.body[part.vertex];
   const Point<dim>& gradient = cell.frame.grad[part.vertex];
+  UVector load;
   for (int r = 0; r < dim; ++r)
-    for (int c = 0; c < dim; ++c)
-      load.template segment<S::multiplier>(r * S::multiplier) += gradient[c] * cell.sigma.col(dim * r + c);
+    for (int j = 0; j < m; ++j)
+    {
+      load[r * m + j] = -cell.body[part.vertex][r * m + j];
+      for (int c = 0; c < dim; ++c) load[r * m + j] += gradient[c] * cell.sigma[(dim * r + c) * m + j];
+    }
   return load;
+}
+
+template <int dim, int p>
+auto Patch<dim, p>::integrate() const -> Moments
+{
+  constexpr int n = S::affine;
+  Moments sum{Point<dim>::Zero(), Tensor<dim>::Zero(), 0, Point<dim>::Zero(), Tensor<dim>::Zero()};
+  for (int k = 0; k < n_cells_; ++k)
+  {
+    const PreparedCell<dim, p>& cell = *cells_[k].prepared;
+    const UVector load = raw_load(cells_[k]);
+    const Point<dim> edge = edge_to(cell.frame, cells_[k].vertex);
+    auto x = cell.coordinates;
+    for (int d = 0; d < dim; ++d) x[d][0] -= edge[d] * cell.one;
+    sum.volume += cell.one * cell.one;
+    for (int c = 0; c < dim; ++c)
+    {
+      sum.load[c] += cell.one * load[c * S::multiplier];
+      sum.position[c] += cell.one * x[c][0];
+      for (int d = 0; d < dim; ++d)
+        for (int j = 0; j < n; ++j)
+        {
+          sum.load_position(c, d) += load[c * S::multiplier + j] * x[d][j];
+          sum.position_position(c, d) += x[c][j] * x[d][j];
+        }
+    }
+  }
+  return sum;
 }
 
 template <int dim, int p>
@@ -130,158 +162,142 @@ int Patch<dim, p>::local_vertex(Index facet) const
   return static_cast<int>(std::ranges::find(vertices, vertex_) - vertices.begin());
 }
 
-/// (t, z)_F for motion z and the traction of the dis (0) or lin (1) problem.
+/// Moments of the traction of the dis (0) or lin (1) problem, or null where there is none.
 template <int dim, int p>
-double Patch<dim, p>::traction_work(Index facet, int column, int motion) const
+auto Patch<dim, p>::traction(Index facet, int problem) const -> const typename FacetData<dim, p>::FacetVector*
 {
-  if (!data_.is_boundary(facet)) return 0;
-  const auto* moments = column == 0 ? data_.discretisation(facet) : data_.linearisation(facet);
-  return moments ? (*moments)[local_vertex(facet)].dot(moments_on_facet(facet, motion)) : 0;
+  if (!data_.is_boundary(facet)) return nullptr;
+  const auto* moments = problem == 0 ? data_.discretisation(facet) : data_.linearisation(facet);
+  return moments ? &(*moments)[local_vertex(facet)] : nullptr;
+}
+
+/// (t, z) over the facets of the patch.
+template <int dim, int p>
+double Patch<dim, p>::traction_work(int problem, int motion) const
+{
+  double work = 0;
+  for (std::size_t i = 0; i < facets_.size(); ++i)
+    if (const auto* t = traction(facets_[i].number, problem))
+    {
+      const FacetVector z = moments_on_facet(static_cast<int>(i), motion);
+      for (int k = 0; k < S::block; ++k) work += (*t)[k] * z[k];
+    }
+  return work;
 }
 
 /// y_a in Z_a (rigid motions; constants for p = 1) with (y_a, z) = -<R(u^k), psi_a z> = (b, z) - (t, z) for
 /// the dis problem, and (y_lin, z) = (t^k - T(u^k), psi_a z)_C for the lin problem.
 template <int dim, int p>
-void Patch<dim, p>::find_multipliers_of_divergence()
+void Patch<dim, p>::find_divergence_part(const Moments& moments)
 {
-  y_.setZero();
+  y_.fill({Point<dim>::Zero(), Tensor<dim>::Zero()});
   const int n = p == 1 ? motions_.n_translations() : motions_.size();
   if (n == 0) return;
-  using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, S::rigid, S::rigid>;
-  Gram gram = Gram::Zero(n, n);
-  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, S::rigid, 2> rhs(n, 2);
-  rhs.setZero();
-  std::array<UVector, S::rigid> z;
-  for (const CellPart& part : cells_)
+  Dense<S::rigid, S::rigid> gram;
+  std::array<RigidVector, 2> y{};
+  for (int i = 0; i < S::rigid; ++i) gram(i, i) = 1;  // motions that are not admitted
+  for (int i = 0; i < n; ++i)
   {
-    const UVector load = raw_load(part);
+    const auto& [translation, gradient] = motions_[i];
+    for (int j = i; j < n; ++j)
+    {
+      const auto& [other_translation, other_gradient] = motions_[j];
+      gram(i, j) = moments.volume * translation.dot(other_translation) +
+                   translation.dot(other_gradient * moments.position) +
+                   other_translation.dot(gradient * moments.position) +
+                   (gradient * moments.position_position).cwiseProduct(other_gradient).sum();
+    }
+    y[0][i] = translation.dot(moments.load) + gradient.cwiseProduct(moments.load_position).sum();
+    for (int problem = 0; problem < n_problems_; ++problem)
+      y[problem][i] += (problem == 0 ? -1 : 1) * traction_work(problem, i);
+  }
+  RigidVector reciprocal;
+  if (!cholesky<S::rigid>(gram.data(), gram.stride, reciprocal.data()))
+    throw SolveError("the cells around vertex " + std::to_string(vertex_) + " are too flat");
+  for (int problem = 0; problem < n_problems_; ++problem)
+  {
+    solve_transposed<S::rigid>(gram.data(), gram.stride, reciprocal.data(), y[problem].data());
+    solve_upper<S::rigid>(gram.data(), gram.stride, reciprocal.data(), y[problem].data());
     for (int i = 0; i < n; ++i)
     {
-      z[i] = moments_on_cell(part.prepared->frame, i);
-      rhs(i, 0) += load.dot(z[i]);
-      for (int j = 0; j <= i; ++j) gram(i, j) += z[i].dot(z[j]);
+      y_[problem].translation += y[problem][i] * motions_[i].translation;
+      y_[problem].gradient += y[problem][i] * motions_[i].gradient;
     }
   }
-  for (const Index facet : facets_)
-    for (int i = 0; i < n; ++i)
-    {
-      rhs(i, 0) -= traction_work(facet, 0, i);
-      rhs(i, 1) += traction_work(facet, 1, i);
-    }
-  y_.topRows(n) = gram.template selfadjointView<Eigen::Lower>().ldlt().solve(rhs);
-}
-
-template <int dim, int p>
-RigidField<dim> Patch<dim, p>::y(int column) const
-{
-  RigidField<dim> field{Point<dim>::Zero(), Tensor<dim>::Zero()};
-  for (int i = 0; i < motions_.size(); ++i)
-  {
-    field.translation += y_(i, column) * motions_(i, mesh_.vertex(vertex_));
-    field.gradient += y_(i, column) * motions_.gradient(i);
-  }
-  return field;
 }
 
 /// w_a for p = 1: in the span of grad z of the admissible rotations z, with
 /// (w_a, grad z) = (t, z)_{N, C} - (Pi^0 b, z).
 template <int dim, int p>
-void Patch<dim, p>::find_skew_part()
+void Patch<dim, p>::find_skew_part(const Moments& moments)
 {
   w_.fill(Tensor<dim>::Zero());
   const int n = motions_.n_rotations();
   if (p > 1 || n == 0) return;
   const int first = motions_.n_translations();
-  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 3, 2> rhs(n, 2);
-  rhs.setZero();
-  double volume = 0;
-  for (const CellPart& part : cells_)
-  {
-    const Frame<dim>& frame = part.prepared->frame;
-    double reference_volume = 1;
-    for (int k = 2; k <= dim; ++k) reference_volume /= k;
-    volume += frame.det * reference_volume;
-    UVector y_dis = UVector::Zero();
-    UVector y_lin = UVector::Zero();
-    for (int i = 0; i < first; ++i)
-    {
-      const UVector z = moments_on_cell(frame, i);
-      y_dis += y_(i, 0) * z;
-      y_lin += y_(i, 1) * z;
-    }
-    const UVector b_dis = raw_load(part) - y_dis;
-    for (int i = 0; i < n; ++i)
-    {
-      const UVector z = moments_on_cell(frame, first + i);
-      rhs(i, 0) -= b_dis.dot(z);
-      rhs(i, 1) -= y_lin.dot(z);
-    }
-  }
-  for (const Index facet : facets_)
-    for (int i = 0; i < n; ++i)
-      for (int column = 0; column < 2; ++column) rhs(i, column) += traction_work(facet, column, first + i);
-
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram(n, n);
+  using Gram = Eigen::Matrix<double, S::pairs, S::pairs>;
+  Gram gram = Gram::Identity();
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
-      gram(i, j) = volume * motions_.gradient(first + i).cwiseProduct(motions_.gradient(first + j)).sum();
-  const auto coefficients = gram.ldlt().solve(rhs).eval();
-  for (int column = 0; column < 2; ++column)
-    for (int i = 0; i < n; ++i) w_[column] += coefficients(i, column) * motions_.gradient(first + i);
+      gram(i, j) =
+          moments.volume * motions_[first + i].gradient.cwiseProduct(motions_[first + j].gradient).sum();
+  const Gram inverse = gram.inverse();
+  for (int problem = 0; problem < n_problems_; ++problem)
+  {
+    // (Pi^0 b, z), z = grad z x: b is the load of dis without y_a and y_lin,a in lin
+    const Tensor<dim> y = y_[problem].translation * moments.position.transpose();
+    const Tensor<dim> b = problem == 0 ? Tensor<dim>(moments.load_position - y) : y;
+    Eigen::Matrix<double, S::pairs, 1> rhs = Eigen::Matrix<double, S::pairs, 1>::Zero();
+    for (int i = 0; i < n; ++i)
+      rhs[i] = traction_work(problem, first + i) - b.cwiseProduct(motions_[first + i].gradient).sum();
+    for (int i = 0; i < n; ++i) w_[problem] += inverse.row(i).dot(rhs) * motions_[first + i].gradient;
+  }
 }
 
 template <int dim, int p>
 void Patch<dim, p>::assemble()
 {
-  matrix_.reset(static_cast<int>(facets_.size()));
-  x_.assign(facets_.size(), FacetColumns::Zero());
-  if (condensed_.size() < cells_.size()) condensed_.resize(cells_.size());
-  for (std::size_t k = 0; k < cells_.size(); ++k)
+  for (int problem = 0; problem < n_problems_; ++problem) x_[problem].assign(facets_.size(), {});
+  for (int k = 0; k < n_cells_; ++k)
   {
-    condense(k);
-    assemble_loads(k);
+    condense(cells_[k]);
+    for (int problem = 0; problem < n_problems_; ++problem) assemble_load(cells_[k], problem);
   }
   for (std::size_t i = 0; i < facets_.size(); ++i)
   {
-    if (!data_.is_boundary(facets_[i])) continue;
-    const int v = local_vertex(facets_[i]);
-    if (const auto* t = data_.discretisation(facets_[i])) x_[i].col(0) -= (*t)[v];
-    if (const auto* t = data_.linearisation(facets_[i])) x_[i].col(1) -= (*t)[v];
+    if (!data_.is_boundary(facets_[i].number)) continue;
+    for (int problem = 0; problem < n_problems_; ++problem)
+      if (const auto* t = traction(facets_[i].number, problem)) add_multiple(x_[problem][i], -1, *t);
     decouple_fixed_components(static_cast<int>(i));
   }
 }
 
 /// Eliminates the multiplier of the outer facet o: S(f, g) - S(f, o) S(o, o)^{-1} S(o, g).
 template <int dim, int p>
-void Patch<dim, p>::condense(std::size_t k)
+void Patch<dim, p>::condense(CellPart& part)
 {
-  const CellPart& part = cells_[k];
-  const CellOperator<dim, p>& op = part.prepared->op;
-  Condensed& condensed = condensed_[k];
+  constexpr int n = S::block;
+  constexpr int stride = Operator::facet_stride;
+  constexpr int row = Operator::all_facets;
+  const Operator& op = part.prepared->op;
   const int o = part.vertex;
-  condensed.outer.compute(op.schur(o, o));
+  double* const outer = part.outer_rows.data();
+  std::copy_n(op.schur(o), n * row, outer);
+  if (!cholesky<n>(outer + o * stride, row, part.reciprocal.data()))
+    throw SolveError("a cell at vertex " + std::to_string(vertex_) + " is too flat");
   for (int f = 0; f <= dim; ++f)
-  {
-    if (f == o) continue;
-    BlockMatrix& coupling = condensed.coupling[f];
-    if (o < f)
-      coupling = op.schur(o, f);
-    else
-      coupling = op.schur(f, o).transpose();
-    condensed.outer.matrixL().solveInPlace(coupling);
-  }
+    if (f != o)
+      solve_transposed<n, stride>(outer + o * stride, row, part.reciprocal.data(), outer + f * stride, row);
   for (int f = 0; f <= dim; ++f)
-    for (int g = f; g <= dim; ++g)
+    for (int g = 0; g <= dim; ++g)
     {
-      if (f == o || g == o) continue;
-      BlockMatrix block = op.schur(f, g);
-      block.noalias() -= condensed.coupling[f].transpose() * condensed.coupling[g];
-      const int i = part.facets[f];
-      const int j = part.facets[g];
-      if (i <= j)
-        matrix_.block(i, j) += block;
-      else
-        matrix_.block(j, i) += block.transpose();
+      if (f == o || g == o || part.facets[f] > part.facets[g]) continue;
+      auto& block = matrix_.block(part.facets[f], part.facets[g]);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < stride; j += lanes)
+          lanes_at(block.row(i) + j) += lanes_at(op.schur(f) + i * row + g * stride + j);
+      subtract_transposed_product<n, stride, n>(block.data(), stride, outer + f * stride, row,
+                                                outer + g * stride, row);
     }
 }
 
@@ -289,57 +305,45 @@ void Patch<dim, p>::condense(std::size_t k)
 /// psi_a, r is (psi_a (div sigma + f) + y_a, v) on U and -(w_a, q) on Lambda for dis; (-y_lin, v) and
 /// -(w_lin, q) for lin.
 template <int dim, int p>
-void Patch<dim, p>::assemble_loads(std::size_t k)
+void Patch<dim, p>::assemble_load(CellPart& part, int problem)
 {
   constexpr int m = S::multiplier;
   constexpr int n = S::facet;
-  const CellPart& part = cells_[k];
   const PreparedCell<dim, p>& cell = *part.prepared;
   const Frame<dim>& frame = cell.frame;
   const Reference<dim, p>& ref = reference<dim, p>();
   const int o = part.vertex;
+  UVector r_u;
+  FacetVectors load;
+  if (problem == 0)
+  {
+    r_u = cell.body[o];
+    for (int r = 0; r < dim; ++r)
+      for (int i = 0; i < m; ++i)
+        for (int j = 0; j < m; ++j) r_u[r * m + i] += ref.hat[o](i, j) * cell.divergence[r * m + j];
+    for (int f = 0; f <= dim; ++f)  // N (psi_a sigma)
+      for (int r = 0; r < dim && f != o; ++r)
+      {
+        std::array<double, m> normal{};
+        for (int c = 0; c < dim; ++c)
+          for (int j = 0; j < m; ++j) normal[j] -= frame.grad[f][c] * cell.sigma[(dim * r + c) * m + j];
+        const double scale = 1 / std::sqrt(frame.grad_norm[f]);
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < m; ++j) load(f, r * n + i) += scale * ref.hat_trace[f][o](i, j) * normal[j];
+      }
+  }
+  add_moments(r_u, cell, o, y_[problem], problem == 0 ? 1 : -1);
+  cell.op.subtract_load(load, frame, r_u, w_[problem]);
 
-  std::array<UVector, 2> r_u{cell.body[o], UVector::Zero()};
-  for (int r = 0; r < dim; ++r)
-    r_u[0].template segment<m>(r * m) += ref.hat[o] * cell.divergence.template segment<m>(r * m);
-  for (int i = 0; i < motions_.size(); ++i)
-  {
-    if (y_.row(i).isZero(0)) continue;
-    const UVector z = moments_on_cell(frame, i);
-    r_u[0] += y_(i, 0) * z;
-    r_u[1] -= y_(i, 1) * z;
-  }
-
-  std::array<FacetColumns, dim + 1> load;
-  for (int column = 0; column < 2; ++column)
-  {
-    RotationVector r_rotation = RotationVector::Zero();
-    for (int i = 0; i < S::pairs; ++i)
-      if (p == 1)
-        r_rotation[i] = -2 * w_[column](skew_pairs<dim>[i][0], skew_pairs<dim>[i][1]) * std::sqrt(frame.det) *
-                        ref.hat_moment.row(0).sum();
-    const UVector reduced = cell.op.reduce(r_u[column], r_rotation);
-    for (int f = 0; f <= dim; ++f)
-    {
-      load[f].col(column) = -cell.op.facet_part(f, reduced);
-      if (p == 1) load[f].col(column) -= cell.op.rotation_part(f, r_rotation);
-    }
-  }
+  FacetVector& outer = part.outer_load[problem];
+  std::copy_n(load.row(o), FacetVector::stride, outer.data());
+  solve_transposed<S::block>(part.outer_rows.row(0) + o * FacetVector::stride, Operator::all_facets,
+                             part.reciprocal.data(), outer.data());
+  subtract_transposed_times<S::block, Operator::all_facets>(load.data(), part.outer_rows.data(),
+                                                            Operator::all_facets, outer.data());
   for (int f = 0; f <= dim; ++f)
-  {
-    if (f == o) continue;
-    for (int r = 0; r < dim; ++r)  // N (psi_a sigma)
-    {
-      Eigen::Matrix<double, m, 1> normal = Eigen::Matrix<double, m, 1>::Zero();
-      for (int c = 0; c < dim; ++c) normal += frame.grad[f][c] * cell.sigma.col(dim * r + c);
-      load[f].col(0).template segment<n>(r * n) -=
-          ref.hat_trace[f][o] * normal / std::sqrt(frame.grad_norm[f]);
-    }
-  }
-  condensed_[k].outer.matrixL().solveInPlace(load[o]);
-  condensed_[k].outer_load = load[o];
-  for (int f = 0; f <= dim; ++f)
-    if (f != o) x_[part.facets[f]] += load[f] - condensed_[k].coupling[f].transpose() * load[o];
+    if (f != o)
+      for (int i = 0; i < S::block; ++i) x_[problem][part.facets[f]][i] += load(f, i);
 }
 
 /// Where Gamma_D fixes a component the normal trace is free: its multiplier is 0.
@@ -348,9 +352,10 @@ void Patch<dim, p>::decouple_fixed_components(int place)
 {
   for (int c = 0; c < dim; ++c)
   {
-    if (!data_.fixes(facets_[place], c)) continue;
+    if (!data_.fixes(facets_[place].number, c)) continue;
     matrix_.template decouple<S::facet>(place, c * S::facet);
-    x_[place].template middleRows<S::facet>(c * S::facet).setZero();
+    for (int problem = 0; problem < n_problems_; ++problem)
+      std::fill_n(x_[problem][place].data() + c * S::facet, S::facet, 0.0);
   }
 }
 
@@ -360,15 +365,41 @@ template <int dim, int p>
 void Patch<dim, p>::fix_rigid_motions(int place)
 {
   auto& diagonal = matrix_.block(place, place);
-  const double scale = diagonal.trace() / S::block;
-  for (int i = 0; i < motions_.size(); ++i)
+  double scale = 0;
+  for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
+  for (int motion = 0; motion < motions_.size(); ++motion)
   {
-    Eigen::Matrix<double, S::block, 1> trace = moments_on_facet(facets_[place], i);
-    if (data_.is_boundary(facets_[place]))
+    FacetVector trace = moments_on_facet(place, motion);
+    if (data_.is_boundary(facets_[place].number))
       for (int c = 0; c < dim; ++c)
-        if (data_.fixes(facets_[place], c)) trace.template segment<S::facet>(c * S::facet).setZero();
-    diagonal += (scale / trace.squaredNorm()) * trace * trace.transpose();
+        if (data_.fixes(facets_[place].number, c)) std::fill_n(trace.data() + c * S::facet, S::facet, 0.0);
+    double square = 0;
+    for (int i = 0; i < S::block; ++i) square += trace[i] * trace[i];
+    for (int i = 0; i < S::block; ++i)
+      for (int j = 0; j < S::block; ++j) diagonal(i, j) += scale / square * trace[i] * trace[j];
   }
+}
+
+/// The multiplier of the outer facet, and all that goes to the cell.
+template <int dim, int p>
+void Patch<dim, p>::recover(CellPart& part, int problem)
+{
+  constexpr int stride = Operator::facet_stride;
+  constexpr int row = Operator::all_facets;
+  CellShare<dim, p>& share = part.shares[problem];
+  const int o = part.vertex;
+  double* const outer = share.mu.row(o);
+  std::copy_n(part.outer_load[problem].data(), stride, outer);
+  for (int f = 0; f <= dim; ++f)
+  {
+    if (f == o) continue;
+    const FacetVector& x = x_[problem][part.facets[f]];
+    std::copy_n(x.data(), stride, share.mu.row(f));
+    subtract_times<S::block, stride>(outer, part.outer_rows.data() + f * stride, row, x.data());
+  }
+  solve_upper<S::block>(part.outer_rows.data() + o * stride, row, part.reciprocal.data(), outer);
+  share.y = y_[problem];
+  share.w = w_[problem];
 }
 
 template class Patch<2, 1>;

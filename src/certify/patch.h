@@ -4,105 +4,101 @@
 /// The minimisation problems on the patch of one vertex, method section 4: gather, condense, factor, solve.
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "certify/block_cholesky.h"
-#include "certify/cell_operator.h"
 #include "certify/facet_data.h"
-#include "certify/rigid.h"
+#include "certify/prepared_cell.h"
 
 namespace tribound
 {
 
-/// A cell with everything its patches share.
-template <int dim, int p>
-struct PreparedCell
-{
-  using S = Sizes<dim, p>;
-  Frame<dim> frame;
-  CellOperator<dim, p> op;
-  DiscreteStress<dim, p> sigma;                              ///< sigma(u^k)
-  Eigen::Matrix<double, S::u, 1> divergence;                 ///< moments of div sigma(u^k)
-  std::array<Eigen::Matrix<double, S::u, 1>, dim + 1> body;  ///< moments of psi_a f
-};
-
-/// The discretisation and linearisation problems of a vertex; column 0 is dis, column 1 is lin.
+/// The discretisation and linearisation problems of a vertex, numbers 0 and 1 of everything that both have.
 /// An object is the work space of one thread.
 template <int dim, int p>
 class Patch
 {
  public:
   using S = Sizes<dim, p>;
-  using FacetColumns = Eigen::Matrix<double, S::block, 2>;
-
-  /// Results for the caller to distribute.
-  struct CellPart
-  {
-    Index cell;
-    int vertex;                       ///< the patch's vertex in the frame of the cell
-    std::array<int, dim + 1> facets;  ///< place in `facets`, -1 for the outer one
-    const PreparedCell<dim, p>* prepared;
-    FacetColumns outer;  ///< multipliers of the outer facet
-  };
 
   Patch(const Mesh<dim>& mesh, const FacetData<dim, p>& data) : mesh_(mesh), data_(data) {}
 
   /// Starts the patch of a vertex.
   void begin(Index vertex);
-  void add_cell(Index cell, const PreparedCell<dim, p>& prepared);
-  /// Solves both problems. Throws SolveError naming the vertex if the patch is not what section 4 requires.
+  /// `shares` takes the results: dis, and lin if there is one.
+  void add_cell(Index cell, const PreparedCell<dim, p>& prepared, std::span<CellShare<dim, p>, 2> shares);
+  /// Solves the problems. Throws SolveError naming the vertex if the patch is not what section 4 requires.
   void solve();
 
-  [[nodiscard]] const std::vector<CellPart>& cells() const { return cells_; }
-  [[nodiscard]] const std::vector<Index>& facets() const { return facets_; }
-  /// Multipliers of a facet around the vertex, by place.
-  [[nodiscard]] const FacetColumns& multipliers(int place) const { return x_[place]; }
-  /// y_a of the dis problem (column 0) and y_lin,a of the lin problem (1).
-  [[nodiscard]] RigidField<dim> y(int column) const;
-  /// w_a (p = 1), a constant skew tensor.
-  [[nodiscard]] const Tensor<dim>& w(int column) const { return w_[column]; }
-
  private:
-  using UVector = Eigen::Matrix<double, S::u, 1>;
-  using RotationVector = Eigen::Matrix<double, S::rotation, 1>;
-  using BlockMatrix = Block<S::block, S::block>;
+  using Operator = CellOperator<dim, p>;
+  using UVector = typename Operator::UVector;
+  using FacetVector = DenseVector<S::block>;
+  using FacetVectors = typename Operator::FacetVectors;
+  using RigidVector = std::array<double, S::rigid>;
 
-  /// L_o^{-1} S(o, f) and L_o of a cell, o its outer facet.
-  struct Condensed
+  struct CellPart
   {
-    Eigen::LLT<BlockMatrix> outer;
-    std::array<BlockMatrix, dim + 1> coupling;
-    FacetColumns outer_load;
+    int vertex;                       ///< the patch's vertex in the frame of the cell: also its outer facet
+    std::array<int, dim + 1> facets;  ///< place in `facets_`, -1 for the outer one
+    const PreparedCell<dim, p>* prepared;
+    std::span<CellShare<dim, p>, 2> shares;
+    /// With the outer facet o: U(o, o) and U(o, f) = U(o, o)^{-T} S(o, f) for all facets f of the cell.
+    Dense<S::block, Operator::all_facets> outer_rows;
+    std::array<double, S::block> reciprocal;  ///< of the diagonal of U(o, o)
+    std::array<FacetVector, 2> outer_load;    ///< U(o, o)^{-T} g_o
   };
 
+  struct PatchFacet
+  {
+    Index number;
+    double scale;  ///< |F| / |Fhat|
+  };
+
+  /// Integrals over the patch that y_a and w_a need; b without y_a, x relative to the vertex.
+  struct Moments
+  {
+    Point<dim> load;            ///< (b, 1)
+    Tensor<dim> load_position;  ///< (b_c, x_d)
+    double volume;
+    Point<dim> position;            ///< (x, 1)
+    Tensor<dim> position_position;  ///< (x_d, x_e)
+  };
+
+  void order_facets();
   void find_rigid_motions();
-  void find_multipliers_of_divergence();
-  void find_skew_part();
+  [[nodiscard]] Moments integrate() const;
+  void find_divergence_part(const Moments& moments);
+  void find_skew_part(const Moments& moments);
   void assemble();
-  void condense(std::size_t k);
-  void assemble_loads(std::size_t k);
+  void condense(CellPart& part);
+  void assemble_load(CellPart& part, int problem);
+  void assemble_tractions();
   void decouple_fixed_components(int place);
   void fix_rigid_motions(int place);
-  [[nodiscard]] UVector moments_on_cell(const Frame<dim>& frame, int motion) const;
-  [[nodiscard]] Eigen::Matrix<double, S::block, 1> moments_on_facet(Index facet, int motion) const;
+  void recover(CellPart& part, int problem);
   [[nodiscard]] UVector raw_load(const CellPart& part) const;
+  [[nodiscard]] FacetVector moments_on_facet(int place, int motion) const;
   [[nodiscard]] int local_vertex(Index facet) const;
-  [[nodiscard]] double traction_work(Index facet, int column, int motion) const;
+  [[nodiscard]] double traction_work(int problem, int motion) const;
+  [[nodiscard]] const typename FacetData<dim, p>::FacetVector* traction(Index facet, int problem) const;
 
   const Mesh<dim>& mesh_;
   const FacetData<dim, p>& data_;
   Index vertex_ = 0;
-  double size_ = 0;  ///< of the patch
-  std::vector<CellPart> cells_;
-  std::vector<Condensed> condensed_;
-  std::vector<Index> facets_;
-  std::vector<double> facet_scale_;  ///< |F| / |Fhat|
+  int n_problems_ = 0;  ///< 2 on Gamma_C: elsewhere the data of lin vanish
+  double size_ = 0;     ///< of the patch
+  int n_cells_ = 0;
+  std::vector<CellPart> cells_;     ///< the first n_cells_ of them
+  std::vector<PatchFacet> facets_;  ///< around the vertex, in the order of elimination
+  std::vector<PatchFacet> found_;   ///< the same as they were found
   std::vector<FixedFacet<dim>> fixed_facets_;
   RigidMotions<dim> motions_{Point<dim>::Zero(), 1.0, {}};
-  Eigen::Matrix<double, S::rigid, 2> y_;  ///< coefficients of y_a in the rigid motions
+  std::array<RigidField<dim>, 2> y_;
   std::array<Tensor<dim>, 2> w_;
   BlockCholesky<S::block> matrix_;
-  std::vector<FacetColumns> x_;
+  std::array<std::vector<FacetVector>, 2> x_;
 };
 
 }  // namespace tribound

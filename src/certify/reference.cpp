@@ -27,9 +27,6 @@ template <int dim, int p>
 void integrate_cell(Reference<dim, p>& r)
 {
   using S = Sizes<dim, p>;
-  for (auto& matrix : r.derivative) matrix.setZero();
-  for (auto& matrix : r.hat) matrix.setZero();
-  r.hat_moment.setZero();
   const Quadrature<dim> rule = quadrature<dim>(2 * p);
   std::vector<double> values(S::stress);
   std::vector<Point<dim>> gradients(S::stress);
@@ -56,10 +53,6 @@ template <int dim, int p>
 void integrate_facets(Reference<dim, p>& r)
 {
   using S = Sizes<dim, p>;
-  for (auto& matrix : r.trace) matrix.setZero();
-  for (auto& row : r.hat_trace)
-    for (auto& matrix : row) matrix.setZero();
-  r.facet_hat_moment.setZero();
   const Quadrature<dim - 1> rule = quadrature<dim - 1>(2 * p);
   std::vector<double> values(S::stress);
   std::vector<double> theta(S::facet);
@@ -68,7 +61,7 @@ void integrate_facets(Reference<dim, p>& r)
     orthonormal_values<dim - 1>(p, rule.points[q], theta);
     const auto on_facet = barycentric<dim - 1>(rule.points[q]);
     for (int i = 0; i < S::facet; ++i)
-      r.facet_hat_moment.row(i) += rule.weights[q] * theta[i] * on_facet.transpose();
+      for (int v = 0; v < dim; ++v) r.facet_hat_moment(i, v) += rule.weights[q] * theta[i] * on_facet[v];
     for (int f = 0; f <= dim; ++f)
     {
       const Point<dim> x = facet_to_cell<dim>(f, rule.points[q]);
@@ -107,10 +100,33 @@ void differentiate_nodal_basis(Reference<dim, p>& r)
       for (int j = 0; j < n; ++j) vandermonde(i, j) = values[j];
     }
     const Eigen::MatrixXd coefficients = vandermonde.inverse();  // of nodal function j in phi: column j
-    std::array<Block<S::multiplier, S::stress>, dim> derivative;
-    for (int k = 0; k < dim; ++k) derivative[k] = r.derivative[k] * coefficients;
-    r.nodal_derivative.push_back(derivative);
+    auto& derivative = r.nodal_derivative.emplace_back();
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < S::multiplier; ++i)
+        for (int j = 0; j < n; ++j)
+          for (int l = 0; l < n; ++l) derivative[k](j, i) += r.derivative[k](i, l) * coefficients(l, j);
   } while (std::next_permutation(local.begin(), local.end()));
+}
+
+/// The first columns of a matrix.
+template <int n, int rows, int cols>
+Dense<rows, n> truncated(const Dense<rows, cols>& matrix)
+{
+  Dense<rows, n> result;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < n; ++j) result(i, j) = matrix(i, j);
+  return result;
+}
+
+/// A B^T - A' B'^T / 2 and A' B'^T / 2, the prime standing for the first n columns.
+template <int n, int rows, int cols, int inner>
+void multiply(const Dense<rows, inner>& a, const Dense<cols, inner>& b, Dense<rows, cols>& product,
+              Dense<rows, cols>& half_truncated)
+{
+  half_truncated = Dense<rows, cols>{};
+  add_multiple(half_truncated, 0.5, times_transposed(truncated<n>(a), truncated<n>(b)));
+  product = times_transposed(a, b);
+  add_multiple(product, -1.0, half_truncated);
 }
 
 }  // namespace
@@ -120,13 +136,16 @@ Reference<dim, p>::Reference()
 {
   integrate_cell(*this);
   integrate_facets(*this);
+  constexpr int m = S::multiplier;
   for (int k = 0; k < dim; ++k)
   {
-    for (int f = 0; f <= dim; ++f) derivative_trace[k][f] = derivative[k] * trace[f].transpose();
-    for (int l = 0; l < dim; ++l) derivative_derivative[k][l] = derivative[k] * derivative[l].transpose();
+    for (int f = 0; f <= dim; ++f)
+      multiply<m>(derivative[k], trace[f], coupling[k][f], truncated_coupling[k][f]);
+    for (int l = 0; l < dim; ++l)
+      multiply<m>(derivative[k], derivative[l], divergence[k][l], truncated_divergence[k][l]);
   }
   for (int f = 0; f <= dim; ++f)
-    for (int g = 0; g <= dim; ++g) trace_trace[f][g] = trace[f] * trace[g].transpose();
+    for (int g = 0; g <= dim; ++g) multiply<m>(trace[f], trace[g], schur[f][g], truncated_schur[f][g]);
   differentiate_nodal_basis(*this);
 }
 

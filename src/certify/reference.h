@@ -4,10 +4,12 @@
 /// Matrices on the reference simplex from which the operators of every cell follow by scaling: derivatives,
 /// traces and products with hat functions in orthonormal bases.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "base/types.h"
+#include "certify/small_dense.h"
 #include "fem/lagrange.h"
 #include "fem/polynomials.h"
 
@@ -27,36 +29,39 @@ struct Sizes
   static constexpr int rotation = pairs * multiplier;             ///< dim Lambda
   static constexpr int block = dim * facet;                       ///< multipliers of one facet
   static constexpr int rigid = dim + pairs;                       ///< rigid motions
+  static constexpr int affine = std::min(multiplier, dim + 1);    ///< functions chi of degree <= 1
 };
-
-template <int rows, int cols>
-using Block = Eigen::Matrix<double, rows, cols, cols == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
 /// Reference matrices. phi: orthonormal basis of P^p, chi: its part of degree p-1 (both on the cell), theta:
 /// orthonormal basis of P^p on the facet, whose vertices are taken in ascending order. Facet i is opposite to
-/// vertex i.
+/// vertex i. With D_k = derivative[k], E_f = trace[f], and D'_k, E'_f what they are on P^{p-1}:
 template <int dim, int p>
 struct Reference
 {
   using S = Sizes<dim, p>;
+  using MultiplierMatrix = Dense<S::multiplier, S::multiplier>;
+  using CouplingMatrix = Dense<S::multiplier, S::facet>;
+  using FacetMatrix = Dense<S::facet, S::facet>;
 
-  std::array<Block<S::multiplier, S::stress>, dim> derivative;  ///< (d_k phi_j, chi_i)
-  std::array<Block<S::facet, S::stress>, dim + 1> trace;        ///< (phi_j, theta_i)_F
-  /// derivative[k] * trace[f]^T
-  std::array<std::array<Block<S::multiplier, S::facet>, dim + 1>, dim> derivative_trace;
-  /// trace[f] * trace[g]^T
-  std::array<std::array<Block<S::facet, S::facet>, dim + 1>, dim + 1> trace_trace;
-  /// derivative[k] * derivative[l]^T
-  std::array<std::array<Block<S::multiplier, S::multiplier>, dim>, dim> derivative_derivative;
+  std::array<Dense<S::multiplier, S::stress>, dim> derivative;  ///< (d_k phi_j, chi_i)
+  std::array<Dense<S::facet, S::stress>, dim + 1> trace;        ///< (phi_j, theta_i)_F
+
+  /// D_k D_l^T - D'_k D'_l^T / 2 and D'_k D'_l^T / 2
+  std::array<std::array<MultiplierMatrix, dim>, dim> divergence, truncated_divergence;
+  /// [k][f]: D_k E_f^T - D'_k E'_f^T / 2 and D'_k E'_f^T / 2
+  std::array<std::array<CouplingMatrix, dim + 1>, dim> coupling, truncated_coupling;
+  /// [f][g]: E_f E_g^T - E'_f E'_g^T / 2 and E'_f E'_g^T / 2
+  std::array<std::array<FacetMatrix, dim + 1>, dim + 1> schur, truncated_schur;
+
   /// [f][a]: (lambda_a chi_j, theta_i)_F, zero for a = f
-  std::array<std::array<Block<S::facet, S::multiplier>, dim + 1>, dim + 1> hat_trace;
-  std::array<Block<S::multiplier, S::multiplier>, dim + 1> hat;  ///< [a]: (lambda_a chi_j, chi_i)
-  Block<S::multiplier, dim + 1> hat_moment;                      ///< (lambda_a, chi_i)
-  Block<S::facet, dim> facet_hat_moment;                         ///< (lambda_v, theta_i)_F, v-th vertex of F
+  std::array<std::array<Dense<S::facet, S::multiplier>, dim + 1>, dim + 1> hat_trace;
+  std::array<MultiplierMatrix, dim + 1> hat;  ///< [a]: (lambda_a chi_j, chi_i)
+  Dense<S::multiplier, dim + 1> hat_moment;   ///< (lambda_a, chi_i); chi_i beyond P^1: 0
+  Dense<S::facet, dim> facet_hat_moment;      ///< (lambda_v, theta_i)_F, v-th vertex of F
   /// Coefficients of d_k of the Lagrange basis function of node j in chi, the cell's vertices being permuted:
-  /// nodal_derivative[permutation_number(frame.local)][k], columns in the order of LagrangeBasis of the
-  /// unsorted cell.
-  std::vector<std::array<Block<S::multiplier, S::stress>, dim>> nodal_derivative;
+  /// nodal_derivative[permutation_number(frame.local)][k], rows in the order of LagrangeBasis of the unsorted
+  /// cell.
+  std::vector<std::array<Dense<S::stress, S::multiplier>, dim>> nodal_derivative;
 
   Reference();
 };

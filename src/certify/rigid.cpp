@@ -19,15 +19,27 @@ Tensor<dim> unit_spin(int i)
   return spin;
 }
 
-/// An orthonormal basis of the null space of a symmetric positive semidefinite matrix of entries of size 1.
+/// An orthonormal basis of the null space of a symmetric positive semidefinite matrix of entries of size 1:
+/// the first `nullity` columns.
 template <int n>
-Eigen::MatrixXd null_space(const Eigen::Matrix<double, n, n>& gram)
+struct NullSpace
 {
-  constexpr double threshold = 1e-10;  // the rows are of size 1 on the patch: this is an angle of 1e-5
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> eigen(gram);
-  const int nullity = static_cast<int>((eigen.eigenvalues().array() < threshold).count());
-  return eigen.eigenvectors().leftCols(nullity);
-}
+  explicit NullSpace(const Eigen::Matrix<double, n, n>& gram)
+  {
+    constexpr double threshold = 1e-10;  // the rows are of size 1 on the patch: this is an angle of 1e-5
+    if (gram.isZero(0))                  // inside Omega: spares the eigenvalues
+    {
+      nullity = n;
+      return;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> eigen(gram);
+    while (nullity < n && eigen.eigenvalues()[nullity] < threshold) ++nullity;  // they ascend
+    basis = eigen.eigenvectors();
+  }
+
+  Eigen::Matrix<double, n, n> basis = Eigen::Matrix<double, n, n>::Identity();
+  int nullity = 0;
+};
 
 }  // namespace
 
@@ -52,15 +64,15 @@ RigidMotions<dim>::RigidMotions(const Point<dim>& centre, double size,
       }
     }
 
-  const Eigen::MatrixXd t = null_space<dim>(translations);
-  const Eigen::MatrixXd r = null_space<n_spins>(rotations);
-  n_translations_ = static_cast<int>(t.cols());
-  n_rotations_ = static_cast<int>(r.cols());
-  translation_.setZero();
-  spin_.fill(Tensor<dim>::Zero());
-  translation_.leftCols(n_translations_) = t;
+  const NullSpace<dim> t(translations);
+  const NullSpace<n_spins> r(rotations);
+  n_translations_ = t.nullity;
+  n_rotations_ = r.nullity;
+  for (RigidField<dim>& motion : motions_) motion = {Point<dim>::Zero(), Tensor<dim>::Zero()};
+  for (int i = 0; i < n_translations_; ++i) motions_[i].translation = t.basis.col(i);
   for (int i = 0; i < n_rotations_; ++i)
-    for (int k = 0; k < n_spins; ++k) spin_[n_translations_ + i] += r(k, i) / size * unit_spin<dim>(k);
+    for (int k = 0; k < n_spins; ++k)
+      motions_[n_translations_ + i].gradient += r.basis(k, i) / size * unit_spin<dim>(k);
 }
 
 template class RigidMotions<2>;

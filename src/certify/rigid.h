@@ -43,20 +43,19 @@ class RigidMotions
   [[nodiscard]] int n_translations() const { return n_translations_; }
   [[nodiscard]] int n_rotations() const { return n_rotations_; }
   [[nodiscard]] int size() const { return n_translations_ + n_rotations_; }
+  /// Motion i; its gradient is skew.
+  [[nodiscard]] const RigidField<dim>& operator[](int i) const { return motions_[i]; }
   /// Motion i at the point x.
   [[nodiscard]] Point<dim> operator()(int i, const Point<dim>& x) const
   {
-    return translation_.col(i) + spin_[i] * (x - centre_);
+    return motions_[i].translation + motions_[i].gradient * (x - centre_);
   }
-  /// grad z of motion i, a skew tensor.
-  [[nodiscard]] const Tensor<dim>& gradient(int i) const { return spin_[i]; }
 
  private:
   Point<dim> centre_;
   int n_translations_ = 0;
   int n_rotations_ = 0;
-  Eigen::Matrix<double, dim, n_all> translation_;
-  std::array<Tensor<dim>, n_all> spin_;  ///< divided by the size
+  std::array<RigidField<dim>, n_all> motions_;
 };
 
 }  // namespace tribound

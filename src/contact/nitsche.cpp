@@ -3,37 +3,13 @@
 #include <algorithm>
 #include <cassert>
 
-#include "contact/projection.h"
+#include "contact/traction.h"
 
 namespace tribound
 {
 
 namespace
 {
-
-/// S_h for the normal part P^n: 0 | s | -mu_F [P^n]_-.
-double friction_limit(const FrictionLaw& law, double threshold, double p_n)
-{
-  if (std::holds_alternative<Tresca>(law)) return threshold;
-  if (const auto* coulomb = std::get_if<Coulomb>(&law)) return -coulomb->coefficient * negative_part(p_n);
-  return 0;
-}
-
-/// T = [P^n]_- n + [P^t]_S from P.
-template <int dim>
-Point<dim> projected(const FrictionLaw& law, double threshold, const Point<dim>& p, const Point<dim>& n)
-{
-  const double p_n = p.dot(n);
-  return negative_part(p_n) * n + ball_projection<dim>(p - p_n * n, friction_limit(law, threshold, p_n));
-}
-
-/// P = sigma n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
-template <int dim>
-Point<dim> augmented(const Material& material, double gamma, double gap, const Point<dim>& n,
-                     const Point<dim>& u, const Tensor<dim>& gradient)
-{
-  return sigma<dim>(material, gradient) * n - gamma * (u - gap * n);
-}
 
 /// Column (j, b) is sigma(phi_j e_b) n - gamma phi_j e_b.
 template <int dim>
@@ -72,8 +48,7 @@ NitscheForm<dim>::NitscheForm(const Problem<dim>& problem, const LagrangeSpace<d
     {
       const Point<dim> x = map(facet_to_cell<dim>(facet.local, s));
       gap_.push_back(gap_at<dim>(*contact, x));
-      const auto* tresca = std::get_if<Tresca>(&contact->friction);
-      threshold_.push_back(tresca ? threshold_at<dim>(*tresca, x) : 0.0);
+      threshold_.push_back(threshold_if_any<dim>(contact->friction, x));
     }
   }
 }
@@ -95,7 +70,7 @@ Point<dim> NitscheForm<dim>::augmented_traction(std::span<const double> u, std::
   const Tensor<dim> gradient = gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose);
   const Point<dim> value = value_at<dim>(nodes, u, table.values_at(q));
   const double gap = gap_[k * facet_rule_.size() + q];
-  return augmented<dim>(material, gamma, gap, geometry.normal, value, gradient);
+  return tribound::augmented_traction<dim>(material, gamma, gap, geometry.normal, value, gradient);
 }
 
 template <int dim>
@@ -131,8 +106,8 @@ std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u) co
   {
     const Tensor<dim> j = inverse_transpose(k);
     for (int q = 0; q < n_facet_points(); ++q)
-      t.push_back(projected<dim>(contact_facets_[k].contact->friction, threshold_[t.size()],
-                                 augmented_traction(u, k, q, j), contact_facets_[k].geometry.normal));
+      t.push_back(contact_traction<dim>(contact_facets_[k].contact->friction, threshold_[t.size()],
+                                        augmented_traction(u, k, q, j), contact_facets_[k].geometry.normal));
   }
   return t;
 }
@@ -157,8 +132,9 @@ std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind
       }
       const Point<dim> at_u = augmented_traction(u, k, q, j);
       const ContactFacet<dim>& contact = contact_facets_[k];
-      t.push_back(projected<dim>(contact.contact->friction, threshold_[i], at_u, contact.geometry.normal) +
-                  traction_derivative(kind, k, i, at_u) * (at_w - at_u));
+      t.push_back(
+          contact_traction<dim>(contact.contact->friction, threshold_[i], at_u, contact.geometry.normal) +
+          traction_derivative(kind, k, i, at_u) * (at_w - at_u));
     }
   }
   return t;
@@ -242,7 +218,6 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
   const CellMap<dim> map = cell_map(space_->mesh(), facet.cell);
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
   const Material& material = problem_->material(space_->mesh().region(facet.cell));
-  const auto* tresca = std::get_if<Tresca>(&contact->friction);
 
   std::vector<ContactState<dim>> states;
   for (std::size_t q = 0; q < table.points.size(); ++q)
@@ -252,14 +227,14 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
     const Point<dim> value = value_at<dim>(nodes, u, local.values_at(q));
     const Tensor<dim> gradient = gradient_at<dim>(nodes, u, local.gradients_at(q), map.inverse_transpose);
     const double gap = gap_at<dim>(*contact, x);
-    const double threshold = tresca ? threshold_at<dim>(*tresca, x) : 0.0;
-    const Point<dim> p = augmented<dim>(material, gamma, gap, n, value, gradient);
+    const double threshold = threshold_if_any<dim>(contact->friction, x);
+    const Point<dim> p = tribound::augmented_traction<dim>(material, gamma, gap, n, value, gradient);
     const double p_n = p.dot(n);
     const double limit = friction_limit(contact->friction, threshold, p_n);
     ContactStatus status = (p - p_n * n).norm() <= limit ? ContactStatus::stick : ContactStatus::slip;
     if (p_n > 0) status = ContactStatus::open;
-    states.push_back({x, n, -negative_part(p_n), projected<dim>(contact->friction, threshold, p, n), limit,
-                      status, gap - value.dot(n), value - value.dot(n) * n});
+    states.push_back({x, n, -negative_part(p_n), contact_traction<dim>(contact->friction, threshold, p, n),
+                      limit, status, gap - value.dot(n), value - value.dot(n) * n});
   }
   return states;
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <string_view>
 
@@ -18,10 +19,12 @@ std::string count(long n, std::string_view singular, std::string_view plural)
   return fmt::format("{} {}", n, n == 1 ? singular : plural);
 }
 
+constexpr std::size_t caption_width = 14;
+
 /// A line with a caption in the first column.
 std::string line(std::string_view caption, std::string_view text)
 {
-  return fmt::format("{:<14}{}\n", caption, text);
+  return fmt::format("{:<{}}{}\n", caption, caption_width, text);
 }
 
 /// The same, or nothing for an empty text.
@@ -58,11 +61,44 @@ std::string resultants_line(std::string_view caption, std::string_view boundary,
                                    r.tangential, fmt::join(r.force, ", ")));
 }
 
-std::string bound_line(const LevelRecord& level)
+/// A text broken into lines of at most `width` characters, the later ones indented below the first.
+std::string wrapped(std::string_view text, std::size_t width)
 {
-  if (!level.bound) return {};
-  return line("bound", fmt::format("{:.6g}, {:.3g} of ||sigma||", level.bound->total_sharp,
-                                   level.bound->total_sharp / level.figures.sigma_norm));
+  std::string result;
+  while (text.size() > width)
+  {
+    const std::size_t space = text.rfind(' ', width);
+    if (space == std::string_view::npos || space == 0) break;
+    result += std::string(text.substr(0, space)) + "\n" + std::string(caption_width, ' ');
+    text.remove_prefix(space + 1);
+  }
+  return result + std::string(text);
+}
+
+std::string paragraph(std::string_view caption, std::string_view text)
+{
+  return line(caption, wrapped(text, 90));
+}
+
+/// What each component measures, in the order of component_names.
+constexpr std::array<std::string_view, 8> component_meaning = {
+    "data oscillation",  "stress",   "Neumann data",          "linearisation, in the body",
+    "contact condition", "friction", "linearisation, normal", "linearisation, tangential"};
+
+/// Component by component with its share of the sum of squares.
+std::string component_lines(const BoundComponents& components)
+{
+  double squares = 0;
+  for (const auto& [name, member] : component_names) squares += components.*member * components.*member;
+  std::string text;
+  for (std::size_t i = 0; i < component_names.size(); ++i)
+  {
+    const double value = components.*component_names[i].second;
+    const double share = squares > 0 ? 100 * value * value / squares : 0;
+    text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", component_names[i].first,
+                                 component_meaning[i], value, share));
+  }
+  return text;
 }
 
 void print(const std::string& text)
@@ -79,14 +115,33 @@ std::string header_text(const CaseFacts& facts, const MeshFacts& mesh)
          method_line(facts, mesh);
 }
 
-std::string newton_text(const NewtonStep& step)
+std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound)
 {
   const std::string solver = step.linear_iterations == 0
                                  ? std::string("direct")
                                  : count(step.linear_iterations, "iteration", "iterations");
-  return fmt::format("  step {:>2}  residual {:.3e}  damping {:<8.4g}  {}{}, {:.2f} s\n", step.step,
-                     step.residual, step.damping, solver, step.factorised ? " + factorisation" : "",
+  const std::string bound = relative_bound ? fmt::format("bound {:<9.3e}  ", *relative_bound) : std::string{};
+  return fmt::format("  step {:>2}  residual {:.3e}  {}damping {:<8.4g}  {}{}, {:.2f} s\n", step.step,
+                     step.residual, bound, step.damping, solver, step.factorised ? " + factorisation" : "",
                      step.seconds);
+}
+
+std::string certificate_text(const RunRecord& run)
+{
+  if (run.levels.empty() || !run.levels.back().bound) return {};
+  const LevelRecord& level = run.levels.back();
+  const Bound& bound = *level.bound;
+  std::string text =
+      line("bound", fmt::format("{:.6g}, that is {:.4g} % of ||sigma(u_h)|| (plain sums: {:.6g})",
+                                bound.total_sharp, 100 * relative_bound(level).value_or(0), bound.total));
+  text += component_lines(bound.global);
+  if (level.identities)
+    text += line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
+                                           level.identities->largest(run.facts.degree), identity_limit));
+  for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
+  text += paragraph("law", run.statements.law);
+  for (const std::string& outside : run.statements.not_covered) text += paragraph("outside", outside);
+  return text;
 }
 
 std::string summary_text(const RunRecord& run, const std::string& directory)
@@ -102,7 +157,7 @@ std::string summary_text(const RunRecord& run, const std::string& directory)
     text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
     text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
                                        last.figures.sigma_norm));
-    text += bound_line(last);
+    text += certificate_text(run);
   }
   text += line("status", to_string(run.status) + (run.reason.empty() ? "" : ": " + run.reason));
   text += line_if_any("results", directory);
@@ -160,9 +215,9 @@ void print_info(const BuildFacts& build)
 
 Progress::Progress(bool quiet) : shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
-void Progress::operator()(const NewtonStep& step) const
+void Progress::operator()(const NewtonStep& step, std::optional<double> relative_bound) const
 {
-  if (shown_) fmt::print(stderr, "{}", newton_text(step));
+  if (shown_) fmt::print(stderr, "{}", newton_text(step, relative_bound));
 }
 
 void Progress::stage(const std::string& text) const

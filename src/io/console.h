@@ -3,8 +3,8 @@
 /// @file console.h
 /// What a user sees: results on stdout, progress on stderr.
 
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "io/facts.h"
 #include "io/report.h"
@@ -15,8 +15,11 @@ namespace tribound
 
 /// The texts of the program; each ends with a newline.
 [[nodiscard]] std::string header_text(const CaseFacts& facts, const MeshFacts& mesh);
-[[nodiscard]] std::string newton_text(const NewtonStep& step);
-/// Resultants, largest displacement, status, and where the files are.
+/// A step, with the relative bound after it where that is known.
+[[nodiscard]] std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound = {});
+/// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
+[[nodiscard]] std::string certificate_text(const RunRecord& run);
+/// Resultants, largest displacement, the certificate, status, and where the files are.
 [[nodiscard]] std::string summary_text(const RunRecord& run, const std::string& directory);
 /// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
 [[nodiscard]] std::string check_text(const CaseFacts& facts, const MeshFacts& mesh,
@@ -36,7 +39,7 @@ class Progress
  public:
   explicit Progress(bool quiet);
 
-  void operator()(const NewtonStep& step) const;
+  void operator()(const NewtonStep& step, std::optional<double> relative_bound = {}) const;
   /// A line about a stage, such as "reading block.msh".
   void stage(const std::string& text) const;
 

@@ -1,7 +1,6 @@
 #include "io/report.h"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
@@ -17,32 +16,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* schema_version = "1";
 
-/// The components in the order of all tables.
-constexpr std::array<std::pair<const char*, double Components::*>, 8> component_names{
-    {{"osc", &Components::osc},
-     {"str", &Components::str},
-     {"neu", &Components::neu},
-     {"lin1", &Components::lin1},
-     {"cnt", &Components::cnt},
-     {"frc", &Components::frc},
-     {"lin2n", &Components::lin2n},
-     {"lin2t", &Components::lin2t}}};
-
-std::optional<double> member(const std::optional<Components>& bound, double Components::*value)
+std::optional<double> member(const std::optional<Bound>& bound, double Bound::*value)
 {
   return bound ? std::optional((*bound).*value) : std::nullopt;
 }
 
-/// bound / ||sigma(u_h)||, if both are there.
-std::optional<double> relative(const LevelRecord& level)
+void add_components(CsvTable& table, const std::optional<Bound>& bound)
 {
-  if (!level.bound || level.figures.sigma_norm == 0.0) return std::nullopt;
-  return level.bound->total_sharp / level.figures.sigma_norm;
-}
-
-void add_components(CsvTable& table, const std::optional<Components>& bound)
-{
-  for (const auto& [name, value] : component_names) table.add(member(bound, value));
+  for (const auto& [name, value] : component_names)
+    table.add(bound ? std::optional(bound->global.*value) : std::nullopt);
 }
 
 /// null where there is nothing.
@@ -51,15 +33,15 @@ Json json(const std::optional<double>& value)
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json json(const std::optional<Components>& bound)
+Json json(const std::optional<Bound>& bound)
 {
   if (!bound) return nullptr;
   Json object;
-  for (const auto& [name, value] : component_names) object[name] = (*bound).*value;
+  for (const auto& [name, value] : component_names) object[name] = bound->global.*value;
   return object;
 }
 
-Json json(const std::optional<Identities>& identities)
+Json json(const std::optional<IdentityDefects>& identities)
 {
   if (!identities) return nullptr;
   return {{"divergence", identities->divergence},
@@ -85,7 +67,7 @@ Json json(const NewtonRecord& record)
           {"linear_iterations", record.step.linear_iterations},
           {"factorised", record.step.factorised},
           {"seconds", record.step.seconds},
-          {"total", json(member(record.bound, &Components::total))},
+          {"total", json(member(record.bound, &Bound::total))},
           {"accepted", record.accepted}};
 }
 
@@ -94,9 +76,9 @@ void add_results(Json& object, const LevelRecord& level)
 {
   object["cells"] = level.cells;
   object["dofs"] = level.dofs;
-  object["bound"] = json(member(level.bound, &Components::total_sharp));
-  object["bound_plain"] = json(member(level.bound, &Components::total));
-  object["relative"] = json(relative(level));
+  object["bound"] = json(member(level.bound, &Bound::total_sharp));
+  object["bound_plain"] = json(member(level.bound, &Bound::total));
+  object["relative"] = json(relative_bound(level));
   object["components"] = json(level.bound);
   object["identities"] = json(level.identities);
   object["energy"] = level.figures.energy;
@@ -165,20 +147,10 @@ Resultants resultants(const std::string& boundary, const ContactResultants<dim>&
 
 }  // namespace
 
-const char* to_string(RunStatus status)
+std::optional<double> relative_bound(const LevelRecord& level)
 {
-  switch (status)
-  {
-    case RunStatus::certified:
-      return "certified";
-    case RunStatus::failed:
-      return "failed";
-    case RunStatus::budget:
-      return "budget";
-    case RunStatus::uncertified:
-      break;
-  }
-  return "uncertified";
+  if (!level.bound || level.figures.sigma_norm == 0.0) return std::nullopt;
+  return level.bound->total_sharp / level.figures.sigma_norm;
 }
 
 template <int dim>
@@ -211,9 +183,9 @@ std::string convergence_csv(const RunRecord& run)
     table.add(level.dofs);
     table.add(static_cast<long>(level.newton.size()));
     add_components(table, level.bound);
-    table.add(member(level.bound, &Components::total));
-    table.add(member(level.bound, &Components::total_sharp));
-    table.add(relative(level));
+    table.add(member(level.bound, &Bound::total));
+    table.add(member(level.bound, &Bound::total_sharp));
+    table.add(relative_bound(level));
     table.add(level.figures.energy);
     table.add(level.figures.contact.normal);
     table.add(level.figures.contact.tangential);
@@ -236,7 +208,7 @@ std::string newton_csv(const RunRecord& run)
       table.add(record.step.residual);
       table.add(record.step.damping);
       add_components(table, record.bound);
-      table.add(member(record.bound, &Components::total));
+      table.add(member(record.bound, &Bound::total));
       table.add(record.accepted ? 1 : 0);
       table.end_row();
     }
@@ -252,10 +224,12 @@ std::string certificate_json(const RunRecord& run)
       {"d", run.facts.dimension},        {"p", run.facts.degree},
       {"friction", run.facts.friction},  {"gamma0", run.facts.gamma0}};
   if (!run.levels.empty()) add_results(object, run.levels.back());
-  object["constants"] = json(run.constants);
-  object["assumptions"] = json(run.assumptions);
-  object["covered"] = run.covered;
-  object["not_covered"] = run.not_covered;
+  object["tolerance"] = run.tolerance;
+  object["covered"] = run.statements.covered;
+  object["law"] = run.statements.law;
+  object["constants"] = json(run.statements.constants);
+  object["assumptions"] = json(run.statements.assumptions);
+  object["not_covered"] = run.statements.not_covered;
   object["mesh"] = json(run.mesh);
   object["levels"] = Json::array();
   for (const LevelRecord& level : run.levels) object["levels"].push_back(json(level));

@@ -11,37 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "certify/certificate.h"
 #include "contact/nitsche.h"
 #include "io/facts.h"
 #include "solve/newton.h"
 
 namespace tribound
 {
-
-/// The global components of the bound, method section 5, stress units times length^(dim/2).
-struct Components
-{
-  double osc = 0.0;
-  double str = 0.0;
-  double neu = 0.0;
-  double lin1 = 0.0;
-  double cnt = 0.0;
-  double frc = 0.0;
-  double lin2n = 0.0;
-  double lin2t = 0.0;
-  double total = 0.0;        ///< plain sums, as in the paper
-  double total_sharp = 0.0;  ///< with the sharper b_T: the bound
-};
-
-/// The identities of method section 4, each relative to ||sigma_h||.
-struct Identities
-{
-  double divergence = 0.0;
-  double jump = 0.0;
-  double neumann = 0.0;
-  double contact = 0.0;
-  double symmetry = 0.0;
-};
 
 /// What the contact traction adds up to; forces (per unit depth in 2D).
 struct Resultants
@@ -72,7 +48,7 @@ template <int dim>
 struct NewtonRecord
 {
   NewtonStep step;
-  std::optional<Components> bound;
+  std::optional<Bound> bound;
   bool accepted = false;  ///< whether its iterate was taken as the solution on the level
 };
 
@@ -91,20 +67,13 @@ struct LevelRecord
   long dofs = 0;  ///< free ones
   std::vector<NewtonRecord> newton;
   SolutionFigures figures;
-  std::optional<Components> bound;
-  std::optional<Identities> identities;
+  std::optional<Bound> bound;
+  std::optional<IdentityDefects> identities;
   LevelTimes times;
 };
 
-enum class RunStatus
-{
-  uncertified,  ///< solved, no bound computed
-  certified,    ///< bound below the tolerance, identities hold
-  failed,       ///< no convergence, or an identity violated
-  budget        ///< the bound holds, the tolerance was not reached
-};
-
-[[nodiscard]] const char* to_string(RunStatus status);
+/// bound / ||sigma(u_h)||, if both are there.
+[[nodiscard]] std::optional<double> relative_bound(const LevelRecord& level);
 
 struct RunRecord
 {
@@ -114,11 +83,9 @@ struct RunRecord
   RunStatus status = RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
   std::vector<LevelRecord> levels;
-  std::vector<std::pair<std::string, double>> constants;         ///< used in the bound, by name
-  std::vector<std::pair<std::string, std::string>> assumptions;  ///< what the result rests on, by topic
-  std::vector<std::string> covered;                              ///< errors that the bound covers
-  std::vector<std::string> not_covered;                          ///< errors that it does not
-  std::vector<std::pair<std::string, double>> times;             ///< s per stage of the whole run
+  double tolerance = 0.0;  ///< of bound / ||sigma(u_h)||
+  Statements statements;
+  std::vector<std::pair<std::string, double>> times;  ///< s per stage of the whole run
 };
 
 /// A row per level; the columns are those of docs/output.md. Unknown cells are empty.

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "certify/frame_table.h"
 #include "contact/elasticity.h"
 #include "io/atomic_file.h"
 #include "io/vtk_nodes.h"
@@ -29,6 +30,16 @@ std::array<double, 6> voigt(const Tensor<dim>& s, double ratio)
     return {s(0, 0), s(1, 1), ratio * (s(0, 0) + s(1, 1)), xy, 0.0, 0.0};
   else
     return {s(0, 0), s(1, 1), s(2, 2), xy, 0.5 * (s(1, 2) + s(2, 1)), 0.5 * (s(0, 2) + s(2, 0))};
+}
+
+/// The nodes of the reference cell.
+template <int dim>
+std::vector<Point<dim>> node_points(const LagrangeBasis<dim>& basis)
+{
+  std::vector<Point<dim>> nodes;
+  nodes.reserve(basis.n_nodes());
+  for (int i = 0; i < basis.n_nodes(); ++i) nodes.push_back(basis.node_point(i));
+  return nodes;
 }
 
 /// What every array of a level file needs.
@@ -133,10 +144,8 @@ template <int dim>
 TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
                               std::span<const double> u)
 {
-  std::vector<Point<dim>> nodes;
-  nodes.reserve(space.basis().n_nodes());
-  for (int i = 0; i < space.basis().n_nodes(); ++i) nodes.push_back(space.basis().node_point(i));
-  const auto tabulation = std::make_shared<const Tabulation<dim>>(space.basis().tabulate(nodes));
+  const auto tabulation =
+      std::make_shared<const Tabulation<dim>>(space.basis().tabulate(node_points(space.basis())));
   return {"stress", [&problem, &space, u, tabulation](Index cell, std::span<Tensor<dim>> values)
           {
             const Material& material = problem.material(space.mesh().region(cell));
@@ -145,6 +154,27 @@ TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<d
               values[i] =
                   sigma<dim>(material, gradient_at<dim>(space.cell_nodes(cell), u,
                                                         tabulation->gradients_at(i), map.inverse_transpose));
+          }};
+}
+
+template <int dim>
+TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space, const Stress<dim>& stress)
+{
+  const auto table = std::make_shared<const FrameTable<dim>>(stress.degree, node_points(space.basis()));
+  const auto block = std::make_shared<std::vector<double>>(stress.block_size());
+  const auto entries =
+      std::make_shared<std::vector<double>>(static_cast<std::size_t>(dim) * dim * table->n_points());
+  return {"equilibrated_stress",
+          [&space, &stress, table, block, entries](Index cell, std::span<Tensor<dim>> values)
+          {
+            std::ranges::copy(stress.dis_in(cell), block->begin());
+            const std::span<const double> lin = stress.lin_in(cell);
+            for (std::size_t i = 0; i < lin.size(); ++i) (*block)[i] += lin[i];
+            table->evaluate(make_frame(space.mesh(), cell), *block, *entries);
+            for (int i = 0; i < table->n_points(); ++i)
+              for (int r = 0; r < dim; ++r)
+                for (int c = 0; c < dim; ++c)
+                  values[i](r, c) = (*entries)[(dim * r + c) * table->n_points() + i];
           }};
 }
 
@@ -194,6 +224,8 @@ void write_series(const std::filesystem::path& directory, int n_levels)
 
 template TensorField<2> stress_field(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
 template TensorField<3> stress_field(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
+template TensorField<2> equilibrated_stress_field(const LagrangeSpace<2>&, const Stress<2>&);
+template TensorField<3> equilibrated_stress_field(const LagrangeSpace<3>&, const Stress<3>&);
 template void write_level_vtu(const std::filesystem::path&, int, const Problem<2>&, const LagrangeSpace<2>&,
                               std::span<const double>, std::span<const CellField>,
                               std::span<const TensorField<2>>);

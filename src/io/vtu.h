@@ -13,6 +13,7 @@
 
 #include "base/types.h"
 #include "case/problem.h"
+#include "certify/stress.h"
 #include "contact/nitsche.h"
 #include "fem/space.h"
 
@@ -39,6 +40,11 @@ struct TensorField
 template <int dim>
 [[nodiscard]] TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
                                             std::span<const double> u);
+
+/// sigma_h = sigma_dis + sigma_lin as a field. Keeps references to the arguments.
+template <int dim>
+[[nodiscard]] TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space,
+                                                         const Stress<dim>& stress);
 
 /// sigma_zz / (sigma_xx + sigma_yy) in 2D: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
 /// stress.

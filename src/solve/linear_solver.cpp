@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/norm.h"
 #include "solve/petsc_detail.h"
 
 namespace tribound
@@ -60,13 +61,6 @@ bool iterate(KSP ksp, std::span<const double> b, StopRule& rule, std::span<doubl
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp, &reason), "solving a linear system");
   return reason > 0;
-}
-
-double norm(std::span<const double> values)
-{
-  double sum = 0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum);
 }
 
 /// GMRES iterations that cost about as much as the factorisation in `ksp`. A model of counts, not of clocks,

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/norm.h"
 #include "contact/elasticity.h"
 #include "solve/linear_solver.h"
 #include "solve/petsc.h"
@@ -17,13 +18,6 @@ namespace tribound
 
 namespace
 {
-
-double norm(std::span<const double> v)
-{
-  double sum = 0;
-  for (const double x : v) sum += x * x;
-  return std::sqrt(sum);
-}
 
 /// y += a x
 void axpy(double a, std::span<const double> x, std::span<double> y)
@@ -48,8 +42,7 @@ class Newton
   {
   }
 
-  NewtonResult<dim> run(std::span<const double> start,
-                        const std::function<void(const NewtonStep&)>& progress);
+  NewtonResult<dim> run(std::span<const double> start, const NewtonObserver<dim>& observer);
 
  private:
   [[nodiscard]] std::vector<double> zero() const { return std::vector<double>(form_.space().n_dofs(), 0.0); }
@@ -226,8 +219,7 @@ NewtonStep Newton<dim>::step(int k, Linearisation kind)
 }
 
 template <int dim>
-NewtonResult<dim> Newton<dim>::run(std::span<const double> start,
-                                   const std::function<void(const NewtonStep&)>& progress)
+NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonObserver<dim>& observer)
 {
   NewtonResult<dim> result;
   initialise(start);
@@ -240,7 +232,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start,
     NewtonStep report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.steps.push_back(report);
-    if (progress) progress(report);
+    if (observer) observer({report, u_, traction_});
 
     without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
     if (converged())
@@ -266,14 +258,14 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start,
 template <int dim>
 NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
                         const NewtonConfig& newton, const SolverConfig& solver,
-                        const std::function<void(const NewtonStep&)>& progress)
+                        const NewtonObserver<dim>& observer)
 {
-  return Newton<dim>(form, newton, solver).run(start, progress);
+  return Newton<dim>(form, newton, solver).run(start, observer);
 }
 
 template NewtonResult<2> solve(const NitscheForm<2>&, std::span<const double>, const NewtonConfig&,
-                               const SolverConfig&, const std::function<void(const NewtonStep&)>&);
+                               const SolverConfig&, const NewtonObserver<2>&);
 template NewtonResult<3> solve(const NitscheForm<3>&, std::span<const double>, const NewtonConfig&,
-                               const SolverConfig&, const std::function<void(const NewtonStep&)>&);
+                               const SolverConfig&, const NewtonObserver<3>&);
 
 }  // namespace tribound

@@ -42,12 +42,24 @@ struct NewtonResult
   std::vector<NewtonStep> steps;
 };
 
+/// What an observer of the iteration sees after each step.
+template <int dim>
+struct NewtonIterate
+{
+  const NewtonStep& step;
+  std::span<const double> u;             ///< u^k
+  std::span<const Point<dim>> traction;  ///< t^k
+};
+
+template <int dim>
+using NewtonObserver = std::function<void(const NewtonIterate<dim>&)>;
+
 /// Solves the discrete problem. `start` is a solution carried from a coarser mesh (then the first step
-/// linearises there), or empty (then the first step is closed and sticking). `progress` is called after each
+/// linearises there), or empty (then the first step is closed and sticking). `observer` is called after each
 /// step. Throws SolveError when a matrix is singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
                                       const NewtonConfig& newton, const SolverConfig& solver,
-                                      const std::function<void(const NewtonStep&)>& progress = {});
+                                      const NewtonObserver<dim>& observer = {});
 
 }  // namespace tribound

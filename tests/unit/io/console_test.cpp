@@ -49,6 +49,45 @@ TEST(Console, NewtonStep)
   EXPECT_THAT(newton_text({1, 1.0, 1.0, 1, false, 0.0}), HasSubstr("1 iteration,"));
 }
 
+TEST(Console, NewtonStepWithItsBound)
+{
+  EXPECT_EQ(newton_text({3, 1.25e-5, 1.0, 0, false, 0.125}, 0.025),
+            "  step  3  residual 1.250e-05  bound 2.500e-02  damping 1         direct, 0.12 s\n");
+}
+
+TEST(Console, CertificateGivesEveryComponentAndItsShare)
+{
+  RunRecord run;
+  run.facts.degree = 1;
+  LevelRecord level;
+  level.figures.sigma_norm = 2;
+  level.bound = Bound{{0, 3, 0, 0, 4, 0, 0, 0}, 0.5, 0.25};
+  level.identities = IdentityDefects{1e-13, 0, 0, 0, 1};  // no symmetry for p = 1
+  run.levels = {level};
+  run.statements = {{"the dual norm of the residual"}, "unique", {}, {}, {"the model"}};
+  EXPECT_EQ(certificate_text(run),
+            "bound         0.25, that is 12.5 % of ||sigma(u_h)|| (plain sums: 0.5)\n"
+            "              osc    data oscillation                       0    0.0 %\n"
+            "              str    stress                                 3   36.0 %\n"
+            "              neu    Neumann data                           0    0.0 %\n"
+            "              lin1   linearisation, in the body             0    0.0 %\n"
+            "              cnt    contact condition                      4   64.0 %\n"
+            "              frc    friction                               0    0.0 %\n"
+            "              lin2n  linearisation, normal                  0    0.0 %\n"
+            "              lin2t  linearisation, tangential              0    0.0 %\n"
+            "identities    hold to 1.0e-13 of ||sigma_h|| (limit 1e-08)\n"
+            "guaranteed    the dual norm of the residual\n"
+            "law           unique\n"
+            "outside       the model\n");
+}
+
+TEST(Console, NoCertificateWithoutABound)
+{
+  RunRecord run;
+  run.levels.resize(1);
+  EXPECT_EQ(certificate_text(run), "");
+}
+
 TEST(Console, SummaryOfAFailedRun)
 {
   RunRecord run;

@@ -46,8 +46,8 @@ RunRecord certified_run()
   run.status = RunStatus::certified;
   run.reason.clear();
   LevelRecord& level = run.levels[0];
-  level.bound = Components{1, 2, 3, 4, 5, 6, 7, 8, 20, 10};
-  level.identities = Identities{1e-14, 2e-14, 3e-14, 4e-14, 5e-14};
+  level.bound = Bound{{1, 2, 3, 4, 5, 6, 7, 8}, 20, 10};
+  level.identities = IdentityDefects{1e-14, 2e-14, 3e-14, 4e-14, 5e-14};
   level.newton[1].bound = level.bound;
   level.times.certify = 0.25;
   return run;
@@ -115,6 +115,21 @@ TEST(Report, CertificateWithoutALevelHasNoFigures)
   EXPECT_EQ(certificate["status"], "failed");
   EXPECT_FALSE(certificate.contains("energy"));
   EXPECT_TRUE(certificate["levels"].empty());
+}
+
+TEST(Report, CertificateSaysWhatItCovers)
+{
+  RunRecord run = certified_run();
+  run.tolerance = 0.01;
+  run.statements = {
+      {"the residual"}, "Tresca", {{"poincare", 0.25}}, {{"geometry", "straight"}}, {"the model"}};
+  const json certificate = json::parse(certificate_json(run));
+  EXPECT_EQ(certificate["tolerance"], 0.01);
+  EXPECT_EQ(certificate["covered"], json({"the residual"}));
+  EXPECT_EQ(certificate["law"], "Tresca");
+  EXPECT_EQ(certificate["constants"]["poincare"], 0.25);
+  EXPECT_EQ(certificate["assumptions"]["geometry"], "straight");
+  EXPECT_EQ(certificate["not_covered"], json({"the model"}));
 }
 
 TEST(Report, NamesThatAreNotUtf8DoNotSpoilTheCertificate)

@@ -1,0 +1,137 @@
+#pragma once
+
+/// @file cell_window.h
+/// The cells that a stretch of vertices needs, with their data.
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "certify/prepared_cell.h"
+#include "contact/nitsche.h"
+#include "fem/polynomials.h"
+#include "fem/quadrature.h"
+
+namespace tribound
+{
+
+/// Moments of psi_a f on U for every vertex of every cell, or nothing where f = 0. Formulas of the case are
+/// evaluated by one thread only.
+template <int dim, int p>
+class BodyMoments
+{
+ public:
+  using Vector = DenseVector<Sizes<dim, p>::u>;
+
+  explicit BodyMoments(const NitscheForm<dim>& form)
+  {
+    const Mesh<dim>& mesh = form.space().mesh();
+    const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
+    constexpr int m = Sizes<dim, p>::multiplier;
+    std::vector<double> chi(m * rule.size());
+    for (int q = 0; q < rule.size(); ++q)
+      orthonormal_values<dim>(p - 1, rule.points[q], std::span(chi).subspan(m * q, m));
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+    {
+      if (form.problem().body_force_is_zero(mesh.region(c))) continue;
+      if (moments_.empty()) moments_.resize(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1));
+      const Frame<dim> frame = make_frame(mesh, c);
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim>& xhat = rule.points[q];
+        const Point<dim> f = form.problem().body_force(mesh.region(c), frame.origin + frame.jacobian * xhat);
+        const double weight = rule.weights[q] * std::sqrt(frame.det);
+        for (int a = 0; a <= dim; ++a)
+        {
+          const double hat = a == 0 ? 1 - xhat.sum() : xhat[a - 1];
+          for (int r = 0; r < dim; ++r)
+            for (int i = 0; i < m; ++i)
+              moments_[c * (dim + 1) + a][r * m + i] += weight * hat * f[r] * chi[m * q + i];
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] Vector operator()(Index cell, int vertex) const
+  {
+    return moments_.empty() ? Vector{} : moments_[static_cast<std::size_t>(cell) * (dim + 1) + vertex];
+  }
+
+ private:
+  std::vector<Vector> moments_;
+};
+
+/// Where prepared cells come from.
+template <int dim, int p>
+struct CellSource
+{
+  const NitscheForm<dim>& form;
+  std::span<const double> u;
+  const BodyMoments<dim, p>& body;
+
+  /// Everything but the Schur complement.
+  void prepare(Index c, PreparedCell<dim, p>& cell) const
+  {
+    const LagrangeSpace<dim>& space = form.space();
+    cell.frame = make_frame(space.mesh(), c);
+    cell.op.build(cell.frame);
+    cell.sigma = discrete_stress<dim, p>(cell.frame, form.problem().material(space.mesh().region(c)),
+                                         space.cell_nodes(c), u);
+    cell.divergence = cell.op.divergence(cell.frame, cell.sigma);
+    for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
+    find_moments(cell);
+  }
+};
+
+/// The cells that a stretch of vertices needs: prepared when first asked for, forgotten when the caller has
+/// done with them.
+template <int dim, int p>
+class CellWindow
+{
+ public:
+  /// [vertex][problem]
+  using Shares = std::array<std::array<CellShare<dim, p>, 2>, dim + 1>;
+  struct Slot
+  {
+    PreparedCell<dim, p> cell;
+    Shares shares;
+    int waiting = 0;  ///< vertices of the stretch that still need the cell; 0 when it is new
+  };
+
+  explicit CellWindow(const CellSource<dim, p>& source)
+      : source_(source), place_(source.form.space().mesh().n_cells(), -1)
+  {
+  }
+
+  Slot& get(Index cell)
+  {
+    if (place_[cell] >= 0) return *pool_[place_[cell]];
+    if (free_.empty())
+    {
+      free_.push_back(static_cast<int>(pool_.size()));
+      pool_.push_back(std::make_unique<Slot>());
+    }
+    place_[cell] = free_.back();
+    free_.pop_back();
+    Slot& slot = *pool_[place_[cell]];
+    source_.prepare(cell, slot.cell);
+    slot.cell.op.condense(slot.cell.frame);
+    slot.waiting = 0;
+    return slot;
+  }
+
+  void forget(Index cell)
+  {
+    free_.push_back(place_[cell]);
+    place_[cell] = -1;
+  }
+
+ private:
+  const CellSource<dim, p>& source_;
+  std::vector<int> place_;  ///< per cell: place in pool_, or -1
+  std::vector<std::unique_ptr<Slot>> pool_;
+  std::vector<int> free_;
+};
+
+}  // namespace tribound

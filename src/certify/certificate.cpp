@@ -1,0 +1,161 @@
+#include "certify/certificate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contact/elasticity.h"
+
+namespace tribound
+{
+
+const char* to_string(RunStatus status)
+{
+  switch (status)
+  {
+    case RunStatus::certified:
+      return "certified";
+    case RunStatus::budget:
+      return "budget";
+    case RunStatus::not_certified:
+      return "not certified";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::uncertified:
+      break;
+  }
+  return "uncertified";
+}
+
+Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree, double sigma_norm,
+              double tolerance)
+{
+  const double defect = identities.largest(degree);
+  if (!(defect <= identity_limit))
+    return {
+        RunStatus::not_certified,
+        fmt::format("an identity of the equilibrated stress is violated: {:.2e} of ||sigma_h||, the limit "
+                    "is {:g}; what was computed is no bound",
+                    defect, identity_limit)};
+  if (!std::isfinite(bound.total_sharp) || !std::isfinite(sigma_norm))
+    return {RunStatus::not_certified, "the bound is not a finite number"};
+  if (bound.total_sharp <= tolerance * sigma_norm) return {RunStatus::certified, {}};
+  return {RunStatus::budget, fmt::format("the bound holds, but it is {:.3g} % of ||sigma(u_h)||, above "
+                                         "adapt.tolerance = {:g} %",
+                                         100 * bound.total_sharp / sigma_norm, 100 * tolerance)};
+}
+
+namespace
+{
+
+/// What is known of the continuous problem under the friction laws in use.
+template <int dim>
+std::string describe_law(const Problem<dim>& problem)
+{
+  bool coulomb = false;
+  for (const BoundaryCondition<dim>& boundary : problem.boundaries())
+    coulomb = coulomb || (boundary.contact && std::holds_alternative<Coulomb>(boundary.contact->friction));
+  if (!problem.has_contact()) return "linear elasticity: the solution exists and is unique";
+  if (coulomb)
+    return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "
+           "residual is bounded in any case";
+  return "unilateral contact without friction or with Tresca friction: the solution exists and is unique";
+}
+
+template <int dim>
+bool has_variable_body_force(const NitscheForm<dim>& form)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    if (!form.problem().body_force_is_constant(mesh.region(c))) return true;
+  return false;
+}
+
+/// How the integrals in the bound are evaluated.
+template <int dim>
+std::string describe_quadrature(const NitscheForm<dim>& form, ContactRule rule)
+{
+  std::string text =
+      fmt::format("integrals of loads and of contact tractions are exact for polynomials of degree {}",
+                  data_quadrature_degree(form.space().degree()));
+  if (!form.problem().has_contact()) return text;
+  return text +
+         (rule == ContactRule::resolved
+              ? "; cnt and frc on facets with a kink of the traction are subdivided until they settle"
+              : "; cnt and frc with the plain rule, which is not rigorous on facets with a kink of the "
+                "traction (certify.contact_rule = \"reference\")");
+}
+
+}  // namespace
+
+template <int dim>
+double dirichlet_interpolation_error(const NitscheForm<dim>& form)
+{
+  const LagrangeSpace<dim>& space = form.space();
+  const FacetTabulation<dim> table = tabulate_on_facets<dim>(space.basis(), form.facet_rule().points);
+  double largest = 0;
+  for (const BoundaryFacet& facet : space.mesh().boundary())
+  {
+    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    if (!boundary.fixes_any()) continue;
+    const CellMap<dim> map = cell_map(space.mesh(), facet.cell);
+    for (int q = 0; q < form.n_facet_points(); ++q)
+    {
+      const Point<dim> interpolant = value_at<dim>(space.cell_nodes(facet.cell), form.constraints().values,
+                                                   table.on_facet[facet.local].values_at(q));
+      const Point<dim> x = map(facet_to_cell<dim>(facet.local, table.points[q]));
+      for (int c = 0; c < dim; ++c)
+        if (boundary.fixes(c))
+          largest = std::max(largest, std::abs((*boundary.displacement[c])(x)-interpolant[c]));
+    }
+  }
+  return largest;
+}
+
+template <int dim>
+Statements statements(const NitscheForm<dim>& form, ContactRule rule)
+{
+  constexpr double pi = std::numbers::pi;
+  Statements result;
+  result.covered = {
+      "the dual norm of the residual of the computed displacement: the largest <R(u_h), v> over all v in "
+      "H^1, "
+      "zero where displacements are prescribed, with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
+      "facets F; no unknown constant",
+      "the errors of discretisation, of the data, of the contact and friction conditions, and of stopping "
+      "Newton's method"};
+  result.law = describe_law(form.problem());
+  result.constants = {{"poincare", 1 / pi},
+                      {"trace_squared", 1 / (pi * pi) + 2 / (dim * pi)},
+                      {"identity_limit", identity_limit}};
+
+  double largest = 0;
+  for (const double value : form.constraints().values) largest = std::max(largest, std::abs(value));
+  const double interpolation = dirichlet_interpolation_error(form);
+  const bool exact = interpolation <= 1e-12 * largest;
+  result.assumptions = {
+      {"quadrature", describe_quadrature(form, rule)},
+      {"displacement",
+       exact ? std::string("the prescribed displacements are in the finite element space")
+             : fmt::format("the prescribed displacements are interpolated at the nodes; largest "
+                           "difference {:.3g}",
+                           interpolation)},
+      {"geometry", "facets are straight"},
+      {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
+
+  if (!exact) result.not_covered.emplace_back("the interpolation of the prescribed displacements");
+  if (has_variable_body_force(form))
+    result.not_covered.emplace_back("quadrature of a body force that is not a polynomial");
+  result.not_covered.emplace_back("straight facets in place of a curved boundary");
+  result.not_covered.emplace_back("the model: linear elasticity, small strains, the friction law, the data");
+  return result;
+}
+
+template Statements statements(const NitscheForm<2>&, ContactRule);
+template Statements statements(const NitscheForm<3>&, ContactRule);
+template double dirichlet_interpolation_error(const NitscheForm<2>&);
+template double dirichlet_interpolation_error(const NitscheForm<3>&);
+
+}  // namespace tribound

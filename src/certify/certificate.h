@@ -1,0 +1,61 @@
+#pragma once
+
+/// @file certificate.h
+/// What may be claimed of a computed solution: the verdict on its bound, and in words what is guaranteed,
+/// under which assumptions, and what lies outside.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "certify/checks.h"
+#include "certify/estimate.h"
+
+namespace tribound
+{
+
+enum class RunStatus
+{
+  uncertified,    ///< no bound computed
+  certified,      ///< the identities hold and the bound is below the tolerance
+  budget,         ///< the identities hold, so does the bound; the tolerance was not reached
+  not_certified,  ///< an identity is violated: the numbers are no bound
+  failed          ///< no solution
+};
+
+[[nodiscard]] const char* to_string(RunStatus status);
+
+/// Above this, relative to ||sigma_h||, an identity counts as violated.
+inline constexpr double identity_limit = 1e-8;
+
+/// A status and why it is not `certified`; the reason is empty when it is.
+struct Verdict
+{
+  RunStatus status;
+  std::string reason;
+};
+
+/// Certified if the identities hold to identity_limit and bound.total_sharp <= tolerance * sigma_norm;
+/// numbers that are not finite are never certified.
+[[nodiscard]] Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
+                            double sigma_norm, double tolerance);
+
+/// The words of a certificate.
+struct Statements
+{
+  std::vector<std::string> covered;                              ///< what the bound bounds
+  std::string law;                                               ///< existence and uniqueness
+  std::vector<std::pair<std::string, double>> constants;         ///< used in the bound, by name
+  std::vector<std::pair<std::string, std::string>> assumptions;  ///< what the result rests on, by topic
+  std::vector<std::string> not_covered;                          ///< errors outside the bound
+};
+
+template <int dim>
+[[nodiscard]] Statements statements(const NitscheForm<dim>& form, ContactRule rule);
+
+/// The largest |u_D - I u_D| at the points of the facet rule, I the interpolation at the nodes, in a fixed
+/// component on Gamma_D; length.
+template <int dim>
+[[nodiscard]] double dirichlet_interpolation_error(const NitscheForm<dim>& form);
+
+}  // namespace tribound

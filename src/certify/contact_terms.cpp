@@ -1,0 +1,240 @@
+#include "certify/contact_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/traction.h"
+#include "fem/polynomials.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A kinked facet has settled when halving its pieces changes the squared components by less than this part
+/// of them. A kink is a point in 2D, where many halvings cost little, and a curve in 3D.
+template <int dim>
+constexpr double settled = dim == 2 ? 1e-10 : 1e-6;
+template <int dim>
+constexpr int max_depth = dim == 2 ? 40 : 10;
+
+/// The parts of a segment or triangle halved along each edge.
+std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
+{
+  const Point<1> middle = (s[0] + s[1]) / 2;
+  return {{{s[0], middle}, {middle, s[1]}}};
+}
+std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
+{
+  const Point<2> a = (s[1] + s[2]) / 2;
+  const Point<2> b = (s[0] + s[2]) / 2;
+  const Point<2> c = (s[0] + s[1]) / 2;
+  return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
+}
+
+/// |piece| / |reference simplex|.
+double fraction(const std::array<Point<1>, 2>& s)
+{
+  return std::abs(s[1][0] - s[0][0]);
+}
+double fraction(const std::array<Point<2>, 3>& s)
+{
+  const Point<2> a = s[1] - s[0];
+  const Point<2> b = s[2] - s[0];
+  return std::abs(a[0] * b[1] - a[1] * b[0]);
+}
+
+/// The range of a function over the points it was seen at, and whether it may change sign near them.
+class Range
+{
+ public:
+  void add(double value)
+  {
+    lower_ = std::min(lower_, value);
+    upper_ = std::max(upper_, value);
+  }
+  [[nodiscard]] bool may_change_sign() const
+  {
+    const double margin = (upper_ - lower_) / 2;
+    return lower_ - margin <= 0 && upper_ + margin >= 0;
+  }
+
+ private:
+  double lower_ = std::numeric_limits<double>::infinity();
+  double upper_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+template <int dim>
+ContactTerms<dim>::ContactTerms(const NitscheForm<dim>& form, ContactRule rule)
+    : form_(form),
+      rule_(rule),
+      space_table_(tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
+      n_(polynomial_dimension(dim - 1, form.space().degree()))
+{
+  const Quadrature<dim - 1>& points = form.facet_rule();
+  for (int local = 0; local <= dim; ++local)
+  {
+    std::vector<Point<dim>> in_cell;
+    for (const FacetPoint& s : points.points) in_cell.push_back(facet_to_cell<dim>(local, s));
+    stress_table_.emplace_back(form.space().degree(), in_cell);
+  }
+  theta_.resize(static_cast<std::size_t>(n_) * points.size());
+  for (int q = 0; q < points.size(); ++q)
+    orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
+                                std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+}
+
+/// Coefficients of a polynomial of degree p on the facet from its values at the points of the rule.
+template <int dim>
+std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> values) const
+{
+  std::vector<Point<dim>> coefficients(n_, Point<dim>::Zero());
+  for (std::size_t q = 0; q < values.size(); ++q)
+    for (int i = 0; i < n_; ++i)
+      coefficients[i] += form_.facet_rule().weights[q] * theta_[q * n_ + i] * values[q];
+  return coefficients;
+}
+
+template <int dim>
+auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
+{
+  const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const LagrangeSpace<dim>& space = form_.space();
+  const Material& material = form_.problem().material(space.mesh().region(facet.cell));
+  const std::span<const Index> nodes = space.cell_nodes(facet.cell);
+  const Tabulation<dim>& table = space_table_.on_facet[facet.local];
+  const FrameTable<dim>& stress_table = stress_table_[facet.local];
+  const Tensor<dim> inverse_transpose = cell_map(space.mesh(), facet.cell).inverse_transpose;
+  const Frame<dim> frame = make_frame(space.mesh(), facet.cell);
+  const int n_points = form_.n_facet_points();
+
+  std::vector<Point<dim>> values(n_points);
+  for (int q = 0; q < n_points; ++q)
+    values[q] = augmented_traction<dim>(material, gamma, 0, geometry.normal,
+                                        value_at<dim>(nodes, u, table.values_at(q)),
+                                        gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
+  Fields result;
+  result.augmented = project(values);
+
+  std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
+  const auto normal_trace = [&](std::span<const double> block)
+  {
+    stress_table.evaluate(frame, block, entries);
+    for (int q = 0; q < n_points; ++q)
+      for (int r = 0; r < dim; ++r)
+      {
+        values[q][r] = 0;
+        for (int c = 0; c < dim; ++c)
+          values[q][r] += entries[(dim * r + c) * n_points + q] * geometry.normal[c];
+      }
+    return project(values);
+  };
+  result.dis = normal_trace(stress.dis_in(facet.cell));
+  result.lin = normal_trace(stress.lin_in(facet.cell));
+  return result;
+}
+
+template <int dim>
+auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece) const -> Integrals
+{
+  const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const Point<dim>& n = geometry.normal;
+  const CellMap<dim> map = cell_map(form_.space().mesh(), facet.cell);
+  const Quadrature<dim - 1>& rule = form_.facet_rule();
+  std::array<double, polynomial_dimension(dim - 1, 4)> theta;
+  Integrals result;
+  Range normal_range;
+  Range tangential_range;
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    FacetPoint s = piece[0];
+    for (int i = 1; i < dim; ++i) s += rule.points[q][i - 1] * (piece[i] - piece[0]);
+    orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
+    const Point<dim> x = map(facet_to_cell<dim>(facet.local, s));
+    Point<dim> p = gamma * gap_at<dim>(*contact, x) * n;
+    Point<dim> dis = Point<dim>::Zero();
+    for (int i = 0; i < n_; ++i)
+    {
+      p += theta[i] * fields.augmented[i];
+      dis += theta[i] * fields.dis[i];
+    }
+    const double threshold = threshold_if_any<dim>(contact->friction, x);
+    const double p_n = p.dot(n);
+    normal_range.add(p_n);
+    tangential_range.add((p - p_n * n).norm() - friction_limit(contact->friction, threshold, p_n));
+
+    const Point<dim> difference = contact_traction<dim>(contact->friction, threshold, p, n) - dis;
+    const double normal = difference.dot(n);
+    const double weight = fraction(piece) * rule.weights[q];
+    result.normal += weight * normal * normal;
+    result.tangential += weight * (difference - normal * n).squaredNorm();
+  }
+  const bool frictionless = std::holds_alternative<Frictionless>(contact->friction);
+  result.may_kink = normal_range.may_change_sign() || (!frictionless && tangential_range.may_change_sign());
+  return result;
+}
+
+/// Halves the piece and those of its parts that may have a kink, until that changes nothing any more.
+template <int dim>
+auto ContactTerms<dim>::settle(int k, const Fields& fields, const Piece& piece, const Integrals& whole,
+                               double tolerance, int depth) const -> Integrals
+{
+  const auto parts = halves(piece);
+  std::array<Integrals, parts.size()> values;
+  Integrals sum;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    values[i] = integrate(k, fields, parts[i]);
+    sum.normal += values[i].normal;
+    sum.tangential += values[i].tangential;
+  }
+  const double change = std::abs(sum.normal - whole.normal) + std::abs(sum.tangential - whole.tangential);
+  if (change <= tolerance || depth == max_depth<dim>) return sum;
+
+  sum = {};
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    if (values[i].may_kink) values[i] = settle(k, fields, parts[i], values[i], tolerance, depth + 1);
+    sum.normal += values[i].normal;
+    sum.tangential += values[i].tangential;
+  }
+  return sum;
+}
+
+template <int dim>
+ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
+                                             const Stress<dim>& stress) const
+{
+  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  const Point<dim>& n = contact.geometry.normal;
+  const Fields on_facet = fields(k, u, stress);
+  Piece all;  // the vertices of the reference facet
+  for (int i = 0; i < dim; ++i)
+  {
+    all[i].setZero();
+    if (i > 0) all[i][i - 1] = 1;
+  }
+  Integrals integrals = integrate(k, on_facet, all);
+  if (rule_ == ContactRule::resolved && integrals.may_kink)
+    integrals =
+        settle(k, on_facet, all, integrals, settled<dim> * (integrals.normal + integrals.tangential), 1);
+
+  const double scale = contact.geometry.diameter * contact.geometry.measure * (dim - 1);  // h_F |F| / |Fhat|
+  ContactSquares result{scale * integrals.normal, scale * integrals.tangential, 0, 0};
+  for (const Point<dim>& coefficient : on_facet.lin)
+  {
+    const double normal = coefficient.dot(n);
+    result.lin2n += scale * normal * normal;
+    result.lin2t += scale * (coefficient - normal * n).squaredNorm();
+  }
+  return result;
+}
+
+template class ContactTerms<2>;
+template class ContactTerms<3>;
+
+}  // namespace tribound

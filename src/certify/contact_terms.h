@@ -1,0 +1,71 @@
+#pragma once
+
+/// @file contact_terms.h
+/// The components of the bound on the contact boundary, method section 5.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "case/config.h"
+#include "certify/frame_table.h"
+#include "contact/nitsche.h"
+
+namespace tribound
+{
+
+/// Squares of the components on one facet F of Gamma_C.
+struct ContactSquares
+{
+  double cnt = 0;    ///< h_F ||[P^n]_- - sigma_dis^n||_F^2
+  double frc = 0;    ///< h_F ||[P^t]_S - sigma_dis^t||_F^2
+  double lin2n = 0;  ///< h_F ||sigma_lin^n||_F^2
+  double lin2t = 0;  ///< h_F ||sigma_lin^t||_F^2
+};
+
+/// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
+/// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
+/// again, until the value settles. ContactRule::reference takes the reference rule as it is.
+template <int dim>
+class ContactTerms
+{
+ public:
+  ContactTerms(const NitscheForm<dim>& form, ContactRule rule);
+
+  /// On contact facet k of the form for the iterate u.
+  [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Stress<dim>& stress) const;
+
+ private:
+  using FacetPoint = Point<dim - 1>;
+  using Piece = std::array<FacetPoint, dim>;  ///< vertices of a part of the reference facet
+
+  /// Vector polynomials of degree p on a facet in the orthonormal basis of the reference facet.
+  struct Fields
+  {
+    std::vector<Point<dim>> augmented;  ///< sigma(u) n - gamma u: P(u) without the gap
+    std::vector<Point<dim>> dis;        ///< sigma_dis n
+    std::vector<Point<dim>> lin;        ///< sigma_lin n
+  };
+  /// Integrals over a part of the reference facet.
+  struct Integrals
+  {
+    double normal = 0;      ///< of ([P^n]_- - sigma_dis^n)^2
+    double tangential = 0;  ///< of |[P^t]_S - sigma_dis^t|^2
+    bool may_kink = false;
+  };
+
+  [[nodiscard]] Fields fields(int k, std::span<const double> u, const Stress<dim>& stress) const;
+  [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> values) const;
+  [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
+  [[nodiscard]] Integrals settle(int k, const Fields& fields, const Piece& piece, const Integrals& whole,
+                                 double tolerance, int depth) const;
+
+  const NitscheForm<dim>& form_;
+  ContactRule rule_;
+  FacetTabulation<dim> space_table_;           ///< of the space at the points of the facet rule
+  std::vector<FrameTable<dim>> stress_table_;  ///< of the stress there, per local facet
+  std::vector<double> theta_;                  ///< basis on the facet there, [q * n + i]
+  int n_;                                      ///< dim P^p(F)
+};
+
+}  // namespace tribound

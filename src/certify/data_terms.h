@@ -1,0 +1,24 @@
+#pragma once
+
+/// @file data_terms.h
+/// The components of the bound that depend on the data and the mesh alone, method section 5.
+
+#include <vector>
+
+#include "contact/nitsche.h"
+
+namespace tribound
+{
+
+/// Per cell; stress units times length^(dim/2).
+struct DataTerms
+{
+  std::vector<double> osc;  ///< (h_T / pi) ||f - Pi^{p-1} f||_T
+  std::vector<double> neu;  ///< sum over the Neumann facets of T of C_{T,F} ||g_N - Pi^p_F g_N||_F
+};
+
+/// With the reference rule, exact to data_quadrature_degree(p).
+template <int dim>
+[[nodiscard]] DataTerms data_terms(const NitscheForm<dim>& form);
+
+}  // namespace tribound

@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file traction.h
+/// The contact conditions at one point: P, the friction limit S_h and the contact traction T, method
+/// section 2.
+
+#include "case/problem.h"
+#include "contact/elasticity.h"
+#include "contact/projection.h"
+
+namespace tribound
+{
+
+/// P = sigma n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
+template <int dim>
+[[nodiscard]] Point<dim> augmented_traction(const Material& material, double gamma, double gap,
+                                            const Point<dim>& n, const Point<dim>& u,
+                                            const Tensor<dim>& gradient)
+{
+  return sigma<dim>(material, gradient) * n - gamma * (u - gap * n);
+}
+
+/// S_h for the normal part P^n: 0 | s | -mu_F [P^n]_-.
+[[nodiscard]] inline double friction_limit(const FrictionLaw& law, double threshold, double p_n)
+{
+  if (std::holds_alternative<Tresca>(law)) return threshold;
+  if (const auto* coulomb = std::get_if<Coulomb>(&law)) return -coulomb->coefficient * negative_part(p_n);
+  return 0;
+}
+
+/// s(x) where the law is Tresca's, else 0.
+template <int dim>
+[[nodiscard]] double threshold_if_any(const FrictionLaw& law, const Point<dim>& x)
+{
+  const auto* tresca = std::get_if<Tresca>(&law);
+  return tresca ? threshold_at<dim>(*tresca, x) : 0.0;
+}
+
+/// T = [P^n]_- n + [P^t]_S from P.
+template <int dim>
+[[nodiscard]] Point<dim> contact_traction(const FrictionLaw& law, double threshold, const Point<dim>& p,
+                                          const Point<dim>& n)
+{
+  const double p_n = p.dot(n);
+  return negative_part(p_n) * n + ball_projection<dim>(p - p_n * n, friction_limit(law, threshold, p_n));
+}
+
+}  // namespace tribound

@@ -1,0 +1,107 @@
+/// @file certificate_test.cpp
+/// The verdict: nothing is certified that must not be.
+
+#include "certify/certificate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/discrete_case.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using ::testing::HasSubstr;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Bound bound_of(double total)
+{
+  Bound bound;
+  bound.total = bound.total_sharp = total;
+  return bound;
+}
+
+TEST(Judge, CertifiesAtTheTolerance)
+{
+  const Verdict verdict = judge(bound_of(0.02), {}, 2, 2.0, 0.01);
+  EXPECT_EQ(verdict.status, RunStatus::certified);
+  EXPECT_EQ(verdict.reason, "");
+}
+
+TEST(Judge, AboveTheToleranceTheBoundStillHolds)
+{
+  const Verdict verdict = judge(bound_of(0.021), {}, 2, 2.0, 0.01);
+  EXPECT_EQ(verdict.status, RunStatus::budget);
+  EXPECT_THAT(verdict.reason, HasSubstr("1.05 %"));
+}
+
+TEST(Judge, AViolatedIdentityIsNeverCertified)
+{
+  for (const auto member : {&IdentityDefects::divergence, &IdentityDefects::jump, &IdentityDefects::neumann,
+                            &IdentityDefects::contact, &IdentityDefects::symmetry})
+    for (const double defect : {1.1e-8, nan, std::numeric_limits<double>::infinity()})
+    {
+      IdentityDefects defects;
+      defects.*member = defect;
+      EXPECT_EQ(judge(bound_of(0), defects, 2, 1, 0.01).status, RunStatus::not_certified);
+    }
+}
+
+TEST(Judge, SymmetryIsNoIdentityOfDegreeOne)
+{
+  EXPECT_EQ(judge(bound_of(0), {0, 0, 0, 0, 1}, 1, 1, 0.01).status, RunStatus::certified);
+}
+
+TEST(Judge, NumbersThatAreNotFiniteAreNeverCertified)
+{
+  EXPECT_EQ(judge(bound_of(nan), {}, 1, 1, 0.01).status, RunStatus::not_certified);
+  EXPECT_EQ(judge(bound_of(1), {}, 1, nan, 0.01).status, RunStatus::not_certified);
+}
+
+TEST(Judge, ABodyWithoutStressIsCertifiedByABoundOfZeroOnly)
+{
+  EXPECT_EQ(judge(bound_of(0), {}, 1, 0, 0.01).status, RunStatus::certified);
+  EXPECT_EQ(judge(bound_of(1e-3), {}, 1, 0, 0.01).status, RunStatus::budget);
+}
+
+std::string block(const std::string& left, const std::string& contact)
+{
+  return "degree = 2\nmesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }\n"
+         "material = { E = 1, nu = 0.3 }\nboundary.left.displacement = " +
+         left + "\nboundary.bottom.contact = " + contact + "\n";
+}
+
+TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
+{
+  // (y^3): the interpolant of degree 2 on [0, 1/2] has the error max |s (s - 1/4) (s - 1/2)| near 0.006.
+  const DiscreteCase<2> cubic(block("[\"y^3\", 0]", "{ friction = \"none\" }"));
+  const double error = dirichlet_interpolation_error(cubic.form);
+  EXPECT_GT(error, 0.005);
+  EXPECT_LT(error, std::pow(0.25, 3) * 2 / (3 * std::sqrt(3.0)) * (1 + 1e-12));
+  EXPECT_THAT(statements(cubic.form, ContactRule::resolved).not_covered,
+              ::testing::Contains(HasSubstr("interpolation")));
+
+  const DiscreteCase<2> square(block("[\"y^2\", 0]", "{ friction = \"none\" }"));
+  EXPECT_LE(dirichlet_interpolation_error(square.form), 1e-15);
+  EXPECT_THAT(statements(square.form, ContactRule::resolved).not_covered,
+              ::testing::Not(::testing::Contains(HasSubstr("interpolation"))));
+}
+
+TEST(Statements, SayForWhichLaw)
+{
+  const DiscreteCase<2> tresca(block("[0, 0]", "{ friction = \"tresca\", threshold = 0.1 }"));
+  EXPECT_THAT(statements(tresca.form, ContactRule::resolved).law, HasSubstr("exists and is unique"));
+  const DiscreteCase<2> coulomb(block("[0, 0]", "{ friction = \"coulomb\", coefficient = 0.1 }"));
+  EXPECT_THAT(statements(coulomb.form, ContactRule::resolved).law, HasSubstr("small friction"));
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,111 @@
+/// @file contact_terms_test.cpp
+/// The norms on the contact boundary against integrals done by hand, across kinks of the traction.
+
+#include "certify/contact_terms.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "fem/polynomials.h"
+#include "support/discrete_case.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// A unit block on a floor with one contact facet per cell side, E and nu such that lambda = 0, mu = 1/2.
+template <int dim>
+std::string block(int p, const std::string& contact)
+{
+  const std::string box = dim == 2 ? "{ lower = [0, 0], upper = [1, 1], cells = [1, 1] }"
+                                   : "{ lower = [0, 0, 0], upper = [1, 1, 1], cells = [1, 1, 1] }";
+  const std::string zeros = dim == 2 ? "[0, 0]" : "[0, 0, 0]";
+  return "degree = " + std::to_string(p) + "\nmesh.box = " + box +
+         "\nmaterial = { E = 1, nu = 0 }\nboundary.top.displacement = " + zeros +
+         "\nboundary.bottom.contact = " + contact + "\nnitsche.gamma0 = 1\n";
+}
+
+/// No stress at all: what is left of cnt and frc is the norm of T(u).
+template <int dim>
+Stress<dim> no_stress(const DiscreteCase<dim>& c)
+{
+  Stress<dim> stress;
+  stress.degree = c.config.degree;
+  stress.n = polynomial_dimension(dim, stress.degree);
+  stress.dis.assign(c.mesh.n_cells() * stress.block_size(), 0.0);
+  stress.lin_place.assign(c.mesh.n_cells(), -1);
+  return stress;
+}
+
+template <int dim>
+ContactSquares sum_over_facets(const DiscreteCase<dim>& c, const std::vector<double>& u, ContactRule rule)
+{
+  const Stress<dim> stress = no_stress(c);
+  const ContactTerms<dim> terms(c.form, rule);
+  ContactSquares sum;
+  for (std::size_t k = 0; k < c.form.contact_facets().size(); ++k)
+  {
+    const ContactSquares squares = terms(static_cast<int>(k), u, stress);
+    const double h = c.form.contact_facets()[k].geometry.diameter;
+    sum.cnt += squares.cnt / h;
+    sum.frc += squares.frc / h;
+  }
+  return sum;
+}
+
+/// Without gradient at the floor P = -gamma (u - g n): u = (a(x), b(x)) there, whatever the degree.
+TEST(ContactTerms, AKinkOfTheNormalTractionIsResolvedIn2D)
+{
+  // u = 0, n = -e_y, P^n = gamma g >= 0 unless u^n > g; translate by u = (0, -b): P^n = -gamma (b - g(x)).
+  // gamma = gamma_0 (lambda + 2 mu)/h = 1. With g = x and b = 0.3: P^n = x - 0.3, negative part on [0, 0.3].
+  for (int p = 1; p <= 4; ++p)
+  {
+    const DiscreteCase<2> c(block<2>(p, "{ friction = \"none\", gap = \"x\" }"));
+    std::vector<double> u(c.space.n_dofs(), 0.0);
+    for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.3;
+    const double exact = std::pow(0.3, 3) / 3;
+    EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, exact, 1e-9 * exact) << "p = " << p;
+    EXPECT_GT(std::abs(sum_over_facets(c, u, ContactRule::reference).cnt - exact), 1e-6 * exact)
+        << "the plain rule cannot be exact across a kink, p = " << p;
+  }
+}
+
+TEST(ContactTerms, AKinkOfTheFrictionLimitIsResolvedIn2D)
+{
+  // u = (0.7, 0): P^t = -0.7; threshold s = x: [P^t]_s = -min(x, 0.7).
+  const DiscreteCase<2> c(block<2>(2, "{ friction = \"tresca\", threshold = \"x\", gap = 1 }"));
+  std::vector<double> u(c.space.n_dofs(), 0.0);
+  for (std::size_t i = 0; i < u.size(); i += 2) u[i] = 0.7;
+  const double exact = std::pow(0.7, 3) / 3 + 0.3 * 0.49;
+  EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).frc, exact, 1e-9 * exact);
+  EXPECT_EQ(sum_over_facets(c, u, ContactRule::resolved).cnt, 0.0);
+}
+
+TEST(ContactTerms, KinksAreResolvedIn3D)
+{
+  // Facets have the diameter sqrt 2, so gamma = 1/sqrt 2: P^n = gamma (x + z - 0.9), negative in a triangle
+  // of legs 0.9: integral of (0.9 - r)^2 with r = x + z over it is int_0^0.9 (0.9 - r)^2 r dr = 0.9^4 / 12.
+  const DiscreteCase<3> c(block<3>(1, "{ friction = \"none\", gap = \"x + z\" }"));
+  std::vector<double> u(c.space.n_dofs(), 0.0);
+  for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -0.9;
+  const double exact = 0.5 * std::pow(0.9, 4) / 12;
+  EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, exact, 1e-5 * exact);
+  EXPECT_GT(std::abs(sum_over_facets(c, u, ContactRule::reference).cnt - exact), 1e-4 * exact);
+}
+
+TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
+{
+  const DiscreteCase<2> c(block<2>(2, "{ friction = \"none\", gap = \"0.1*x\" }"));
+  std::vector<double> u(c.space.n_dofs(), 0.0);
+  for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.9;
+  EXPECT_EQ(sum_over_facets(c, u, ContactRule::resolved).cnt,
+            sum_over_facets(c, u, ContactRule::reference).cnt);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
