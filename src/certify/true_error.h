@@ -4,7 +4,6 @@
 /// What the bound bounds, computed: the dual norm of the residual from below, and errors against a much
 /// richer solution; method section 9. Far more expensive than the bound: for verification.
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>

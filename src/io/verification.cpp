@@ -38,21 +38,22 @@ std::string iterate_line(const VerifiedIterate& iterate)
 
 std::string richer_text(const Verification& v)
 {
+  if (!v.richer) return line("richer", "not computed, because Newton's method did not converge");
   const double sigma_norm = v.iterates.back().sigma_norm;
   const std::string where =
       fmt::format("degree {} on {} cells, {} free degrees of freedom, {} Newton steps", v.richer_degree,
-                  v.richer.cells, v.richer.dofs, v.richer.newton_steps);
-  if (!v.richer.error) return line("richer", where) + line("", "no solution: " + v.richer.failure);
+                  v.richer->cells, v.richer->dofs, v.richer->newton_steps);
+  if (!v.richer->error) return line("richer", where) + line("", "no solution: " + v.richer->failure);
   const double bound = v.iterates.back().bound;
-  return line("richer", where) + line("energy error", fmt::format("{:.6g}", v.richer.error->energy)) +
+  return line("richer", where) + line("energy error", fmt::format("{:.6g}", v.richer->error->energy)) +
          line("stress error",
-              fmt::format("{:.6g}, {:.3g} of ||sigma||; bound / error = {:.4g}", v.richer.error->stress,
-                          v.richer.error->stress / sigma_norm, bound / v.richer.error->stress));
+              fmt::format("{:.6g}, {:.3g} of ||sigma||; bound / error = {:.4g}", v.richer->error->stress,
+                          v.richer->error->stress / sigma_norm, bound / v.richer->error->stress));
 }
 
 std::string status_text(const Verification& v)
 {
-  const std::string problem = violation(v);
+  std::string problem = violation(v);
   if (!problem.empty()) return problem;
   double smallest = std::numeric_limits<double>::infinity();
   double largest = 0;
@@ -85,8 +86,10 @@ Json json(const VerifiedIterate& iterate)
           {"identities", iterate.identities}};
 }
 
-Json json(const RicherSolution& richer, int degree)
+Json json(const std::optional<RicherSolution>& solution, int degree)
 {
+  if (!solution) return nullptr;
+  const RicherSolution& richer = *solution;
   Json object{{"degree", degree},         {"cells", richer.cells},
               {"dofs", richer.dofs},      {"newton_steps", richer.newton_steps},
               {"energy_error", nullptr},  {"stress_error", nullptr},

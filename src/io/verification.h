@@ -50,7 +50,7 @@ struct Verification
   std::vector<VerifiedIterate> iterates;  ///< k = 1, 2, ...; the last is the solution
   bool converged = false;
   int richer_degree = 0;
-  RicherSolution richer;                              ///< against which the last iterate was measured
+  std::optional<RicherSolution> richer;  ///< what the solution was measured against, if it is one
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
 };
 

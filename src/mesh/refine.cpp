@@ -59,7 +59,7 @@ std::array<Index, 3> middle_triangle(const Middles<dim>& middles, const std::arr
 const std::array<int, 6>& shortest_diagonal(std::span<const Point<3>> vertices, const Middles<3>& middles)
 {
   constexpr double clearly_shorter = 1 - 1e-12;  // round-off must not choose between equal ones
-  const std::array<int, 6>* best = nullptr;
+  const auto* best = octahedron_diagonals.data();
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& candidate : octahedron_diagonals)
   {

@@ -26,8 +26,7 @@ Verification example()
                 {{2, 1e-12, 1.0, 1, true, 0.1}, 0.05, 0.06, 0.04, 1.0, 2e-15}};
   v.converged = true;
   v.richer_degree = 2;
-  v.richer = {
-      .cells = 256, .dofs = 1100, .newton_steps = 4, .failure = {}, .error = SolutionError{0.02, 0.025}};
+  v.richer = RicherSolution{256, 1100, 4, {}, SolutionError{0.02, 0.025}};
   v.times = {{"solve", 0.5}};
   return v;
 }
@@ -82,10 +81,14 @@ TEST(Verification, Json)
   EXPECT_EQ(json["iterates"][0]["effectivity"], 1.5);
   EXPECT_EQ(json["times"]["solve"], 0.5);
 
-  v.richer.error.reset();
-  v.richer.failure = "step 50 was the last";
+  v.richer->error.reset();
+  v.richer->failure = "step 50 was the last";
   EXPECT_TRUE(nlohmann::json::parse(verification_json(v))["richer_solution"]["stress_error"].is_null());
   EXPECT_THAT(verification_text(v, ""), HasSubstr("no solution: step 50 was the last"));
+
+  v.richer.reset();
+  EXPECT_TRUE(nlohmann::json::parse(verification_json(v))["richer_solution"].is_null());
+  EXPECT_THAT(verification_text(v, ""), HasSubstr("not computed"));
 }
 
 }  // namespace
