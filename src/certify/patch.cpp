@@ -25,7 +25,8 @@ void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
                              std::span<CellShare<dim, p>, 2> shares)
 {
   const Frame<dim>& frame = prepared.frame;
-  if (n_cells_ == static_cast<int>(cells_.size())) cells_.push_back({0, {}, nullptr, shares, {}, {}, {}});
+  if (n_cells_ == static_cast<int>(cells_.size()))
+    cells_.push_back({0, {}, nullptr, shares, nullptr, {}, {}});
   CellPart& part = cells_[n_cells_++];
   part.vertex = frame.find(vertex_);
   part.prepared = &prepared;
@@ -272,32 +273,23 @@ void Patch<dim, p>::assemble()
   }
 }
 
-/// Eliminates the multiplier of the outer facet o: S(f, g) - S(f, o) S(o, o)^{-1} S(o, g).
+/// Eliminates the multiplier of the outer facet.
 template <int dim, int p>
 void Patch<dim, p>::condense(CellPart& part)
 {
-  constexpr int n = S::block;
-  constexpr int stride = Operator::facet_stride;
-  constexpr int row = Operator::all_facets;
-  const Operator& op = part.prepared->op;
+  const PreparedCell<dim, p>& cell = *part.prepared;
   const int o = part.vertex;
-  double* const outer = part.outer_rows.data();
-  std::copy_n(op.schur(o), n * row, outer);
-  if (!cholesky<n>(outer + o * stride, row, part.reciprocal.data()))
-    throw SolveError("a cell at vertex " + std::to_string(vertex_) + " is too flat");
-  for (int f = 0; f <= dim; ++f)
-    if (f != o)
-      solve_transposed<n, stride>(outer + o * stride, row, part.reciprocal.data(), outer + f * stride, row);
+  part.outer = cell.shape ? &cell.shape->outer[o] : &part.own_outer;
+  if (!cell.shape) part.own_outer.factor(*cell.op, o);
   for (int f = 0; f <= dim; ++f)
     for (int g = 0; g <= dim; ++g)
     {
       if (f == o || g == o || part.facets[f] > part.facets[g]) continue;
       auto& block = matrix_.block(part.facets[f], part.facets[g]);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < stride; j += lanes)
-          lanes_at(block.row(i) + j) += lanes_at(op.schur(f) + i * row + g * stride + j);
-      subtract_transposed_product<n, stride, n>(block.data(), stride, outer + f * stride, row,
-                                                outer + g * stride, row);
+      if (cell.shape)
+        add_multiple(block, 1, cell.shape->reduced[o][f][g]);
+      else
+        part.own_outer.add_block(*cell.op, f, g, block);
     }
 }
 
@@ -333,13 +325,13 @@ void Patch<dim, p>::assemble_load(CellPart& part, int problem)
       }
   }
   add_moments(r_u, cell, o, y_[problem], problem == 0 ? 1 : -1);
-  cell.op.subtract_load(load, frame, r_u, w_[problem]);
+  cell.op->subtract_load(load, frame, r_u, w_[problem]);
 
   FacetVector& outer = part.outer_load[problem];
   std::copy_n(load.row(o), FacetVector::stride, outer.data());
-  solve_transposed<S::block>(part.outer_rows.row(0) + o * FacetVector::stride, Operator::all_facets,
-                             part.reciprocal.data(), outer.data());
-  subtract_transposed_times<S::block, Operator::all_facets>(load.data(), part.outer_rows.data(),
+  solve_transposed<S::block>(part.outer->rows.data() + o * FacetVector::stride, Operator::all_facets,
+                             part.outer->reciprocal.data(), outer.data());
+  subtract_transposed_times<S::block, Operator::all_facets>(load.data(), part.outer->rows.data(),
                                                             Operator::all_facets, outer.data());
   for (int f = 0; f <= dim; ++f)
     if (f != o)
@@ -395,9 +387,9 @@ void Patch<dim, p>::recover(CellPart& part, int problem)
     if (f == o) continue;
     const FacetVector& x = x_[problem][part.facets[f]];
     std::copy_n(x.data(), stride, share.mu.row(f));
-    subtract_times<S::block, stride>(outer, part.outer_rows.data() + f * stride, row, x.data());
+    subtract_times<S::block, stride>(outer, part.outer->rows.data() + f * stride, row, x.data());
   }
-  solve_upper<S::block>(part.outer_rows.data() + o * stride, row, part.reciprocal.data(), outer);
+  solve_upper<S::block>(part.outer->rows.data() + o * stride, row, part.outer->reciprocal.data(), outer);
   share.y = y_[problem];
   share.w = w_[problem];
 }
