@@ -66,6 +66,8 @@ class Patch
   };
 
   void order_facets();
+  /// In patch_compatibility.cpp, as what it calls: Z_a, y_a and w_a.
+  void make_compatible();
   void find_rigid_motions();
   [[nodiscard]] Moments integrate() const;
   void find_divergence_part(const Moments& moments);
