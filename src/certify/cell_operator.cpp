@@ -139,7 +139,7 @@ auto CellOperator<dim, p>::divergence(const Frame<dim>& frame, const DiscreteStr
     for (int r = 0; r < dim; ++r)
       for (int k = 0; k < dim; ++k)
       {
-        std::array<double, m> row{};  // minus the contravariant component k of row r
+        std::array<double, m> row{};  // component k of row r on the reference cell
         for (int c = 0; c < dim; ++c)
           for (int j = 0; j < m; ++j) row[j] += frame.inverse(k, c) * sigma[(dim * r + c) * m + j];
         const auto& derivative = reference<dim, p>().derivative[k];

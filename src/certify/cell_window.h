@@ -80,18 +80,30 @@ struct CellSource
   const NitscheForm<dim>& form;
   std::span<const double> u;
   const BodyMoments<dim, p>& body;
+  const RepeatedShapes<dim, p>& shapes;
 
-  /// Everything but the Schur complement.
-  void prepare(Index c, PreparedCell<dim, p>& cell) const
+  /// The Schur complement is only made if `for_patches`.
+  void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
   {
     const LagrangeSpace<dim>& space = form.space();
     cell.frame = make_frame(space.mesh(), c);
-    cell.op.build(cell.frame);
+    find_operator(c, cell, for_patches);
     cell.sigma = discrete_stress<dim, p>(cell.frame, form.problem().material(space.mesh().region(c)),
                                          space.cell_nodes(c), u);
-    cell.divergence = cell.op.divergence(cell.frame, cell.sigma);
+    cell.divergence = cell.op->divergence(cell.frame, cell.sigma);
     for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
     find_moments(cell);
+  }
+
+  void find_operator(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
+  {
+    cell.shape = shapes.find(c);
+    cell.op = cell.shape ? &cell.shape->op : nullptr;
+    if (cell.shape) return;
+    if (!cell.own) cell.own = std::make_unique<CellOperator<dim, p>>();
+    cell.own->build(cell.frame);
+    if (for_patches) cell.own->condense(cell.frame);
+    cell.op = cell.own.get();
   }
 };
 
@@ -126,8 +138,7 @@ class CellWindow
     place_[cell] = free_.back();
     free_.pop_back();
     Slot& slot = *pool_[place_[cell]];
-    source_.prepare(cell, slot.cell);
-    slot.cell.op.condense(slot.cell.frame);
+    source_.prepare(cell, slot.cell, true);
     slot.waiting = 0;
     return slot;
   }

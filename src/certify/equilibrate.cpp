@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "certify/cell_window.h"
@@ -20,7 +20,7 @@ namespace
 /// Vertices along a space-filling curve (Morton order): the cells that a stretch of it needs at a time are
 /// few.
 template <int dim>
-std::vector<Index> vertices_by_locality(const Mesh<dim>& mesh)
+std::vector<Index> vertices_by_locality(const Mesh<dim>& mesh, int n_threads)
 {
   Point<dim> lower = mesh.vertex(0);
   Point<dim> upper = mesh.vertex(0);
@@ -29,18 +29,22 @@ std::vector<Index> vertices_by_locality(const Mesh<dim>& mesh)
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
   }
-  constexpr int bits = 60 / dim;
+  constexpr int bits = 20;
   const double scale = ((std::uint64_t{1} << bits) - 1) / (upper - lower).maxCoeff();
-  std::vector<std::uint64_t> key(mesh.n_vertices(), 0);
+  std::vector<std::pair<std::uint64_t, Index>> keys(mesh.n_vertices());
+#pragma omp parallel for num_threads(n_threads)
   for (Index v = 0; v < mesh.n_vertices(); ++v)
+  {
+    keys[v] = {0, v};
     for (int c = 0; c < dim; ++c)
     {
       const auto coordinate = static_cast<std::uint64_t>((mesh.vertex(v)[c] - lower[c]) * scale);
-      for (int b = 0; b < bits; ++b) key[v] |= (coordinate >> b & 1) << (b * dim + c);
+      for (int b = 0; b < bits; ++b) keys[v].first |= (coordinate >> b & 1) << (b * dim + c);
     }
+  }
+  std::ranges::sort(keys);
   std::vector<Index> order(mesh.n_vertices());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::sort(order, {}, [&](Index v) { return std::pair(key[v], v); });
+  std::ranges::transform(keys, order.begin(), [](const auto& key) { return key.second; });
   return order;
 }
 
@@ -51,7 +55,11 @@ class Equilibration
 {
  public:
   Equilibration(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t)
-      : mesh_(form.space().mesh()), data_(form, u, t), body_(form), source_{form, u, body_}
+      : mesh_(form.space().mesh()),
+        data_(form, u, t),
+        body_(form),
+        shapes_(mesh_),
+        source_{form, u, body_, shapes_}
   {
   }
 
@@ -80,6 +88,7 @@ class Equilibration
   const Mesh<dim>& mesh_;
   FacetData<dim, p> data_;
   BodyMoments<dim, p> body_;
+  RepeatedShapes<dim, p> shapes_;
   CellSource<dim, p> source_;
   Stress<dim> stress_;
   std::vector<Index> order_;         ///< of the vertices
@@ -107,7 +116,7 @@ void Equilibration<dim, p>::prepare_stress()
 template <int dim, int p>
 void Equilibration<dim, p>::divide(int n_stretches)
 {
-  order_ = vertices_by_locality(mesh_);
+  order_ = vertices_by_locality(mesh_, n_stretches);
   stretch_.resize(mesh_.n_vertices());
   for (int s = 0; s <= n_stretches; ++s) begin_.push_back(order_.size() * s / n_stretches);
   for (int s = 0; s < n_stretches; ++s)
@@ -181,7 +190,7 @@ void Equilibration<dim, p>::recover_shared_cells(int stretch, int n_stretches)
   const auto prepared = std::make_unique<PreparedCell<dim, p>>();
   for (std::size_t i = stretch; i < shared_cells_.size(); i += n_stretches)
   {
-    source_.prepare(shared_cells_[i], *prepared);
+    source_.prepare(shared_cells_[i], *prepared, false);
     recover(shared_cells_[i], *prepared, shares_[i]);
   }
 }
@@ -208,7 +217,7 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
       w += share.w;
       add_multiple(mu, 1, share.mu);
     }
-    StressCoefficients<dim, p> sigma = prepared.op.correction(frame, r_u, w, mu);
+    StressCoefficients<dim, p> sigma = prepared.op->correction(frame, r_u, w, mu);
     if (problem == 0)
       for (int entry = 0; entry < dim * dim; ++entry)
         for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];

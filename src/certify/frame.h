@@ -66,6 +66,22 @@ template <int dim>
 }
 
 template <int dim>
+[[nodiscard]] Cell<dim> sorted_vertices(Cell<dim> cell)
+{
+  std::ranges::sort(cell);
+  return cell;
+}
+
+/// J with x = x_0 + J xhat for the cell with these vertices.
+template <int dim>
+[[nodiscard]] Tensor<dim> jacobian_of(const Mesh<dim>& mesh, const Cell<dim>& vertices)
+{
+  Tensor<dim> jacobian;
+  for (int j = 0; j < dim; ++j) jacobian.col(j) = mesh.vertex(vertices[j + 1]) - mesh.vertex(vertices[0]);
+  return jacobian;
+}
+
+template <int dim>
 [[nodiscard]] Frame<dim> make_frame(const Mesh<dim>& mesh, Index c)
 {
   Frame<dim> frame;
@@ -75,7 +91,7 @@ template <int dim>
   for (int i = 0; i <= dim; ++i) frame.vertices[i] = cell[frame.local[i]];
 
   frame.origin = mesh.vertex(frame.vertices[0]);
-  for (int j = 0; j < dim; ++j) frame.jacobian.col(j) = mesh.vertex(frame.vertices[j + 1]) - frame.origin;
+  frame.jacobian = jacobian_of(mesh, frame.vertices);
   frame.inverse = frame.jacobian.inverse();
   frame.det = std::abs(frame.jacobian.determinant());
   frame.grad[0].setZero();

@@ -25,7 +25,8 @@ void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
                              std::span<CellShare<dim, p>, 2> shares)
 {
   const Frame<dim>& frame = prepared.frame;
-  if (n_cells_ == static_cast<int>(cells_.size())) cells_.push_back({0, {}, nullptr, shares, {}, {}, {}});
+  if (n_cells_ == static_cast<int>(cells_.size()))
+    cells_.push_back({0, {}, nullptr, shares, nullptr, {}, {}});
   CellPart& part = cells_[n_cells_++];
   part.vertex = frame.find(vertex_);
   part.prepared = &prepared;
@@ -47,10 +48,7 @@ template <int dim, int p>
 void Patch<dim, p>::solve()
 {
   order_facets();
-  find_rigid_motions();
-  const Moments moments = integrate();
-  find_divergence_part(moments);
-  find_skew_part(moments);
+  make_compatible();
   assemble();
   fix_rigid_motions(static_cast<int>(facets_.size()) - 1);
   if (!matrix_.factor())
@@ -80,19 +78,6 @@ void Patch<dim, p>::order_facets()
   for (std::size_t i = 0; i < found_.size(); ++i) facets_[rank[i]] = found_[i];
 }
 
-template <int dim, int p>
-void Patch<dim, p>::find_rigid_motions()
-{
-  for (const auto& [facet, scale] : facets_)
-  {
-    if (!data_.is_boundary(facet) || !data_.fixes_any(facet)) continue;
-    FixedFacet<dim>& fixed = fixed_facets_.emplace_back();
-    for (int v = 0; v < dim; ++v) fixed.vertices[v] = mesh_.vertex(mesh_.topology().facets[facet][v]);
-    for (int c = 0; c < dim; ++c) fixed.fixed[c] = data_.fixes(facet, c);
-  }
-  motions_ = RigidMotions<dim>(mesh_.vertex(vertex_), size_, fixed_facets_);
-}
-
 /// Coefficients of motion i in P^p(F)^d.
 template <int dim, int p>
 auto Patch<dim, p>::moments_on_facet(int place, int motion) const -> FacetVector
@@ -110,51 +95,6 @@ auto Patch<dim, p>::moments_on_facet(int place, int motion) const -> FacetVector
   return moments;
 }
 
-/// (-psi_a f + sigma(u^k) grad psi_a, v)_T for v in U.
-template <int dim, int p>
-auto Patch<dim, p>::raw_load(const CellPart& part) const -> UVector
-{
-  constexpr int m = S::multiplier;
-  const PreparedCell<dim, p>& cell = *part.prepared;
-  const Point<dim>& gradient = cell.frame.grad[part.vertex];
-  UVector load;
-  for (int r = 0; r < dim; ++r)
-    for (int j = 0; j < m; ++j)
-    {
-      load[r * m + j] = -cell.body[part.vertex][r * m + j];
-      for (int c = 0; c < dim; ++c) load[r * m + j] += gradient[c] * cell.sigma[(dim * r + c) * m + j];
-    }
-  return load;
-}
-
-template <int dim, int p>
-auto Patch<dim, p>::integrate() const -> Moments
-{
-  constexpr int n = S::affine;
-  Moments sum{Point<dim>::Zero(), Tensor<dim>::Zero(), 0, Point<dim>::Zero(), Tensor<dim>::Zero()};
-  for (int k = 0; k < n_cells_; ++k)
-  {
-    const PreparedCell<dim, p>& cell = *cells_[k].prepared;
-    const UVector load = raw_load(cells_[k]);
-    const Point<dim> edge = edge_to(cell.frame, cells_[k].vertex);
-    auto x = cell.coordinates;
-    for (int d = 0; d < dim; ++d) x[d][0] -= edge[d] * cell.one;
-    sum.volume += cell.one * cell.one;
-    for (int c = 0; c < dim; ++c)
-    {
-      sum.load[c] += cell.one * load[c * S::multiplier];
-      sum.position[c] += cell.one * x[c][0];
-      for (int d = 0; d < dim; ++d)
-        for (int j = 0; j < n; ++j)
-        {
-          sum.load_position(c, d) += load[c * S::multiplier + j] * x[d][j];
-          sum.position_position(c, d) += x[c][j] * x[d][j];
-        }
-    }
-  }
-  return sum;
-}
-
 template <int dim, int p>
 int Patch<dim, p>::local_vertex(Index facet) const
 {
@@ -169,89 +109,6 @@ auto Patch<dim, p>::traction(Index facet, int problem) const -> const typename F
   if (!data_.is_boundary(facet)) return nullptr;
   const auto* moments = problem == 0 ? data_.discretisation(facet) : data_.linearisation(facet);
   return moments ? &(*moments)[local_vertex(facet)] : nullptr;
-}
-
-/// (t, z) over the facets of the patch.
-template <int dim, int p>
-double Patch<dim, p>::traction_work(int problem, int motion) const
-{
-  double work = 0;
-  for (std::size_t i = 0; i < facets_.size(); ++i)
-    if (const auto* t = traction(facets_[i].number, problem))
-    {
-      const FacetVector z = moments_on_facet(static_cast<int>(i), motion);
-      for (int k = 0; k < S::block; ++k) work += (*t)[k] * z[k];
-    }
-  return work;
-}
-
-/// y_a in Z_a (rigid motions; constants for p = 1) with (y_a, z) = -<R(u^k), psi_a z> = (b, z) - (t, z) for
-/// the dis problem, and (y_lin, z) = (t^k - T(u^k), psi_a z)_C for the lin problem.
-template <int dim, int p>
-void Patch<dim, p>::find_divergence_part(const Moments& moments)
-{
-  y_.fill({Point<dim>::Zero(), Tensor<dim>::Zero()});
-  const int n = p == 1 ? motions_.n_translations() : motions_.size();
-  if (n == 0) return;
-  Dense<S::rigid, S::rigid> gram;
-  std::array<RigidVector, 2> y{};
-  for (int i = 0; i < S::rigid; ++i) gram(i, i) = 1;  // motions that are not admitted
-  for (int i = 0; i < n; ++i)
-  {
-    const auto& [translation, gradient] = motions_[i];
-    for (int j = i; j < n; ++j)
-    {
-      const auto& [other_translation, other_gradient] = motions_[j];
-      gram(i, j) = moments.volume * translation.dot(other_translation) +
-                   translation.dot(other_gradient * moments.position) +
-                   other_translation.dot(gradient * moments.position) +
-                   (gradient * moments.position_position).cwiseProduct(other_gradient).sum();
-    }
-    y[0][i] = translation.dot(moments.load) + gradient.cwiseProduct(moments.load_position).sum();
-    for (int problem = 0; problem < n_problems_; ++problem)
-      y[problem][i] += (problem == 0 ? -1 : 1) * traction_work(problem, i);
-  }
-  RigidVector reciprocal;
-  if (!cholesky<S::rigid>(gram.data(), gram.stride, reciprocal.data()))
-    throw SolveError("the cells around vertex " + std::to_string(vertex_) + " are too flat");
-  for (int problem = 0; problem < n_problems_; ++problem)
-  {
-    solve_transposed<S::rigid>(gram.data(), gram.stride, reciprocal.data(), y[problem].data());
-    solve_upper<S::rigid>(gram.data(), gram.stride, reciprocal.data(), y[problem].data());
-    for (int i = 0; i < n; ++i)
-    {
-      y_[problem].translation += y[problem][i] * motions_[i].translation;
-      y_[problem].gradient += y[problem][i] * motions_[i].gradient;
-    }
-  }
-}
-
-/// w_a for p = 1: in the span of grad z of the admissible rotations z, with
-/// (w_a, grad z) = (t, z)_{N, C} - (Pi^0 b, z).
-template <int dim, int p>
-void Patch<dim, p>::find_skew_part(const Moments& moments)
-{
-  w_.fill(Tensor<dim>::Zero());
-  const int n = motions_.n_rotations();
-  if (p > 1 || n == 0) return;
-  const int first = motions_.n_translations();
-  using Gram = Eigen::Matrix<double, S::pairs, S::pairs>;
-  Gram gram = Gram::Identity();
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      gram(i, j) =
-          moments.volume * motions_[first + i].gradient.cwiseProduct(motions_[first + j].gradient).sum();
-  const Gram inverse = gram.inverse();
-  for (int problem = 0; problem < n_problems_; ++problem)
-  {
-    // (Pi^0 b, z), z = grad z x: b is the load of dis without y_a and y_lin,a in lin
-    const Tensor<dim> y = y_[problem].translation * moments.position.transpose();
-    const Tensor<dim> b = problem == 0 ? Tensor<dim>(moments.load_position - y) : y;
-    Eigen::Matrix<double, S::pairs, 1> rhs = Eigen::Matrix<double, S::pairs, 1>::Zero();
-    for (int i = 0; i < n; ++i)
-      rhs[i] = traction_work(problem, first + i) - b.cwiseProduct(motions_[first + i].gradient).sum();
-    for (int i = 0; i < n; ++i) w_[problem] += inverse.row(i).dot(rhs) * motions_[first + i].gradient;
-  }
 }
 
 template <int dim, int p>
@@ -272,32 +129,23 @@ void Patch<dim, p>::assemble()
   }
 }
 
-/// Eliminates the multiplier of the outer facet o: S(f, g) - S(f, o) S(o, o)^{-1} S(o, g).
+/// Eliminates the multiplier of the outer facet.
 template <int dim, int p>
 void Patch<dim, p>::condense(CellPart& part)
 {
-  constexpr int n = S::block;
-  constexpr int stride = Operator::facet_stride;
-  constexpr int row = Operator::all_facets;
-  const Operator& op = part.prepared->op;
+  const PreparedCell<dim, p>& cell = *part.prepared;
   const int o = part.vertex;
-  double* const outer = part.outer_rows.data();
-  std::copy_n(op.schur(o), n * row, outer);
-  if (!cholesky<n>(outer + o * stride, row, part.reciprocal.data()))
-    throw SolveError("a cell at vertex " + std::to_string(vertex_) + " is too flat");
-  for (int f = 0; f <= dim; ++f)
-    if (f != o)
-      solve_transposed<n, stride>(outer + o * stride, row, part.reciprocal.data(), outer + f * stride, row);
+  part.outer = cell.shape ? &cell.shape->outer[o] : &part.own_outer;
+  if (!cell.shape) part.own_outer.factor(*cell.op, o);
   for (int f = 0; f <= dim; ++f)
     for (int g = 0; g <= dim; ++g)
     {
       if (f == o || g == o || part.facets[f] > part.facets[g]) continue;
       auto& block = matrix_.block(part.facets[f], part.facets[g]);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < stride; j += lanes)
-          lanes_at(block.row(i) + j) += lanes_at(op.schur(f) + i * row + g * stride + j);
-      subtract_transposed_product<n, stride, n>(block.data(), stride, outer + f * stride, row,
-                                                outer + g * stride, row);
+      if (cell.shape)
+        add_multiple(block, 1, cell.shape->reduced[o][f][g]);
+      else
+        part.own_outer.add_block(*cell.op, f, g, block);
     }
 }
 
@@ -333,13 +181,13 @@ void Patch<dim, p>::assemble_load(CellPart& part, int problem)
       }
   }
   add_moments(r_u, cell, o, y_[problem], problem == 0 ? 1 : -1);
-  cell.op.subtract_load(load, frame, r_u, w_[problem]);
+  cell.op->subtract_load(load, frame, r_u, w_[problem]);
 
   FacetVector& outer = part.outer_load[problem];
   std::copy_n(load.row(o), FacetVector::stride, outer.data());
-  solve_transposed<S::block>(part.outer_rows.row(0) + o * FacetVector::stride, Operator::all_facets,
-                             part.reciprocal.data(), outer.data());
-  subtract_transposed_times<S::block, Operator::all_facets>(load.data(), part.outer_rows.data(),
+  solve_transposed<S::block>(part.outer->rows.data() + o * FacetVector::stride, Operator::all_facets,
+                             part.outer->reciprocal.data(), outer.data());
+  subtract_transposed_times<S::block, Operator::all_facets>(load.data(), part.outer->rows.data(),
                                                             Operator::all_facets, outer.data());
   for (int f = 0; f <= dim; ++f)
     if (f != o)
@@ -395,9 +243,9 @@ void Patch<dim, p>::recover(CellPart& part, int problem)
     if (f == o) continue;
     const FacetVector& x = x_[problem][part.facets[f]];
     std::copy_n(x.data(), stride, share.mu.row(f));
-    subtract_times<S::block, stride>(outer, part.outer_rows.data() + f * stride, row, x.data());
+    subtract_times<S::block, stride>(outer, part.outer->rows.data() + f * stride, row, x.data());
   }
-  solve_upper<S::block>(part.outer_rows.data() + o * stride, row, part.reciprocal.data(), outer);
+  solve_upper<S::block>(part.outer->rows.data() + o * stride, row, part.outer->reciprocal.data(), outer);
   share.y = y_[problem];
   share.w = w_[problem];
 }

@@ -44,10 +44,9 @@ class Patch
     std::array<int, dim + 1> facets;  ///< place in `facets_`, -1 for the outer one
     const PreparedCell<dim, p>* prepared;
     std::span<CellShare<dim, p>, 2> shares;
-    /// With the outer facet o: U(o, o) and U(o, f) = U(o, o)^{-T} S(o, f) for all facets f of the cell.
-    Dense<S::block, Operator::all_facets> outer_rows;
-    std::array<double, S::block> reciprocal;  ///< of the diagonal of U(o, o)
-    std::array<FacetVector, 2> outer_load;    ///< U(o, o)^{-T} g_o
+    const OuterElimination<dim, p>* outer;  ///< of the cell's shape, or `own_outer`
+    OuterElimination<dim, p> own_outer;
+    std::array<FacetVector, 2> outer_load;  ///< U(o, o)^{-T} g_o
   };
 
   struct PatchFacet
@@ -67,6 +66,8 @@ class Patch
   };
 
   void order_facets();
+  /// In patch_compatibility.cpp, as what it calls: Z_a, y_a and w_a.
+  void make_compatible();
   void find_rigid_motions();
   [[nodiscard]] Moments integrate() const;
   void find_divergence_part(const Moments& moments);

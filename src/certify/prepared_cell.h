@@ -4,8 +4,9 @@
 /// A cell with everything its patches share, and what they leave in it.
 
 #include <array>
+#include <memory>
 
-#include "certify/cell_operator.h"
+#include "certify/repeated_shapes.h"
 #include "certify/rigid.h"
 
 namespace tribound
@@ -18,7 +19,9 @@ struct PreparedCell
   using UVector = DenseVector<S::u>;
 
   Frame<dim> frame;
-  CellOperator<dim, p> op;
+  const RepeatedShape<dim, p>* shape;  ///< null if the cell's shape does not come often
+  const CellOperator<dim, p>* op;      ///< of the shape, or `own`
+  std::unique_ptr<CellOperator<dim, p>> own;
   DiscreteStress<dim, p> sigma;       ///< sigma(u^k)
   UVector divergence;                 ///< moments of div sigma(u^k)
   std::array<UVector, dim + 1> body;  ///< moments of psi_a f

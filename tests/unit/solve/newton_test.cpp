@@ -188,9 +188,9 @@ TEST(Newton, ReportsEachStep)
 {
   const DiscreteCase<2> c(pressed_block<2>(1, laws[1]), block<2>());
   std::vector<double> residuals;
-  const NewtonResult<2> result =
-      tribound::solve<2>(c.form, {}, c.config.newton, c.config.solver,
-                         [&](const NewtonIterate<2>& iterate) { residuals.push_back(iterate.step.residual); });
+  const NewtonResult<2> result = tribound::solve<2>(c.form, {}, c.config.newton, c.config.solver,
+                                                    [&](const NewtonIterate<2>& iterate)
+                                                    { residuals.push_back(iterate.step.residual); });
   ASSERT_EQ(residuals.size(), result.steps.size());
   for (std::size_t k = 0; k < residuals.size(); ++k) EXPECT_EQ(residuals[k], result.steps[k].residual);
 }

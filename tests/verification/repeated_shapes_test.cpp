@@ -1,0 +1,106 @@
+/// @file repeated_shapes_test.cpp
+/// The equilibrated stress where cells share what depends on their shape only: the identities, and the stress
+/// on a mesh that differs by much more than rounding and by much less than what matters.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "certify/checks.h"
+#include "certify/equilibrate.h"
+#include "certify/repeated_shapes.h"
+#include "mesh/box.h"
+#include "support/discrete_case.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+std::string sides(int dimension, int degree)
+{
+  const std::string third = dimension == 2 ? "" : ", 0.01";
+  return "degree = " + std::to_string(degree) +
+         "\nmaterial = { E = 1.0, nu = 0.3 }\n"
+         "boundary.left.displacement = [0, 0" +
+         std::string(dimension == 2 ? "" : ", 0") + "]\nboundary.top.traction = [0, \"-0.1*exp(x)\"" + third +
+         "]\nboundary.bottom.contact = { friction = \"tresca\", threshold = 0.02 }\n";
+}
+
+/// Every shape comes more often than RepeatedShapes asks for.
+template <int dim>
+MeshData<dim> box()
+{
+  if constexpr (dim == 2)
+    return box_mesh<2>({{0, 0}, {1.4, 0.7}, {24, 12}, {}});
+  else
+    return box_mesh<3>({{0, 0, 0}, {1.4, 0.7, 0.7}, {6, 5, 5}, {}});
+}
+
+/// Moves the interior by `amplitude`.
+template <int dim>
+MeshData<dim> distorted_box(double amplitude)
+{
+  MeshData<dim> data = box<dim>();
+  for (Point<dim>& x : data.vertices)
+  {
+    double bubble = std::sin(std::numbers::pi * x[0] / 1.4);
+    for (int c = 1; c < dim; ++c) bubble *= std::sin(std::numbers::pi * x[c] / 0.7);
+    for (int c = 0; c < dim; ++c) x[c] += amplitude * bubble * std::cos(7 * x[0] + 5 * x[1] + c);
+  }
+  return data;
+}
+
+template <int dim, int p>
+void expect_same_stress()
+{
+  const DiscreteCase<dim> straight(sides(dim, p), box<dim>());
+  const DiscreteCase<dim> distorted(sides(dim, p), distorted_box<dim>(1e-8));
+  const RepeatedShapes<dim, p> shared(straight.mesh);
+  const RepeatedShapes<dim, p> own(distorted.mesh);
+  int n_shared = 0;
+  int n_own = 0;
+  for (Index c = 0; c < straight.mesh.n_cells(); ++c)
+  {
+    n_shared += shared.find(c) != nullptr;
+    n_own += own.find(c) == nullptr;
+  }
+  EXPECT_GT(n_shared, straight.mesh.n_cells() * 9 / 10);
+  EXPECT_EQ(n_own, straight.mesh.n_cells());
+
+  const NewtonResult<dim> result = straight.solve();
+  const Stress<dim> stress = equilibrate<dim>(straight.form, result.u, result.traction);
+  const IdentityDefects defects = check_identities<dim>(straight.form, result.traction, stress);
+  EXPECT_LE(defects.largest(p), p <= 2 ? 1e-11 : 1e-10);
+
+  const Stress<dim> other = equilibrate<dim>(distorted.form, result.u, result.traction);
+  double norm = 0;
+  double difference = 0;
+  for (std::size_t i = 0; i < stress.dis.size(); ++i)
+  {
+    norm = std::hypot(norm, stress.dis[i]);
+    difference = std::hypot(difference, stress.dis[i] - other.dis[i]);
+  }
+  EXPECT_LE(difference, 1e-5 * norm);
+}
+
+}  // namespace
+
+TEST(RepeatedShapes, GiveTheSameStressIn2D)
+{
+  expect_same_stress<2, 1>();
+  expect_same_stress<2, 2>();
+  expect_same_stress<2, 3>();
+  expect_same_stress<2, 4>();
+}
+
+TEST(RepeatedShapes, GiveTheSameStressIn3D)
+{
+  expect_same_stress<3, 1>();
+  expect_same_stress<3, 2>();
+}
+
+}  // namespace tribound::test
