@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -61,7 +62,10 @@ class Forest
 {
  public:
   explicit Forest(const Mesh<dim>& mesh)
-      : mesh_(&mesh), points_(mesh.vertices().begin(), mesh.vertices().end()), middles_(mesh.n_vertices())
+      : mesh_(&mesh),
+        points_(mesh.vertices().begin(), mesh.vertices().end()),
+        middles_(mesh.n_vertices()),
+        queued_(mesh.n_cells(), 0)
   {
     nodes_.reserve(mesh.n_cells());
     const auto types = mesh.bisection_types();
@@ -78,15 +82,13 @@ class Forest
   /// gets below the next multiple of dim. The order does not change the result.
   void close()
   {
-    for (bool closed = false; !closed;)
+    for (Index root = 0; root < mesh_->n_cells(); ++root)
+      if (nodes_[root].due > 0) enqueue(root);
+    for (std::size_t next = 0; next < queue_.size(); ++next)
     {
-      closed = true;
-      for (std::size_t n = 0; n < nodes_.size(); ++n)  // children come behind, in the same pass
-        if (nodes_[n].first_child < 0 && (nodes_[n].due > 0 || has_middle(nodes_[n].cell.vertices)))
-        {
-          cut(n);
-          closed = false;
-        }
+      const Index root = queue_[next];
+      queued_[root] = 0;
+      refine(root);
     }
   }
 
@@ -134,7 +136,26 @@ class Forest
         local_edges<dim>, [&](const auto& edge) { return middles_.find(cell[edge[0]], cell[edge[1]]) >= 0; });
   }
 
-  void cut(std::size_t n)
+  void enqueue(Index root)
+  {
+    if (queued_[root] != 0) return;
+    queued_[root] = 1;
+    queue_.push_back(root);
+  }
+
+  /// Bisects the leaves below a node where they have to be.
+  void refine(Index n)
+  {
+    if (nodes_[n].first_child < 0)
+    {
+      if (nodes_[n].due == 0 && !has_middle(nodes_[n].cell.vertices)) return;
+      cut(n);
+    }
+    refine(nodes_[n].first_child);
+    refine(nodes_[n].first_child + 1);
+  }
+
+  void cut(Index n)
   {
     if (nodes_.size() + 2 > std::numeric_limits<Index>::max())
       throw InputError(mesh_->source(), "bisected further, the mesh has too many cells for 32-bit numbers",
@@ -143,14 +164,36 @@ class Forest
     const Index a = node.cell.vertices[0];
     const Index b = node.cell.vertices[1];
     Index middle = middles_.find(a, b);
-    if (middle < 0)
-    {
-      middle = middles_.add(a, b);
-      points_.push_back(0.5 * (points_[a] + points_[b]));
-    }
+    if (middle < 0) middle = halve_edge(a, b);
     nodes_[n].first_child = static_cast<Index>(nodes_.size());
     for (int kept = 0; kept < 2; ++kept)
       nodes_.push_back({.cell = child(node.cell, kept, middle), .due = std::max(node.due - 1, 0)});
+  }
+
+  /// Makes the middle of an edge and queues the roots that contain the edge: those that contain both ends,
+  /// since they are convex.
+  Index halve_edge(Index a, Index b)
+  {
+    points_.push_back(0.5 * (points_[a] + points_[b]));
+    common_.clear();
+    std::ranges::set_intersection(roots_at(a), roots_at(b), std::back_inserter(common_));
+    roots_.insert(roots_.end(), common_.begin(), common_.end());
+    roots_end_.push_back(roots_.size());
+    for (const Index root : common_) enqueue(root);
+    return middles_.add(a, b);
+  }
+
+  /// The roots that contain the vertex, ascending.
+  [[nodiscard]] std::span<const Index> roots_at(Index v) const
+  {
+    const Topology<dim>& topology = mesh_->topology();
+    if (v < mesh_->n_vertices())
+      return std::span(topology.vertex_cells)
+          .subspan(topology.vertex_cells_begin[v],
+                   topology.vertex_cells_begin[v + 1] - topology.vertex_cells_begin[v]);
+    const Index middle = v - mesh_->n_vertices();
+    const std::size_t begin = middle == 0 ? 0 : roots_end_[middle - 1];
+    return std::span(roots_).subspan(begin, roots_end_[middle] - begin);
   }
 
   void add_leaves(Index n, MeshData<dim>& data) const
@@ -190,6 +233,11 @@ class Forest
   std::vector<Point<dim>> points_;
   std::vector<Node> nodes_;
   Middles middles_;
+  std::vector<Index> roots_;            ///< that contain each middle, one middle behind the other
+  std::vector<std::size_t> roots_end_;  ///< per middle
+  std::vector<Index> common_;           ///< working space
+  std::vector<Index> queue_;            ///< roots to look at, in the order of their turns
+  std::vector<char> queued_;            ///< per root
 };
 
 /// In a scope of its own, so that the forest is gone when the mesh is built.
