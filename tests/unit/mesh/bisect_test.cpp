@@ -195,6 +195,23 @@ TYPED_TEST(Bisect, MarkedCellsAreCutAsOftenAsAskedFor)
   }
 }
 
+/// A mesh goes on where it stopped: what is done in one go and in two is the same. The cells are flat, so
+/// that the longest edges of the descendants are not the ones to be refined.
+TYPED_TEST(Bisect, BisectionTypesAreCarriedAlong)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh(mapped(irregular_data<dim>(),
+                              [](Point<dim> x)
+                              {
+                                x[1] *= 0.2;
+                                return x;
+                              }));
+  const auto all = all_cells(mesh.n_cells());
+  const Mesh<dim> first = bisect<dim>(mesh, all, dim).mesh;
+  const Mesh<dim> second = bisect<dim>(first, all_cells(first.n_cells()), 2 * dim).mesh;
+  EXPECT_EQ(cells_by_coordinates(second), cells_by_coordinates(bisect<dim>(mesh, all, 3 * dim).mesh));
+}
+
 TYPED_TEST(Bisect, NothingMarkedChangesNothing)
 {
   constexpr int dim = TypeParam::value;
@@ -216,23 +233,28 @@ TYPED_TEST(Bisect, OrderAndRepetitionOfMarksDoNotMatter)
   EXPECT_EQ(a.parent, b.parent);
 }
 
-/// The meshes have edges of equal and of nearly equal length: squares and cubes, equilateral triangles.
+/// The meshes have edges of equal and of nearly equal length: squares and cubes, isosceles and equilateral
+/// triangles.
 TYPED_TEST(Bisect, NumberingDoesNotMatter)
 {
   constexpr int dim = TypeParam::value;
-  const auto slanted = [](const Point<dim>& x)
+  const auto slanted = [](double height)
   {
-    Point<dim> y = x;
-    y[0] += 0.5 * x[1];
-    y[1] *= std::sqrt(0.75);
-    return y;
+    return [height](const Point<dim>& x)
+    {
+      Point<dim> y = x;
+      y[0] -= 0.5 * x[1];
+      y[1] *= height;
+      return y;
+    };
   };
   MeshData<dim> grid;
   if constexpr (dim == 2)
-    grid = box<2>({0, 0}, {1, 1}, {3, 3});
+    grid = box<2>({0, 0}, {1, 1}, {4, 4});
   else
-    grid = box<3>({0, 0, 0}, {1, 1, 1}, {3, 2, 2});
-  for (const MeshData<dim>& data : {grid, mapped(grid, slanted), irregular_data<dim>()})
+    grid = box<3>({0, 0, 0}, {1, 0.5, 0.5}, {4, 2, 2});
+  for (const MeshData<dim>& data :
+       {grid, mapped(grid, slanted(2)), mapped(grid, slanted(std::sqrt(0.75))), irregular_data<dim>()})
     for (unsigned seed = 0; seed < 5; ++seed)
     {
       Mesh<dim> a{MeshData<dim>(data)};
