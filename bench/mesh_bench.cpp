@@ -1,10 +1,13 @@
-/// Reading, verifying and sorting meshes of a million triangles and of half a million tetrahedra.
+/// Reading, verifying, sorting and bisecting meshes of a million triangles and of half a million tetrahedra.
 
 #include <benchmark/benchmark.h>
 #include <gmsh.h>
 
+#include <array>
 #include <filesystem>
+#include <random>
 
+#include "mesh/bisect.h"
 #include "mesh/box.h"
 #include "mesh/gmsh.h"
 #include "mesh/mesh.h"
@@ -44,6 +47,24 @@ void verified_mesh(benchmark::State& state)
     benchmark::DoNotOptimize(Mesh<dim>(std::move(copy)));
   }
   state.counters["cells"] = static_cast<double>(data.cells.size());
+}
+
+/// Three tenths of the cells, marked at random: the worst for the closure. Arguments: `times`, and whether
+/// the mesh comes from bisection (with one cell marked) or its longest edges are looked for.
+template <int dim>
+void bisection(benchmark::State& state)
+{
+  Mesh<dim> mesh(box_mesh<dim>(large_box<dim>()));
+  if (state.range(1) != 0) mesh = bisect<dim>(mesh, std::array<Index, 1>{0}).mesh;
+  std::mt19937 random(1);
+  std::bernoulli_distribution chosen(0.3);
+  std::vector<Index> marked;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    if (chosen(random)) marked.push_back(c);
+  Index n_cells = 0;
+  for (auto _ : state) n_cells = bisect<dim>(mesh, marked, static_cast<int>(state.range(0))).mesh.n_cells();
+  state.counters["cells"] = mesh.n_cells();
+  state.counters["bisected"] = n_cells;
 }
 
 /// The large box as Gmsh would save it, with irregular coordinates so that ASCII files have all digits.
@@ -89,6 +110,14 @@ BENCHMARK(topology<2>)->Unit(benchmark::kMillisecond);
 BENCHMARK(topology<3>)->Unit(benchmark::kMillisecond);
 BENCHMARK(verified_mesh<2>)->Unit(benchmark::kMillisecond);
 BENCHMARK(verified_mesh<3>)->Unit(benchmark::kMillisecond);
+BENCHMARK(bisection<2>)
+    ->ArgNames({"times", "again"})
+    ->ArgsProduct({{1, 2}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(bisection<3>)
+    ->ArgNames({"times", "again"})
+    ->ArgsProduct({{1, 3}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(read_file)
     ->ArgNames({"version", "binary"})
     ->ArgsProduct({{22, 41}, {0, 1}})

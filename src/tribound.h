@@ -10,6 +10,7 @@
 #include "case/problem.h"
 
 // The mesh.
+#include "mesh/bisect.h"
 #include "mesh/box.h"
 #include "mesh/geometry.h"
 #include "mesh/gmsh.h"
@@ -33,6 +34,9 @@
 #include "certify/checks.h"
 #include "certify/equilibrate.h"
 #include "certify/estimate.h"
+
+// Where to refine.
+#include "adapt/mark.h"
 
 // What the bound is compared with.
 #include "certify/true_error.h"

@@ -1,24 +1,26 @@
 #include "fem/nested.h"
 
+#include <cassert>
+
 namespace tribound
 {
 
 template <int dim>
 std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
-                                       const Refined<dim>& refined, const LagrangeSpace<dim>& fine)
+                                       std::span<const Index> parent, const LagrangeSpace<dim>& fine)
 {
+  assert(u.size() == static_cast<std::size_t>(coarse.n_dofs()));
+  assert(parent.size() == static_cast<std::size_t>(fine.mesh().n_cells()));
   const int n = fine.basis().n_nodes();
   std::vector<double> result(fine.n_dofs(), 0.0);
-  std::vector<Point<dim>> in_ancestor(n);
+  std::vector<Point<dim>> in_parent(n);
   for (Index c = 0; c < fine.mesh().n_cells(); ++c)
   {
-    const Index ancestor = refined.ancestor(c);
     const CellMap<dim> map = cell_map(fine.mesh(), c);
-    const CellMap<dim> ancestor_map = cell_map(coarse.mesh(), ancestor);
-    for (int i = 0; i < n; ++i)
-      in_ancestor[i] = reference_point(ancestor_map, map(fine.basis().node_point(i)));
-    const Tabulation<dim> table = coarse.basis().tabulate(in_ancestor);
-    const std::span<const Index> nodes = coarse.cell_nodes(ancestor);
+    const CellMap<dim> parent_map = cell_map(coarse.mesh(), parent[c]);
+    for (int i = 0; i < n; ++i) in_parent[i] = reference_point(parent_map, map(fine.basis().node_point(i)));
+    const Tabulation<dim> table = coarse.basis().tabulate(in_parent);
+    const std::span<const Index> nodes = coarse.cell_nodes(parent[c]);
     for (int i = 0; i < n; ++i)
       for (int a = 0; a < dim; ++a)
       {
@@ -30,6 +32,19 @@ std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::sp
   return result;
 }
 
+template <int dim>
+std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
+                                       const Refined<dim>& refined, const LagrangeSpace<dim>& fine)
+{
+  std::vector<Index> parent(fine.mesh().n_cells());
+  for (Index c = 0; c < fine.mesh().n_cells(); ++c) parent[c] = refined.ancestor(c);
+  return nested_interpolant<dim>(coarse, u, parent, fine);
+}
+
+template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
+                                                std::span<const Index>, const LagrangeSpace<2>&);
+template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
+                                                std::span<const Index>, const LagrangeSpace<3>&);
 template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
                                                 const Refined<2>&, const LagrangeSpace<2>&);
 template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,

@@ -20,8 +20,15 @@ template <int dim>
   return map.inverse_transpose.transpose() * (x - map.origin);
 }
 
-/// The degrees of freedom of u, a function of `coarse`, in `fine`, a space on the refined mesh of `coarse`.
-/// Exact up to round-off where the degree of `fine` is not below that of `coarse`.
+/// The degrees of freedom of u, a function of `coarse`, in `fine`, a space on a mesh nested in that of
+/// `coarse`: cell c of `fine` lies in cell parent[c] of `coarse`. Exact up to round-off where the degree of
+/// `fine` is not below that of `coarse`. For Bisected, `parent` is its member.
+template <int dim>
+[[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
+                                                     std::span<const double> u, std::span<const Index> parent,
+                                                     const LagrangeSpace<dim>& fine);
+
+/// The same for a mesh refined uniformly.
 template <int dim>
 [[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
                                                      std::span<const double> u, const Refined<dim>& refined,

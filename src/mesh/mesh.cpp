@@ -24,6 +24,7 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   region_names_ = std::move(data.region_names);
   boundary_names_ = std::move(data.boundary_names);
   source_ = std::move(data.source);
+  bisection_types_ = std::move(data.bisection_types);
   topology_ = std::make_unique<const Topology<dim>>(std::move(topology));
 }
 

@@ -4,6 +4,7 @@
 /// Simplicial meshes in flat arrays.
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -47,6 +48,9 @@ struct MeshData
   std::vector<std::string> region_names;
   std::vector<std::string> boundary_names;
   Where source;  ///< for messages
+  /// Per cell: how bisect() goes on with it, see mesh/marked_cell.h. Empty for a mesh that does not come from
+  /// bisect(), which then starts from the longest edges.
+  std::vector<std::uint8_t> bisection_types{};
 };
 
 /// The vertices of a local facet: those of the cell but number `local`, in ascending local order.
@@ -109,6 +113,8 @@ class Mesh
   [[nodiscard]] std::span<const std::string> region_names() const { return region_names_; }
   [[nodiscard]] std::span<const std::string> boundary_names() const { return boundary_names_; }
   [[nodiscard]] const Where& source() const { return source_; }
+  /// As in MeshData.
+  [[nodiscard]] std::span<const std::uint8_t> bisection_types() const { return bisection_types_; }
 
   [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
 
@@ -120,6 +126,7 @@ class Mesh
   std::vector<std::string> region_names_;
   std::vector<std::string> boundary_names_;
   Where source_;
+  std::vector<std::uint8_t> bisection_types_;
   std::unique_ptr<const Topology<dim>> topology_;
 };
 

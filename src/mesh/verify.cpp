@@ -5,6 +5,7 @@
 
 #include "mesh/describe.h"
 #include "mesh/geometry.h"
+#include "mesh/marked_cell.h"
 
 namespace tribound
 {
@@ -98,6 +99,9 @@ void check_arrays(const MeshData<dim>& data)
   if (data.regions.size() != n_cells)
     throw InputError(data.source,
                      fmt::format("{} region numbers for {} cells", data.regions.size(), n_cells));
+  if (!data.bisection_types.empty() && data.bisection_types.size() != n_cells)
+    throw InputError(data.source,
+                     fmt::format("{} bisection types for {} cells", data.bisection_types.size(), n_cells));
 
   const auto in_range = [](Index i, std::size_t n) { return i >= 0 && static_cast<std::size_t>(i) < n; };
   for (std::size_t v = 0; v < data.vertices.size(); ++v)
@@ -106,6 +110,10 @@ void check_arrays(const MeshData<dim>& data)
                        fmt::format("vertex {} has coordinates {}, which are not finite numbers", v,
                                    describe(data.vertices[v])),
                        "the program that made the mesh failed there; mesh or convert again");
+  for (std::size_t c = 0; c < data.bisection_types.size(); ++c)
+    if (data.bisection_types[c] >= n_bisection_types<dim>)
+      throw InputError(data.source, fmt::format("cell {} is of bisection type {}; there are {} types", c,
+                                                data.bisection_types[c], n_bisection_types<dim>));
   for (std::size_t c = 0; c < n_cells; ++c)
   {
     if (!in_range(data.regions[c], data.region_names.size()))

@@ -1,19 +1,24 @@
 #pragma once
 
-/// What the tests of meshes share: files that vanish after the test, errors with expected words, measures.
+/// What the tests of meshes share: files that vanish after the test, errors with expected words, measures, a
+/// mesh without any symmetry.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <limits>
+#include <numbers>
 #include <string>
 
 #include "mesh/geometry.h"
 #include "mesh/gmsh.h"
 #include "mesh/mesh.h"
+#include "support/meshes.h"
 
 namespace tribound::testing_mesh
 {
@@ -84,6 +89,49 @@ double boundary_measure(const Mesh<dim>& mesh, int tag)
   for (const BoundaryFacet& facet : mesh.boundary())
     if (facet.tag == tag) sum += facet_geometry(mesh, facet.cell, facet.local).measure;
   return sum;
+}
+
+/// The smallest angle between two edges of a triangle or two faces of a tetrahedron, degrees.
+template <int dim>
+double smallest_angle(const Mesh<dim>& mesh)
+{
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (int i = 0; i <= dim; ++i)
+      for (int j = i + 1; j <= dim; ++j)
+      {
+        const double cosine = -facet_geometry(mesh, c, i).normal.dot(facet_geometry(mesh, c, j).normal);
+        smallest = std::min(smallest, std::acos(cosine) * 180 / std::numbers::pi);
+      }
+  return smallest;
+}
+
+/// A few squares or cubes.
+template <int dim>
+MeshData<dim> grid()
+{
+  if constexpr (dim == 2)
+    return test::box<2>({0, 0}, {2, 1}, {3, 2});
+  else
+    return test::box<3>({0, 0, 0}, {2, 1, 1}, {2, 2, 1});
+}
+
+/// Two regions, a boundary group in pieces, a part of the boundary in no group, all cells different.
+template <int dim>
+MeshData<dim> irregular_data()
+{
+  MeshData<dim> data = grid<dim>();
+  data.region_names.push_back("inclusion");
+  for (std::size_t c = 0; c < data.cells.size(); c += 3) data.regions[c] = 1;
+  std::erase_if(data.facets, [](const TaggedFacet<dim>& facet) { return facet.tag == 1; });
+  data.source = {.file = "grid.msh"};
+  return test::distorted(std::move(data), 3);
+}
+
+template <int dim>
+Mesh<dim> irregular_mesh()
+{
+  return Mesh<dim>(irregular_data<dim>());
 }
 
 }  // namespace tribound::testing_mesh

@@ -4,13 +4,10 @@
 #include "mesh/refine.h"
 
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 #include <type_traits>
 
-#include "support/meshes.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound::test
@@ -20,28 +17,9 @@ namespace
 {
 
 using testing_mesh::boundary_measure;
+using testing_mesh::irregular_mesh;
+using testing_mesh::smallest_angle;
 using testing_mesh::volume;
-
-template <int dim>
-MeshData<dim> grid()
-{
-  if constexpr (dim == 2)
-    return box<2>({0, 0}, {2, 1}, {3, 2});
-  else
-    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 2, 1});
-}
-
-/// Two regions, a boundary group in pieces, a part of the boundary in no group, all cells different.
-template <int dim>
-Mesh<dim> irregular_mesh()
-{
-  MeshData<dim> data = grid<dim>();
-  data.region_names.push_back("inclusion");
-  for (std::size_t c = 0; c < data.cells.size(); c += 3) data.regions[c] = 1;
-  std::erase_if(data.facets, [](const TaggedFacet<dim>& facet) { return facet.tag == 1; });
-  data.source = {.file = "grid.msh"};
-  return Mesh<dim>(distorted(std::move(data), 3));
-}
 
 template <class T>
 class Refine : public ::testing::Test
@@ -142,21 +120,6 @@ TYPED_TEST(Refine, DescendantsFillTheirAncestors)
     }
   }
   for (const double share : filled) EXPECT_NEAR(share, 1.0, 1e-12);
-}
-
-/// The smallest angle between two edges of a triangle or two faces of a tetrahedron, degrees.
-template <int dim>
-double smallest_angle(const Mesh<dim>& mesh)
-{
-  double smallest = std::numeric_limits<double>::infinity();
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-    for (int i = 0; i <= dim; ++i)
-      for (int j = i + 1; j <= dim; ++j)
-      {
-        const double cosine = -facet_geometry(mesh, c, i).normal.dot(facet_geometry(mesh, c, j).normal);
-        smallest = std::min(smallest, std::acos(cosine) * 180 / std::numbers::pi);
-      }
-  return smallest;
 }
 
 TEST(RefineShapes, TrianglesStaySimilar)

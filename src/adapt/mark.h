@@ -1,0 +1,26 @@
+#pragma once
+
+/// @file mark.h
+/// Which cells to refine, from the bound of each cell.
+
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "case/config.h"
+
+namespace tribound
+{
+
+/// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96]; of cells with equal
+/// eta_T those with the lower numbers. Ascending; empty where every eta_T is 0. `eta`: per cell, finite and
+/// not negative; 0 < theta <= 1. O(n) on average.
+[[nodiscard]] std::vector<Index> mark_doerfler(std::span<const double> eta, double theta);
+
+/// The cells with eta_T >= theta max eta_T, ascending; empty where every eta_T is 0. Arguments as above.
+[[nodiscard]] std::vector<Index> mark_maximum(std::span<const double> eta, double theta);
+
+/// As adapt.marking and adapt.theta ask for.
+[[nodiscard]] std::vector<Index> mark(std::span<const double> eta, const AdaptConfig& config);
+
+}  // namespace tribound

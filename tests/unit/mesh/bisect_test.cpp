@@ -1,0 +1,306 @@
+/// Bisection: conforming, tags and measures inherited, children inside their parents, shapes bounded,
+/// independent of the numbering.
+
+#include "mesh/bisect.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <type_traits>
+
+#include "unit/mesh/bisect_checks.h"
+#include "unit/mesh/mesh_testing.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using testing_mesh::cells_by_coordinates;
+using testing_mesh::coordinates;
+using testing_mesh::Directory;
+using testing_mesh::expect_conforming;
+using testing_mesh::expect_right_parents;
+using testing_mesh::expect_same_parts;
+using testing_mesh::expect_tags_in_place;
+using testing_mesh::irregular_data;
+using testing_mesh::irregular_mesh;
+using testing_mesh::smallest_angle;
+using testing_mesh::whole_boundary;
+
+std::vector<Index> all_cells(Index n)
+{
+  std::vector<Index> cells(n);
+  std::iota(cells.begin(), cells.end(), 0);
+  return cells;
+}
+
+std::vector<Index> random_cells(Index n, double share, std::mt19937& random)
+{
+  std::bernoulli_distribution chosen(share);
+  std::vector<Index> cells;
+  for (Index c = 0; c < n; ++c)
+    if (chosen(random)) cells.push_back(c);
+  return cells;
+}
+
+/// The cells that contain the vertex.
+template <int dim>
+std::vector<Index> cells_around(const Mesh<dim>& mesh, Index vertex)
+{
+  const Topology<dim>& topology = mesh.topology();
+  const auto begin = topology.vertex_cells.begin();
+  return {begin + topology.vertex_cells_begin[vertex], begin + topology.vertex_cells_begin[vertex + 1]};
+}
+
+/// The vertex furthest to the lower left.
+template <int dim>
+Index corner(const Mesh<dim>& mesh)
+{
+  const auto vertices = mesh.vertices();
+  return static_cast<Index>(
+      std::ranges::min_element(vertices, {}, [](const Point<dim>& x) { return x.sum(); }) - vertices.begin());
+}
+
+/// About a fifth of the cells, chosen by a hash of their coordinates.
+template <int dim>
+std::vector<Index> cells_chosen_by_place(const Mesh<dim>& mesh, std::uint64_t seed)
+{
+  std::vector<Index> cells;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    std::uint64_t hash = seed;
+    for (const auto& point : coordinates(mesh, mesh.cell(c)))
+      for (const double x : point)
+        hash = std::rotl((hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15U, 29);
+    if (hash % 5 == 0) cells.push_back(c);
+  }
+  return cells;
+}
+
+/// Bisects `levels` times; `choose(mesh, level)` names the cells. Checks every level, returns the last mesh.
+template <int dim, class Choose>
+Mesh<dim> bisect_and_check(Mesh<dim> mesh, int levels, const Choose& choose, int times = dim)
+{
+  const double boundary = whole_boundary(mesh);
+  for (int level = 0; level < levels && !::testing::Test::HasFailure(); ++level)
+  {
+    const std::vector<Index> marked = choose(mesh, level);
+    Bisected<dim> bisected = bisect<dim>(mesh, marked, times);
+    SCOPED_TRACE(level);
+    expect_conforming(bisected.mesh, boundary);
+    expect_same_parts(bisected.mesh, mesh);
+    expect_right_parents(bisected, mesh);
+    expect_tags_in_place(bisected, mesh);
+    mesh = std::move(bisected.mesh);
+  }
+  return mesh;
+}
+
+/// The smallest angle of the shapes that bisection of the cells leads to: after 9 bisections of every cell
+/// there are no new ones, see marked_cell_test.cpp.
+template <int dim>
+double smallest_angle_of_descendants(const Mesh<dim>& mesh)
+{
+  double smallest = smallest_angle(mesh);
+  Bisected<dim> bisected = bisect<dim>(mesh, all_cells(mesh.n_cells()));
+  for (int times = dim; times <= 9; times += dim)
+  {
+    smallest = std::min(smallest, smallest_angle(bisected.mesh));
+    bisected = bisect<dim>(bisected.mesh, all_cells(bisected.mesh.n_cells()));
+  }
+  return smallest;
+}
+
+/// Angles of `mesh`, which comes from `original`, are bounded; the test's XML has the figures.
+template <int dim>
+void expect_bounded_angles(const Mesh<dim>& mesh, const Mesh<dim>& original)
+{
+  const double angle = smallest_angle(mesh);
+  EXPECT_GE(angle, smallest_angle_of_descendants(original) * (1 - 1e-9));
+  ::testing::Test::RecordProperty("cells", mesh.n_cells());
+  ::testing::Test::RecordProperty("smallest_angle_before", std::to_string(smallest_angle(original)));
+  ::testing::Test::RecordProperty("smallest_angle_after", std::to_string(angle));
+}
+
+template <class T>
+class Bisect : public ::testing::Test
+{
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Bisect, Dimensions);
+
+TYPED_TEST(Bisect, RandomLevels)
+{
+  constexpr int dim = TypeParam::value;
+  std::mt19937 random(5);
+  const Mesh<dim> mesh = bisect_and_check(
+      irregular_mesh<dim>(), dim == 2 ? 20 : 12,
+      [&](const Mesh<dim>& m, int) { return random_cells(m.n_cells(), dim == 2 ? 0.2 : 0.15, random); }, 1);
+  EXPECT_GT(mesh.n_cells(), 10000);
+  expect_bounded_angles(mesh, irregular_mesh<dim>());
+}
+
+/// Far from the corner nothing happens, so that from some level on the same number of cells is added.
+TYPED_TEST(Bisect, GradedTowardsACorner)
+{
+  constexpr int dim = TypeParam::value;
+  std::vector<Index> n_cells;
+  const Mesh<dim> mesh = bisect_and_check(irregular_mesh<dim>(), dim == 2 ? 15 : 8,
+                                          [&](const Mesh<dim>& m, int)
+                                          {
+                                            n_cells.push_back(m.n_cells());
+                                            return cells_around(m, corner(m));
+                                          });
+  const Index added = mesh.n_cells() - n_cells.back();
+  EXPECT_GT(added, 0);
+  for (std::size_t level = n_cells.size() - 1; level > n_cells.size() - 4; --level)
+    EXPECT_EQ(n_cells[level] - n_cells[level - 1], added);
+  expect_bounded_angles(mesh, irregular_mesh<dim>());
+}
+
+TYPED_TEST(Bisect, AllCellsDimTimesHalvesEveryEdge)
+{
+  constexpr int dim = TypeParam::value;
+  Mesh<dim> mesh = irregular_mesh<dim>();
+  for (int level = 0; level < 3; ++level)
+  {
+    Bisected<dim> bisected = bisect<dim>(mesh, all_cells(mesh.n_cells()));
+    EXPECT_EQ(bisected.mesh.n_cells(), mesh.n_cells() * (1 << dim));
+    EXPECT_EQ(bisected.mesh.n_vertices() - mesh.n_vertices(), mesh.topology().edges.size());
+    mesh = std::move(bisected.mesh);
+  }
+}
+
+/// Descendants of marked cells by their volume; the rest of the mesh is cut less.
+TYPED_TEST(Bisect, MarkedCellsAreCutAsOftenAsAskedFor)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const std::vector<Index> marked{3, 7};
+  for (int times = 1; times <= 5; ++times)
+  {
+    const Bisected<dim> bisected = bisect<dim>(mesh, marked, times);
+    expect_conforming(bisected.mesh, whole_boundary(mesh));
+    for (Index c = 0; c < bisected.mesh.n_cells(); ++c)
+      if (bisected.parent[c] == 3 || bisected.parent[c] == 7)
+      {
+        const double share = cell_map(bisected.mesh, c).det / cell_map(mesh, bisected.parent[c]).det;
+        EXPECT_LE(share, std::ldexp(1 + 1e-9, -times));
+      }
+    EXPECT_LT(bisected.mesh.n_cells(), mesh.n_cells() * (1 << times));
+  }
+}
+
+/// A mesh goes on where it stopped: what is done in one go and in two is the same. The cells are flat, so
+/// that the longest edges of the descendants are not the ones to be refined.
+TYPED_TEST(Bisect, BisectionTypesAreCarriedAlong)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh(mapped(irregular_data<dim>(),
+                              [](Point<dim> x)
+                              {
+                                x[1] *= 0.2;
+                                return x;
+                              }));
+  const auto all = all_cells(mesh.n_cells());
+  const Mesh<dim> first = bisect<dim>(mesh, all, dim).mesh;
+  const Mesh<dim> second = bisect<dim>(first, all_cells(first.n_cells()), 2 * dim).mesh;
+  EXPECT_EQ(cells_by_coordinates(second), cells_by_coordinates(bisect<dim>(mesh, all, 3 * dim).mesh));
+}
+
+TYPED_TEST(Bisect, NothingMarkedChangesNothing)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const Bisected<dim> same = bisect<dim>(mesh, {});
+  EXPECT_EQ(cells_by_coordinates(same.mesh), cells_by_coordinates(mesh));
+  EXPECT_EQ(same.parent, all_cells(mesh.n_cells()));
+}
+
+TYPED_TEST(Bisect, OrderAndRepetitionOfMarksDoNotMatter)
+{
+  constexpr int dim = TypeParam::value;
+  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const Bisected<dim> a = bisect<dim>(mesh, std::vector<Index>{1, 4, 9});
+  const Bisected<dim> b = bisect<dim>(mesh, std::vector<Index>{9, 4, 9, 1, 4});
+  EXPECT_TRUE(std::ranges::equal(a.mesh.vertices(), b.mesh.vertices()));
+  EXPECT_TRUE(std::ranges::equal(a.mesh.cells(), b.mesh.cells()));
+  EXPECT_TRUE(std::ranges::equal(a.mesh.bisection_types(), b.mesh.bisection_types()));
+  EXPECT_EQ(a.parent, b.parent);
+}
+
+/// The meshes have edges of equal and of nearly equal length: squares and cubes, isosceles and equilateral
+/// triangles.
+TYPED_TEST(Bisect, NumberingDoesNotMatter)
+{
+  constexpr int dim = TypeParam::value;
+  const auto slanted = [](double height)
+  {
+    return [height](const Point<dim>& x)
+    {
+      Point<dim> y = x;
+      y[0] -= 0.5 * x[1];
+      y[1] *= height;
+      return y;
+    };
+  };
+  MeshData<dim> grid;
+  if constexpr (dim == 2)
+    grid = box<2>({0, 0}, {1, 1}, {4, 4});
+  else
+    grid = box<3>({0, 0, 0}, {1, 0.5, 0.5}, {4, 2, 2});
+  for (const MeshData<dim>& data :
+       {grid, mapped(grid, slanted(2)), mapped(grid, slanted(std::sqrt(0.75))), irregular_data<dim>()})
+    for (unsigned seed = 0; seed < 5; ++seed)
+    {
+      Mesh<dim> a{MeshData<dim>(data)};
+      Mesh<dim> b{renumbered(data, seed)};
+      for (std::uint64_t level = 0; level < 5; ++level)
+      {
+        a = bisect<dim>(a, cells_chosen_by_place(a, level + seed), 1).mesh;
+        b = bisect<dim>(b, cells_chosen_by_place(b, level + seed), 1).mesh;
+        ASSERT_EQ(a.n_cells(), b.n_cells());
+        ASSERT_EQ(cells_by_coordinates(a), cells_by_coordinates(b));
+      }
+    }
+}
+
+/// Meshes that Gmsh makes: two regions around a hole; a solid whose cells shrink towards an edge.
+const std::string plate_geo = R"(
+SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 2, 1}; Disk(2) = {0.8, 0.5, 0, 0.3, 0.2}; Rectangle(3) = {1.5, 0, 0, 0.5, 1};
+BooleanDifference(4) = { Surface{1}; Delete; }{ Surface{2}; Delete; };
+BooleanFragments{ Surface{4}; Delete; }{ Surface{3}; Delete; }
+Mesh.MeshSizeMax = 0.3;
+Physical Surface("strip") = Surface In BoundingBox {1.4, -0.1, -0.1, 2.1, 1.1, 0.1};
+Physical Surface("plate") = Surface In BoundingBox {-0.1, -0.1, -0.1, 1.6, 1.1, 0.1};
+Physical Curve("end") = Curve In BoundingBox {1.9, -0.1, -0.1, 2.1, 1.1, 0.1};
+)";
+const std::string solid_geo = R"(
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 0.5, 1, 1}; Coherence;
+MeshSize {:} = 0.6; MeshSize { PointsOf { Curve{1}; } } = 0.2;
+Physical Volume("cube") = {1}; Physical Volume("slab") = {2};
+Physical Surface("floor") = Surface In BoundingBox {-0.1, -0.1, -0.1, 1.6, 1.1, 0.1};
+)";
+
+TYPED_TEST(Bisect, MeshesFromGmsh)
+{
+  constexpr int dim = TypeParam::value;
+  const Directory directory;
+  const auto source = directory.write("mesh.geo", dim == 2 ? plate_geo : solid_geo);
+  std::mt19937 random(11);
+  const auto original = std::get<Mesh<dim>>(read_gmsh(source));
+  const Mesh<dim> mesh = bisect_and_check(
+      std::get<Mesh<dim>>(read_gmsh(source)), dim == 2 ? 8 : 4,
+      [&](const Mesh<dim>& m, int) { return random_cells(m.n_cells(), 0.1, random); }, 1);
+  expect_bounded_angles(mesh, original);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
