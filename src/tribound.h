@@ -29,7 +29,8 @@
 #include "solve/newton.h"
 #include "solve/petsc.h"
 
-// The equilibrated stress, its identities and the components of the bound.
+// The equilibrated stress, its identities, the components of the bound, and what may be claimed.
+#include "certify/certificate.h"
 #include "certify/checks.h"
 #include "certify/equilibrate.h"
 #include "certify/estimate.h"

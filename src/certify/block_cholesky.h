@@ -146,6 +146,7 @@ class BlockCholesky
   /// Joins the neighbours of k to each other and takes k out of their rows.
   void eliminate_symbolically(int k, int step)
   {
+    assert(k >= 0);
     for_later_neighbours(k,
                          [&](int i)
                          {

@@ -103,6 +103,7 @@ template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
 {
   const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const Point<dim>& n = geometry.normal;
   const LagrangeSpace<dim>& space = form_.space();
   const Material& material = form_.problem().material(space.mesh().region(facet.cell));
   const std::span<const Index> nodes = space.cell_nodes(facet.cell);
@@ -114,8 +115,7 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<di
 
   std::vector<Point<dim>> values(n_points);
   for (int q = 0; q < n_points; ++q)
-    values[q] = augmented_traction<dim>(material, gamma, 0, geometry.normal,
-                                        value_at<dim>(nodes, u, table.values_at(q)),
+    values[q] = augmented_traction<dim>(material, gamma, 0, n, value_at<dim>(nodes, u, table.values_at(q)),
                                         gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
   Fields result;
   result.augmented = project(values);
@@ -128,8 +128,7 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<di
       for (int r = 0; r < dim; ++r)
       {
         values[q][r] = 0;
-        for (int c = 0; c < dim; ++c)
-          values[q][r] += entries[(dim * r + c) * n_points + q] * geometry.normal[c];
+        for (int c = 0; c < dim; ++c) values[q][r] += entries[(dim * r + c) * n_points + q] * n[c];
       }
     return project(values);
   };

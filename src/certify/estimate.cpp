@@ -144,8 +144,7 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
     touched.push_back(facets[k].facet.cell);
   }
   std::ranges::sort(touched);
-  const auto repeated = std::ranges::unique(touched);
-  touched.erase(repeated.begin(), repeated.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   for (const Index c : touched)
     for (const auto member :
          {&BoundComponents::cnt, &BoundComponents::frc, &BoundComponents::lin2n, &BoundComponents::lin2t})

@@ -86,6 +86,7 @@ void subtract_tile(double* c, int c_stride, const double* a, int a_stride, const
 #pragma GCC unroll 16
     for (int j = 0; j < vectors; ++j) sum[i][j] = lanes_at(c + i * c_stride + j * lanes);
   for (int l = 0; l < k; ++l)
+  {
 #pragma GCC unroll 16
     for (int i = 0; i < rows; ++i)
     {
@@ -93,6 +94,7 @@ void subtract_tile(double* c, int c_stride, const double* a, int a_stride, const
 #pragma GCC unroll 16
       for (int j = 0; j < vectors; ++j) sum[i][j] -= factor * lanes_at(b + l * b_stride + j * lanes);
     }
+  }
 #pragma GCC unroll 16
   for (int i = 0; i < rows; ++i)
 #pragma GCC unroll 16

@@ -159,7 +159,11 @@ std::string summary_text(const RunRecord& run, const std::string& directory)
                                        last.figures.sigma_norm));
     text += certificate_text(run);
   }
-  text += line("status", to_string(run.status) + (run.reason.empty() ? "" : ": " + run.reason));
+  std::string reason = run.reason;
+  if (run.status == RunStatus::certified)
+    reason =
+        fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||", 100 * run.tolerance);
+  text += line("status", to_string(run.status) + (reason.empty() ? "" : ": " + reason));
   text += line_if_any("results", directory);
   return text;
 }

@@ -96,6 +96,15 @@ TEST(Console, SummaryOfAFailedRun)
   EXPECT_EQ(summary_text(run, ""), "status        failed: no convergence in 50 steps\n");
 }
 
+TEST(Console, SummaryOfACertifiedRunNamesTheTolerance)
+{
+  RunRecord run;
+  run.status = RunStatus::certified;
+  run.tolerance = 0.03;
+  EXPECT_EQ(summary_text(run, ""),
+            "status        certified: the bound is at most adapt.tolerance = 3 % of ||sigma(u_h)||\n");
+}
+
 TEST(Console, Summary)
 {
   RunRecord run;
