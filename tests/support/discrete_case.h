@@ -19,9 +19,12 @@ struct DiscreteCase
 {
   explicit DiscreteCase(const std::string& toml) : DiscreteCase(parse_config(toml)) {}
   /// On the given mesh; the text has no [mesh].
-  DiscreteCase(const std::string& toml, MeshData<dim> data)
+  DiscreteCase(const std::string& toml, MeshData<dim> data) : DiscreteCase(toml, Mesh<dim>(std::move(data)))
+  {
+  }
+  DiscreteCase(const std::string& toml, Mesh<dim> m)
       : DiscreteCase(parse_config("mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\n" + toml),
-                     Mesh<dim>(std::move(data)))
+                     std::move(m))
   {
   }
   /// As read from a case file.

@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "certify/checks.h"
 #include "certify/equilibrate.h"
+#include "mesh/bisect.h"
 #include "support/box_sides.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
@@ -209,6 +211,23 @@ std::string data_file(const std::string& name, int dim)
   return fmt::format("mesh.file = \"{}/{}{}.geo\"\n", VERIFICATION_DATA, name, dim);
 }
 
+/// The block bisected towards the corner where two contact boundaries meet.
+template <int dim>
+Mesh<dim> graded_block()
+{
+  Mesh<dim> mesh(distorted<dim>(block<dim>(), 3));
+  for (int level = 0; level < (dim == 2 ? 6 : 3); ++level)
+  {
+    const auto vertices = mesh.vertices();
+    const auto corner =
+        std::ranges::max_element(vertices, {}, [](const Point<dim>& x) { return x[0] - x[1]; });
+    const auto& topology = mesh.topology();
+    const auto* first = &topology.vertex_cells_begin[corner - vertices.begin()];
+    mesh = bisect<dim>(mesh, std::span(topology.vertex_cells).subspan(first[0], first[1] - first[0]), 1).mesh;
+  }
+  return mesh;
+}
+
 template <int dim>
 void unstructured_meshes(int p)
 {
@@ -219,6 +238,8 @@ void unstructured_meshes(int p)
     check_case("distorted block", bent);
     DiscreteCase<dim> gmsh(data_file("box", dim) + toml);
     check_case("block from Gmsh", gmsh);
+    DiscreteCase<dim> graded(toml, graded_block<dim>());
+    check_case("bisected block", graded);
   }
 }
 
