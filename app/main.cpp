@@ -8,6 +8,7 @@
 #include <exception>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,9 +46,9 @@ ExitCode run_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
   const Config config = read_config(arguments.case_file, arguments.overrides);
-  const AnyMesh mesh = read_mesh(config.mesh);
+  AnyMesh mesh = read_mesh(config.mesh);
   const Environment environment;  // behind the input: bad input then fails at once
-  return std::visit([&](const auto& m) { return run(config, m, progress); }, mesh);
+  return std::visit([&](auto& m) { return run(config, std::move(m), progress); }, mesh);
 }
 
 void check_command(const Arguments& arguments)

@@ -1,25 +1,19 @@
 #include "run.h"
 
 #include <array>
+#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <optional>
+#include <csignal>
+#include <utility>
 
-#include "certify/certificate.h"
-#include "certify/checks.h"
-#include "certify/equilibrate.h"
-#include "certify/estimate.h"
-#include "contact/elasticity.h"
-#include "contact/nitsche.h"
+#include "adapt/loop.h"
 #include "contact/rigid_motion.h"
 #include "io/atomic_file.h"
 #include "io/contact_line.h"
-#include "io/facts.h"
 #include "io/report.h"
 #include "io/vtu.h"
 #include "mesh/gmsh.h"
 #include "solve/linear_solver.h"
-#include "solve/newton.h"
 #include "solve/petsc.h"
 
 namespace tribound
@@ -53,40 +47,6 @@ ExitCode exit_code(RunStatus status)
   }
 }
 
-/// The bound of every iterate of Newton's method on one mesh, the stress and the cells of the last.
-template <int dim>
-class Certifier
-{
- public:
-  Certifier(const NitscheForm<dim>& form, const CertifyConfig& config, const Progress& progress)
-      : form_(form), estimator_(form, config.contact_rule), progress_(progress)
-  {
-  }
-
-  void operator()(const NewtonIterate<dim>& iterate)
-  {
-    NewtonRecord& record = steps.emplace_back(NewtonRecord{iterate.step, {}, false});
-    if (!std::isfinite(iterate.step.residual)) return;
-    const Clock::time_point begin = Clock::now();
-    stress = equilibrate<dim>(form_, iterate.u, iterate.traction);
-    estimate = estimator_(iterate.u, stress);
-    record.bound = estimate;
-    const double sigma_norm = stress_norms(form_.problem(), form_.space(), iterate.u).sigma;
-    seconds += seconds_since(begin);
-    progress_(iterate.step, sigma_norm > 0 ? std::optional(estimate.total_sharp / sigma_norm) : std::nullopt);
-  }
-
-  std::vector<NewtonRecord> steps;
-  Stress<dim> stress;
-  Estimate estimate;
-  double seconds = 0;
-
- private:
-  const NitscheForm<dim>& form_;
-  Estimator<dim> estimator_;
-  const Progress& progress_;
-};
-
 /// eta_tot and the components cell by cell, for the VTU file.
 class CellComponents
 {
@@ -118,44 +78,121 @@ class CellComponents
   std::vector<std::pair<std::string, std::vector<double>>> columns_;
 };
 
+/// Keeps the record of a run and writes the files, level by level.
 template <int dim>
-void write_fields(const OutputConfig& output, const NitscheForm<dim>& form, std::span<const double> u,
-                  const Certifier<dim>& certified)
+class RunReport
 {
-  write_contact_csv(output.directory / "contact.csv", form, u);
-  if (!output.vtu) return;
-  const CellComponents components(certified.estimate);
-  const std::array tensors = {equilibrated_stress_field(form.space(), certified.stress)};
-  write_level_vtu<dim>(output.directory / "level_000.vtu", 0, form.problem(), form.space(), u,
-                       components.fields(), tensors);
-  write_contact_vtu<dim>(output.directory / "contact_000.vtu", 0, form, u);
-  write_series(output.directory, 1);
+ public:
+  RunReport(const Config& config, const Problem<dim>& problem, const Mesh<dim>& mesh);
+
+  /// After every level: fields, tables and a certificate that holds should the program be killed.
+  void add(const LevelView<dim>& view);
+  /// The last word.
+  [[nodiscard]] ExitCode close(const Verdict& verdict);
+  /// The same where there is no level at all: leaves a certificate of the failure behind.
+  void fail(const std::string& reason);
+
+ private:
+  void write_fields(const LevelView<dim>& view) const;
+
+  const OutputConfig& output_;
+  Clock::time_point begin_ = Clock::now();
+  RunRecord record_;
+};
+
+template <int dim>
+RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, const Mesh<dim>& mesh)
+    : output_(config.output)
+{
+  const LagrangeSpace<dim> space(mesh, config.degree);
+  const NitscheForm<dim> form(problem, space, config.gamma0());
+  check_rigid_motions<dim>(problem, space, form.load());
+  prepare_output_directory(output_.directory);
+  record_.facts = case_facts(config, dim);
+  record_.mesh = mesh_facts<dim>(problem, space, form.constraints());
+  record_.build = library_facts();
+  record_.tolerance = config.adapt.tolerance;
+  record_.statements = statements(form, config.certify.contact_rule);
+  record_.statements.assumptions.emplace_back(
+      "linear_solver", describe_solver(choose_method(config.solver, dim, space.n_dofs())));
+  record_.times = {{"setup", seconds_since(begin_)}, {"solve", 0}, {"certify", 0}, {"output", 0}};
+  print_header(record_.facts, record_.mesh);
 }
 
-/// Takes the result of Newton's method over into a record, and checks and judges it.
 template <int dim>
-LevelRecord level_record(const NitscheForm<dim>& form, const NewtonResult<dim>& newton,
-                         Certifier<dim>& certifier)
+void RunReport<dim>::write_fields(const LevelView<dim>& view) const
 {
-  LevelRecord level;
-  level.cells = form.space().mesh().n_cells();
-  level.dofs = form.space().n_dofs() - form.constraints().n_fixed();
-  level.newton = certifier.steps;
-  level.figures = solution_figures<dim>(form, newton.u, form.traction(newton.u));
-  if (newton.status != NewtonStatus::converged) return level;
-  level.newton.back().accepted = true;
-  const Clock::time_point begin = Clock::now();
-  level.bound = certifier.estimate;
-  level.identities = check_identities<dim>(form, newton.traction, certifier.stress);
-  certifier.seconds += seconds_since(begin);
-  return level;
+  const NitscheForm<dim>& form = view.discrete.form;
+  write_contact_csv(output_.directory / "contact.csv", form, view.level.u);
+  if (!output_.vtu) return;
+  const CellComponents components(view.level.estimate);
+  const std::array tensors = {equilibrated_stress_field(view.discrete.space, view.level.stress)};
+  write_level_vtu<dim>(output_.directory / level_file_name("level", view.number), view.number, form.problem(),
+                       view.discrete.space, view.level.u, components.fields(), tensors);
+  write_contact_vtu<dim>(output_.directory / level_file_name("contact", view.number), view.number, form,
+                         view.level.u);
+  write_series(output_.directory, view.number + 1);
 }
 
-/// What violates an identity is no bound, and is not shown as one.
-void withdraw_bounds(LevelRecord& level)
+template <int dim>
+void RunReport<dim>::add(const LevelView<dim>& view)
 {
-  level.bound.reset();
-  for (NewtonRecord& step : level.newton) step.bound.reset();
+  const NitscheForm<dim>& form = view.discrete.form;
+  LevelRecord& level = record_.levels.emplace_back();
+  level.level = view.number;
+  level.cells = view.discrete.mesh.n_cells();
+  level.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
+  level.newton = view.level.steps;
+  level.figures = solution_figures<dim>(form, view.level.u, form.traction(view.level.u));
+  level.times.solve = view.level.solve_seconds;
+  level.times.certify = view.level.certify_seconds;
+  if (view.level.solved()) level.identities = view.level.identities;
+
+  const Clock::time_point before_output = Clock::now();
+  if (view.verdict.status == RunStatus::certified || view.verdict.status == RunStatus::budget)
+  {
+    level.bound = view.level.estimate;
+    write_fields(view);
+  }
+  else  // what violates an identity is no bound, and is not shown as one
+    for (CertifiedStep& step : level.newton) step.bound.reset();
+  const double output = seconds_since(before_output);
+  level.times.level = view.seconds + output;
+  record_.times[1].second += level.times.solve;
+  record_.times[2].second += view.level.certify_seconds;
+  record_.times[3].second += output;
+  record_.status = view.verdict.status;
+  record_.reason = view.verdict.reason;
+  write_report(output_.directory, record_);
+  print_level(level);
+}
+
+template <int dim>
+ExitCode RunReport<dim>::close(const Verdict& verdict)
+{
+  record_.status = verdict.status;
+  record_.reason = verdict.reason;
+  write_report(output_.directory, record_);
+  print_summary(record_, output_.directory.string());
+  return exit_code(verdict.status);
+}
+
+template <int dim>
+void RunReport<dim>::fail(const std::string& reason)
+{
+  record_.status = RunStatus::failed;
+  record_.reason = reason;
+  write_report(output_.directory, record_);
+}
+
+/// Set by SIGINT and SIGTERM: the run then ends with the certificate of its last complete level. A second
+/// signal ends the program at once.
+std::atomic<bool> stop_requested = false;
+
+void request_stop(int signal)
+{
+  stop_requested = true;
+  std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
@@ -174,75 +211,24 @@ BuildFacts library_facts()
   return build;
 }
 
-namespace
-{
-
-/// Newton's method; a linear system that cannot be solved leaves a certificate of the failure behind.
 template <int dim>
-NewtonResult<dim> solve_or_report(const NitscheForm<dim>& form, const Config& config, RunRecord& record,
-                                  Certifier<dim>& certifier)
+ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress)
 {
+  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  RunReport<dim> report(config, problem, mesh);
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  const LoopObserver<dim> observer = {[&](const CertifiedStep& step) { progress(step.step, step.relative); },
+                                      [&](const LevelView<dim>& view) { report.add(view); }};
   try
   {
-    return solve<dim>(form, {}, config.newton, config.solver, std::ref(certifier));
+    return report.close(adapt<dim>(problem, config, std::move(mesh), observer, stop_requested));
   }
   catch (const SolveError& error)
   {
-    record.status = RunStatus::failed;
-    record.reason = error.what();
-    write_report(config.output.directory, record);
+    report.fail(error.what());
     throw;
   }
-}
-
-}  // namespace
-
-template <int dim>
-ExitCode run(const Config& config, const Mesh<dim>& mesh, const Progress& progress)
-{
-  const Clock::time_point begin = Clock::now();
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  const LagrangeSpace<dim> space(mesh, config.degree);
-  const NitscheForm<dim> form(problem, space, config.gamma0());  // a(u,v) - (T(u),v)_C - L(v)
-  check_rigid_motions<dim>(problem, space, form.load());
-  prepare_output_directory(config.output.directory);
-
-  RunRecord record;
-  record.facts = case_facts(config, dim);
-  record.mesh = mesh_facts<dim>(problem, space, form.constraints());
-  record.build = library_facts();
-  record.tolerance = config.adapt.tolerance;
-  record.statements = statements(form, config.certify.contact_rule);
-  record.statements.assumptions.emplace_back(
-      "linear_solver", describe_solver(choose_method(config.solver, dim, space.n_dofs())));
-  print_header(record.facts, record.mesh);
-  record.times.emplace_back("setup", seconds_since(begin));
-
-  const Clock::time_point before_newton = Clock::now();
-  Certifier<dim> certifier(form, config.certify, progress);
-  const NewtonResult<dim> newton = solve_or_report(form, config, record, certifier);
-  LevelRecord& level = record.levels.emplace_back(level_record(form, newton, certifier));
-  level.times.certify = certifier.seconds;
-  level.times.solve = seconds_since(before_newton) - certifier.seconds;
-  record.times.emplace_back("solve", level.times.solve);
-  record.times.emplace_back("certify", certifier.seconds);
-
-  const Verdict verdict = level.bound ? judge(*level.bound, *level.identities, config.degree,
-                                              level.figures.sigma_norm, config.adapt.tolerance)
-                                      : Verdict{RunStatus::failed, newton.message};
-  record.status = verdict.status;
-  record.reason = verdict.reason;
-  const Clock::time_point before_output = Clock::now();
-  const bool holds = verdict.status == RunStatus::certified || verdict.status == RunStatus::budget;
-  if (holds)
-    write_fields(config.output, form, newton.u, certifier);
-  else
-    withdraw_bounds(level);
-  record.times.emplace_back("output", seconds_since(before_output));
-  level.times.level = seconds_since(begin);
-  write_report(config.output.directory, record);
-  print_summary(record, config.output.directory.string());
-  return exit_code(verdict.status);
 }
 
 template <int dim>
@@ -256,8 +242,8 @@ void check(const Config& config, const Mesh<dim>& mesh)
               describe_solver(choose_method(config.solver, dim, space.n_dofs())));
 }
 
-template ExitCode run(const Config&, const Mesh<2>&, const Progress&);
-template ExitCode run(const Config&, const Mesh<3>&, const Progress&);
+template ExitCode run(const Config&, Mesh<2>, const Progress&);
+template ExitCode run(const Config&, Mesh<3>, const Progress&);
 template void check(const Config&, const Mesh<2>&);
 template void check(const Config&, const Mesh<3>&);
 

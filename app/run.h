@@ -23,10 +23,10 @@ enum class ExitCode
 /// Versions of the program and of the libraries it runs with.
 [[nodiscard]] BuildFacts library_facts();
 
-/// Solves the case on its mesh, certifies every Newton iterate and writes the results. Throws InputError and
+/// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError and
 /// SolveError.
 template <int dim>
-[[nodiscard]] ExitCode run(const Config& config, const Mesh<dim>& mesh, const Progress& progress);
+[[nodiscard]] ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress);
 
 /// Reads and verifies everything `run` would, and prints a summary.
 template <int dim>

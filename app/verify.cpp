@@ -133,6 +133,7 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   {
     result.iterates.push_back(verified_iterate(form, iterate, config.certify.contact_rule, dual_norm));
     progress(iterate.step);
+    return false;
   };
   const NewtonResult<dim> newton =
       stages.time("iterates", "solving, with bound and dual norm of every iterate",

@@ -149,6 +149,7 @@ void newton(const NitscheForm<dim>& form, const Config& config)
                       step.factorised ? "yes" : ""));
     before = now;
     factorisations += step.factorised ? 1 : 0;
+    return false;
   };
   const NewtonResult<dim> result = solve<dim>(form, {}, config.newton, config.solver, report);
   print("  all", cpu_seconds() - begin,

@@ -126,6 +126,15 @@ std::string newton_text(const NewtonStep& step, std::optional<double> relative_b
                      step.seconds);
 }
 
+std::string level_text(const LevelRecord& level)
+{
+  const std::string bound =
+      relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level)) : std::string("none");
+  return line(fmt::format("level {}", level.level),
+              fmt::format("{:>9} cells  {:>9} dofs  newton {:>2}  bound {:<9}  {:.2f} s", level.cells,
+                          level.dofs, level.newton.size(), bound, level.times.level));
+}
+
 std::string certificate_text(const RunRecord& run)
 {
   if (run.levels.empty() || !run.levels.back().bound) return {};
@@ -150,7 +159,6 @@ std::string summary_text(const RunRecord& run, const std::string& directory)
   if (!run.levels.empty())
   {
     const LevelRecord& last = run.levels.back();
-    text += line("newton", count(static_cast<long>(last.newton.size()), "step", "steps"));
     for (const Resultants& part : last.figures.boundary_contact)
       text += resultants_line("contact", part.boundary, part);
     if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
@@ -200,6 +208,11 @@ std::string info_text(const BuildFacts& build)
 void print_header(const CaseFacts& facts, const MeshFacts& mesh)
 {
   print(header_text(facts, mesh));
+}
+
+void print_level(const LevelRecord& level)
+{
+  print(level_text(level));
 }
 
 void print_summary(const RunRecord& run, const std::string& directory)

@@ -17,6 +17,8 @@ namespace tribound
 [[nodiscard]] std::string header_text(const CaseFacts& facts, const MeshFacts& mesh);
 /// A step, with the relative bound after it where that is known.
 [[nodiscard]] std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound = {});
+/// One line on a level: its size, Newton steps, bound and time.
+[[nodiscard]] std::string level_text(const LevelRecord& level);
 /// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
 [[nodiscard]] std::string certificate_text(const RunRecord& run);
 /// Resultants, largest displacement, the certificate, status, and where the files are.
@@ -28,6 +30,7 @@ namespace tribound
 [[nodiscard]] std::string info_text(const BuildFacts& build);
 
 void print_header(const CaseFacts& facts, const MeshFacts& mesh);
+void print_level(const LevelRecord& level);
 void print_summary(const RunRecord& run, const std::string& directory);
 void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver);
 void print_info(const BuildFacts& build);

@@ -59,7 +59,7 @@ Json json(const Resultants& resultants)
           {"force", resultants.force}};
 }
 
-Json json(const NewtonRecord& record)
+Json json(const CertifiedStep& record)
 {
   return {{"step", record.step.step},
           {"residual", record.step.residual},
@@ -97,7 +97,7 @@ Json json(const LevelRecord& level)
   Json object{{"level", level.level}};
   add_results(object, level);
   object["newton"] = Json::array();
-  for (const NewtonRecord& record : level.newton) object["newton"].push_back(json(record));
+  for (const CertifiedStep& record : level.newton) object["newton"].push_back(json(record));
   object["times"] = {
       {"solve", level.times.solve}, {"certify", json(level.times.certify)}, {"level", level.times.level}};
   return object;
@@ -201,7 +201,7 @@ std::string newton_csv(const RunRecord& run)
 {
   CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,accepted");
   for (const LevelRecord& level : run.levels)
-    for (const NewtonRecord& record : level.newton)
+    for (const CertifiedStep& record : level.newton)
     {
       table.add(level.level);
       table.add(record.step.step);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "adapt/level.h"
 #include "certify/certificate.h"
 #include "contact/nitsche.h"
 #include "io/facts.h"
@@ -44,14 +45,6 @@ template <int dim>
 [[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const double> u,
                                                std::span<const Point<dim>> t);
 
-/// A Newton step with the bound after it.
-struct NewtonRecord
-{
-  NewtonStep step;
-  std::optional<Bound> bound;
-  bool accepted = false;  ///< whether its iterate was taken as the solution on the level
-};
-
 /// Seconds of wall time on a level.
 struct LevelTimes
 {
@@ -65,7 +58,7 @@ struct LevelRecord
   int level = 0;
   long cells = 0;
   long dofs = 0;  ///< free ones
-  std::vector<NewtonRecord> newton;
+  std::vector<CertifiedStep> newton;
   SolutionFigures figures;
   std::optional<Bound> bound;
   std::optional<IdentityDefects> identities;

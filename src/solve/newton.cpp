@@ -224,7 +224,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
   NewtonResult<dim> result;
   initialise(start);
   int without_progress = 0;
-  for (int k = 1; k <= config_.max_steps && result.status != NewtonStatus::converged; ++k)
+  for (int k = 1; k <= config_.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
   {
     const auto begin = std::chrono::steady_clock::now();
     const bool from_scratch = k == 1 && start.empty();
@@ -232,11 +232,13 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     NewtonStep report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.steps.push_back(report);
-    if (observer) observer({report, u_, traction_});
+    const bool accepted = observer && observer({report, u_, traction_});
 
     without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
     if (converged())
       result.status = NewtonStatus::converged;
+    else if (accepted)
+      result.status = NewtonStatus::accepted;
     else if ((config_.damping && without_progress == 3) || !std::isfinite(residual_norm_))
     {
       result.status = NewtonStatus::diverged;

@@ -28,6 +28,7 @@ struct NewtonStep
 enum class NewtonStatus
 {
   converged,
+  accepted,  ///< by the observer
   diverged,
   too_many_steps
 };
@@ -36,7 +37,7 @@ template <int dim>
 struct NewtonResult
 {
   NewtonStatus status = NewtonStatus::too_many_steps;
-  std::string message;               ///< what happened, at which step; empty when converged
+  std::string message;               ///< what happened, at which step; empty when converged or accepted
   std::vector<double> u;             ///< u^k, dofs of the space
   std::vector<Point<dim>> traction;  ///< t^k at the contact points of the form
   std::vector<NewtonStep> steps;
@@ -52,11 +53,12 @@ struct NewtonIterate
 };
 
 template <int dim>
-using NewtonObserver = std::function<void(const NewtonIterate<dim>&)>;
+using NewtonObserver = std::function<bool(const NewtonIterate<dim>&)>;
 
 /// Solves the discrete problem. `start` is a solution carried from a coarser mesh (then the first step
 /// linearises there), or empty (then the first step is closed and sticking). `observer` is called after each
-/// step. Throws SolveError when a matrix is singular.
+/// step and says whether its iterate is good enough: then it is the result. Throws SolveError when a matrix
+/// is singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
                                       const NewtonConfig& newton, const SolverConfig& solver,

@@ -190,7 +190,10 @@ TEST(Newton, ReportsEachStep)
   std::vector<double> residuals;
   const NewtonResult<2> result = tribound::solve<2>(c.form, {}, c.config.newton, c.config.solver,
                                                     [&](const NewtonIterate<2>& iterate)
-                                                    { residuals.push_back(iterate.step.residual); });
+                                                    {
+                                                      residuals.push_back(iterate.step.residual);
+                                                      return false;
+                                                    });
   ASSERT_EQ(residuals.size(), result.steps.size());
   for (std::size_t k = 0; k < residuals.size(); ++k) EXPECT_EQ(residuals[k], result.steps[k].residual);
 }

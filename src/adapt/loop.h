@@ -1,0 +1,47 @@
+#pragma once
+
+/// @file loop.h
+/// The adaptive algorithm, method section 6: solve, certify, mark, bisect, until the bound is below the
+/// tolerance or the budget is used up.
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "adapt/level.h"
+#include "certify/certificate.h"
+
+namespace tribound
+{
+
+/// A level that is complete.
+template <int dim>
+struct LevelView
+{
+  int number;  ///< from 0, the given mesh
+  const Discretisation<dim>& discrete;
+  const CertifiedLevel<dim>& level;
+  const Verdict& verdict;  ///< what holds after it
+  double seconds;          ///< wall time of the level, refinement included
+};
+
+/// What the loop tells while it runs.
+template <int dim>
+struct LoopObserver
+{
+  StepObserver step;
+  std::function<void(const LevelView<dim>&)> level;
+};
+
+/// Adapts the mesh from the given one, Newton starting from the solution carried to each new mesh, until
+/// bound <= adapt.tolerance * ||sigma(u_h)|| or a limit of [adapt] is reached, or `stop` becomes true.
+///
+/// The verdict is that of the last level of which the observer was told. Should a later level fail, or
+/// violate an identity, the one before it keeps its certificate: the verdict is then `budget` and says what
+/// happened. Throws SolveError when the first level cannot be solved, and InputError for data that are not
+/// valid on a finer mesh.
+template <int dim>
+[[nodiscard]] Verdict adapt(const Problem<dim>& problem, const Config& config, Mesh<dim> mesh,
+                            const LoopObserver<dim>& observer, const std::atomic<bool>& stop);
+
+}  // namespace tribound
