@@ -40,7 +40,7 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
   const auto certify = [&](const NewtonIterate<dim>& iterate)
   {
     const Clock::time_point before = Clock::now();
-    CertifiedStep& step = level.steps.emplace_back(CertifiedStep{iterate.step, {}, false, {}});
+    CertifiedStep& step = level.steps.emplace_back(CertifiedStep{iterate.step, {}});
     if (std::isfinite(iterate.step.residual))
     {
       level.stress = equilibrate<dim>(form, iterate.u, iterate.traction);

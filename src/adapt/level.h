@@ -41,9 +41,9 @@ struct Discretisation
 struct CertifiedStep
 {
   NewtonStep step;
-  std::optional<Bound> bound;      ///< absent where the iterate is not finite
-  bool accepted = false;           ///< whether its iterate was taken as the solution on the mesh
-  std::optional<double> relative;  ///< bound / ||sigma(u^k)||
+  std::optional<Bound> bound;           ///< absent where the iterate is not finite
+  bool accepted = false;                ///< whether its iterate was taken as the solution on the mesh
+  std::optional<double> relative = {};  ///< bound / ||sigma(u^k)||
 };
 
 /// The solution on one mesh and what is known of its error.

@@ -88,6 +88,20 @@ TEST(Console, NoCertificateWithoutABound)
   EXPECT_EQ(certificate_text(run), "");
 }
 
+TEST(Console, Level)
+{
+  LevelRecord level;
+  level.level = 3;
+  level.cells = 1234;
+  level.dofs = 5678;
+  level.newton.resize(2);
+  level.figures.sigma_norm = 2;
+  level.bound = Bound{{}, 0.5, 0.25};
+  level.times.level = 1.25;
+  EXPECT_EQ(level_text(level),
+            "level 3            1234 cells       5678 dofs  newton  2  bound 12.5 %     1.25 s\n");
+}
+
 TEST(Console, SummaryOfAFailedRun)
 {
   RunRecord run;
@@ -117,7 +131,6 @@ TEST(Console, Summary)
                    {{"bottom", {-0.04, 0.11}, -0.11, -0.04, 0.05}}};
   run.levels = {level};
   EXPECT_EQ(summary_text(run, "out"),
-            "newton        5 steps\n"
             "contact       bottom: normal -0.11, tangential -0.04, force (-0.04, 0.11)\n"
             "max |u|       0.084\n"
             "energy        a(u, u) = 0.0137, ||sigma|| = 0.116\n"
