@@ -50,7 +50,7 @@ class Loop
     {
       const std::optional<CertifiedLevel<dim>> level = solve();
       if (!level) return ended_;
-      const Verdict verdict = judge_level(*level);
+      Verdict verdict = judge_level(*level);
       if (number_ > 0 && !holds(verdict)) return certificate_of_the_level_before(verdict.reason);
       observer_.level({number_, *current_, *level, verdict, seconds_since(level_begin_)});
       level_begin_ = Clock::now();
