@@ -2,11 +2,11 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <utility>
 
 #include "adapt/loop.h"
+#include "base/clock.h"
 #include "contact/rigid_motion.h"
 #include "io/atomic_file.h"
 #include "io/contact_line.h"
@@ -21,13 +21,6 @@ namespace tribound
 
 namespace
 {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin)
-{
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 std::string describe_solver(LinearMethod method)
 {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 
+#include "base/clock.h"
 #include "certify/checks.h"
 #include "certify/equilibrate.h"
 #include "certify/estimate.h"
@@ -66,10 +66,9 @@ class Stages
   auto time(const std::string& stage, const std::string& announcement, const Work& work)
   {
     progress_.stage(announcement);
-    const auto begin = std::chrono::steady_clock::now();
+    const Clock::time_point begin = Clock::now();
     auto result = work();
-    times_.emplace_back(stage,
-                        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    times_.emplace_back(stage, seconds_since(begin));
     return result;
   }
 
@@ -82,10 +81,10 @@ class Stages
 
 template <int dim>
 VerifiedIterate verified_iterate(const NitscheForm<dim>& form, const NewtonIterate<dim>& newton,
-                                 ContactRule rule, DualNorm<dim>& dual_norm)
+                                 const Estimator<dim>& estimator, DualNorm<dim>& dual_norm)
 {
   const Stress<dim> stress = equilibrate<dim>(form, newton.u, newton.traction);
-  const Estimate eta = estimate<dim>(form, newton.u, stress, rule);
+  const Estimate eta = estimator(newton.u, stress);
   VerifiedIterate iterate;
   iterate.step = newton.step;
   iterate.bound = eta.total_sharp;
@@ -129,9 +128,10 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   DualNorm<dim> dual_norm(form, dual_space(config, refinements));
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
                        dual_norm.space().n_dofs()};
+  const Estimator<dim> estimator(form, config.certify.contact_rule);
   const NewtonObserver<dim> observer = [&](const NewtonIterate<dim>& iterate)
   {
-    result.iterates.push_back(verified_iterate(form, iterate, config.certify.contact_rule, dual_norm));
+    result.iterates.push_back(verified_iterate(form, iterate, estimator, dual_norm));
     progress(iterate.step);
     return false;
   };

@@ -1,9 +1,9 @@
 #include "adapt/level.h"
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "base/clock.h"
 #include "certify/equilibrate.h"
 #include "contact/elasticity.h"
 
@@ -14,18 +14,6 @@ bool linearisation_is_negligible(const BoundComponents& eta, double gamma_lin)
 {
   return eta.lin1 + eta.lin2n + eta.lin2t <= gamma_lin * (eta.osc + eta.str + eta.neu + eta.cnt + eta.frc);
 }
-
-namespace
-{
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin)
-{
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-}  // namespace
 
 template <int dim>
 CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<const double> start,
@@ -46,8 +34,8 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
       level.stress = equilibrate<dim>(form, iterate.u, iterate.traction);
       level.estimate = estimator(iterate.u, level.stress);
       step.bound = level.estimate;
-      const double sigma_norm = stress_norms(form.problem(), form.space(), iterate.u).sigma;
-      if (sigma_norm > 0) step.relative = level.estimate.total_sharp / sigma_norm;
+      level.sigma_norm = stress_norms(form.problem(), form.space(), iterate.u).sigma;
+      if (level.sigma_norm > 0) step.relative = level.estimate.total_sharp / level.sigma_norm;
       step.accepted = config.newton.stopping == Stopping::adaptive &&
                       linearisation_is_negligible(level.estimate.global, config.newton.gamma_lin);
     }

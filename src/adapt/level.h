@@ -55,6 +55,7 @@ struct CertifiedLevel
   std::vector<CertifiedStep> steps;
   Stress<dim> stress;
   Estimate estimate;
+  double sigma_norm = 0;  ///< ||sigma(u)||
   IdentityDefects identities;
   double solve_seconds = 0;    ///< wall time
   double certify_seconds = 0;  ///< of all iterates

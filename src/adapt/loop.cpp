@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "adapt/mark.h"
+#include "base/clock.h"
 #include "base/error.h"
-#include "contact/elasticity.h"
 #include "fem/nested.h"
 #include "mesh/bisect.h"
 
@@ -19,13 +18,6 @@ namespace tribound
 
 namespace
 {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin)
-{
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// Thrown out of Newton's method when the user wants the run to end.
 struct Interrupted
@@ -123,8 +115,7 @@ template <int dim>
 Verdict Loop<dim>::judge_level(const CertifiedLevel<dim>& level) const
 {
   if (!level.solved()) return {RunStatus::failed, level.failure};
-  return judge(level.estimate, level.identities, config_.degree,
-               stress_norms<dim>(problem_, current_->space, level.u).sigma, config_.adapt.tolerance);
+  return judge(level.estimate, level.identities, config_.degree, level.sigma_norm, config_.adapt.tolerance);
 }
 
 template <int dim>

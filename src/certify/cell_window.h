@@ -28,19 +28,16 @@ class BodyMoments
   {
     const Mesh<dim>& mesh = form.space().mesh();
     const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
-    std::vector<double> chi(m * rule.size());
-    std::vector<Point<dim>> points(rule.size());
+    std::vector<Table> tables;  // by permutation_number(frame.local), filled when first needed
     for (Index c = 0; c < mesh.n_cells(); ++c)
     {
       if (form.problem().body_force_is_zero(mesh.region(c))) continue;
       if (moments_.empty()) moments_.resize(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1));
-      // The points of the cell's own numbering, as for L(v): collapsed rules are not symmetric.
       const Frame<dim> frame = make_frame(mesh, c);
-      for (int q = 0; q < rule.size(); ++q)
-      {
-        points[q] = in_frame<dim>(frame.local, rule.points[q]);
-        orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
-      }
+      const auto number = static_cast<std::size_t>(permutation_number(frame.local));
+      if (number >= tables.size()) tables.resize(number + 1);
+      if (tables[number].points.empty()) tables[number] = Table(rule, frame.local);
+      const auto& [points, chi] = tables[number];
       for (int q = 0; q < rule.size(); ++q)
       {
         const Point<dim> f =
@@ -58,6 +55,23 @@ class BodyMoments
 
  private:
   static constexpr int m = Sizes<dim, p>::multiplier;
+
+  /// The points of the cell's own numbering, as for L(v) (collapsed rules are not symmetric), in the
+  /// coordinates of a frame, and the basis of P^{p-1} there.
+  struct Table
+  {
+    Table() = default;
+    Table(const Quadrature<dim>& rule, const std::array<int, dim + 1>& local) : chi(m * rule.size())
+    {
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        points.push_back(in_frame<dim>(local, rule.points[q]));
+        orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
+      }
+    }
+    std::vector<Point<dim>> points;
+    std::vector<double> chi;  ///< [q * m + i]
+  };
 
   /// The share of one point in the moments of all vertices.
   static void add(Vector* moments, const Point<dim>& xhat, const Point<dim>& weighted_f, const double* chi)

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/norm.h"
 #include "contact/elasticity.h"
 #include "solve/linear_solver.h"
@@ -226,11 +226,11 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
   int without_progress = 0;
   for (int k = 1; k <= config_.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
   {
-    const auto begin = std::chrono::steady_clock::now();
+    const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && start.empty();
     const double before = residual_norm_;
     NewtonStep report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.seconds = seconds_since(begin);
     result.steps.push_back(report);
     const bool accepted = observer && observer({report, u_, traction_});
 
