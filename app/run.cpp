@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <memory>
 #include <utility>
 
 #include "adapt/loop.h"
@@ -76,7 +77,10 @@ template <int dim>
 class RunReport
 {
  public:
-  RunReport(const Config& config, const Problem<dim>& problem, const Mesh<dim>& mesh);
+  /// On the first mesh; the run began at `begin`. Throws InputError for a body that can move rigidly, and
+  /// where nothing can be written.
+  RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
+            Clock::time_point begin);
 
   /// After every level: fields, tables and a certificate that holds should the program be killed.
   void add(const LevelView<dim>& view);
@@ -89,16 +93,16 @@ class RunReport
   void write_fields(const LevelView<dim>& view) const;
 
   const OutputConfig& output_;
-  Clock::time_point begin_ = Clock::now();
   RunRecord record_;
 };
 
 template <int dim>
-RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, const Mesh<dim>& mesh)
+RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
+                          Clock::time_point begin)
     : output_(config.output)
 {
-  const LagrangeSpace<dim> space(mesh, config.degree);
-  const NitscheForm<dim> form(problem, space, config.gamma0());
+  const LagrangeSpace<dim>& space = first.space;
+  const NitscheForm<dim>& form = first.form;
   check_rigid_motions<dim>(problem, space, form.load());
   prepare_output_directory(output_.directory);
   record_.facts = case_facts(config, dim);
@@ -108,7 +112,7 @@ RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, con
   record_.statements = statements(form, config.certify.contact_rule);
   record_.statements.assumptions.emplace_back(
       "linear_solver", describe_solver(choose_method(config.solver, dim, space.n_dofs())));
-  record_.times = {{"setup", seconds_since(begin_)}, {"solve", 0}, {"certify", 0}, {"output", 0}};
+  record_.times = {{"setup", seconds_since(begin)}, {"solve", 0}, {"certify", 0}, {"output", 0}};
   print_header(record_.facts, record_.mesh);
 }
 
@@ -207,15 +211,17 @@ BuildFacts library_facts()
 template <int dim>
 ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress)
 {
+  const Clock::time_point begin = Clock::now();
   const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  RunReport<dim> report(config, problem, mesh);
+  auto first = std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config);
+  RunReport<dim> report(config, problem, *first, begin);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   const LoopObserver<dim> observer = {[&](const CertifiedStep& step) { progress(step.step, step.relative); },
                                       [&](const LevelView<dim>& view) { report.add(view); }};
   try
   {
-    return report.close(adapt<dim>(problem, config, std::move(mesh), observer, stop_requested));
+    return report.close(adapt<dim>(problem, config, std::move(first), observer, stop_requested));
   }
   catch (const SolveError& error)
   {

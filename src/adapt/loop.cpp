@@ -35,9 +35,9 @@ class Loop
   {
   }
 
-  Verdict run(Mesh<dim> mesh)
+  Verdict run(std::unique_ptr<Discretisation<dim>> first)
   {
-    current_ = std::make_unique<Discretisation<dim>>(std::move(mesh), problem_, config_);
+    current_ = std::move(first);
     for (number_ = 0;; ++number_)
     {
       const std::optional<CertifiedLevel<dim>> level = solve();
@@ -152,15 +152,15 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
 }  // namespace
 
 template <int dim>
-Verdict adapt(const Problem<dim>& problem, const Config& config, Mesh<dim> mesh,
+Verdict adapt(const Problem<dim>& problem, const Config& config, std::unique_ptr<Discretisation<dim>> first,
               const LoopObserver<dim>& observer, const std::atomic<bool>& stop)
 {
-  return Loop<dim>(problem, config, observer, stop).run(std::move(mesh));
+  return Loop<dim>(problem, config, observer, stop).run(std::move(first));
 }
 
-template Verdict adapt(const Problem<2>&, const Config&, Mesh<2>, const LoopObserver<2>&,
-                       const std::atomic<bool>&);
-template Verdict adapt(const Problem<3>&, const Config&, Mesh<3>, const LoopObserver<3>&,
-                       const std::atomic<bool>&);
+template Verdict adapt(const Problem<2>&, const Config&, std::unique_ptr<Discretisation<2>>,
+                       const LoopObserver<2>&, const std::atomic<bool>&);
+template Verdict adapt(const Problem<3>&, const Config&, std::unique_ptr<Discretisation<3>>,
+                       const LoopObserver<3>&, const std::atomic<bool>&);
 
 }  // namespace tribound

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "adapt/level.h"
@@ -33,7 +34,7 @@ struct LoopObserver
   std::function<void(const LevelView<dim>&)> level;
 };
 
-/// Adapts the mesh from the given one, Newton starting from the solution carried to each new mesh, until
+/// Adapts the mesh from that of `first`, Newton starting from the solution carried to each new mesh, until
 /// bound <= adapt.tolerance * ||sigma(u_h)|| or a limit of [adapt] is reached, or `stop` becomes true.
 ///
 /// The verdict is that of the last level of which the observer was told. Should a later level fail, or
@@ -41,7 +42,8 @@ struct LoopObserver
 /// happened. Throws SolveError when the first level cannot be solved, and InputError for data that are not
 /// valid on a finer mesh.
 template <int dim>
-[[nodiscard]] Verdict adapt(const Problem<dim>& problem, const Config& config, Mesh<dim> mesh,
-                            const LoopObserver<dim>& observer, const std::atomic<bool>& stop);
+[[nodiscard]] Verdict adapt(const Problem<dim>& problem, const Config& config,
+                            std::unique_ptr<Discretisation<dim>> first, const LoopObserver<dim>& observer,
+                            const std::atomic<bool>& stop);
 
 }  // namespace tribound

@@ -58,7 +58,8 @@ History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop, const
                                   level.estimate.total_sharp, level.steps.size(), verdict.status});
         EXPECT_LE(level.identities.largest(p), 1e-10);
       }};
-  history.verdict = adapt<2>(problem, config, std::move(mesh), observer, stop);
+  history.verdict = adapt<2>(
+      problem, config, std::make_unique<Discretisation<2>>(std::move(mesh), problem, config), observer, stop);
   return history;
 }
 
