@@ -3,6 +3,7 @@
 /// codes.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <exception>
@@ -13,10 +14,13 @@
 #include <vector>
 
 #include "base/version.h"
+#include "init.h"
 #include "io/console.h"
 #include "mesh/gmsh.h"
 #include "run.h"
+#include "run_report.h"
 #include "solve/petsc.h"
+#include "study.h"
 #include "verify.h"
 
 namespace
@@ -29,7 +33,10 @@ struct Arguments
   std::string case_file;
   std::vector<std::string> overrides;
   bool quiet = false;
-  int refinements = 2;  ///< of verify
+  int refinements = 2;          ///< of verify
+  bool json = false;            ///< of check
+  std::string start = "block";  ///< of init: the case to start from
+  std::string directory;        ///< of init
 };
 
 void add_case_arguments(CLI::App& command, Arguments& arguments)
@@ -56,7 +63,7 @@ void check_command(const Arguments& arguments)
   const Config config = read_config(arguments.case_file, arguments.overrides);
   const AnyMesh mesh = read_mesh(config.mesh);
   const Environment environment;
-  std::visit([&](const auto& m) { check(config, m); }, mesh);
+  std::visit([&](const auto& m) { check(config, m, arguments.json); }, mesh);
 }
 
 ExitCode verify_command(const Arguments& arguments)
@@ -68,19 +75,92 @@ ExitCode verify_command(const Arguments& arguments)
   return std::visit([&](const auto& m) { return verify(config, m, arguments.refinements, progress); }, mesh);
 }
 
+ExitCode study_command(const Arguments& arguments)
+{
+  const Progress progress(arguments.quiet);
+  const Config config = read_config(arguments.case_file, arguments.overrides);
+  AnyMesh mesh = read_mesh(config.mesh);
+  const Environment environment;
+  return std::visit([&](auto& m) { return study(config, std::move(m), progress); }, mesh);
+}
+
 void info_command()
 {
   const Environment environment;
   print_info(library_facts());
 }
 
+constexpr const char* case_commands = "Working on a case";
+constexpr const char* program_commands = "Starting out";
+
+constexpr const char* help_footer = R"(Examples:
+  tribound init block                         write block.toml, a commented case to start from
+  tribound check block.toml                   examine it: supports, units, mesh, expected cost
+  tribound run block.toml                     solve it, write out/block
+  tribound run block.toml --set degree=3 --set boundary.bottom.contact.coefficient=0.5
+  tribound COMMAND --help                     the options of a command
+
+Exit codes:
+  0  certified: the bound is below the tolerance and all identities hold; for other commands: done
+  1  bad input; the message names the file, the key, what is wrong and what would be right
+  2  failed: no convergence, a singular matrix, an identity violated
+  3  budget used up or interrupted: the certificate is valid, the tolerance is not reached
+
+The manual: man tribound. The keys of a case: docs/case-format.md. The results: docs/output.md.)";
+
+/// Commands and options as they stand in --help.
+void describe_command_line(CLI::App& app, Arguments& arguments)
+{
+  app.set_version_flag("--version", std::string("tribound ") + version());
+  app.require_subcommand(1);
+  app.footer(help_footer);
+  CLI::App* init = app.add_subcommand("init", "Write a commented case to start from");
+  CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
+  for (CLI::App* command : {init, info}) command->group(program_commands);
+  CLI::App* check =
+      app.add_subcommand("check", "Read and examine a case without solving it, say what to mend");
+  CLI::App* run = app.add_subcommand("run", "Solve a case and write its results");
+  CLI::App* verify = app.add_subcommand(
+      "verify", "Compare the bound of a case with the error it bounds (slow: for small cases)");
+  CLI::App* study = app.add_subcommand(
+      "study", "Measure what adaptation and the stopping of Newton's method bring, with figures (slow)");
+  for (CLI::App* command : {check, run, verify, study})
+  {
+    command->group(case_commands);
+    add_case_arguments(*command, arguments);
+  }
+  init->add_option("name", arguments.start,
+                   fmt::format("The case to start from: {}", fmt::join(template_names(), ", ")))
+      ->capture_default_str();
+  init->add_option("--directory", arguments.directory, "Where to write it; default: here");
+  check->add_flag("--json", arguments.json, "Print what was found as JSON");
+  verify
+      ->add_option("--refinements", arguments.refinements,
+                   "Uniform refinements of the mesh on which the error is looked for")
+      ->check(CLI::Range(1, 5))
+      ->capture_default_str();
+}
+
+/// Does what the command line asks for.
+ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
+{
+  const std::string command = app.get_subcommands().front()->get_name();
+  if (command == "run") return run_command(arguments);
+  if (command == "verify") return verify_command(arguments);
+  if (command == "study") return study_command(arguments);
+  if (command == "check") check_command(arguments);
+  if (command == "init") init(arguments.start, arguments.directory);
+  if (command == "info") info_command();
+  return ExitCode::success;
+}
+
 /// What is wrong with the command line. CLI11 says that a command is missing even where one is misspelt.
 InputError usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<char*> words)
 {
-  const std::vector<std::string> commands = {"run", "check", "verify", "info"};
-  const std::string hint =
-      "tribound run case.toml, tribound check case.toml, tribound verify case.toml or tribound info; "
-      "more: tribound --help";
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const std::string hint = fmt::format(
+      "the commands are {}, as in tribound run case.toml; more: tribound --help", fmt::join(commands, ", "));
   if (!app.get_subcommands().empty()) return {{}, error.what(), hint};
   if (words.size() < 2) return {{}, "a command is missing", hint};
   const std::string near = closest(words[1], commands);
@@ -100,22 +180,8 @@ int report(ExitCode code, const std::string& message)
 int main(int argc, char** argv)
 {
   CLI::App app("Solves unilateral contact with friction by the Nitsche finite element method.", "tribound");
-  app.set_version_flag("--version", std::string("tribound ") + version());
-  app.require_subcommand(1);
   Arguments arguments;
-  CLI::App* run = app.add_subcommand("run", "Solve a case and write its results");
-  CLI::App* check = app.add_subcommand("check", "Read and verify a case without solving it");
-  CLI::App* verify = app.add_subcommand(
-      "verify", "Compare the bound of a case with the error it bounds (slow: for small cases)");
-  CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
-  add_case_arguments(*run, arguments);
-  add_case_arguments(*check, arguments);
-  add_case_arguments(*verify, arguments);
-  verify
-      ->add_option("--refinements", arguments.refinements,
-                   "Uniform refinements of the mesh on which the error is looked for")
-      ->check(CLI::Range(1, 5))
-      ->capture_default_str();
+  describe_command_line(app, arguments);
   try
   {
     app.parse(argc, argv);
@@ -128,11 +194,7 @@ int main(int argc, char** argv)
 
   try
   {
-    if (*run) return static_cast<int>(run_command(arguments));
-    if (*check) check_command(arguments);
-    if (*verify) return static_cast<int>(verify_command(arguments));
-    if (*info) info_command();
-    return 0;
+    return static_cast<int>(dispatch(app, arguments));
   }
   catch (const InputError& error)
   {

@@ -5,7 +5,6 @@
 
 #include "case/config.h"
 #include "io/console.h"
-#include "io/facts.h"
 #include "mesh/mesh.h"
 
 namespace tribound
@@ -20,16 +19,14 @@ enum class ExitCode
   budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
 };
 
-/// Versions of the program and of the libraries it runs with.
-[[nodiscard]] BuildFacts library_facts();
-
 /// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError and
 /// SolveError.
 template <int dim>
 [[nodiscard]] ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress);
 
-/// Reads and verifies everything `run` would, and prints a summary.
+/// Reads and verifies everything `run` would, and prints a summary with what the doctor finds, for people or
+/// as JSON.
 template <int dim>
-void check(const Config& config, const Mesh<dim>& mesh);
+void check(const Config& config, const Mesh<dim>& mesh, bool as_json);
 
 }  // namespace tribound

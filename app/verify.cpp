@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "adapt/regularisation.h"
 #include "base/clock.h"
 #include "certify/checks.h"
 #include "certify/equilibrate.h"
@@ -81,10 +82,8 @@ class Stages
 
 template <int dim>
 VerifiedIterate verified_iterate(const NitscheForm<dim>& form, const NewtonIterate<dim>& newton,
-                                 const Estimator<dim>& estimator, DualNorm<dim>& dual_norm)
+                                 const Stress<dim>& stress, const Bound& eta, DualNorm<dim>& dual_norm)
 {
-  const Stress<dim> stress = equilibrate<dim>(form, newton.u, newton.traction);
-  const Estimate eta = estimator(newton.u, stress);
   VerifiedIterate iterate;
   iterate.step = newton.step;
   iterate.bound = eta.total_sharp;
@@ -129,11 +128,16 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
                        dual_norm.space().n_dofs()};
   const Estimator<dim> estimator(form, config.certify.contact_rule);
-  const NewtonObserver<dim> observer = [&](const NewtonIterate<dim>& iterate)
+  std::optional<DeltaUpdates> regularisation;
+  if (config.regularisation) regularisation = DeltaUpdates{*config.regularisation};
+  const NewtonObserver<dim> observer = [&](const NewtonIterate<dim>& iterate) -> NewtonAdvice
   {
-    result.iterates.push_back(verified_iterate(form, iterate, estimator, dual_norm));
+    const Stress<dim> stress = equilibrate<dim>(form, iterate.u, iterate.traction, 0, iterate.step.delta);
+    const Estimate eta = estimator(iterate.u, stress);
+    result.iterates.push_back(verified_iterate(form, iterate, stress, eta, dual_norm));
     progress(iterate.step);
-    return false;
+    if (!regularisation) return false;
+    return regularisation->advise(form, iterate, eta.global, iterate.converged);
   };
   const NewtonResult<dim> newton =
       stages.time("iterates", "solving, with bound and dual norm of every iterate",

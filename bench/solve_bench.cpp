@@ -7,13 +7,13 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <ctime>
 #include <exception>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/clock.h"
 #include "case/config.h"
 #include "contact/elasticity.h"
 #include "contact/nitsche.h"
@@ -38,11 +38,6 @@ struct Arguments
   std::string package = "auto";
   bool bare = false;
 };
-
-double cpu_seconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 void print(const std::string& stage, double seconds, const std::string& remark = "")
 {

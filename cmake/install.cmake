@@ -10,7 +10,18 @@ if(TARGET tribound_app)
   # Only a shared library needs it: the installed tree may be moved.
   set_target_properties(tribound_app PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
   install(TARGETS tribound_app)
+  configure_file(${PROJECT_SOURCE_DIR}/docs/man/tribound.1.in ${PROJECT_BINARY_DIR}/tribound.1 @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/tribound.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${PROJECT_SOURCE_DIR}/app/completions/tribound.bash
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tribound)
+  install(FILES ${PROJECT_SOURCE_DIR}/app/completions/_tribound DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
+
+# What the program runs: io/figures.h.
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/study_figures DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
+foreach(module result_files study_bodies study_charts study_fields)
+  install(FILES ${PROJECT_SOURCE_DIR}/scripts/${module}.py DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
+endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tribound FILES_MATCHING PATTERN "*.h")

@@ -4,8 +4,8 @@
 
 R = 10;        // mm
 cap = 0.25;    // angle of the part of the surface that may come into contact
-h = 0.15;      // mesh size at the contact
-H = 1.5;       // and far from it
+h = 1;         // mesh size at the contact, about the radius of the contact: the run refines where it must
+H = 2;         // and far from it
 c = R*(1 - Cos(cap));
 s = R*Sin(cap);
 
@@ -38,19 +38,6 @@ Curve Loop(5) = {3, -9, 8, 6};
 Plane Surface(5) = {5};                     // x = 0
 Surface Loop(1) = {1, 2, 3, 4, 5};
 Volume(1) = {1};
-
-// Size h within 1.1 mm of the point of contact, growing to H at 7 mm.
-Field[1] = Distance;
-Field[1].NodesList = {2};
-Field[2] = Threshold;
-Field[2].IField = 1;
-Field[2].LcMin = h;
-Field[2].LcMax = H;
-Field[2].DistMin = 1.1;
-Field[2].DistMax = 7;
-Background Field = 2;
-Mesh.CharacteristicLengthFromPoints = 0;
-Mesh.CharacteristicLengthExtendFromBoundary = 0;
 
 Physical Volume("ball") = {1};
 Physical Surface("contact") = {1};

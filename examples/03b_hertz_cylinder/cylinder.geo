@@ -4,8 +4,8 @@
 
 R = 10;        // mm
 cap = 0.15;    // angle of the part of the surface that may come into contact
-h = 0.025;     // mesh size at the contact
-H = 1.0;       // and far from it
+h = 0.5;       // mesh size at the contact, about the half width of the contact: the run refines where it must
+H = 1.5;       // and far from it
 
 Point(1) = {0, R, 0, H};                              // centre
 c = R*(1 - Cos(cap));
@@ -18,19 +18,6 @@ Line(3) = {4, 1};
 Line(4) = {1, 2};
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
-
-// Size h within 1 mm of the point of contact, growing to H at 9 mm.
-Field[1] = Distance;
-Field[1].NodesList = {2};
-Field[2] = Threshold;
-Field[2].IField = 1;
-Field[2].LcMin = h;
-Field[2].LcMax = H;
-Field[2].DistMin = 1;
-Field[2].DistMax = 9;
-Background Field = 2;
-Mesh.CharacteristicLengthFromPoints = 0;
-Mesh.CharacteristicLengthExtendFromBoundary = 0;
 
 Physical Surface("cylinder") = {1};
 Physical Curve("contact") = {1};

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "adapt/regularisation.h"
 #include "case/config.h"
 #include "certify/checks.h"
 #include "certify/estimate.h"
@@ -41,9 +42,20 @@ struct Discretisation
 struct CertifiedStep
 {
   NewtonStep step;
-  std::optional<Bound> bound;           ///< absent where the iterate is not finite
+  /// Absent where the iterate is not finite, or ruled out by its linearisation error (solve_and_certify).
+  std::optional<Bound> bound = {};
   bool accepted = false;                ///< whether its iterate was taken as the solution on the mesh
   std::optional<double> relative = {};  ///< bound / ||sigma(u^k)||
+  /// lin1, lin2n and lin2t, the others 0; absent where the iterate is not finite.
+  std::optional<BoundComponents> linearisation = {};
+};
+
+/// Wall time of what led to a mesh; 0 for the given one.
+struct RefinementSeconds
+{
+  double bisect = 0;      ///< marking and bisection, with the topology of the new mesh
+  double discretise = 0;  ///< space, load and contact points
+  double transfer = 0;    ///< the solution carried over
 };
 
 /// The solution on one mesh and what is known of its error.
@@ -53,29 +65,52 @@ struct CertifiedLevel
   std::string failure;  ///< why there is no solution; empty when there is
   std::vector<double> u;
   std::vector<CertifiedStep> steps;
+  double delta = 0;                  ///< of the regularised variant, for the next mesh
+  std::optional<int> delta_updates;  ///< how often delta was shrunk; absent in the plain method
   Stress<dim> stress;
   Estimate estimate;
   double sigma_norm = 0;  ///< ||sigma(u)||
   IdentityDefects identities;
   double solve_seconds = 0;    ///< wall time
   double certify_seconds = 0;  ///< of all iterates
+  double solve_cpu = 0;        ///< CPU time, all threads
+  double certify_cpu = 0;
+  RefinementSeconds refinement;
 
   [[nodiscard]] bool solved() const { return failure.empty(); }
 };
 
 /// Whether iterating further is pointless, method section 6:
-/// eta_lin1 + eta_lin2n + eta_lin2t <= gamma_lin (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc).
+/// eta_lin1 + eta_lin2n + eta_lin2t <= gamma_lin (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc), where T
+/// is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
 [[nodiscard]] bool linearisation_is_negligible(const BoundComponents& eta, double gamma_lin);
+
+/// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.
+[[nodiscard]] bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& config);
+
+/// The components of `eta` with those of the linearisation from `lin`.
+[[nodiscard]] BoundComponents with_linearisation(BoundComponents eta, const BoundComponents& lin);
 
 /// Called after every Newton step; may throw to leave the level.
 using StepObserver = std::function<void(const CertifiedStep&)>;
 
-/// Newton's method from `start` (empty: from scratch) with the bound of every iterate. With
-/// Stopping::adaptive it ends at the first iterate whose linearisation error is negligible. Throws SolveError
-/// when a matrix is singular or a patch has no equilibrated stress.
+/// Newton's method from `start` (empty: from scratch) with the bound of its iterates. With an adaptive
+/// stopping criterion it ends at the first iterate whose linearisation error is negligible. In the
+/// regularised variant (config.regularisation) it starts with `delta` (0: chosen after the first step), and
+/// goes on with smaller ones until the regularisation is negligible too.
+///
+/// The iterate that is kept always has the complete bound of its own stress; so has every other in 2D, with
+/// Stopping::tolerance and in the regularised variant. Otherwise in 3D, where the patches cost as much as
+/// some steps, sigma_lin comes first, which needs those around Gamma_C alone: an iterate whose linearisation
+/// error is not negligible beside the last known other components, those of `coarser` to begin with, gets no
+/// complete bound, and Newton's method goes on. `coarser`: the components on the mesh before, if there is
+/// one.
+///
+/// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>
 [[nodiscard]] CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form,
                                                     std::span<const double> start, const Config& config,
-                                                    const StepObserver& observer = {});
+                                                    const StepObserver& observer = {}, double delta = 0,
+                                                    const std::optional<BoundComponents>& coarser = {});
 
 }  // namespace tribound

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +13,7 @@
 #include "adapt/mark.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "fem/nested.h"
 #include "mesh/bisect.h"
 
@@ -44,12 +48,12 @@ class Loop
       if (!level) return ended_;
       Verdict verdict = judge_level(*level);
       if (number_ > 0 && !holds(verdict)) return certificate_of_the_level_before(verdict.reason);
-      observer_.level({number_, *current_, *level, verdict, seconds_since(level_begin_)});
+      observer_.level({number_, *current_, *level, verdict, seconds_since(level_begin_), current_});
       level_begin_ = Clock::now();
       last_ = verdict;
       if (verdict.status != RunStatus::budget) return verdict;
       if (const auto limit = limit_reached(); !limit.empty()) return used_up(limit);
-      if (const auto limit = refine(*level); !limit.empty()) return used_up(limit);
+      if (const auto limit = go_on_to_finer_mesh(*level); !limit.empty()) return used_up(limit);
     }
   }
 
@@ -71,8 +75,22 @@ class Loop
   std::optional<CertifiedLevel<dim>> solve();
   [[nodiscard]] Verdict judge_level(const CertifiedLevel<dim>& level) const;
   [[nodiscard]] std::string limit_reached() const;
+  /// refine(), which may find that there is not the memory for it.
+  [[nodiscard]] std::string go_on_to_finer_mesh(const CertifiedLevel<dim>& level)
+  {
+    try
+    {
+      return refine(level);
+    }
+    catch (const std::bad_alloc&)
+    {
+      return "out of memory for the next mesh";
+    }
+  }
   /// Marks, bisects and carries the solution; or names the limit that the finer mesh would exceed.
   [[nodiscard]] std::string refine(const CertifiedLevel<dim>& level);
+  /// The limit that a mesh with `growth` times as many unknowns would exceed, or nothing.
+  [[nodiscard]] std::string memory_limit(double growth) const;
 
   const Problem<dim>& problem_;
   const Config& config_;
@@ -80,9 +98,13 @@ class Loop
   const std::atomic<bool>& stop_;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point level_begin_ = begin_;
+  const double memory_before_ = peak_memory();
   int number_ = 0;
-  std::unique_ptr<Discretisation<dim>> current_;
+  std::shared_ptr<const Discretisation<dim>> current_;
   std::vector<double> start_;  ///< the solution of the level before, on the current mesh
+  double delta_ = 0;           ///< of the regularised variant after the level before
+  RefinementSeconds refinement_;
+  std::optional<BoundComponents> coarser_;  ///< components of its bound
   Verdict last_{RunStatus::failed, {}};
   Verdict ended_{RunStatus::failed, {}};
 };
@@ -97,7 +119,10 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
   };
   try
   {
-    return solve_and_certify<dim>(current_->form, start_, config_, watch);
+    CertifiedLevel<dim> level =
+        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, coarser_);
+    level.refinement = refinement_;
+    return level;
   }
   catch (const Interrupted&)
   {
@@ -107,6 +132,11 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
   {
     if (number_ == 0) throw;
     ended_ = certificate_of_the_level_before(error.what());
+  }
+  catch (const std::bad_alloc&)
+  {
+    if (number_ == 0) throw;
+    ended_ = certificate_of_the_level_before("out of memory");
   }
   return std::nullopt;
 }
@@ -132,24 +162,52 @@ std::string Loop<dim>::limit_reached() const
 template <int dim>
 std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
 {
-  std::vector<double> eta;
-  eta.reserve(level.estimate.cells.size());
-  for (const BoundComponents& cell : level.estimate.cells) eta.push_back(cell.total_sharp());
-  Bisected<dim> finer = bisect<dim>(current_->mesh, mark(eta, config_.adapt));
+  Clock::time_point begin = Clock::now();
+  const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
+  Bisected<dim> finer = bisect<dim>(current_->mesh, mark(level.estimate.cells, config_.adapt));
+  refinement_.bisect = lap();
   if (config_.adapt.max_cells && finer.mesh.n_cells() > *config_.adapt.max_cells)
     return fmt::format("the next mesh has {} cells, more than adapt.max_cells = {}", finer.mesh.n_cells(),
                        *config_.adapt.max_cells);
-  auto next = std::make_unique<Discretisation<dim>>(std::move(finer.mesh), problem_, config_);
+  auto next = std::make_shared<const Discretisation<dim>>(std::move(finer.mesh), problem_, config_);
+  refinement_.discretise = lap();
   const long dofs = next->space.n_dofs() - next->form.constraints().n_fixed();
   if (dofs > config_.adapt.max_dofs)
     return fmt::format("the next mesh has {} degrees of freedom, more than adapt.max_dofs = {}", dofs,
                        config_.adapt.max_dofs);
+  const int fixed = current_->form.constraints().n_fixed();
+  const double growth = static_cast<double>(dofs) / std::max(1, current_->space.n_dofs() - fixed);
+  if (auto limit = memory_limit(growth); !limit.empty()) return limit;
+  delta_ = level.delta;
+  coarser_ = level.estimate.global;
   start_ = nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
+  refinement_.transfer = lap();
   current_ = std::move(next);
   return {};
 }
 
+template <int dim>
+std::string Loop<dim>::memory_limit(double growth) const
+{
+  constexpr double gigabyte = 1e9;
+  constexpr double share_of_machine = 0.9;
+  const double limit =
+      config_.adapt.max_memory ? *config_.adapt.max_memory * gigabyte : share_of_machine * machine_memory();
+  const double expected = expected_memory(memory_before_, peak_memory(), growth, dim);
+  if (limit == 0 || expected <= limit) return {};
+  return fmt::format(
+      "the next mesh is expected to take {:.3g} GB, more than {} = {:.3g} GB", expected / gigabyte,
+      config_.adapt.max_memory ? "adapt.max_memory" : "nine tenths of the machine", limit / gigabyte);
+}
+
 }  // namespace
+
+double expected_memory(double before, double peak, double growth, int dim)
+{
+  // Factors of a sparse matrix: n log n in 2D, n^{4/3} in 3D [George73]; everything else is linear.
+  const double exponent = dim == 2 ? 1.1 : 4.0 / 3.0;
+  return before + (peak - before) * std::pow(growth, exponent);
+}
 
 template <int dim>
 Verdict adapt(const Problem<dim>& problem, const Config& config, std::unique_ptr<Discretisation<dim>> first,

@@ -22,8 +22,9 @@ struct LevelView
   int number;  ///< from 0, the given mesh
   const Discretisation<dim>& discrete;
   const CertifiedLevel<dim>& level;
-  const Verdict& verdict;  ///< what holds after it
-  double seconds;          ///< wall time of the level, refinement included
+  const Verdict& verdict;                            ///< what holds after it
+  double seconds;                                    ///< wall time of the level, refinement included
+  std::shared_ptr<const Discretisation<dim>> owner;  ///< of `discrete`, for those who keep it
 };
 
 /// What the loop tells while it runs.
@@ -34,13 +35,17 @@ struct LoopObserver
   std::function<void(const LevelView<dim>&)> level;
 };
 
+/// The memory that a level is expected to take at most, in bytes: `before` the process had before the first
+/// level and `peak` after one with 1 / `growth` of its unknowns.
+[[nodiscard]] double expected_memory(double before, double peak, double growth, int dim);
+
 /// Adapts the mesh from that of `first`, Newton starting from the solution carried to each new mesh, until
 /// bound <= adapt.tolerance * ||sigma(u_h)|| or a limit of [adapt] is reached, or `stop` becomes true.
 ///
 /// The verdict is that of the last level of which the observer was told. Should a later level fail, or
-/// violate an identity, the one before it keeps its certificate: the verdict is then `budget` and says what
-/// happened. Throws SolveError when the first level cannot be solved, and InputError for data that are not
-/// valid on a finer mesh.
+/// violate an identity or run out of memory, the one before it keeps its certificate: the verdict is then
+/// `budget` and says what happened. Throws SolveError when the first level cannot be solved, and InputError
+/// for data that are not valid on a finer mesh.
 template <int dim>
 [[nodiscard]] Verdict adapt(const Problem<dim>& problem, const Config& config,
                             std::unique_ptr<Discretisation<dim>> first, const LoopObserver<dim>& observer,

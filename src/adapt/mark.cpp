@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <utility>
+
+#include "base/norm.h"
 
 namespace tribound
 {
@@ -19,6 +23,20 @@ std::vector<Index> cells_from(std::span<const double> eta, double bound)
   for (std::size_t c = 0; c < eta.size(); ++c)
     if (eta[c] > 0 && eta[c] >= bound) cells.push_back(static_cast<Index>(c));
   return cells;
+}
+
+std::vector<Index> mark_one(std::span<const double> eta, const AdaptConfig& config)
+{
+  return config.marking == Marking::doerfler ? mark_doerfler(eta, config.theta)
+                                             : mark_maximum(eta, config.theta);
+}
+
+std::vector<double> values(std::span<const BoundComponents> cells, double (BoundComponents::*part)() const)
+{
+  std::vector<double> eta;
+  eta.reserve(cells.size());
+  for (const BoundComponents& cell : cells) eta.push_back((cell.*part)());
+  return eta;
 }
 
 }  // namespace
@@ -60,10 +78,30 @@ std::vector<Index> mark_maximum(std::span<const double> eta, double theta)
   return eta.empty() ? std::vector<Index>{} : cells_from(eta, theta * *std::ranges::max_element(eta));
 }
 
-std::vector<Index> mark(std::span<const double> eta, const AdaptConfig& config)
+std::vector<Index> mark_all(std::size_t n_cells)
 {
-  return config.marking == Marking::doerfler ? mark_doerfler(eta, config.theta)
-                                             : mark_maximum(eta, config.theta);
+  std::vector<Index> cells(n_cells);
+  std::iota(cells.begin(), cells.end(), 0);
+  return cells;
+}
+
+std::vector<Index> mark(std::span<const BoundComponents> cells, const AdaptConfig& config)
+{
+  if (config.marking == Marking::uniform) return mark_all(cells.size());
+  if (!config.separate_contact) return mark_one(values(cells, &BoundComponents::total_sharp), config);
+  constexpr double small_part = 0.1;  // of the bound
+  const double bound = norm(values(cells, &BoundComponents::total_sharp));
+  std::vector<Index> marked;
+  for (const auto part : {&BoundComponents::body, &BoundComponents::contact})
+  {
+    const std::vector<double> eta = values(cells, part);
+    if (norm(eta) < small_part * bound) continue;
+    const std::vector<Index> own = mark_one(eta, config);
+    std::vector<Index> both;
+    std::ranges::set_union(marked, own, std::back_inserter(both));
+    marked = std::move(both);
+  }
+  return marked;
 }
 
 }  // namespace tribound

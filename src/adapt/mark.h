@@ -8,6 +8,7 @@
 
 #include "base/types.h"
 #include "case/config.h"
+#include "certify/estimate.h"
 
 namespace tribound
 {
@@ -20,7 +21,12 @@ namespace tribound
 /// The cells with eta_T >= theta max eta_T, ascending; empty where every eta_T is 0. Arguments as above.
 [[nodiscard]] std::vector<Index> mark_maximum(std::span<const double> eta, double theta);
 
-/// As adapt.marking and adapt.theta ask for.
-[[nodiscard]] std::vector<Index> mark(std::span<const double> eta, const AdaptConfig& config);
+/// All cells 0, ..., n_cells - 1, whatever their share: uniform refinement.
+[[nodiscard]] std::vector<Index> mark_all(std::size_t n_cells);
+
+/// As adapt.marking and adapt.theta ask for, by eta_T = total_sharp of every cell. With
+/// adapt.separate_contact the union of what body() and contact() mark, each for itself; a part whose square
+/// is below a hundredth of the bound's is left to the other.
+[[nodiscard]] std::vector<Index> mark(std::span<const BoundComponents> cells, const AdaptConfig& config);
 
 }  // namespace tribound

@@ -3,6 +3,7 @@
 /// @file clock.h
 
 #include <chrono>
+#include <ctime>
 
 namespace tribound
 {
@@ -14,5 +15,31 @@ using Clock = std::chrono::steady_clock;
 {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
+
+/// CPU time of this process, all threads.
+[[nodiscard]] inline double cpu_seconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// Adds the wall time and the CPU time of its life to two accounts.
+class Charge
+{
+ public:
+  Charge(double& wall, double& cpu) : wall_(wall), cpu_(cpu) {}
+  ~Charge()
+  {
+    wall_ += seconds_since(begin_);
+    cpu_ += cpu_seconds() - cpu_begin_;
+  }
+  Charge(const Charge&) = delete;
+  Charge& operator=(const Charge&) = delete;
+
+ private:
+  double& wall_;
+  double& cpu_;
+  Clock::time_point begin_ = Clock::now();
+  double cpu_begin_ = cpu_seconds();
+};
 
 }  // namespace tribound

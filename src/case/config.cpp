@@ -87,7 +87,7 @@ NewtonConfig read_newton(const Node& node)
 {
   const TableReader table(node, {"stopping", "gamma_lin", "tolerance", "max_steps", "damping"});
   NewtonConfig newton;
-  table.read("stopping", newton.stopping, one_of<Stopping>({"adaptive", "tolerance"}));
+  table.read("stopping", newton.stopping, one_of<Stopping>({"adaptive", "adaptive_local", "tolerance"}));
   table.read("gamma_lin", newton.gamma_lin,
              number_in(positive, "the share of the linearisation in the error, such as 0.1"));
   table.read("tolerance", newton.tolerance,
@@ -97,20 +97,36 @@ NewtonConfig read_newton(const Node& node)
   return newton;
 }
 
+RegularisationConfig read_regularisation(const Node& node)
+{
+  const TableReader table(node, {"delta", "factor", "gamma_reg", "max_updates"});
+  RegularisationConfig regularisation;
+  table.read("delta", regularisation.delta,
+             number_in(positive, "a multiple of the mean contact traction, such as 1"));
+  table.read("factor", regularisation.factor,
+             number_in({.lower = 0.0, .upper = 1.0}, "what an update multiplies delta by, such as 0.25"));
+  table.read("gamma_reg", regularisation.gamma_reg,
+             number_in(positive, "the share of the regularisation in the error, such as 0.1"));
+  table.read("max_updates", regularisation.max_updates, integer_from(0, "a number of updates, such as 20"));
+  return regularisation;
+}
+
 AdaptConfig read_adapt(const Node& node)
 {
-  const TableReader table(
-      node, {"tolerance", "marking", "theta", "max_levels", "max_dofs", "max_cells", "max_time"});
+  const TableReader table(node, {"tolerance", "marking", "theta", "separate_contact", "max_levels",
+                                 "max_dofs", "max_cells", "max_time", "max_memory"});
   AdaptConfig adapt;
   table.read("tolerance", adapt.tolerance, number_in(positive, "a relative error, such as 0.01"));
-  table.read("marking", adapt.marking, one_of<Marking>({"doerfler", "maximum"}));
+  table.read("marking", adapt.marking, one_of<Marking>({"doerfler", "maximum", "uniform"}));
   table.read(
       "theta", adapt.theta,
       number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true}, "such as 0.5; 1 marks every cell"));
+  table.read("separate_contact", adapt.separate_contact, to_bool);
   table.read("max_levels", adapt.max_levels, integer_from(0, "0 solves on the given mesh only"));
   table.read("max_dofs", adapt.max_dofs, integer_from(1L, "a number of unknowns, such as 2_000_000"));
   table.read("max_cells", adapt.max_cells, integer_from(1L, "a number of cells, such as 500_000"));
   table.read("max_time", adapt.max_time, number_in(positive, "seconds, such as 600"));
+  table.read("max_memory", adapt.max_memory, number_in(positive, "GB, such as 16"));
   return adapt;
 }
 
@@ -134,21 +150,41 @@ SolverConfig read_solver(const Node& node)
   return solver;
 }
 
+StudyConfig read_study(const Node& node, int degree)
+{
+  const TableReader table(
+      node, {"reference_degree", "reference_factor", "max_reference_dofs", "dual_norm_dofs", "figures"});
+  StudyConfig study;
+  table.read("reference_degree", study.reference_degree,
+             integer_from(degree, "not below the degree of the case, not above 4", 4));
+  table.read("reference_factor", study.reference_factor,
+             number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true},
+                       "how much smaller the bound of the reference shall be, such as 0.2"));
+  table.read("max_reference_dofs", study.max_reference_dofs,
+             integer_from(1L, "a number of unknowns, such as 500_000"));
+  table.read("dual_norm_dofs", study.dual_norm_dofs,
+             integer_from(0L, "a number of unknowns, such as 100_000; 0 computes no dual norms"));
+  table.read("figures", study.figures, to_bool);
+  return study;
+}
+
 OutputConfig read_output(const Node& node)
 {
-  const TableReader table(node, {"directory", "vtu"});
+  const TableReader table(node, {"directory", "vtu", "report"});
   OutputConfig output;
   table.read("directory", output.directory, to_text);
   if (output.directory.empty())
     throw InputError(table.find("directory")->where, "is empty", "a directory to write to, such as \"out\"");
   table.read("vtu", output.vtu, to_bool);
+  table.read("report", output.report, to_bool);
   return output;
 }
 
 Config read_document(const Node& document, std::string file)
 {
-  const TableReader root(document, {"title", "degree", "mesh", "material", "load", "boundary", "nitsche",
-                                    "newton", "adapt", "certify", "solver", "output"});
+  const TableReader root(document,
+                         {"title", "degree", "mesh", "material", "load", "boundary", "nitsche", "newton",
+                          "regularisation", "adapt", "certify", "solver", "study", "output"});
   Config config;
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
@@ -161,9 +197,11 @@ Config read_document(const Node& document, std::string file)
   root.read("boundary", config.boundaries, read_boundaries);
   root.read("nitsche", config.nitsche, read_nitsche);
   root.read("newton", config.newton, read_newton);
+  root.read("regularisation", config.regularisation, read_regularisation);
   root.read("adapt", config.adapt, read_adapt);
   root.read("certify", config.certify, read_certify);
   root.read("solver", config.solver, read_solver);
+  root.read("study", config.study, [&](const Node& node) { return read_study(node, config.degree); });
   root.read("output", config.output, read_output);
   return config;
 }

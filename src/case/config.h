@@ -107,7 +107,8 @@ struct NitscheConfig
 
 enum class Stopping
 {
-  adaptive,
+  adaptive,        ///< eta_lin is a fraction of the rest, summed over the mesh
+  adaptive_local,  ///< the same on every cell
   tolerance
 };
 
@@ -120,10 +121,20 @@ struct NewtonConfig
   bool damping = true;  ///< false: always full steps (for comparisons; may cycle)
 };
 
+/// The regularised variant, method section 7.
+struct RegularisationConfig
+{
+  double delta = 1.0;      ///< > 0, the first one: multiple of the mean contact traction of the first step
+  double factor = 0.25;    ///< in (0, 1): each update shrinks delta by it
+  double gamma_reg = 0.1;  ///< eta_reg <= gamma_reg * (the discretisation components)
+  int max_updates = 20;    ///< of delta on a mesh
+};
+
 enum class Marking
 {
   doerfler,
-  maximum
+  maximum,
+  uniform  ///< every cell
 };
 
 struct AdaptConfig
@@ -133,8 +144,10 @@ struct AdaptConfig
   double theta = 0.5;
   int max_levels = 30;
   long max_dofs = 2'000'000;
-  std::optional<long> max_cells;   ///< no limit where absent
-  std::optional<double> max_time;  ///< seconds; no limit where absent
+  bool separate_contact = false;     ///< mark for the body and for the contact conditions, each by its share
+  std::optional<long> max_cells;     ///< no limit where absent
+  std::optional<double> max_time;    ///< seconds; no limit where absent
+  std::optional<double> max_memory;  ///< GB (1e9 bytes); nine tenths of the machine's where absent
 };
 
 enum class ContactRule
@@ -170,10 +183,21 @@ struct SolverConfig
   int max_iterations = 500;
 };
 
+/// `tribound study`.
+struct StudyConfig
+{
+  std::optional<int> reference_degree;  ///< of the reference solution; min(p + 1, 4) where absent
+  double reference_factor = 0.2;        ///< its relative bound is at most so much of the smallest one studied
+  long max_reference_dofs = 500'000;
+  long dual_norm_dofs = 100'000;  ///< of the spaces in which dual norms are looked for; 0: none
+  bool figures = true;            ///< whether to draw them
+};
+
 struct OutputConfig
 {
   std::filesystem::path directory = "out";  ///< relative to the working directory
   bool vtu = true;
+  bool report = true;  ///< the page report.html
 };
 
 struct Config
@@ -187,9 +211,11 @@ struct Config
   std::vector<BoundaryConfig> boundaries;
   NitscheConfig nitsche;
   NewtonConfig newton;
+  std::optional<RegularisationConfig> regularisation;  ///< the plain method where absent
   AdaptConfig adapt;
   CertifyConfig certify;
   SolverConfig solver;
+  StudyConfig study;
   OutputConfig output;
 
   [[nodiscard]] double gamma0() const { return nitsche.gamma0.value_or(default_gamma0(degree)); }

@@ -127,17 +127,18 @@ template <int dim, int p>
 class CellWindow
 {
  public:
-  /// [vertex][problem]
-  using Shares = std::array<std::array<CellShare<dim, p>, 2>, dim + 1>;
   struct Slot
   {
+    explicit Slot(int n_parts) : shares(n_parts) {}
+
     PreparedCell<dim, p> cell;
-    Shares shares;
+    CellShares<dim, p> shares;
     int waiting = 0;  ///< vertices of the stretch that still need the cell; 0 when it is new
   };
 
-  explicit CellWindow(const CellSource<dim, p>& source)
-      : source_(source), place_(source.form.space().mesh().n_cells(), -1)
+  /// For stresses of n_parts parts.
+  CellWindow(const CellSource<dim, p>& source, int n_parts)
+      : source_(source), n_parts_(n_parts), place_(source.form.space().mesh().n_cells(), -1)
   {
   }
 
@@ -147,7 +148,7 @@ class CellWindow
     if (free_.empty())
     {
       free_.push_back(static_cast<int>(pool_.size()));
-      pool_.push_back(std::make_unique<Slot>());
+      pool_.push_back(std::make_unique<Slot>(n_parts_));
     }
     place_[cell] = free_.back();
     free_.pop_back();
@@ -165,6 +166,7 @@ class CellWindow
 
  private:
   const CellSource<dim, p>& source_;
+  int n_parts_;
   std::vector<int> place_;  ///< per cell: place in pool_, or -1
   std::vector<std::unique_ptr<Slot>> pool_;
   std::vector<int> free_;

@@ -60,7 +60,8 @@ struct Tables
   }
 };
 
-/// sigma_h = sigma_dis + sigma_lin on one cell, in the coordinates of its vertices in ascending order.
+/// sigma_h = sigma_dis + sigma_lin + sigma_reg on one cell, in the coordinates of its vertices in ascending
+/// order.
 template <int dim>
 class CellStress
 {
@@ -71,8 +72,8 @@ class CellStress
         coefficients_(stress.dis_in(cell).begin(), stress.dis_in(cell).end()),
         vertices_(mesh.cell(cell))
   {
-    const std::span<const double> lin = stress.lin_in(cell);
-    for (std::size_t i = 0; i < lin.size(); ++i) coefficients_[i] += lin[i];
+    for (const std::span<const double> part : {stress.lin_in(cell), stress.reg_in(cell)})
+      for (std::size_t i = 0; i < part.size(); ++i) coefficients_[i] += part[i];
     std::ranges::sort(vertices_);
     origin_ = mesh.vertex(vertices_[0]);
     for (int j = 0; j < dim; ++j) jacobian_.col(j) = mesh.vertex(vertices_[j + 1]) - origin_;

@@ -66,6 +66,27 @@ class Range
   double upper_ = -std::numeric_limits<double>::infinity();
 };
 
+/// h_F |F| / |Fhat|.
+template <int dim>
+double norm_scale(const ContactFacet<dim>& contact)
+{
+  return contact.geometry.diameter * contact.geometry.measure * (dim - 1);
+}
+
+/// Adds h_F ||t^n||_F^2 and h_F ||t^t||_F^2 of a traction with the given coefficients.
+template <int dim>
+void add_squares(std::span<const Point<dim>> traction, const ContactFacet<dim>& contact, double& normal_part,
+                 double& tangential_part)
+{
+  const Point<dim>& n = contact.geometry.normal;
+  for (const Point<dim>& coefficient : traction)
+  {
+    const double normal = coefficient.dot(n);
+    normal_part += norm_scale(contact) * normal * normal;
+    tangential_part += norm_scale(contact) * (coefficient - normal * n).squaredNorm();
+  }
+}
+
 }  // namespace
 
 template <int dim>
@@ -100,6 +121,21 @@ std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> v
 }
 
 template <int dim>
+std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const double> block) const
+{
+  const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const int n_points = form_.n_facet_points();
+  std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
+  stress_table_[facet.local].evaluate(make_frame(form_.space().mesh(), facet.cell), block, entries);
+  std::vector<Point<dim>> values(n_points, Point<dim>::Zero());
+  for (int q = 0; q < n_points; ++q)
+    for (int r = 0; r < dim; ++r)
+      for (int c = 0; c < dim; ++c)
+        values[q][r] += entries[(dim * r + c) * n_points + q] * geometry.normal[c];
+  return project(values);
+}
+
+template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
 {
   const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
@@ -108,33 +144,14 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<di
   const Material& material = form_.problem().material(space.mesh().region(facet.cell));
   const std::span<const Index> nodes = space.cell_nodes(facet.cell);
   const Tabulation<dim>& table = space_table_.on_facet[facet.local];
-  const FrameTable<dim>& stress_table = stress_table_[facet.local];
   const Tensor<dim> inverse_transpose = cell_map(space.mesh(), facet.cell).inverse_transpose;
-  const Frame<dim> frame = make_frame(space.mesh(), facet.cell);
   const int n_points = form_.n_facet_points();
 
   std::vector<Point<dim>> values(n_points);
   for (int q = 0; q < n_points; ++q)
     values[q] = augmented_traction<dim>(material, gamma, 0, n, value_at<dim>(nodes, u, table.values_at(q)),
                                         gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
-  Fields result;
-  result.augmented = project(values);
-
-  std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
-  const auto normal_trace = [&](std::span<const double> block)
-  {
-    stress_table.evaluate(frame, block, entries);
-    for (int q = 0; q < n_points; ++q)
-      for (int r = 0; r < dim; ++r)
-      {
-        values[q][r] = 0;
-        for (int c = 0; c < dim; ++c) values[q][r] += entries[(dim * r + c) * n_points + q] * n[c];
-      }
-    return project(values);
-  };
-  result.dis = normal_trace(stress.dis_in(facet.cell));
-  result.lin = normal_trace(stress.lin_in(facet.cell));
-  return result;
+  return {project(values), normal_trace(k, stress.dis_in(facet.cell))};
 }
 
 template <int dim>
@@ -208,8 +225,6 @@ template <int dim>
 ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
                                              const Stress<dim>& stress) const
 {
-  const ContactFacet<dim>& contact = form_.contact_facets()[k];
-  const Point<dim>& n = contact.geometry.normal;
   const Fields on_facet = fields(k, u, stress);
   Piece all;  // the vertices of the reference facet
   for (int i = 0; i < dim; ++i)
@@ -222,14 +237,22 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
     integrals =
         settle(k, on_facet, all, integrals, settled<dim> * (integrals.normal + integrals.tangential), 1);
 
-  const double scale = contact.geometry.diameter * contact.geometry.measure * (dim - 1);  // h_F |F| / |Fhat|
-  ContactSquares result{scale * integrals.normal, scale * integrals.tangential, 0, 0};
-  for (const Point<dim>& coefficient : on_facet.lin)
-  {
-    const double normal = coefficient.dot(n);
-    result.lin2n += scale * normal * normal;
-    result.lin2t += scale * (coefficient - normal * n).squaredNorm();
-  }
+  ContactSquares result = linearisation(k, stress);
+  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  const double scale = norm_scale(contact);
+  result.cnt = scale * integrals.normal;
+  result.frc = scale * integrals.tangential;
+  if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
+    add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
+  return result;
+}
+
+template <int dim>
+ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress) const
+{
+  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  ContactSquares result;
+  add_squares<dim>(normal_trace(k, stress.lin_in(contact.facet.cell)), contact, result.lin2n, result.lin2t);
   return result;
 }
 

@@ -21,6 +21,8 @@ struct ContactSquares
   double frc = 0;    ///< h_F ||[P^t]_S - sigma_dis^t||_F^2
   double lin2n = 0;  ///< h_F ||sigma_lin^n||_F^2
   double lin2t = 0;  ///< h_F ||sigma_lin^t||_F^2
+  double reg2n = 0;  ///< h_F ||sigma_reg^n||_F^2
+  double reg2t = 0;  ///< h_F ||sigma_reg^t||_F^2
 };
 
 /// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
@@ -34,6 +36,8 @@ class ContactTerms
 
   /// On contact facet k of the form for the iterate u.
   [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Stress<dim>& stress) const;
+  /// lin2n and lin2t alone, from sigma_lin alone; the others are 0.
+  [[nodiscard]] ContactSquares linearisation(int k, const Stress<dim>& stress) const;
 
  private:
   using FacetPoint = Point<dim - 1>;
@@ -44,7 +48,6 @@ class ContactTerms
   {
     std::vector<Point<dim>> augmented;  ///< sigma(u) n - gamma u: P(u) without the gap
     std::vector<Point<dim>> dis;        ///< sigma_dis n
-    std::vector<Point<dim>> lin;        ///< sigma_lin n
   };
   /// Integrals over a part of the reference facet.
   struct Integrals
@@ -54,6 +57,8 @@ class ContactTerms
     bool may_kink = false;
   };
 
+  /// Coefficients of sigma n on the facet from those of sigma on its cell.
+  [[nodiscard]] std::vector<Point<dim>> normal_trace(int k, std::span<const double> block) const;
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Stress<dim>& stress) const;
   [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> values) const;
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "certify/cell_window.h"
 #include "certify/patch.h"
+#include "certify/vertex_stretches.h"
 
 namespace tribound
 {
@@ -17,86 +20,51 @@ namespace tribound
 namespace
 {
 
-/// Vertices along a space-filling curve (Morton order): the cells that a stretch of it needs at a time are
-/// few.
-template <int dim>
-std::vector<Index> vertices_by_locality(const Mesh<dim>& mesh, int n_threads)
-{
-  Point<dim> lower = mesh.vertex(0);
-  Point<dim> upper = mesh.vertex(0);
-  for (const Point<dim>& x : mesh.vertices())
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  constexpr int bits = 20;
-  const double scale = ((std::uint64_t{1} << bits) - 1) / (upper - lower).maxCoeff();
-  std::vector<std::pair<std::uint64_t, Index>> keys(mesh.n_vertices());
-#pragma omp parallel for num_threads(n_threads)
-  for (Index v = 0; v < mesh.n_vertices(); ++v)
-  {
-    keys[v] = {0, v};
-    for (int c = 0; c < dim; ++c)
-    {
-      const auto coordinate = static_cast<std::uint64_t>((mesh.vertex(v)[c] - lower[c]) * scale);
-      for (int b = 0; b < bits; ++b) keys[v].first |= (coordinate >> b & 1) << (b * dim + c);
-    }
-  }
-  std::ranges::sort(keys);
-  std::vector<Index> order(mesh.n_vertices());
-  std::ranges::transform(keys, order.begin(), [](const auto& key) { return key.second; });
-  return order;
-}
-
-/// The patches write their shares into the cells, and a cell with all of them gives its stress. Every thread
-/// has a stretch of the vertices; cells with vertices in several of them come last.
+/// The stress of one iterate. The patches write their shares into the cells, and a cell with all of them
+/// gives its stress. Every thread has a stretch of the vertices; cells with vertices in several of them come
+/// last. `with_dis`: the stretches has all vertices; otherwise those on Gamma_C, which give sigma_lin.
 template <int dim, int p>
 class Equilibration
 {
  public:
-  Equilibration(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t)
-      : mesh_(form.space().mesh()),
-        data_(form, u, t),
-        body_(form),
-        shapes_(mesh_),
-        source_{form, u, body_, shapes_}
+  Equilibration(const Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<dim, p>& source,
+                const VertexStretches& stretches, bool with_dis)
+      : mesh_(mesh),
+        data_(data),
+        source_(source),
+        stretches_(stretches),
+        with_dis_(with_dis),
+        shares_(stretches.shared_cells.size(), Shares(data.n_parts()))
   {
   }
 
-  Stress<dim> run(int n_threads)
+  Stress<dim> run()
   {
     prepare_stress();
-    divide(n_threads);
-    in_parallel(n_threads, [&](int stretch) { solve_patches(stretch); });
-    in_parallel(n_threads, [&](int stretch) { recover_shared_cells(stretch, n_threads); });
+    in_parallel([&](int stretch) { solve_patches(stretch); });
+    in_parallel([&](int stretch) { recover_shared_cells(stretch); });
     return std::move(stress_);
   }
 
  private:
   using S = Sizes<dim, p>;
   using Window = CellWindow<dim, p>;
-  using Shares = typename Window::Shares;
+  using Shares = CellShares<dim, p>;
 
   void prepare_stress();
-  void divide(int n_stretches);
   template <class Work>
-  void in_parallel(int n_threads, Work work);
+  void in_parallel(Work work);
   void solve_patches(int stretch);
-  void recover_shared_cells(int stretch, int n_stretches);
+  void recover_shared_cells(int stretch);
   void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
 
   const Mesh<dim>& mesh_;
-  FacetData<dim, p> data_;
-  BodyMoments<dim, p> body_;
-  RepeatedShapes<dim, p> shapes_;
-  CellSource<dim, p> source_;
+  const FacetData<dim, p>& data_;
+  const CellSource<dim, p>& source_;
+  const VertexStretches& stretches_;
+  const bool with_dis_;
   Stress<dim> stress_;
-  std::vector<Index> order_;         ///< of the vertices
-  std::vector<std::size_t> begin_;   ///< of the stretches in order_
-  std::vector<int> stretch_;         ///< per vertex
-  std::vector<Index> shared_cells_;  ///< with vertices in several stretches
-  std::vector<int> shared_place_;    ///< per cell: place in shared_cells_ and shares_, or -1
-  std::vector<Shares> shares_;
+  std::vector<Shares> shares_;  ///< of the shared cells
 };
 
 template <int dim, int p>
@@ -104,39 +72,22 @@ void Equilibration<dim, p>::prepare_stress()
 {
   stress_.degree = p;
   stress_.n = S::stress;
-  stress_.dis.resize(mesh_.n_cells() * stress_.block_size());
+  if (with_dis_) stress_.dis.resize(mesh_.n_cells() * stress_.block_size());
   stress_.lin_place.assign(mesh_.n_cells(), -1);
   int n_lin = 0;
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (std::ranges::any_of(mesh_.cell(c), [&](Index v) { return data_.on_contact(v); }))
       stress_.lin_place[c] = n_lin++;
   stress_.lin.resize(n_lin * stress_.block_size());
+  if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
 }
 
-template <int dim, int p>
-void Equilibration<dim, p>::divide(int n_stretches)
-{
-  order_ = vertices_by_locality(mesh_, n_stretches);
-  stretch_.resize(mesh_.n_vertices());
-  for (int s = 0; s <= n_stretches; ++s) begin_.push_back(order_.size() * s / n_stretches);
-  for (int s = 0; s < n_stretches; ++s)
-    for (std::size_t i = begin_[s]; i < begin_[s + 1]; ++i) stretch_[order_[i]] = s;
-  shared_place_.assign(mesh_.n_cells(), -1);
-  for (Index c = 0; c < mesh_.n_cells(); ++c)
-  {
-    const Cell<dim>& cell = mesh_.cell(c);
-    if (std::ranges::all_of(cell, [&](Index v) { return stretch_[v] == stretch_[cell[0]]; })) continue;
-    shared_place_[c] = static_cast<int>(shared_cells_.size());
-    shared_cells_.push_back(c);
-  }
-  shares_.resize(shared_cells_.size());
-}
-
-/// Calls work(i) for i < n_threads; throws what one of them threw.
+/// Calls work(i) for every stretch i, each in its own thread; throws what one of them threw.
 template <int dim, int p>
 template <class Work>
-void Equilibration<dim, p>::in_parallel(int n_threads, Work work)
+void Equilibration<dim, p>::in_parallel(Work work)
 {
+  const int n_threads = stretches_.size();
   std::exception_ptr failure;
 #pragma omp parallel for num_threads(n_threads) schedule(static, 1)
   for (int i = 0; i < n_threads; ++i) try
@@ -155,12 +106,12 @@ template <int dim, int p>
 void Equilibration<dim, p>::solve_patches(int stretch)
 {
   const Topology<dim>& topology = mesh_.topology();
-  const auto in_stretch = [&](Index v) { return stretch_[v] == stretch; };
-  Window window(source_);
+  const auto in_stretch = [&](Index v) { return stretches_.stretch[v] == stretch; };
+  Window window(source_, data_.n_parts());
   Patch<dim, p> patch(mesh_, data_);
-  for (std::size_t i = begin_[stretch]; i < begin_[stretch + 1]; ++i)
+  for (std::size_t i = stretches_.begin[stretch]; i < stretches_.begin[stretch + 1]; ++i)
   {
-    const Index v = order_[i];
+    const Index v = stretches_.order[i];
     const auto begin = topology.vertex_cells_begin[v];
     const auto cells =
         std::span(topology.vertex_cells).subspan(begin, topology.vertex_cells_begin[v + 1] - begin);
@@ -170,7 +121,8 @@ void Equilibration<dim, p>::solve_patches(int stretch)
       auto& slot = window.get(c);
       if (slot.waiting == 0)
         slot.waiting = static_cast<int>(std::ranges::count_if(mesh_.cell(c), in_stretch));
-      Shares& shares = shared_place_[c] < 0 ? slot.shares : shares_[shared_place_[c]];
+      const int shared = stretches_.shared_place[c];
+      Shares& shares = shared < 0 ? slot.shares : shares_[shared];
       patch.add_cell(c, slot.cell, shares[slot.cell.frame.find(v)]);
     }
     patch.solve();
@@ -178,20 +130,21 @@ void Equilibration<dim, p>::solve_patches(int stretch)
     {
       auto& slot = window.get(c);
       if (--slot.waiting > 0) continue;
-      if (shared_place_[c] < 0) recover(c, slot.cell, slot.shares);
+      if (stretches_.shared_place[c] < 0) recover(c, slot.cell, slot.shares);
       window.forget(c);
     }
   }
 }
 
 template <int dim, int p>
-void Equilibration<dim, p>::recover_shared_cells(int stretch, int n_stretches)
+void Equilibration<dim, p>::recover_shared_cells(int stretch)
 {
+  const std::vector<Index>& cells = stretches_.shared_cells;
   const auto prepared = std::make_unique<PreparedCell<dim, p>>();
-  for (std::size_t i = stretch; i < shared_cells_.size(); i += n_stretches)
+  for (std::size_t i = stretch; i < cells.size(); i += stretches_.size())
   {
-    source_.prepare(shared_cells_[i], *prepared, false);
-    recover(shared_cells_[i], *prepared, shares_[i]);
+    source_.prepare(cells[i], *prepared, false);
+    recover(cells[i], *prepared, shares_[i]);
   }
 }
 
@@ -201,9 +154,10 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
 {
   constexpr int m = S::multiplier;
   const Frame<dim>& frame = prepared.frame;
-  for (int problem = 0; problem < 2; ++problem)
+  const std::size_t size = stress_.block_size();
+  for (int problem = with_dis_ ? 0 : 1; problem < (with_dis_ ? data_.n_parts() : 2); ++problem)
   {
-    if (problem == 1 && stress_.lin_place[cell] < 0) return;
+    if (problem > 0 && stress_.lin_place[cell] < 0) return;
     DenseVector<S::u> r_u;
     if (problem == 0) r_u = prepared.divergence;
     Tensor<dim> w = Tensor<dim>::Zero();
@@ -211,7 +165,7 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
     for (int a = 0; a <= dim; ++a)
     {
       if (problem == 0) add_multiple(r_u, 1, prepared.body[a]);
-      if (problem == 1 && !data_.on_contact(frame.vertices[a])) continue;
+      if (problem > 0 && !data_.on_contact(frame.vertices[a])) continue;
       const CellShare<dim, p>& share = shares[a][problem];
       add_moments(r_u, prepared, a, share.y, problem == 0 ? 1 : -1);
       w += share.w;
@@ -221,34 +175,103 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
     if (problem == 0)
       for (int entry = 0; entry < dim * dim; ++entry)
         for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
-    std::ranges::copy(sigma, problem == 0 ? &stress_.dis[cell * stress_.block_size()]
-                                          : &stress_.lin[stress_.lin_place[cell] * stress_.block_size()]);
+    std::vector<double>& part = problem == 0 ? stress_.dis : problem == 1 ? stress_.lin : stress_.reg;
+    std::ranges::copy(sigma, &part[(problem == 0 ? cell : stress_.lin_place[cell]) * size]);
   }
 }
 
 }  // namespace
 
 template <int dim>
-Stress<dim> equilibrate(const NitscheForm<dim>& form, std::span<const double> u,
-                        std::span<const Point<dim>> t, int n_threads)
+class Equilibrator<dim>::Implementation
 {
-  if (n_threads == 0) n_threads = omp_get_max_threads();
+ public:
+  virtual ~Implementation() = default;
+  virtual Stress<dim> run(std::span<const double> u, std::span<const Point<dim>> t, double delta,
+                          bool with_dis) = 0;
+};
+
+namespace
+{
+
+/// What the iterates on a mesh share.
+template <int dim, int p>
+class MeshEquilibrator : public Equilibrator<dim>::Implementation
+{
+ public:
+  MeshEquilibrator(const NitscheForm<dim>& form, int n_threads)
+      : form_(form),
+        mesh_(form.space().mesh()),
+        n_threads_(n_threads > 0 ? n_threads : omp_get_max_threads()),
+        body_(form),
+        shapes_(mesh_)
+  {
+  }
+
+  Stress<dim> run(std::span<const double> u, std::span<const Point<dim>> t, double delta,
+                  bool with_dis) override
+  {
+    const FacetData<dim, p> data(form_, u, t, delta);
+    std::optional<VertexStretches>& stretches = with_dis ? all_ : on_contact_;
+    if (!stretches)
+    {
+      std::vector<Index> vertices;
+      for (Index v = 0; v < mesh_.n_vertices(); ++v)
+        if (with_dis || data.on_contact(v)) vertices.push_back(v);
+      stretches = stretches_of(mesh_, std::span<const Index>(vertices), n_threads_);
+    }
+    const CellSource<dim, p> source{form_, u, body_, shapes_};
+    return Equilibration<dim, p>(mesh_, data, source, *stretches, with_dis).run();
+  }
+
+ private:
+  const NitscheForm<dim>& form_;
+  const Mesh<dim>& mesh_;
+  int n_threads_;
+  BodyMoments<dim, p> body_;
+  RepeatedShapes<dim, p> shapes_;
+  std::optional<VertexStretches> all_;         ///< of all vertices
+  std::optional<VertexStretches> on_contact_;  ///< of those on Gamma_C
+};
+
+}  // namespace
+
+template <int dim>
+Equilibrator<dim>::Equilibrator(const NitscheForm<dim>& form, int n_threads)
+{
   switch (form.space().degree())
   {
     case 1:
-      return Equilibration<dim, 1>(form, u, t).run(n_threads);
+      implementation_ = std::make_unique<MeshEquilibrator<dim, 1>>(form, n_threads);
+      break;
     case 2:
-      return Equilibration<dim, 2>(form, u, t).run(n_threads);
+      implementation_ = std::make_unique<MeshEquilibrator<dim, 2>>(form, n_threads);
+      break;
     case 3:
-      return Equilibration<dim, 3>(form, u, t).run(n_threads);
+      implementation_ = std::make_unique<MeshEquilibrator<dim, 3>>(form, n_threads);
+      break;
     default:
-      return Equilibration<dim, 4>(form, u, t).run(n_threads);
+      implementation_ = std::make_unique<MeshEquilibrator<dim, 4>>(form, n_threads);
   }
 }
 
-template Stress<2> equilibrate(const NitscheForm<2>&, std::span<const double>, std::span<const Point<2>>,
-                               int);
-template Stress<3> equilibrate(const NitscheForm<3>&, std::span<const double>, std::span<const Point<3>>,
-                               int);
+template <int dim>
+Equilibrator<dim>::~Equilibrator() = default;
+
+template <int dim>
+Stress<dim> Equilibrator<dim>::operator()(std::span<const double> u, std::span<const Point<dim>> t,
+                                          double delta)
+{
+  return implementation_->run(u, t, delta, true);
+}
+
+template <int dim>
+Stress<dim> Equilibrator<dim>::linearisation(std::span<const double> u, std::span<const Point<dim>> t)
+{
+  return implementation_->run(u, t, 0, false);
+}
+
+template class Equilibrator<2>;
+template class Equilibrator<3>;
 
 }  // namespace tribound

@@ -4,19 +4,30 @@
 
 #include <cmath>
 
+#include "base/norm.h"
 #include "contact/elasticity.h"
 
 namespace tribound
 {
 
+double BoundComponents::body() const
+{
+  return osc + str + neu + lin1 + reg1;
+}
+
+double BoundComponents::contact() const
+{
+  return std::hypot(cnt + lin2n + reg2n, frc + lin2t + reg2t);
+}
+
 double BoundComponents::total() const
 {
-  return std::hypot(osc + str + neu + lin1, cnt + frc + lin2n + lin2t);
+  return std::hypot(body(), cnt + frc + lin2n + lin2t + reg2n + reg2t);
 }
 
 double BoundComponents::total_sharp() const
 {
-  return std::hypot(osc + str + neu + lin1, std::hypot(cnt + lin2n, frc + lin2t));
+  return std::hypot(body(), contact());
 }
 
 namespace
@@ -30,11 +41,11 @@ void add_up(Estimate& estimate)
   BoundComponents& global = estimate.global;
   for (const BoundComponents& cell : estimate.cells)
   {
-    for (const auto& [name, member] : component_names) global.*member += std::pow(cell.*member, 2);
+    for (const auto& [name, member] : all_component_names) global.*member += std::pow(cell.*member, 2);
     total += std::pow(cell.total(), 2);
     total_sharp += std::pow(cell.total_sharp(), 2);
   }
-  for (const auto& [name, member] : component_names) global.*member = std::sqrt(global.*member);
+  for (const auto& [name, member] : all_component_names) global.*member = std::sqrt(global.*member);
   estimate.total = std::sqrt(total);
   estimate.total_sharp = std::sqrt(total_sharp);
 }
@@ -74,8 +85,24 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
   return result;
 }
 
+template <int dim>
+BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
+{
+  BoundComponents squares;
+  for (const double x : stress.lin) squares.lin1 += x * x;
+  for (std::size_t k = 0; k < form_.contact_facets().size(); ++k)
+  {
+    const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress);
+    squares.lin2n += facet.lin2n;
+    squares.lin2t += facet.lin2t;
+  }
+  BoundComponents result;
+  for (const auto member : linearisation_components) result.*member = std::sqrt(squares.*member);
+  return result;
+}
+
 /// ||sigma_dis - sigma(u)||_T at quadrature points, which shares nothing with the way sigma_dis is made, and
-/// ||sigma_lin||_T from its coefficients.
+/// ||sigma_lin||_T and ||sigma_reg||_T from their coefficients.
 template <int dim>
 void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                                   Estimate& result) const
@@ -120,9 +147,8 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
         squares += rule_.weights[q] * (equilibrated - discrete).squaredNorm();
       }
       result.cells[c].str = std::sqrt(map.det * squares);
-      double lin = 0;
-      for (const double x : stress.lin_in(c)) lin += x * x;
-      result.cells[c].lin1 = std::sqrt(lin);
+      result.cells[c].lin1 = norm(stress.lin_in(c));
+      result.cells[c].reg1 = norm(stress.reg_in(c));
     }
   }
 }
@@ -141,13 +167,15 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
     cell.frc += squares.frc;
     cell.lin2n += squares.lin2n;
     cell.lin2t += squares.lin2t;
+    cell.reg2n += squares.reg2n;
+    cell.reg2t += squares.reg2t;
     touched.push_back(facets[k].facet.cell);
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   for (const Index c : touched)
-    for (const auto member :
-         {&BoundComponents::cnt, &BoundComponents::frc, &BoundComponents::lin2n, &BoundComponents::lin2t})
+    for (const auto member : {&BoundComponents::cnt, &BoundComponents::frc, &BoundComponents::lin2n,
+                              &BoundComponents::lin2t, &BoundComponents::reg2n, &BoundComponents::reg2t})
       result.cells[c].*member = std::sqrt(result.cells[c].*member);
 }
 

@@ -25,23 +25,54 @@ struct BoundComponents
   double frc = 0;    ///< (sum h_F ||[P^t]_S - sigma_dis^t||_F^2)^{1/2}
   double lin2n = 0;  ///< (sum h_F ||sigma_lin^n||_F^2)^{1/2}
   double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
+  double reg1 = 0;   ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
+  double reg2n = 0;  ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
+  double reg2t = 0;  ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
 
-  /// (a^2 + b^2)^{1/2} with a = osc + str + neu + lin1 and b = cnt + frc + lin2n + lin2t [FD24].
+  /// osc + str + neu + lin1 + reg1: what belongs to the body.
+  [[nodiscard]] double body() const;
+  /// ((cnt + lin2n + reg2n)^2 + (frc + lin2t + reg2t)^2)^{1/2}: what belongs to the contact conditions.
+  [[nodiscard]] double contact() const;
+  /// (a^2 + b^2)^{1/2} with a = body() and b = cnt + frc + lin2n + lin2t + reg2n + reg2t [FD24].
   [[nodiscard]] double total() const;
-  /// The same with b = ((cnt + lin2n)^2 + (frc + lin2t)^2)^{1/2}: normal and tangential part are orthogonal.
+  /// The same with b = contact(): normal and tangential part are orthogonal.
   [[nodiscard]] double total_sharp() const;
+  /// osc + str + neu + cnt + frc: neither Newton's method nor the regularisation.
+  [[nodiscard]] double discretisation() const { return osc + str + neu + cnt + frc; }
+  [[nodiscard]] double linearisation() const { return lin1 + lin2n + lin2t; }
+  [[nodiscard]] double regularisation() const { return reg1 + reg2n + reg2t; }
 };
 
-/// The components in the order of all tables.
-inline constexpr std::array<std::pair<const char*, double BoundComponents::*>, 8> component_names{
-    {{"osc", &BoundComponents::osc},
-     {"str", &BoundComponents::str},
-     {"neu", &BoundComponents::neu},
-     {"lin1", &BoundComponents::lin1},
-     {"cnt", &BoundComponents::cnt},
-     {"frc", &BoundComponents::frc},
-     {"lin2n", &BoundComponents::lin2n},
-     {"lin2t", &BoundComponents::lin2t}}};
+using NamedComponent = std::pair<const char*, double BoundComponents::*>;
+
+inline constexpr std::array<NamedComponent, 11> all_component_names{{{"osc", &BoundComponents::osc},
+                                                                     {"str", &BoundComponents::str},
+                                                                     {"neu", &BoundComponents::neu},
+                                                                     {"lin1", &BoundComponents::lin1},
+                                                                     {"cnt", &BoundComponents::cnt},
+                                                                     {"frc", &BoundComponents::frc},
+                                                                     {"lin2n", &BoundComponents::lin2n},
+                                                                     {"lin2t", &BoundComponents::lin2t},
+                                                                     {"reg1", &BoundComponents::reg1},
+                                                                     {"reg2n", &BoundComponents::reg2n},
+                                                                     {"reg2t", &BoundComponents::reg2t}}};
+
+/// The components of every run, in the order of all tables.
+inline constexpr std::span component_names = std::span(all_component_names).first<8>();
+
+/// Those that a regularised run has beside them.
+inline constexpr std::span regularisation_names = std::span(all_component_names).last<3>();
+
+/// Those that a run has.
+[[nodiscard]] constexpr std::span<const NamedComponent> names_of_components(bool regularised)
+{
+  return std::span(all_component_names)
+      .first(regularised ? all_component_names.size() : component_names.size());
+}
+
+/// Those that stopping Newton's method causes.
+inline constexpr std::array linearisation_components{&BoundComponents::lin1, &BoundComponents::lin2n,
+                                                     &BoundComponents::lin2t};
 
 /// What the cells add up to.
 struct Bound
@@ -68,6 +99,9 @@ class Estimator
   /// threads (0: as many as OpenMP offers).
   [[nodiscard]] Estimate operator()(std::span<const double> u, const Stress<dim>& stress,
                                     int n_threads = 0) const;
+
+  /// lin1, lin2n and lin2t of an iterate, global values, from its sigma_lin alone; the others are 0.
+  [[nodiscard]] BoundComponents linearisation(const Stress<dim>& stress) const;
 
  private:
   void stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,

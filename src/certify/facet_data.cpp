@@ -80,14 +80,16 @@ void add_point(typename FacetData<dim, p>::Moments& moments, const FacetTable<di
 
 template <int dim, int p>
 FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const double> u,
-                             std::span<const Point<dim>> t)
+                             std::span<const Point<dim>> t, double delta)
     : number_(form.space().mesh().topology().facets.size(), -1),
-      on_contact_(form.space().mesh().n_vertices(), 0)
+      on_contact_(form.space().mesh().n_vertices(), 0),
+      n_parts_(delta > 0 ? 3 : 2)
 {
   const Mesh<dim>& mesh = form.space().mesh();
   const Quadrature<dim - 1>& rule = form.facet_rule();
   FacetTables<dim, p> tables(rule);
   const std::vector<Point<dim>> t_u = form.traction(u);
+  const std::vector<Point<dim>> t_delta = delta > 0 ? form.traction(u, delta) : t_u;
   std::size_t contact_point = 0;  // contact facets come in the order of Mesh::boundary()
   for (const BoundaryFacet& facet : mesh.boundary())
   {
@@ -108,12 +110,15 @@ FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const doubl
       for (Index v : frame.vertices)
         if (v != mesh.cell(facet.cell)[facet.local]) on_contact_[v] = 1;
       condition.contact = static_cast<int>(linearisation_.size());
-      Moments& difference = linearisation_.emplace_back();
+      Moments& linearisation = linearisation_.emplace_back();
+      Moments* const regularisation = delta > 0 ? &regularisation_.emplace_back() : nullptr;
       for (int q = 0; q < rule.size(); ++q, ++contact_point)
       {
-        add_point<dim, p>(moments, table, q, scale * rule.weights[q], t_u[contact_point]);
-        add_point<dim, p>(difference, table, q, scale * rule.weights[q],
-                          t[contact_point] - t_u[contact_point]);
+        const auto add = [&](Moments& part, const Point<dim>& traction)
+        { add_point<dim, p>(part, table, q, scale * rule.weights[q], traction); };
+        add(moments, t_u[contact_point]);
+        add(linearisation, t[contact_point] - t_delta[contact_point]);
+        if (regularisation) add(*regularisation, t_delta[contact_point] - t_u[contact_point]);
       }
       continue;
     }

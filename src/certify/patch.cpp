@@ -13,7 +13,7 @@ template <int dim, int p>
 void Patch<dim, p>::begin(Index vertex)
 {
   vertex_ = vertex;
-  n_problems_ = data_.on_contact(vertex) ? 2 : 1;
+  n_problems_ = data_.on_contact(vertex) ? data_.n_parts() : 1;
   size_ = 0;
   n_cells_ = 0;
   found_.clear();
@@ -22,7 +22,7 @@ void Patch<dim, p>::begin(Index vertex)
 
 template <int dim, int p>
 void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
-                             std::span<CellShare<dim, p>, 2> shares)
+                             std::span<CellShare<dim, p>> shares)
 {
   const Frame<dim>& frame = prepared.frame;
   if (n_cells_ == static_cast<int>(cells_.size()))
@@ -102,12 +102,14 @@ int Patch<dim, p>::local_vertex(Index facet) const
   return static_cast<int>(std::ranges::find(vertices, vertex_) - vertices.begin());
 }
 
-/// Moments of the traction of the dis (0) or lin (1) problem, or null where there is none.
+/// Moments of the traction of the dis (0), lin (1) or reg (2) problem, or null where there is none.
 template <int dim, int p>
 auto Patch<dim, p>::traction(Index facet, int problem) const -> const typename FacetData<dim, p>::FacetVector*
 {
   if (!data_.is_boundary(facet)) return nullptr;
-  const auto* moments = problem == 0 ? data_.discretisation(facet) : data_.linearisation(facet);
+  const auto* moments = problem == 0   ? data_.discretisation(facet)
+                        : problem == 1 ? data_.linearisation(facet)
+                                       : data_.regularisation(facet);
   return moments ? &(*moments)[local_vertex(facet)] : nullptr;
 }
 
@@ -151,7 +153,7 @@ void Patch<dim, p>::condense(CellPart& part)
 
 /// g = N G - C^T (B B^T)^{-1} r with the outer facet eliminated. With div G = psi_a div sigma + sigma grad
 /// psi_a, r is (psi_a (div sigma + f) + y_a, v) on U and -(w_a, q) on Lambda for dis; (-y_lin, v) and
-/// -(w_lin, q) for lin.
+/// -(w_lin, q) for lin, and the same for reg.
 template <int dim, int p>
 void Patch<dim, p>::assemble_load(CellPart& part, int problem)
 {

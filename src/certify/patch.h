@@ -14,8 +14,8 @@
 namespace tribound
 {
 
-/// The discretisation and linearisation problems of a vertex, numbers 0 and 1 of everything that both have.
-/// An object is the work space of one thread.
+/// The problems of a vertex: discretisation, linearisation and, for delta > 0, regularisation, numbers 0, 1
+/// and 2 of everything that all have. An object is the work space of one thread.
 template <int dim, int p>
 class Patch
 {
@@ -26,12 +26,14 @@ class Patch
 
   /// Starts the patch of a vertex.
   void begin(Index vertex);
-  /// `shares` takes the results: dis, and lin if there is one.
-  void add_cell(Index cell, const PreparedCell<dim, p>& prepared, std::span<CellShare<dim, p>, 2> shares);
+  /// `shares` takes the results: dis, and on Gamma_C those of the other problems.
+  void add_cell(Index cell, const PreparedCell<dim, p>& prepared, std::span<CellShare<dim, p>> shares);
   /// Solves the problems. Throws SolveError naming the vertex if the patch is not what section 4 requires.
   void solve();
 
  private:
+  static constexpr int max_problems = 3;
+
   using Operator = CellOperator<dim, p>;
   using UVector = typename Operator::UVector;
   using FacetVector = DenseVector<S::block>;
@@ -43,10 +45,10 @@ class Patch
     int vertex;                       ///< the patch's vertex in the frame of the cell: also its outer facet
     std::array<int, dim + 1> facets;  ///< place in `facets_`, -1 for the outer one
     const PreparedCell<dim, p>* prepared;
-    std::span<CellShare<dim, p>, 2> shares;
+    std::span<CellShare<dim, p>> shares;
     const OuterElimination<dim, p>* outer;  ///< of the cell's shape, or `own_outer`
     OuterElimination<dim, p> own_outer;
-    std::array<FacetVector, 2> outer_load;  ///< U(o, o)^{-T} g_o
+    std::array<FacetVector, max_problems> outer_load;  ///< U(o, o)^{-T} g_o
   };
 
   struct PatchFacet
@@ -88,7 +90,7 @@ class Patch
   const Mesh<dim>& mesh_;
   const FacetData<dim, p>& data_;
   Index vertex_ = 0;
-  int n_problems_ = 0;  ///< 2 on Gamma_C: elsewhere the data of lin vanish
+  int n_problems_ = 0;  ///< 1 off Gamma_C: there the data of lin and reg vanish
   double size_ = 0;     ///< of the patch
   int n_cells_ = 0;
   std::vector<CellPart> cells_;     ///< the first n_cells_ of them
@@ -96,10 +98,10 @@ class Patch
   std::vector<PatchFacet> found_;   ///< the same as they were found
   std::vector<FixedFacet<dim>> fixed_facets_;
   RigidMotions<dim> motions_{Point<dim>::Zero(), 1.0, {}};
-  std::array<RigidField<dim>, 2> y_;
-  std::array<Tensor<dim>, 2> w_;
+  std::array<RigidField<dim>, max_problems> y_;
+  std::array<Tensor<dim>, max_problems> w_;
   BlockCholesky<S::block> matrix_;
-  std::array<std::vector<FacetVector>, 2> x_;
+  std::array<std::vector<FacetVector>, max_problems> x_;
 };
 
 }  // namespace tribound

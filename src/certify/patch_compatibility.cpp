@@ -91,7 +91,9 @@ double Patch<dim, p>::traction_work(int problem, int motion) const
 }
 
 /// y_a in Z_a (rigid motions; constants for p = 1) with (y_a, z) = -<R(u^k), psi_a z> = (b, z) - (t, z) for
-/// the dis problem, and (y_lin, z) = (t^k - T(u^k), psi_a z)_C for the lin problem.
+/// the dis problem, (y_lin, z) = (t^k - T_delta(u^k), psi_a z)_C for the lin problem and (y_reg, z) =
+/// (T_delta(u^k) - T(u^k), psi_a z)_C for the reg problem: y_a = y_lin + y_reg if a(u^k, v) - (t^k, v)_C =
+/// L(v).
 template <int dim, int p>
 void Patch<dim, p>::find_divergence_part(const Moments& moments)
 {
@@ -99,7 +101,7 @@ void Patch<dim, p>::find_divergence_part(const Moments& moments)
   const int n = p == 1 ? motions_.n_translations() : motions_.size();
   if (n == 0) return;
   Dense<S::rigid, S::rigid> gram;
-  std::array<RigidVector, 2> y{};
+  std::array<RigidVector, max_problems> y{};
   for (int i = 0; i < S::rigid; ++i) gram(i, i) = 1;  // motions that are not admitted
   for (int i = 0; i < n; ++i)
   {
@@ -149,7 +151,7 @@ void Patch<dim, p>::find_skew_part(const Moments& moments)
   const Gram inverse = gram.inverse();
   for (int problem = 0; problem < n_problems_; ++problem)
   {
-    // (Pi^0 b, z), z = grad z x: b is the load of dis without y_a and y_lin,a in lin
+    // (Pi^0 b, z), z = grad z x: b is the load of dis without y_a, y_lin,a in lin and y_reg,a in reg
     const Tensor<dim> y = y_[problem].translation * moments.position.transpose();
     const Tensor<dim> b = problem == 0 ? Tensor<dim>(moments.load_position - y) : y;
     Eigen::Matrix<double, S::pairs, 1> rhs = Eigen::Matrix<double, S::pairs, 1>::Zero();

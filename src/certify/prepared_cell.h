@@ -5,6 +5,8 @@
 
 #include <array>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "certify/repeated_shapes.h"
 #include "certify/rigid.h"
@@ -30,13 +32,37 @@ struct PreparedCell
   std::array<std::array<double, S::affine>, dim> coordinates;
 };
 
-/// What the patch of one vertex leaves in a cell, for the dis or the lin problem.
+/// What the patch of one vertex leaves in a cell, for one part of the stress.
 template <int dim, int p>
 struct CellShare
 {
   typename CellOperator<dim, p>::FacetVectors mu;  ///< multipliers of its facets
   RigidField<dim> y;                               ///< y_a
   Tensor<dim> w;                                   ///< w_a (p = 1)
+};
+
+/// The shares of all vertices of a cell in all parts.
+template <int dim, int p>
+class CellShares
+{
+ public:
+  explicit CellShares(int n_parts) : n_parts_(n_parts), shares_(static_cast<std::size_t>(dim + 1) * n_parts)
+  {
+  }
+
+  /// By vertex: its shares in the parts.
+  [[nodiscard]] std::span<CellShare<dim, p>> operator[](int vertex)
+  {
+    return std::span(shares_).subspan(vertex * n_parts_, n_parts_);
+  }
+  [[nodiscard]] std::span<const CellShare<dim, p>> operator[](int vertex) const
+  {
+    return std::span(shares_).subspan(vertex * n_parts_, n_parts_);
+  }
+
+ private:
+  std::size_t n_parts_;
+  std::vector<CellShare<dim, p>> shares_;
 };
 
 /// Fills in `one` and `coordinates`; the frame is known.

@@ -75,7 +75,7 @@ Point<dim> NitscheForm<dim>::augmented_traction(std::span<const double> u, std::
 
 template <int dim>
 Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_t k, std::size_t i,
-                                                  const Point<dim>& augmented) const
+                                                  const Point<dim>& augmented, double delta) const
 {
   const FrictionLaw& law = contact_facets_[k].contact->friction;
   const Point<dim>& n = contact_facets_[k].geometry.normal;
@@ -85,20 +85,20 @@ Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_
 
   const double p_n = augmented.dot(n);
   const Point<dim> p_t = augmented - p_n * n;
-  const double limit = friction_limit(law, threshold_[i], p_n);
-  const double closed = negative_part_derivative(p_n);
+  const double limit = friction_limit(law, threshold_[i], p_n, delta);
+  const double closed = negative_part_derivative(p_n, delta);
   const Tensor<dim> tangential = Tensor<dim>::Identity() - n * n.transpose();
 
   Tensor<dim> derivative =
-      closed * n * n.transpose() + ball_projection_derivative<dim>(p_t, limit) * tangential;
+      closed * n * n.transpose() + ball_projection_derivative<dim>(p_t, limit, delta) * tangential;
   if (const auto* coulomb = std::get_if<Coulomb>(&law))  // D S_h[w] = -mu_F D[P^n]_- (sigma^n(w) - gamma w^n)
-    derivative -=
-        coulomb->coefficient * closed * ball_projection_radius_derivative<dim>(p_t, limit) * n.transpose();
+    derivative -= coulomb->coefficient * closed * ball_projection_radius_derivative<dim>(p_t, limit, delta) *
+                  n.transpose();
   return derivative;
 }
 
 template <int dim>
-std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u) const
+std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u, double delta) const
 {
   std::vector<Point<dim>> t;
   t.reserve(n_contact_points());
@@ -107,14 +107,15 @@ std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u) co
     const Tensor<dim> j = inverse_transpose(k);
     for (int q = 0; q < n_facet_points(); ++q)
       t.push_back(contact_traction<dim>(contact_facets_[k].contact->friction, threshold_[t.size()],
-                                        augmented_traction(u, k, q, j), contact_facets_[k].geometry.normal));
+                                        augmented_traction(u, k, q, j), contact_facets_[k].geometry.normal,
+                                        delta));
   }
   return t;
 }
 
 template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind, std::span<const double> u,
-                                                              std::span<const double> w) const
+                                                              std::span<const double> w, double delta) const
 {
   std::vector<Point<dim>> t;
   t.reserve(n_contact_points());
@@ -127,14 +128,14 @@ std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind
       const Point<dim> at_w = augmented_traction(w, k, q, j);
       if (kind == Linearisation::closed_sticking)
       {
-        t.push_back(traction_derivative(kind, k, i, at_w) * at_w);
+        t.push_back(traction_derivative(kind, k, i, at_w, delta) * at_w);
         continue;
       }
       const Point<dim> at_u = augmented_traction(u, k, q, j);
       const ContactFacet<dim>& contact = contact_facets_[k];
-      t.push_back(
-          contact_traction<dim>(contact.contact->friction, threshold_[i], at_u, contact.geometry.normal) +
-          traction_derivative(kind, k, i, at_u) * (at_w - at_u));
+      t.push_back(contact_traction<dim>(contact.contact->friction, threshold_[i], at_u,
+                                        contact.geometry.normal, delta) +
+                  traction_derivative(kind, k, i, at_u, delta) * (at_w - at_u));
     }
   }
   return t;
@@ -178,7 +179,7 @@ void NitscheForm<dim>::add_block_entries(const BoundaryFacet& facet, std::span<c
 }
 
 template <int dim>
-Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u) const
+Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u, double delta) const
 {
   const int n = space_->basis().n_nodes();
   Triplets entries;
@@ -193,8 +194,8 @@ Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const d
     std::ranges::fill(block, Tensor<dim>::Zero());
     for (int q = 0; q < n_facet_points(); ++q)
     {
-      const Tensor<dim> m =
-          traction_derivative(kind, k, k * facet_rule_.size() + q, augmented_traction(u, k, q, inverse));
+      const Tensor<dim> m = traction_derivative(kind, k, k * facet_rule_.size() + q,
+                                                augmented_traction(u, k, q, inverse), delta);
       const auto values = table.values_at(q);
       const auto gradients = table.gradients_at(q);
       for (int j = 0; j < n; ++j)

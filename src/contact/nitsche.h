@@ -57,7 +57,8 @@ enum class Linearisation
 
 /// The discrete problem on one mesh. Contact integrals touch only cells on Gamma_C. Contact quantities live
 /// at the quadrature points of the contact facets: point q of contact facet k has number k * n_facet_points()
-/// + q. Keeps references to problem and space.
+/// + q. Keeps references to problem and space. Where delta > 0 (a stress) is given, the projections of T are
+/// the regularised ones of method section 7: T_delta.
 template <int dim>
 class NitscheForm
 {
@@ -78,14 +79,16 @@ class NitscheForm
   [[nodiscard]] std::size_t n_contact_points() const { return contact_facets_.size() * facet_rule_.size(); }
 
   /// T(u) at the contact points.
-  [[nodiscard]] std::vector<Point<dim>> traction(std::span<const double> u) const;
+  [[nodiscard]] std::vector<Point<dim>> traction(std::span<const double> u, double delta = 0) const;
   /// T_lin(w) at the contact points, linearised at u.
   [[nodiscard]] std::vector<Point<dim>> linearised_traction(Linearisation kind, std::span<const double> u,
-                                                            std::span<const double> w) const;
+                                                            std::span<const double> w,
+                                                            double delta = 0) const;
   /// vector_i += (t, phi_i)_C with t given at the contact points.
   void add_contact_load(std::span<const Point<dim>> t, std::span<double> vector) const;
   /// -(DT(u)[phi_j], phi_i)_C over free i and j. Rows and columns do not depend on u.
-  [[nodiscard]] Triplets contact_tangent(Linearisation kind, std::span<const double> u) const;
+  [[nodiscard]] Triplets contact_tangent(Linearisation kind, std::span<const double> u,
+                                         double delta = 0) const;
 
   /// States on contact facet k at the points of `table`.
   [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, int k,
@@ -97,7 +100,7 @@ class NitscheForm
                                               const Tensor<dim>& inverse_transpose) const;
   /// M with DT(u)[w] = M (sigma(w) n - gamma w), from P(u) at contact point i of facet k.
   [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, std::size_t i,
-                                                const Point<dim>& augmented) const;
+                                                const Point<dim>& augmented, double delta) const;
   [[nodiscard]] Tensor<dim> inverse_transpose(std::size_t k) const;
   /// Appends the rows of the nodes on the facet; block [i * n_nodes + j] belongs to local nodes i and j.
   void add_block_entries(const BoundaryFacet& facet, std::span<const Tensor<dim>> block,

@@ -28,6 +28,16 @@ std::string in_words(const Point<dim>& x, double scale)
   return text + ")";
 }
 
+/// "x" or "-x" for the direction of an axis, else its components.
+template <int dim>
+std::string direction(const Point<dim>& unit)
+{
+  for (int i = 0; i < dim; ++i)
+    if ((unit.cwiseAbs() - Point<dim>::Unit(i)).norm() <= negligible)
+      return std::string(unit[i] < 0 ? "-" : "") + "xyz"[i];
+  return in_words<dim>(unit, 1);
+}
+
 /// v turned by +90 degrees.
 Point<2> turned(const Point<2>& v)
 {
@@ -75,7 +85,7 @@ std::string RigidModes<dim>::describe(const Coefficients& motion) const
   const Point<dim> t = motion.template head<dim>();
   const auto w = motion.template tail<n_modes - dim>();
   if (w.norm() <= negligible * t.norm())
-    return fmt::format("translation along {}", in_words<dim>(t.normalized(), 1));
+    return fmt::format("translation along {}", direction<dim>(t.normalized()));
 
   const double scale = std::max(size, centre.norm());
   if constexpr (dim == 2)
@@ -102,6 +112,7 @@ template <int dim>
 std::vector<typename RigidModes<dim>::Coefficients> readable_basis(const MotionBasis& motions)
 {
   constexpr int n_modes = RigidModes<dim>::n_modes;
+  if (motions.cols() == 0) return {};
   Eigen::MatrixXd rows = motions.transpose();
   const std::vector<Eigen::Index> rotations = eliminate(rows, 0, dim, n_modes);
   const auto n_rotations = static_cast<Eigen::Index>(rotations.size());

@@ -27,8 +27,8 @@ struct RigidModes
   /// The matrix M(x) with z(x) = M(x) (t, w).
   [[nodiscard]] ModeMatrix at(const Point<dim>& x) const;
 
-  /// "translation along (1, 0)"; "rotation about (0.5, 0)", in 3D "rotation about the axis through (0, 0, 1)
-  /// along (1, 0, 0)"; "screw motion about the axis ...".
+  /// "translation along x", or along (0.6, 0.8); "rotation about (0.5, 0)", in 3D "rotation about the axis
+  /// through (0, 0, 1) along (1, 0, 0)"; "screw motion about the axis ...".
   [[nodiscard]] std::string describe(const Coefficients& motion) const;
 };
 

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "contact/body.h"
+#include "contact/body_support.h"
 #include "contact/cone.h"
 #include "fem/quadrature.h"
 #include "mesh/geometry.h"
@@ -20,14 +22,6 @@ namespace
 
 template <int dim>
 using Coefficients = typename RigidModes<dim>::Coefficients;
-
-/// Whether the law can resist sliding at all.
-bool has_friction(const FrictionLaw& law)
-{
-  if (const auto* tresca = std::get_if<Tresca>(&law)) return !tresca->threshold.is_zero();
-  if (const auto* coulomb = std::get_if<Coulomb>(&law)) return coulomb->coefficient > 0;
-  return false;
-}
 
 /// Unit vectors perpendicular to n: both in 2D, eight at equal angles in 3D.
 template <int dim>
@@ -62,7 +56,7 @@ class BodyCheck
 {
  public:
   BodyCheck(const Problem<dim>& problem, const Mesh<dim>& mesh, const Body<dim>& body, std::string name)
-      : problem_(problem), mesh_(mesh), body_(body), name_(std::move(name))
+      : problem_(problem), mesh_(mesh), body_(body), support_(problem, mesh, body), name_(std::move(name))
   {
   }
 
@@ -72,98 +66,58 @@ class BodyCheck
   void check_balanced(const Coefficients<dim>& work, double round_off, int quadrature_degree) const;
 
  private:
-  /// Calls visit(condition, normal, x) at each vertex x of each facet of the body.
-  template <class Visit>
-  void for_each_facet_vertex(Visit visit) const;
-  /// Sums of r r^T over the rows r of what stops a motion z.
-  [[nodiscard]] Eigen::MatrixXd dirichlet_gram() const;
-  [[nodiscard]] Eigen::MatrixXd contact_gram(bool with_friction) const;
   /// The work in each motion of the contact forces, one column for each generator of their cone. Tresca
   /// friction is unlimited in both cases: its bound does not scale with the pressure.
   [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, CoulombFriction coulomb) const;
   /// Integral of s |z^t| over Tresca contact, the most that its friction can hold back; infinite where other
   /// friction resists z.
   [[nodiscard]] double tresca_capacity(const Coefficients<dim>& motion, int quadrature_degree) const;
+  /// What to do against motions that nothing stops, with a component for each of them.
+  [[nodiscard]] std::string hint(std::span<const Coefficients<dim>> free) const;
   [[noreturn]] void fail(const Coefficients<dim>& motion, const std::string& reason) const;
 
   const Problem<dim>& problem_;
   const Mesh<dim>& mesh_;
   const Body<dim>& body_;
+  BodySupport<dim> support_;
   std::string name_;
 };
 
 template <int dim>
-template <class Visit>
-void BodyCheck<dim>::for_each_facet_vertex(Visit visit) const
+std::string BodyCheck<dim>::hint(std::span<const Coefficients<dim>> free) const
 {
-  for (const BoundaryFacet& facet : body_.facets)
-  {
-    const BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
-    if (!condition.contact && !condition.fixes_any()) continue;
-    const Point<dim> n = facet_geometry(mesh_, facet.cell, facet.local).normal;
-    for (const Index v : facet_vertices(mesh_.cell(facet.cell), facet.local))
-      visit(condition, n, mesh_.vertex(v));
-  }
-}
-
-template <int dim>
-Eigen::MatrixXd BodyCheck<dim>::dirichlet_gram() const
-{
-  constexpr int n = RigidModes<dim>::n_modes;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
-  for_each_facet_vertex(
-      [&](const BoundaryCondition<dim>& condition, const Point<dim>&, const Point<dim>& x)
-      {
-        const auto z = body_.modes.at(x);
-        for (int a = 0; a < dim; ++a)
-          if (condition.fixes(a)) gram += z.row(a).transpose() * z.row(a);
-      });
-  return gram;
-}
-
-template <int dim>
-Eigen::MatrixXd BodyCheck<dim>::contact_gram(bool with_friction) const
-{
-  constexpr int n_modes = RigidModes<dim>::n_modes;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_modes, n_modes);
-  for_each_facet_vertex(
-      [&](const BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
-      {
-        if (!condition.contact) return;
-        const auto z = body_.modes.at(x);
-        const auto z_n = n.transpose() * z;
-        if (with_friction && has_friction(condition.contact->friction))
-          gram += z.transpose() * z;
-        else
-          gram += z_n.transpose() * z_n;
-      });
-  return gram;
-}
-
-template <int dim>
-void BodyCheck<dim>::check_held() const
-{
-  const Eigen::MatrixXd gram = dirichlet_gram() + contact_gram(true);
-  const MotionBasis free = null_space(gram, gram.trace());
-  if (free.cols() == 0) return;
-  std::vector<std::string> motions;
-  for (const Coefficients<dim>& z : readable_basis<dim>(free)) motions.push_back(body_.modes.describe(z));
-
+  std::vector<std::string> remedies;
+  for (const Coefficients<dim>& z : free)
+    if (const std::optional<Remedy> remedy = support_.remedy(z))
+      if (const std::string words = describe(*remedy); std::ranges::find(remedies, words) == remedies.end())
+        remedies.push_back(words);
   const auto has_smooth_contact = [&](const BoundaryFacet& facet)
   {
     const auto& contact = problem_.boundary(facet.tag).contact;
     return contact && !has_friction(contact->friction);
   };
   const bool friction_may_help = std::ranges::any_of(body_.facets, has_smooth_contact);
+  return fmt::format(
+      "fix a displacement component that such a motion would change{} (symmetry: the component normal to the "
+      "plane of symmetry){}",
+      remedies.empty() ? ", on a boundary of this body"
+                       : fmt::format(", for example {}", fmt::join(remedies, ", ")),
+      friction_may_help ? ", or give its contact friction" : "");
+}
+
+template <int dim>
+void BodyCheck<dim>::check_held() const
+{
+  const std::vector<Coefficients<dim>> free = readable_basis<dim>(support_.left_by_contact(true));
+  if (free.empty()) return;
+  std::vector<std::string> motions;
+  motions.reserve(free.size());
+  for (const Coefficients<dim>& z : free) motions.push_back(body_.modes.describe(z));
   const auto named = std::ranges::find_if(
       problem_.boundaries(), [](const auto& boundary) { return boundary.where.line > 0; });  // not a --set
   const std::string file = named == problem_.boundaries().end() ? "" : named->where.file;
-  throw InputError(
-      {.file = file, .key = "boundary"},
-      fmt::format("nothing stops {} from: {}", name_, fmt::join(motions, "; ")),
-      fmt::format("fix a displacement component that such a motion would change, on a boundary of this "
-                  "body (symmetry: the component normal to the plane of symmetry){}",
-                  friction_may_help ? ", or give its contact friction" : ""));
+  throw InputError({.file = file, .key = "boundary"},
+                   fmt::format("nothing stops {} from: {}", name_, fmt::join(motions, "; ")), hint(free));
 }
 
 template <int dim>
@@ -175,7 +129,7 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, Coulomb
     const Eigen::VectorXd work = motions.transpose() * (body_.modes.at(x).transpose() * push);
     if (work.norm() > 1e-12) generators.push_back(work.normalized());
   };
-  for_each_facet_vertex(
+  support_.for_each_facet_vertex(
       [&](const BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
       {
         if (!condition.contact) return;
@@ -236,9 +190,8 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
                                     int quadrature_degree) const
 {
   constexpr double relative = 1e-8;
-  const Eigen::MatrixXd held = dirichlet_gram();
-  const MotionBasis motions = null_space(held, held.trace());  // what contact alone has to stop
-  const Eigen::VectorXd c = motions.transpose() * work;        // L(z) for each of them
+  const MotionBasis motions = support_.left_by_displacements();  // what contact alone has to stop
+  const Eigen::VectorXd c = motions.transpose() * work;          // L(z) for each of them
   if (motions.cols() == 0 || c.norm() <= round_off) return;
 
   const double tolerance = relative * c.norm() + round_off;
@@ -246,7 +199,7 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
   if (lifted.norm() > tolerance) fail(motions * lifted, "contact only pushes");
 
   // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
-  const Eigen::MatrixXd pressed = contact_gram(false);
+  const Eigen::MatrixXd pressed = support_.contact_gram(false);
   const MotionBasis sliding = motions * null_space(motions.transpose() * pressed * motions, pressed.trace());
   const Coefficients<dim> slide = sliding * (sliding.transpose() * work);
   const Eigen::VectorXd slipped = remainder_outside_cone(contact_cone(motions, CoulombFriction::limited), c);

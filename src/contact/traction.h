@@ -20,11 +20,13 @@ template <int dim>
   return sigma<dim>(material, gradient) * n - gamma * (u - gap * n);
 }
 
-/// S_h for the normal part P^n: 0 | s | -mu_F [P^n]_-.
-[[nodiscard]] inline double friction_limit(const FrictionLaw& law, double threshold, double p_n)
+/// S_h for the normal part P^n: 0 | s | -mu_F [P^n]_{-,delta}.
+[[nodiscard]] inline double friction_limit(const FrictionLaw& law, double threshold, double p_n,
+                                           double delta = 0)
 {
   if (std::holds_alternative<Tresca>(law)) return threshold;
-  if (const auto* coulomb = std::get_if<Coulomb>(&law)) return -coulomb->coefficient * negative_part(p_n);
+  if (const auto* coulomb = std::get_if<Coulomb>(&law))
+    return -coulomb->coefficient * negative_part(p_n, delta);
   return 0;
 }
 
@@ -36,13 +38,14 @@ template <int dim>
   return tresca ? threshold_at<dim>(*tresca, x) : 0.0;
 }
 
-/// T = [P^n]_- n + [P^t]_S from P.
+/// T = [P^n]_- n + [P^t]_S from P; T_delta with the regularised projections for delta > 0.
 template <int dim>
 [[nodiscard]] Point<dim> contact_traction(const FrictionLaw& law, double threshold, const Point<dim>& p,
-                                          const Point<dim>& n)
+                                          const Point<dim>& n, double delta = 0)
 {
   const double p_n = p.dot(n);
-  return negative_part(p_n) * n + ball_projection<dim>(p - p_n * n, friction_limit(law, threshold, p_n));
+  const double limit = friction_limit(law, threshold, p_n, delta);
+  return negative_part(p_n, delta) * n + ball_projection<dim>(p - p_n * n, limit, delta);
 }
 
 }  // namespace tribound

@@ -8,6 +8,9 @@
 #include <cstdio>
 #include <string_view>
 
+#include "io/check_json.h"
+#include "io/text.h"
+
 namespace tribound
 {
 
@@ -19,15 +22,7 @@ std::string count(long n, std::string_view singular, std::string_view plural)
   return fmt::format("{} {}", n, n == 1 ? singular : plural);
 }
 
-constexpr std::size_t caption_width = 14;
-
-/// A line with a caption in the first column.
-std::string line(std::string_view caption, std::string_view text)
-{
-  return fmt::format("{:<{}}{}\n", caption, caption_width, text);
-}
-
-/// The same, or nothing for an empty text.
+/// line(), or nothing for an empty text.
 std::string line_if_any(std::string_view caption, std::string_view text)
 {
   return text.empty() ? std::string{} : line(caption, text);
@@ -61,6 +56,18 @@ std::string resultants_line(std::string_view caption, std::string_view boundary,
                                    r.tangential, fmt::join(r.force, ", ")));
 }
 
+/// For a boundary with Coulomb friction: N and H are the normal and the tangential resultant.
+std::string sliding_line(const Resultants& r)
+{
+  const std::optional<Sliding> state = sliding(r);
+  if (!state) return {};
+  const std::string safety = state->safety_factor
+                                 ? fmt::format("factor of safety mu_F N/H = {:.4g}", *state->safety_factor)
+                                 : "no sliding force";
+  return line("sliding", fmt::format("{}: sliding factor H/N = {:.4g}, mu_F = {:g}: {}", r.boundary,
+                                     state->sliding_factor, state->coefficient, safety));
+}
+
 /// A text broken into lines of at most `width` characters, the later ones indented below the first.
 std::string wrapped(std::string_view text, std::size_t width)
 {
@@ -80,23 +87,33 @@ std::string paragraph(std::string_view caption, std::string_view text)
   return line(caption, wrapped(text, 90));
 }
 
-/// What each component measures, in the order of component_names.
-constexpr std::array<std::string_view, 8> component_meaning = {
-    "data oscillation",  "stress",   "Neumann data",          "linearisation, in the body",
-    "contact condition", "friction", "linearisation, normal", "linearisation, tangential"};
+/// What each component measures, in the order of all_component_names.
+constexpr std::array<std::string_view, all_component_names.size()> component_meaning = {
+    "data oscillation",
+    "stress",
+    "Neumann data",
+    "linearisation, in the body",
+    "contact condition",
+    "friction",
+    "linearisation, normal",
+    "linearisation, tangential",
+    "regularisation, body",
+    "regularisation, normal",
+    "regularisation, tangential"};
 
 /// Component by component with its share of the sum of squares.
-std::string component_lines(const BoundComponents& components)
+std::string component_lines(const BoundComponents& components, bool regularised)
 {
+  const std::span<const NamedComponent> names = names_of_components(regularised);
   double squares = 0;
-  for (const auto& [name, member] : component_names) squares += components.*member * components.*member;
+  for (const auto& [name, member] : names) squares += components.*member * components.*member;
   std::string text;
-  for (std::size_t i = 0; i < component_names.size(); ++i)
+  for (std::size_t i = 0; i < names.size(); ++i)
   {
-    const double value = components.*component_names[i].second;
+    const double value = components.*names[i].second;
     const double share = squares > 0 ? 100 * value * value / squares : 0;
-    text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", component_names[i].first,
-                                 component_meaning[i], value, share));
+    text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", names[i].first, component_meaning[i],
+                                 value, share));
   }
   return text;
 }
@@ -143,13 +160,22 @@ std::string certificate_text(const RunRecord& run)
   std::string text =
       line("bound", fmt::format("{:.6g}, that is {:.4g} % of ||sigma(u_h)|| (plain sums: {:.6g})",
                                 bound.total_sharp, 100 * relative_bound(level).value_or(0), bound.total));
-  text += component_lines(bound.global);
+  text += component_lines(bound.global, level.delta_updates.has_value());
   if (level.identities)
     text += line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
                                            level.identities->largest(run.facts.degree), identity_limit));
   for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
   text += paragraph("law", run.statements.law);
   for (const std::string& outside : run.statements.not_covered) text += paragraph("outside", outside);
+  return text;
+}
+
+std::string warnings_text(std::span<const RunWarning> warnings)
+{
+  std::string text;
+  for (const RunWarning& warning : warnings)
+    text += paragraph(
+        "warning", warning.where.empty() ? warning.text : fmt::format("{}: {}", warning.where, warning.text));
   return text;
 }
 
@@ -162,10 +188,12 @@ std::string summary_text(const RunRecord& run, const std::string& directory)
     for (const Resultants& part : last.figures.boundary_contact)
       text += resultants_line("contact", part.boundary, part);
     if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
+    for (const Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
     text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
     text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
                                        last.figures.sigma_norm));
     text += certificate_text(run);
+    text += warnings_text(run.warnings);
   }
   std::string reason = run.reason;
   if (run.status == RunStatus::certified)
@@ -193,6 +221,21 @@ std::string check_text(const CaseFacts& facts, const MeshFacts& mesh, const std:
   return text;
 }
 
+std::string findings_text(std::span<const Finding> findings)
+{
+  std::string text = "findings\n";
+  for (const Finding& finding : findings)
+  {
+    text += paragraph(fmt::format("  {}", to_string(finding.severity)), finding.text);
+    if (!finding.advice.empty()) text += paragraph("", "-> " + finding.advice);
+  }
+  const auto how_many = [&](Severity severity)
+  { return std::ranges::count(findings, severity, &Finding::severity); };
+  return text +
+         line("in all", fmt::format("{}, {}", count(how_many(Severity::warning), "warning", "warnings"),
+                                    count(how_many(Severity::note), "note", "notes")));
+}
+
 std::string info_text(const BuildFacts& build)
 {
   const std::string threads =
@@ -202,7 +245,9 @@ std::string info_text(const BuildFacts& build)
          line_if_any("Gmsh", build.gmsh) +
          line_if_any("BLAS", build.blas.empty() ? "" : build.blas + threads) + line_if_any("MPI", build.mpi) +
          line_if_any("Eigen", build.eigen) +
-         line_if_any("features", fmt::format("{}", fmt::join(build.features, ", ")));
+         line_if_any("features", fmt::format("{}", fmt::join(build.features, ", "))) +
+         line("report page", build.report_page.empty() ? "none: Tribound was built without Node.js and npm"
+                                                       : build.report_page);
 }
 
 void print_header(const CaseFacts& facts, const MeshFacts& mesh)
@@ -220,9 +265,11 @@ void print_summary(const RunRecord& run, const std::string& directory)
   print(summary_text(run, directory));
 }
 
-void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver)
+void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
+                 std::span<const Finding> findings, bool as_json)
 {
-  print(check_text(facts, mesh, solver));
+  print(as_json ? check_json(facts, mesh, solver, findings)
+                : check_text(facts, mesh, solver) + findings_text(findings));
 }
 
 void print_info(const BuildFacts& build)

@@ -4,9 +4,11 @@
 /// What a user sees: results on stdout, progress on stderr.
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "io/facts.h"
+#include "io/findings.h"
 #include "io/report.h"
 #include "solve/newton.h"
 
@@ -21,18 +23,23 @@ namespace tribound
 [[nodiscard]] std::string level_text(const LevelRecord& level);
 /// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
 [[nodiscard]] std::string certificate_text(const RunRecord& run);
-/// Resultants, largest displacement, the certificate, status, and where the files are.
+/// A paragraph for each warning; nothing without any.
+[[nodiscard]] std::string warnings_text(std::span<const RunWarning> warnings);
+/// Resultants, largest displacement, the certificate, warnings, status, and where the files are.
 [[nodiscard]] std::string summary_text(const RunRecord& run, const std::string& directory);
 /// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
 [[nodiscard]] std::string check_text(const CaseFacts& facts, const MeshFacts& mesh,
                                      const std::string& solver);
+/// What the doctor found, with advice, and how many warnings and notes there are.
+[[nodiscard]] std::string findings_text(std::span<const Finding> findings);
 /// `tribound info`.
 [[nodiscard]] std::string info_text(const BuildFacts& build);
 
 void print_header(const CaseFacts& facts, const MeshFacts& mesh);
 void print_level(const LevelRecord& level);
 void print_summary(const RunRecord& run, const std::string& directory);
-void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver);
+void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
+                 std::span<const Finding> findings, bool as_json);
 void print_info(const BuildFacts& build);
 
 /// One line per Newton step on stderr, where somebody can be watching: stderr is a terminal and the user has

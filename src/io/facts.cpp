@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/version.h"
+#include "doctor/load_facts.h"
 #include "mesh/geometry.h"
 
 namespace tribound
@@ -72,13 +73,10 @@ CaseFacts case_facts(const Config& config, int dimension)
 
 std::string describe(const Material& material, int dimension)
 {
-  // Plane stress works with lambda_ps = 2 lambda mu / (lambda + 2 mu), hence nu = lambda_ps / (lambda_ps + 2
-  // mu).
-  const auto& [lambda, mu, plane] = material;
-  const bool plane_stress = dimension == 2 && plane == PlaneModel::stress;
-  const double nu = plane_stress ? lambda / (lambda + 2.0 * mu) : lambda / (2.0 * (lambda + mu));
+  const auto [E, nu] = elastic_constants(material, dimension);
+  const bool plane_stress = material.plane == PlaneModel::stress;
   const char* model = dimension == 3 ? "" : plane_stress ? ", plane stress" : ", plane strain";
-  return fmt::format("E = {:.6g}, nu = {:.6g}{}", 2.0 * mu * (1.0 + nu), nu, model);
+  return fmt::format("E = {:.6g}, nu = {:.6g}{}", E, nu, model);
 }
 
 template <int dim>

@@ -62,6 +62,7 @@ struct BuildFacts
   std::string mpi;
   std::string eigen;
   std::vector<std::string> features;
+  std::string report_page;  ///< path of its template; empty where there is none
 };
 
 [[nodiscard]] CaseFacts case_facts(const Config& config, int dimension);

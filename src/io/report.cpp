@@ -1,18 +1,17 @@
 #include "io/report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <cmath>
 
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "io/facts_json.h"
 
 namespace tribound
 {
 
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* schema_version = "1";
 
@@ -21,23 +20,35 @@ std::optional<double> member(const std::optional<Bound>& bound, double Bound::*v
   return bound ? std::optional((*bound).*value) : std::nullopt;
 }
 
-void add_components(CsvTable& table, const std::optional<Bound>& bound)
+void add_components(CsvTable& table, std::span<const NamedComponent> names, const std::optional<Bound>& bound)
 {
-  for (const auto& [name, value] : component_names)
+  for (const auto& [name, value] : names)
     table.add(bound ? std::optional(bound->global.*value) : std::nullopt);
 }
 
-/// null where there is nothing.
-Json json(const std::optional<double>& value)
+/// Those that are known of a step.
+void add_components(CsvTable& table, const CertifiedStep& record)
 {
-  return value ? Json(*value) : Json(nullptr);
+  for (const auto& [name, value] : component_names)
+    if (record.bound)
+      table.add(record.bound->global.*value);
+    else if (record.linearisation && std::ranges::count(linearisation_components, value) > 0)
+      table.add((*record.linearisation).*value);
+    else
+      table.add(std::optional<double>{});
 }
 
-Json json(const std::optional<Bound>& bound)
+void add_regularisation(CsvTable& table, const std::optional<Bound>& bound, std::optional<double> delta)
+{
+  add_components(table, regularisation_names, bound);
+  table.add(delta);
+}
+
+Json json(const std::optional<Bound>& bound, bool regularised)
 {
   if (!bound) return nullptr;
   Json object;
-  for (const auto& [name, value] : component_names) object[name] = bound->global.*value;
+  for (const auto& [name, value] : names_of_components(regularised)) object[name] = bound->global.*value;
   return object;
 }
 
@@ -59,16 +70,26 @@ Json json(const Resultants& resultants)
           {"force", resultants.force}};
 }
 
-Json json(const CertifiedStep& record)
+Json json(const std::optional<Sliding>& sliding)
 {
-  return {{"step", record.step.step},
-          {"residual", record.step.residual},
-          {"damping", record.step.damping},
-          {"linear_iterations", record.step.linear_iterations},
-          {"factorised", record.step.factorised},
-          {"seconds", record.step.seconds},
-          {"total", json(member(record.bound, &Bound::total))},
-          {"accepted", record.accepted}};
+  if (!sliding) return nullptr;
+  return {{"coefficient", sliding->coefficient},
+          {"sliding_factor", sliding->sliding_factor},
+          {"safety_factor", number_or_null(sliding->safety_factor)}};
+}
+
+Json json(const CertifiedStep& record, bool regularised)
+{
+  Json object{{"step", record.step.step},
+              {"residual", record.step.residual},
+              {"damping", record.step.damping},
+              {"linear_iterations", record.step.linear_iterations},
+              {"factorised", record.step.factorised},
+              {"seconds", record.step.seconds},
+              {"total", number_or_null(member(record.bound, &Bound::total))},
+              {"accepted", record.accepted}};
+  if (regularised) object["delta"] = record.step.delta;
+  return object;
 }
 
 /// Bound and figures, which the certificate has of the last level and of each.
@@ -76,10 +97,13 @@ void add_results(Json& object, const LevelRecord& level)
 {
   object["cells"] = level.cells;
   object["dofs"] = level.dofs;
-  object["bound"] = json(member(level.bound, &Bound::total_sharp));
-  object["bound_plain"] = json(member(level.bound, &Bound::total));
-  object["relative"] = json(relative_bound(level));
-  object["components"] = json(level.bound);
+  object["bound"] = number_or_null(member(level.bound, &Bound::total_sharp));
+  object["bound_plain"] = number_or_null(member(level.bound, &Bound::total));
+  object["relative"] = number_or_null(relative_bound(level));
+  object["components"] = json(level.bound, is_regularised(level));
+  if (is_regularised(level))
+    object["regularisation"] = {{"delta", number_or_null(last_delta(level))},
+                                {"updates", *level.delta_updates}};
   object["identities"] = json(level.identities);
   object["energy"] = level.figures.energy;
   object["sigma_norm"] = level.figures.sigma_norm;
@@ -88,7 +112,10 @@ void add_results(Json& object, const LevelRecord& level)
   if (level.figures.boundary_contact.empty()) return;
   Json contact = json(level.figures.contact);
   for (const Resultants& part : level.figures.boundary_contact)
+  {
     contact["boundaries"][part.boundary] = json(part);
+    contact["boundaries"][part.boundary]["sliding"] = json(sliding(part));
+  }
   object["contact"] = contact;
 }
 
@@ -97,27 +124,18 @@ Json json(const LevelRecord& level)
   Json object{{"level", level.level}};
   add_results(object, level);
   object["newton"] = Json::array();
-  for (const CertifiedStep& record : level.newton) object["newton"].push_back(json(record));
-  object["times"] = {
-      {"solve", level.times.solve}, {"certify", json(level.times.certify)}, {"level", level.times.level}};
-  return object;
-}
-
-Json json(const MeshFacts& mesh)
-{
-  Json object{
-      {"vertices", mesh.vertices},         {"cells", mesh.cells},      {"smallest_cell", mesh.smallest_cell},
-      {"largest_cell", mesh.largest_cell}, {"regions", Json::array()}, {"boundaries", Json::array()}};
-  for (const RegionFacts& region : mesh.regions)
-    object["regions"].push_back({{"name", region.name},
-                                 {"cells", region.cells},
-                                 {"measure", region.measure},
-                                 {"material", region.material}});
-  for (const BoundaryFacts& boundary : mesh.boundaries)
-    object["boundaries"].push_back({{"name", boundary.name},
-                                    {"facets", boundary.facets},
-                                    {"measure", boundary.measure},
-                                    {"condition", boundary.condition}});
+  for (const CertifiedStep& record : level.newton)
+    object["newton"].push_back(json(record, is_regularised(level)));
+  object["times"] = {{"solve", level.times.solve},
+                     {"certify", number_or_null(level.times.certify)},
+                     {"bisect", level.times.refinement.bisect},
+                     {"discretise", level.times.refinement.discretise},
+                     {"transfer", level.times.refinement.transfer},
+                     {"output", level.times.output},
+                     {"level", level.times.level},
+                     {"solve_cpu", level.times.solve_cpu},
+                     {"certify_cpu", level.times.certify_cpu},
+                     {"level_cpu", level.times.level_cpu}};
   return object;
 }
 
@@ -131,6 +149,14 @@ Json json(const BuildFacts& build)
           {"features", build.features}};
 }
 
+Json json(const RunWarning& warning)
+{
+  return {{"code", warning.code},
+          {"text", warning.text},
+          {"value", warning.value},
+          {"where", text_or_null(warning.where)}};
+}
+
 template <typename Value>
 Json json(const std::vector<std::pair<std::string, Value>>& named)
 {
@@ -142,10 +168,47 @@ Json json(const std::vector<std::pair<std::string, Value>>& named)
 template <int dim>
 Resultants resultants(const std::string& boundary, const ContactResultants<dim>& r)
 {
-  return {boundary, {r.force.begin(), r.force.end()}, r.normal, r.tangential, r.abs_tangential};
+  return {boundary, {r.force.begin(), r.force.end()}, r.normal, r.tangential, r.abs_tangential, {}};
+}
+
+/// Of the boundary group `tag`, with the friction coefficient if there is one.
+template <int dim>
+Resultants boundary_resultants(const NitscheForm<dim>& form, std::span<const Point<dim>> t, int tag)
+{
+  const BoundaryCondition<dim>& boundary = form.problem().boundary(tag);
+  Resultants result = resultants(boundary.name, contact_resultants(form, t, tag));
+  if (const auto* coulomb = std::get_if<Coulomb>(&boundary.contact->friction))
+    result.coefficient = coulomb->coefficient;
+  return result;
 }
 
 }  // namespace
+
+std::optional<Sliding> sliding(const Resultants& resultants)
+{
+  const double N = -resultants.normal;
+  const double H = std::abs(resultants.tangential);
+  if (!resultants.coefficient || N <= 0) return std::nullopt;
+  const double mu_F = *resultants.coefficient;
+  return Sliding{mu_F, H / N, H > 1e-10 * N ? std::optional(mu_F * N / H) : std::nullopt};
+}
+
+bool is_regularised(const LevelRecord& level)
+{
+  return level.delta_updates.has_value();
+}
+
+std::optional<double> last_delta(const LevelRecord& level)
+{
+  return level.newton.empty() ? std::nullopt : std::optional(level.newton.back().step.delta);
+}
+
+std::string regularisation_columns()
+{
+  std::string columns;
+  for (const auto& [name, value] : regularisation_names) columns += std::string(",") + name;
+  return columns + ",delta";
+}
 
 std::optional<double> relative_bound(const LevelRecord& level)
 {
@@ -166,23 +229,24 @@ SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const d
   figures.contact = resultants("", contact_resultants(form, t));
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (boundaries[tag].contact)
-      figures.boundary_contact.push_back(resultants(boundaries[tag].name, contact_resultants(form, t, tag)));
+    if (boundaries[tag].contact) figures.boundary_contact.push_back(boundary_resultants(form, t, tag));
   return figures;
 }
 
 std::string convergence_csv(const RunRecord& run)
 {
+  const bool regularised = std::ranges::any_of(run.levels, is_regularised);
   CsvTable table(
       "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,total_sharp,relative,energy,"
-      "contact_normal,contact_tangential,t_solve,t_certify,t_level");
+      "contact_normal,contact_tangential,t_solve,t_certify,t_level" +
+      (regularised ? regularisation_columns() + ",delta_updates" : std::string{}));
   for (const LevelRecord& level : run.levels)
   {
     table.add(level.level);
     table.add(level.cells);
     table.add(level.dofs);
     table.add(static_cast<long>(level.newton.size()));
-    add_components(table, level.bound);
+    add_components(table, component_names, level.bound);
     table.add(member(level.bound, &Bound::total));
     table.add(member(level.bound, &Bound::total_sharp));
     table.add(relative_bound(level));
@@ -192,6 +256,11 @@ std::string convergence_csv(const RunRecord& run)
     table.add(level.times.solve);
     table.add(level.times.certify);
     table.add(level.times.level);
+    if (regularised)
+    {
+      add_regularisation(table, level.bound, last_delta(level));
+      table.add(level.delta_updates.value_or(0));
+    }
     table.end_row();
   }
   return table.text();
@@ -199,7 +268,9 @@ std::string convergence_csv(const RunRecord& run)
 
 std::string newton_csv(const RunRecord& run)
 {
-  CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,accepted");
+  const bool regularised = std::ranges::any_of(run.levels, is_regularised);
+  CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,accepted" +
+                 (regularised ? regularisation_columns() : std::string{}));
   for (const LevelRecord& level : run.levels)
     for (const CertifiedStep& record : level.newton)
     {
@@ -207,9 +278,10 @@ std::string newton_csv(const RunRecord& run)
       table.add(record.step.step);
       table.add(record.step.residual);
       table.add(record.step.damping);
-      add_components(table, record.bound);
+      add_components(table, record);
       table.add(member(record.bound, &Bound::total));
       table.add(record.accepted ? 1 : 0);
+      if (regularised) add_regularisation(table, record.bound, record.step.delta);
       table.end_row();
     }
   return table.text();
@@ -217,12 +289,11 @@ std::string newton_csv(const RunRecord& run)
 
 std::string certificate_json(const RunRecord& run)
 {
-  Json object{
-      {"schema", schema_version},        {"program", json(run.build)},
-      {"title", run.facts.title},        {"file", run.facts.file},
-      {"status", to_string(run.status)}, {"reason", run.reason.empty() ? Json(nullptr) : Json(run.reason)},
-      {"d", run.facts.dimension},        {"p", run.facts.degree},
-      {"friction", run.facts.friction},  {"gamma0", run.facts.gamma0}};
+  Json object{{"schema", schema_version},        {"program", json(run.build)},
+              {"title", run.facts.title},        {"file", run.facts.file},
+              {"status", to_string(run.status)}, {"reason", text_or_null(run.reason)},
+              {"d", run.facts.dimension},        {"p", run.facts.degree},
+              {"friction", run.facts.friction},  {"gamma0", run.facts.gamma0}};
   if (!run.levels.empty()) add_results(object, run.levels.back());
   object["tolerance"] = run.tolerance;
   object["covered"] = run.statements.covered;
@@ -230,7 +301,9 @@ std::string certificate_json(const RunRecord& run)
   object["constants"] = json(run.statements.constants);
   object["assumptions"] = json(run.statements.assumptions);
   object["not_covered"] = run.statements.not_covered;
-  object["mesh"] = json(run.mesh);
+  object["warnings"] = Json::array();
+  for (const RunWarning& warning : run.warnings) object["warnings"].push_back(json(warning));
+  object["mesh"] = mesh_json(run.mesh);
   object["levels"] = Json::array();
   for (const LevelRecord& level : run.levels) object["levels"].push_back(json(level));
   object["times"] = json(run.times);

@@ -27,8 +27,21 @@ struct Resultants
   std::vector<double> force;  ///< integral of T, acts on the body
   double normal = 0.0;        ///< integral of T^n, negative in compression
   double tangential = 0.0;    ///< 2D: integral of T.t with t = n turned by +90 degrees; 3D: |integral of T^t|
-  double abs_tangential = 0.0;  ///< integral of |T^t|
+  double abs_tangential = 0.0;          ///< integral of |T^t|
+  std::optional<double> coefficient{};  ///< mu_F where the friction is Coulomb's
 };
+
+/// How far a boundary with Coulomb friction is from sliding as a whole, as dams and walls are judged:
+/// N = -(integral of T^n), H = |tangential resultant|. Meant for boundaries that are close to plane.
+struct Sliding
+{
+  double coefficient = 0.0;             ///< mu_F
+  double sliding_factor = 0.0;          ///< H / N: the friction coefficient that is mobilised
+  std::optional<double> safety_factor;  ///< mu_F N / H; nothing where no force makes it slide
+};
+
+/// Nothing without Coulomb friction or without a normal force. A force H below 1e-10 N counts as none.
+[[nodiscard]] std::optional<Sliding> sliding(const Resultants& resultants);
 
 /// The figures by which a discrete solution is compared with others.
 struct SolutionFigures
@@ -45,12 +58,17 @@ template <int dim>
 [[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const double> u,
                                                std::span<const Point<dim>> t);
 
-/// Seconds of wall time on a level.
+/// Seconds on a level, wall time where nothing else is said.
 struct LevelTimes
 {
   double solve = 0.0;
   std::optional<double> certify;
   double level = 0.0;  ///< everything, output included
+  RefinementSeconds refinement;
+  double output = 0.0;
+  double solve_cpu = 0.0;  ///< CPU time, all threads
+  double certify_cpu = 0.0;
+  double level_cpu = 0.0;
 };
 
 struct LevelRecord
@@ -59,14 +77,33 @@ struct LevelRecord
   long cells = 0;
   long dofs = 0;  ///< free ones
   std::vector<CertifiedStep> newton;
+  std::optional<int> delta_updates;  ///< of the regularised variant; absent in the plain method
   SolutionFigures figures;
   std::optional<Bound> bound;
   std::optional<IdentityDefects> identities;
   LevelTimes times;
 };
 
+/// Whether it is one of the regularised variant, method section 7.
+[[nodiscard]] bool is_regularised(const LevelRecord& level);
+
+/// delta of T_delta in the last Newton step.
+[[nodiscard]] std::optional<double> last_delta(const LevelRecord& level);
+
+/// What the tables of a regularised run have at the end of their line of column names, the last being delta.
+[[nodiscard]] std::string regularisation_columns();
+
 /// bound / ||sigma(u_h)||, if both are there.
 [[nodiscard]] std::optional<double> relative_bound(const LevelRecord& level);
+
+/// Something in a result that deserves a look, see io/run_warnings.h.
+struct RunWarning
+{
+  std::string code;   ///< for programs
+  std::string text;   ///< for people
+  double value = 0;   ///< what was compared with a limit
+  std::string where;  ///< such as `boundary "base" at (0, 0)`; empty: the whole
+};
 
 struct RunRecord
 {
@@ -78,6 +115,7 @@ struct RunRecord
   std::vector<LevelRecord> levels;
   double tolerance = 0.0;  ///< of bound / ||sigma(u_h)||
   Statements statements;
+  std::vector<RunWarning> warnings;                   ///< about the last level
   std::vector<std::pair<std::string, double>> times;  ///< s per stage of the whole run
 };
 

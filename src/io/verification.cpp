@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
+#include "io/json.h"
+#include "io/text.h"
 
 namespace tribound
 {
@@ -15,14 +16,7 @@ namespace tribound
 namespace
 {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* schema_version = "1";
-
-std::string line(std::string_view caption, std::string_view text)
-{
-  return fmt::format("{:<14}{}\n", caption, text);
-}
 
 std::string number_or_dash(const std::optional<double>& value)
 {
@@ -68,22 +62,13 @@ std::string status_text(const Verification& v)
                                     smallest, largest);
 }
 
-Json json(const std::optional<double>& value)
-{
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json json(const VerifiedIterate& iterate)
 {
-  return {{"step", iterate.step.step},
-          {"residual", iterate.step.residual},
-          {"damping", iterate.step.damping},
-          {"bound", iterate.bound},
-          {"bound_plain", iterate.bound_plain},
-          {"dual_norm", iterate.dual_norm},
-          {"effectivity", json(iterate.effectivity())},
-          {"sigma_norm", iterate.sigma_norm},
-          {"identities", iterate.identities}};
+  return {{"step", iterate.step.step},        {"residual", iterate.step.residual},
+          {"damping", iterate.step.damping},  {"delta", iterate.step.delta},
+          {"bound", iterate.bound},           {"bound_plain", iterate.bound_plain},
+          {"dual_norm", iterate.dual_norm},   {"effectivity", number_or_null(iterate.effectivity())},
+          {"sigma_norm", iterate.sigma_norm}, {"identities", iterate.identities}};
 }
 
 Json json(const std::optional<RicherSolution>& solution, int degree)
@@ -146,7 +131,7 @@ std::string verification_json(const Verification& v)
               {"bound", last.bound},
               {"bound_plain", last.bound_plain},
               {"dual_norm", last.dual_norm},
-              {"effectivity", json(last.effectivity())},
+              {"effectivity", number_or_null(last.effectivity())},
               {"sigma_norm", last.sigma_norm},
               {"refinements", v.refinements},
               {"dual_space",

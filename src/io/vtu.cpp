@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <system_error>
 
+#include "base/error.h"
 #include "certify/frame_table.h"
 #include "contact/elasticity.h"
 #include "io/atomic_file.h"
@@ -20,17 +22,6 @@ namespace tribound
 
 namespace
 {
-
-/// Symmetric part in VTK's order (xx, yy, zz, xy, yz, xz); `ratio` gives zz in 2D.
-template <int dim>
-std::array<double, 6> voigt(const Tensor<dim>& s, double ratio)
-{
-  const double xy = 0.5 * (s(0, 1) + s(1, 0));
-  if constexpr (dim == 2)
-    return {s(0, 0), s(1, 1), ratio * (s(0, 0) + s(1, 1)), xy, 0.0, 0.0};
-  else
-    return {s(0, 0), s(1, 1), s(2, 2), xy, 0.5 * (s(1, 2) + s(2, 1)), 0.5 * (s(0, 2) + s(2, 0))};
-}
 
 /// The nodes of the reference cell.
 template <int dim>
@@ -55,7 +46,7 @@ struct Level
   [[nodiscard]] Index n_cells() const { return space.mesh().n_cells(); }
   [[nodiscard]] std::uint64_t n_points() const { return order.size() * n_cells(); }
 
-  /// Calls use(sigma) for the nodes of all cells in turn, sigma in the order of voigt().
+  /// Calls use(sigma) for the nodes of all cells in turn, sigma in the order of symmetric_part().
   void for_each_tensor(const TensorField<dim>& field, const auto& use) const
   {
     std::vector<Tensor<dim>> values(order.size());
@@ -63,7 +54,7 @@ struct Level
     {
       field.at_nodes(c, values);
       const double ratio = out_of_plane_ratio(problem.material(space.mesh().region(c)));
-      for (const int i : order) use(voigt<dim>(values[i], ratio));
+      for (const int i : order) use(symmetric_part<dim>(values[i], ratio));
     }
   }
 
@@ -99,20 +90,21 @@ struct Level
     return vtu_array<float>(field.name, 6, n_points(),
                             [this, &field](const auto& put)
                             {
-                              for_each_tensor(field,
-                                              [&put](const std::array<double, 6>& sigma)
-                                              {
-                                                for (const double s : sigma) put(s);
-                                              });
+                              this->for_each_tensor(field,
+                                                    [&put](const std::array<double, 6>& sigma)
+                                                    {
+                                                      for (const double s : sigma) put(s);
+                                                    });
                             });
   }
 
   [[nodiscard]] VtuArray equivalent(const TensorField<dim>& stress) const
   {
-    return vtu_array<float>(
-        "von_mises", 1, n_points(),
-        [this, &stress](const auto& put)
-        { for_each_tensor(stress, [&put](const std::array<double, 6>& sigma) { put(von_mises(sigma)); }); });
+    return vtu_array<float>("von_mises", 1, n_points(),
+                            [this, &stress](const auto& put) {
+                              this->for_each_tensor(stress, [&put](const std::array<double, 6>& sigma)
+                                                    { put(von_mises(sigma)); });
+                            });
   }
 
   [[nodiscard]] VtuArray region() const
@@ -125,12 +117,37 @@ struct Level
   }
 };
 
+/// Whether the name is series.pvd, or one that level_file_name() gives.
+bool is_series_file(std::string_view name)
+{
+  constexpr std::string_view extension = ".vtu";
+  if (name == "series.pvd") return true;
+  for (const std::string_view stem : {"level_", "contact_"})
+  {
+    if (!name.starts_with(stem) || !name.ends_with(extension)) continue;
+    name.remove_prefix(stem.size());
+    name.remove_suffix(extension.size());
+    return name.size() >= 3 && std::ranges::all_of(name, [](char c) { return '0' <= c && c <= '9'; });
+  }
+  return false;
+}
+
 }  // namespace
 
 double out_of_plane_ratio(const Material& material)
 {
   if (material.plane == PlaneModel::stress) return 0.0;
   return material.lambda / (2.0 * (material.lambda + material.mu));
+}
+
+template <int dim>
+std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio)
+{
+  const double xy = 0.5 * (s(0, 1) + s(1, 0));
+  if constexpr (dim == 2)
+    return {s(0, 0), s(1, 1), ratio * (s(0, 0) + s(1, 1)), xy, 0.0, 0.0};
+  else
+    return {s(0, 0), s(1, 1), s(2, 2), xy, 0.5 * (s(1, 2) + s(2, 1)), 0.5 * (s(0, 2) + s(2, 0))};
 }
 
 double von_mises(const std::array<double, 6>& sigma)
@@ -168,8 +185,8 @@ TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space, cons
           [&space, &stress, table, block, entries](Index cell, std::span<Tensor<dim>> values)
           {
             std::ranges::copy(stress.dis_in(cell), block->begin());
-            const std::span<const double> lin = stress.lin_in(cell);
-            for (std::size_t i = 0; i < lin.size(); ++i) (*block)[i] += lin[i];
+            for (const std::span<const double> part : {stress.lin_in(cell), stress.reg_in(cell)})
+              for (std::size_t i = 0; i < part.size(); ++i) (*block)[i] += part[i];
             table->evaluate(make_frame(space.mesh(), cell), *block, *entries);
             for (int i = 0; i < table->n_points(); ++i)
               for (int r = 0; r < dim; ++r)
@@ -222,6 +239,25 @@ void write_series(const std::filesystem::path& directory, int n_levels)
   write_file(directory / "series.pvd", text);
 }
 
+void remove_series(const std::filesystem::path& directory)
+{
+  std::error_code error;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error))
+    if (is_series_file(entry.path().filename().string()) && !entry.is_directory(error))
+      old.push_back(entry.path());
+  for (const std::filesystem::path& file : old)
+  {
+    std::filesystem::remove(file, error);
+    if (error)
+      throw InputError({.file = file.string(), .key = {}},
+                       "cannot remove this file of an earlier run: " + error.message(),
+                       "choose another output.directory, or remove the file");
+  }
+}
+
+template std::array<double, 6> symmetric_part(const Tensor<2>&, double);
+template std::array<double, 6> symmetric_part(const Tensor<3>&, double);
 template TensorField<2> stress_field(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
 template TensorField<3> stress_field(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
 template TensorField<2> equilibrated_stress_field(const LagrangeSpace<2>&, const Stress<2>&);

@@ -50,6 +50,11 @@ template <int dim>
 /// stress.
 [[nodiscard]] double out_of_plane_ratio(const Material& material);
 
+/// Symmetric part of s in VTK's order (xx, yy, zz, xy, yz, xz); `ratio`, see out_of_plane_ratio(), gives zz
+/// in 2D.
+template <int dim>
+[[nodiscard]] std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio);
+
 /// Von Mises stress (3/2 dev sigma : dev sigma)^{1/2} of the symmetric tensor (xx, yy, zz, xy, yz, xz).
 [[nodiscard]] double von_mises(const std::array<double, 6>& sigma);
 
@@ -78,5 +83,9 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const Nitsc
 /// Writes series.pvd, which lists level_000.vtu, level_001.vtu, ... with the level as time.
 /// Throws InputError when the file cannot be written.
 void write_series(const std::filesystem::path& directory, int n_levels);
+
+/// Removes what an earlier run left of such a series: level_NNN.vtu and contact_NNN.vtu, N a digit, at least
+/// three, and series.pvd. Other files stay. Throws InputError when one cannot be removed.
+void remove_series(const std::filesystem::path& directory);
 
 }  // namespace tribound

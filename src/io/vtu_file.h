@@ -26,7 +26,8 @@ class VtuStream
 {
  public:
   /// Starts an array of `n_bytes` bytes at the end of `file`.
-  VtuStream(AtomicFile& file, std::uint64_t n_bytes);
+  /// `noisy`: numbers in which hardly more than bytes repeat; not looking for more saves half the time.
+  VtuStream(AtomicFile& file, std::uint64_t n_bytes, bool noisy);
 
   template <typename T>
   requires std::is_arithmetic_v<T>
@@ -44,6 +45,7 @@ class VtuStream
   void flush();
 
   AtomicFile* file_;
+  bool noisy_;
   std::uint64_t header_position_;
   std::vector<std::uint64_t> header_;  ///< number of blocks, block size, size of a last partial block, sizes
   std::vector<std::byte> block_;

@@ -100,19 +100,17 @@ void KspDeleter::operator()(_p_KSP* ksp) const
   KSPDestroy(&ksp);
 }
 
-LinearMethod choose_method(const SolverConfig& config, int dim, Index n_dofs)
+LinearMethod choose_method(const SolverConfig& config, int dim, Index n_dofs, Index direct_limit)
 {
-  // Tresca block, whole Newton loops: multigrid takes half the time of MUMPS at 20k degrees of freedom with
-  // p = 1 and 5 % less at 25k with p = 2. Below, the factorisation costs seconds at most and always works.
-  constexpr Index direct_limit_3d = 30'000;
   if (config.method != LinearMethod::automatic) return config.method;
-  return dim == 2 || n_dofs <= direct_limit_3d ? LinearMethod::direct : LinearMethod::iterative;
+  return dim == 2 || n_dofs <= direct_limit ? LinearMethod::direct : LinearMethod::iterative;
 }
 
 template <int dim>
-LinearSolver::LinearSolver(const SolverConfig& config, std::span<const Point<dim>> nodes, MatrixKind kind)
+LinearSolver::LinearSolver(const SolverConfig& config, std::span<const Point<dim>> nodes, MatrixKind kind,
+                           Index direct_limit)
     : config_(config),
-      method_(choose_method(config, dim, static_cast<Index>(dim * nodes.size()))),
+      method_(choose_method(config, dim, static_cast<Index>(dim * nodes.size()), direct_limit)),
       kind_(kind),
       dim_(dim)
 {
@@ -120,8 +118,8 @@ LinearSolver::LinearSolver(const SolverConfig& config, std::span<const Point<dim
     for (const Point<dim>& x : nodes) coordinates_.insert(coordinates_.end(), x.data(), x.data() + dim);
 }
 
-template LinearSolver::LinearSolver(const SolverConfig&, std::span<const Point<2>>, MatrixKind);
-template LinearSolver::LinearSolver(const SolverConfig&, std::span<const Point<3>>, MatrixKind);
+template LinearSolver::LinearSolver(const SolverConfig&, std::span<const Point<2>>, MatrixKind, Index);
+template LinearSolver::LinearSolver(const SolverConfig&, std::span<const Point<3>>, MatrixKind, Index);
 
 void LinearSolver::configure(const SparseMatrix& a)
 {
@@ -193,6 +191,26 @@ void LinearSolver::prepare(const SparseMatrix& a)
 LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b, double tolerance,
                                 std::span<double> x)
 {
+  if (method_ == LinearMethod::direct || config_.method == LinearMethod::iterative)
+    return attempt(a, b, tolerance, x);
+  try
+  {
+    return attempt(a, b, tolerance, x);
+  }
+  catch (const SolveError&)  // nobody insisted on multigrid
+  {
+    method_ = LinearMethod::direct;
+    ksp_.reset();  // its memory is needed
+    reuse_budget_ = 0;
+  }
+  LinearSolve result = attempt(a, b, tolerance, x);
+  result.fell_back = true;
+  return result;
+}
+
+LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double> b, double tolerance,
+                                  std::span<double> x)
+{
   if (!ksp_) configure(a);
   check(KSPSetOperators(ksp_.get(), a.handle(), a.handle()), "setting up a solver");
   LinearSolve result;
@@ -208,9 +226,9 @@ LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b
   const bool direct = method_ == LinearMethod::direct;
   StopRule rule{tolerance, direct ? 4 : config_.max_iterations, false, {}};
   const bool converged = iterate(ksp_.get(), b, rule, x);
-  const int iterations = static_cast<int>(rule.history.size()) - 1;
+  const int iterations = std::max(0, static_cast<int>(rule.history.size()) - 1);
   constexpr double useless = 1e-6;
-  if (!converged && !(rule.history.back() <= useless * norm(b)))
+  if (!converged && !(!rule.history.empty() && rule.history.back() <= useless * norm(b)))
     throw SolveError(
         direct ? "the tangent matrix is singular to working precision: contact that alone holds a body "
                  "may have opened (fix a displacement component, or raise nitsche.gamma0)"

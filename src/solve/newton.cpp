@@ -30,9 +30,10 @@ template <int dim>
 class Newton
 {
  public:
-  Newton(const NitscheForm<dim>& form, const NewtonConfig& newton, const SolverConfig& solver)
+  Newton(const NitscheForm<dim>& form, const NewtonConfig& newton, const SolverConfig& solver, double delta)
       : form_(form),
         config_(newton),
+        delta_(delta),
         linear_tolerance_(solver.tolerance),
         stiffness_(form.space().n_dofs(), dim, stiffness(form.problem(), form.space(), form.constraints())),
         contact_(form.space().n_dofs(), dim, form.contact_tangent(Linearisation::closed_sticking, zero())),
@@ -47,6 +48,8 @@ class Newton
  private:
   [[nodiscard]] std::vector<double> zero() const { return std::vector<double>(form_.space().n_dofs(), 0.0); }
   void initialise(std::span<const double> start);
+  void set_residual(std::vector<double> r);
+  void regularise(double delta);
   [[nodiscard]] std::vector<double> residual(std::span<const Point<dim>> traction,
                                              std::span<const double> ku) const;
   [[nodiscard]] double round_off() const;
@@ -63,6 +66,7 @@ class Newton
 
   const NitscheForm<dim>& form_;
   const NewtonConfig& config_;
+  double delta_;  ///< of T_delta
   double linear_tolerance_;
   SparseMatrix stiffness_;        ///< a(phi_j, phi_i)
   SparseMatrix contact_;          ///< -(DT(u)[phi_j], phi_i)_C
@@ -103,9 +107,23 @@ void Newton<dim>::initialise(std::span<const double> start)
   restrict_to_free(constraints, load_);
   scale_ = norm(load_) + norm(lifting);
   axpy(-1, lifting, load_);
-  traction_ = form_.traction(u_);
-  residual_ = residual(traction_, ku_);
+  traction_ = form_.traction(u_, delta_);
+  set_residual(residual(traction_, ku_));
+}
+
+template <int dim>
+void Newton<dim>::set_residual(std::vector<double> r)
+{
+  residual_ = std::move(r);
   residual_norm_ = norm(residual_);
+}
+
+/// From here on T_delta with this delta: the residual of u^k becomes another.
+template <int dim>
+void Newton<dim>::regularise(double delta)
+{
+  delta_ = delta;
+  set_residual(residual(form_.traction(u_, delta_), ku_));
 }
 
 /// <R, phi_i> = L(phi_i) - a(u, phi_i) + (t, phi_i)_C for free i.
@@ -162,7 +180,7 @@ double Newton<dim>::search(std::span<const double> direction, bool full_step)
     Trial trial{alpha, 0, u_, ku_, {}};
     axpy(alpha, direction, trial.u);
     axpy(alpha, k_direction, trial.ku);
-    trial.residual = residual(form_.traction(trial.u), trial.ku);
+    trial.residual = residual(form_.traction(trial.u, delta_), trial.ku);
     trial.norm = norm(trial.residual);
     if (full_step || trial.norm < best.norm) best = std::move(trial);
     if (full_step || best.norm < std::max(residual_norm_, good_enough)) break;
@@ -194,9 +212,9 @@ template <int dim>
 NewtonStep Newton<dim>::step(int k, Linearisation kind)
 {
   const bool first = k == 1;
-  contact_.set_values(form_.contact_tangent(kind, u_).values);
+  contact_.set_values(form_.contact_tangent(kind, u_, delta_).values);
   tangent_.assign_sum(stiffness_, contact_);
-  const std::vector<double> rhs = residual(form_.linearised_traction(kind, u_, u_), ku_);
+  const std::vector<double> rhs = residual(form_.linearised_traction(kind, u_, u_, delta_), ku_);
   const double target = std::max(
       {std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_, round_off(), 1e-14 * norm(rhs)});
   std::vector<double> delta = zero();
@@ -204,7 +222,7 @@ NewtonStep Newton<dim>::step(int k, Linearisation kind)
 
   std::vector<double> target_u = u_;
   axpy(1, delta, target_u);
-  const std::vector<Point<dim>> t_lin = form_.linearised_traction(kind, u_, target_u);
+  const std::vector<Point<dim>> t_lin = form_.linearised_traction(kind, u_, target_u, delta_);
   const double alpha = search(delta, first || !config_.damping);
   for (std::size_t i = 0; i < t_lin.size(); ++i)
     traction_[i] = first ? t_lin[i] : (1 - alpha) * traction_[i] + alpha * t_lin[i];
@@ -213,8 +231,11 @@ NewtonStep Newton<dim>::step(int k, Linearisation kind)
   report.step = k;
   report.residual = relative_residual();
   report.damping = alpha;
+  report.delta = delta_;
   report.linear_iterations = linear.iterations;
   report.factorised = linear.factorised;
+  report.method = linear_solver_.method();
+  report.fell_back = linear.fell_back;
   return report;
 }
 
@@ -232,12 +253,18 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     NewtonStep report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
     report.seconds = seconds_since(begin);
     result.steps.push_back(report);
-    const bool accepted = observer && observer({report, u_, traction_});
+    const NewtonAdvice advice = observer ? observer({report, u_, traction_, converged()}) : false;
+    if (advice.delta)
+    {
+      regularise(*advice.delta);
+      without_progress = 0;
+      continue;
+    }
 
     without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
     if (converged())
       result.status = NewtonStatus::converged;
-    else if (accepted)
+    else if (advice.good_enough)
       result.status = NewtonStatus::accepted;
     else if ((config_.damping && without_progress == 3) || !std::isfinite(residual_norm_))
     {
@@ -260,14 +287,14 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 template <int dim>
 NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
                         const NewtonConfig& newton, const SolverConfig& solver,
-                        const NewtonObserver<dim>& observer)
+                        const NewtonObserver<dim>& observer, double delta)
 {
-  return Newton<dim>(form, newton, solver).run(start, observer);
+  return Newton<dim>(form, newton, solver, delta).run(start, observer);
 }
 
 template NewtonResult<2> solve(const NitscheForm<2>&, std::span<const double>, const NewtonConfig&,
-                               const SolverConfig&, const NewtonObserver<2>&);
+                               const SolverConfig&, const NewtonObserver<2>&, double);
 template NewtonResult<3> solve(const NitscheForm<3>&, std::span<const double>, const NewtonConfig&,
-                               const SolverConfig&, const NewtonObserver<3>&);
+                               const SolverConfig&, const NewtonObserver<3>&, double);
 
 }  // namespace tribound

@@ -4,6 +4,7 @@
 /// The generalised Newton method of section 2 with damping and running traction.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct NewtonStep
   int linear_iterations = 0;  ///< GMRES iterations; 0 for a direct solve
   bool factorised = false;    ///< whether a new factorisation (or preconditioner) was made
   double seconds = 0.0;
+  double delta = 0.0;                          ///< of T_delta, method section 7; 0 is the plain T
+  LinearMethod method = LinearMethod::direct;  ///< of the linear solver
+  bool fell_back = false;  ///< whether multigrid failed and the direct solver took its place
 };
 
 enum class NewtonStatus
@@ -50,18 +54,30 @@ struct NewtonIterate
   const NewtonStep& step;
   std::span<const double> u;             ///< u^k
   std::span<const Point<dim>> traction;  ///< t^k
+  bool converged;                        ///< whether the residual is below the tolerance
+};
+
+/// What an observer says about an iterate.
+struct NewtonAdvice
+{
+  /// Implicit: an observer that never changes delta just says yes or no.
+  NewtonAdvice(bool iterate_is_good_enough) : good_enough(iterate_is_good_enough) {}
+
+  bool good_enough;             ///< the iterate is the result
+  std::optional<double> delta;  ///< instead: go on from it, converged or not, with T_delta for this delta
 };
 
 template <int dim>
-using NewtonObserver = std::function<bool(const NewtonIterate<dim>&)>;
+using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
 
-/// Solves the discrete problem. `start` is a solution carried from a coarser mesh (then the first step
-/// linearises there), or empty (then the first step is closed and sticking). `observer` is called after each
-/// step and says whether its iterate is good enough: then it is the result. Throws SolveError when a matrix
-/// is singular.
+/// Solves the discrete problem, with T_delta in the place of T for delta > 0. `start` is a solution carried
+/// from a coarser mesh (then the first step linearises there), or empty (then the first step is closed and
+/// sticking). `observer` is called after each step and says what to do with its iterate. t^k is in
+/// equilibrium with u^k whatever delta is, and goes on when delta changes. Throws SolveError when a matrix is
+/// singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
                                       const NewtonConfig& newton, const SolverConfig& solver,
-                                      const NewtonObserver<dim>& observer = {});
+                                      const NewtonObserver<dim>& observer = {}, double delta = 0);
 
 }  // namespace tribound

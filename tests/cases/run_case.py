@@ -16,6 +16,8 @@ EXPECTED.json holds a list of runs:
           "verification": { ... },   the same for verify.json
           "contact_csv": { "slip_x": [[1.25e-3, 2.72e-5, 0.05], ...] },   x, value there, relative tolerance
           "output": ["text"],        must appear in what the program prints
+          "after": "p1_4x2",         in the directory of that run, as it left it
+          "absent": ["level_009.vtu"],    files that must not be there
           "files": false } ] }       false: nothing may be written
 
 A value that is not a number must be equal. A tolerance for numbers around zero: [value, relative, absolute].
@@ -80,7 +82,8 @@ def contact_differences(file, expected):
 
 def run(program, expected, run_data, directory):
     """Runs the program once; yields what differs."""
-    shutil.rmtree(directory, ignore_errors=True)
+    if "after" not in run_data:
+        shutil.rmtree(directory, ignore_errors=True)
     arguments = run_data.get("arguments")
     if arguments is None:
         case = expected["folder"] / run_data.get("case", expected.get("case", ""))
@@ -102,6 +105,9 @@ def run(program, expected, run_data, directory):
             yield f"does not print {text!r} but\n{printed}"
     if not run_data.get("files", True) and directory.exists():
         yield f"has written {[file.name for file in directory.iterdir()]}"
+    for name in run_data.get("absent", []):
+        if (directory / name).exists():
+            yield f"leaves {name}"
     if "certificate" in run_data:
         yield from json_differences(directory / "certificate.json", run_data["certificate"])
     if "verification" in run_data:
@@ -118,7 +124,8 @@ def main():
     failed = 0
     for number, run_data in enumerate(expected["runs"]):
         name = run_data.get("name", str(number))
-        problems = list(run(program, expected, run_data, Path(output).resolve() / name))
+        directory = Path(output).resolve() / run_data.get("after", name)
+        problems = list(run(program, expected, run_data, directory))
         print(f"{name}: {'as expected' if not problems else 'DIFFERS'}")
         for problem in problems:
             print(f"  {problem}")

@@ -32,9 +32,10 @@ struct DiscreteCase
   DiscreteCase(const DiscreteCase&) = delete;
   DiscreteCase& operator=(const DiscreteCase&) = delete;
 
-  [[nodiscard]] NewtonResult<dim> solve() const
+  /// With T_delta for delta > 0.
+  [[nodiscard]] NewtonResult<dim> solve(double delta = 0) const
   {
-    return tribound::solve<dim>(form, {}, config.newton, config.solver);
+    return tribound::solve<dim>(form, {}, config.newton, config.solver, {}, delta);
   }
 
   Config config;  ///< what solve() obeys

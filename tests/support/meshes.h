@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,6 +109,48 @@ MeshData<dim> side_by_side(MeshData<dim> a, const MeshData<dim>& b, const std::s
   for (const std::string& name : b.region_names) a.region_names.push_back(name + suffix);
   for (const std::string& name : b.boundary_names) a.boundary_names.push_back(name + suffix);
   return a;
+}
+
+/// The mesh without the cells whose centre is in a region, and without the vertices that only they have.
+template <int dim, class Inside>
+MeshData<dim> without(MeshData<dim> data, const Inside& inside)
+{
+  std::vector<Cell<dim>> kept;
+  for (const Cell<dim>& cell : data.cells)
+  {
+    Point<dim> centre = Point<dim>::Zero();
+    for (const Index v : cell) centre += data.vertices[v] / (dim + 1);
+    if (!inside(centre)) kept.push_back(cell);
+  }
+  std::vector<Index> number(data.vertices.size(), -1);
+  std::vector<Point<dim>> vertices;
+  for (Cell<dim>& cell : kept)
+    for (Index& v : cell)
+    {
+      if (number[v] < 0)
+      {
+        number[v] = static_cast<Index>(vertices.size());
+        vertices.push_back(data.vertices[v]);
+      }
+      v = number[v];
+    }
+  std::set<std::set<Index>> facets;
+  for (const Cell<dim>& cell : kept)
+    for (int i = 0; i <= dim; ++i)
+    {
+      const auto facet = facet_vertices(cell, i);
+      facets.emplace(facet.begin(), facet.end());
+    }
+  std::erase_if(data.facets,
+                [&](TaggedFacet<dim>& facet)
+                {
+                  for (Index& v : facet.vertices) v = number[v];
+                  return !facets.contains(std::set<Index>(facet.vertices.begin(), facet.vertices.end()));
+                });
+  data.vertices = std::move(vertices);
+  data.regions.assign(kept.size(), 0);
+  data.cells = std::move(kept);
+  return data;
 }
 
 }  // namespace tribound::test

@@ -4,10 +4,12 @@
 
 #include "adapt/loop.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,9 @@ struct Row
   double bound;
   std::size_t newton;
   RunStatus status;
+  BoundComponents eta;
+  std::optional<int> delta_updates;
+  double delta;
 };
 
 struct History
@@ -40,22 +45,25 @@ struct History
 
 /// Runs T2D from the 4 x 2 mesh; `on_step` is called after every Newton step.
 History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop, const StepObserver& on_step = {},
-                  int max_steps = 50)
+                  int max_steps = 50, Stopping stopping = Stopping::adaptive)
 {
   Config config = parse_config(t2d_toml(p, 4, 2) + keys);
   config.newton.damping = true;
   config.newton.max_steps = max_steps;
+  config.newton.stopping = stopping;
   auto mesh = std::get<Mesh<2>>(read_mesh(config.mesh));
   const Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
   History history;
   const LoopObserver<2> observer = {
       on_step, [&](const LevelView<2>& view)
       {
-        const auto& [number, discrete, level, verdict, seconds] = view;
-        EXPECT_EQ(number, history.levels.size());
+        const Discretisation<2>& discrete = view.discrete;
+        const CertifiedLevel<2>& level = view.level;
+        EXPECT_EQ(view.number, history.levels.size());
         const int fixed = discrete.form.constraints().n_fixed();
         history.levels.push_back({discrete.mesh.n_cells(), double(discrete.space.n_dofs() - fixed),
-                                  level.estimate.total_sharp, level.steps.size(), verdict.status});
+                                  level.estimate.total_sharp, level.steps.size(), view.verdict.status,
+                                  level.estimate.global, level.delta_updates, level.steps.back().step.delta});
         EXPECT_LE(level.identities.largest(p), 1e-10);
       }};
   history.verdict = adapt<2>(
@@ -103,6 +111,93 @@ TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
   }
 }
 
+/// The bound of every step of the levels of a block in 3D.
+std::vector<std::vector<CertifiedStep>> steps_in_3d(const std::string& keys)
+{
+  const Config config = parse_config(R"(
+degree = 1
+mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [4, 2, 2] }
+material = { E = 1.0, nu = 0.3 }
+boundary.left.displacement = [0, 0, 0]
+boundary.top.traction = [0, -0.1, 0]
+boundary.right.traction = [0.04, 0.06, 0.02]
+boundary.bottom.contact = { friction = "tresca", threshold = 0.03 }
+adapt = { theta = 0.6, max_levels = 3 }
+)" + keys);
+  auto mesh = std::get<Mesh<3>>(read_mesh(config.mesh));
+  const Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
+  std::vector<std::vector<CertifiedStep>> steps;
+  const LoopObserver<3> observer = {{},
+                                    [&](const LevelView<3>& view)
+                                    {
+                                      const CertifiedLevel<3>& level = view.level;
+                                      steps.push_back(level.steps);
+                                      EXPECT_LE(level.identities.largest(1), 1e-10);
+                                      ASSERT_TRUE(level.steps.back().bound);
+                                      const Stress<3> own = level.stress;
+                                      const Estimate eta = estimate<3>(view.discrete.form, level.u, own);
+                                      EXPECT_EQ(level.steps.back().bound->total_sharp, eta.total_sharp);
+                                    }};
+  const std::atomic<bool> stop = false;
+  (void)adapt<3>(problem, config, std::make_unique<Discretisation<3>>(std::move(mesh), problem, config),
+                 observer, stop);
+  return steps;
+}
+
+/// In 3D the patches away from Gamma_C are left alone where sigma_lin says that the iterate will not do; what
+/// is kept is certified by its own stress all the same.
+TEST(Adapt, In3DOnlyIteratesThatMayBeKeptGetTheCompleteBound)
+{
+  int without = 0;
+  for (const auto& level : steps_in_3d(""))
+    for (const CertifiedStep& step : level)
+    {
+      ASSERT_TRUE(step.linearisation);
+      EXPECT_TRUE(step.bound || !step.accepted);
+      without += step.bound ? 0 : 1;
+    }
+  EXPECT_GT(without, 2);
+  for (const auto& level : steps_in_3d("newton.stopping = \"tolerance\"\n"))
+    for (const CertifiedStep& step : level) EXPECT_TRUE(step.bound);
+}
+
+/// Prints the table of the regularised variant: delta updates and Newton steps per level.
+void print_regularised(int p, const History& history)
+{
+  fmt::print(
+      "T2D, p = {}\nlevel  cells   dofs  N_reg  N_lin      delta  eta_reg/rest  eta_lin/rest      bound\n",
+      p);
+  int number = 0;
+  for (const Row& row : history.levels)
+    fmt::print("{:>5} {:>6} {:>6} {:>6} {:>6} {:>10.3e} {:>13.3f} {:>13.3f} {:>10.4e}\n", number++, row.cells,
+               row.dofs, row.delta_updates.value_or(0), row.newton, row.delta,
+               row.eta.regularisation() / row.eta.discretisation(),
+               row.eta.linearisation() / row.eta.discretisation(), row.bound);
+}
+
+TEST(Adapt, TheRegularisedVariantHasTheRateOfThePlainMethod)
+{
+  const double tolerances[] = {0.012, 0.0008, 0.0001};
+  const double deviations[] = {0.04, 0.06, 0.12};
+  for (int p = 1; p <= 3; ++p)
+  {
+    const std::string keys =
+        "adapt = { theta = 0.6, max_levels = 60, tolerance = " + std::to_string(tolerances[p - 1]) + " }\n";
+    const History plain = adapt_t2d(p, keys);
+    const History history = adapt_t2d(p, keys + "[regularisation]\n");
+    print_regularised(p, history);
+    EXPECT_EQ(history.verdict.status, RunStatus::certified) << history.verdict.reason;
+    const double first = p == 1 ? 1000 : 500;
+    EXPECT_NEAR(slope(history.levels, first), slope(plain.levels, first), deviations[p - 1]) << "p = " << p;
+    for (const Row& row : history.levels)
+    {
+      EXPECT_LE(row.eta.regularisation(), 0.1 * row.eta.discretisation());
+      EXPECT_TRUE(linearisation_is_negligible(row.eta, 0.1));
+    }
+    EXPECT_NEAR(history.levels.back().dofs, plain.levels.back().dofs, 0.3 * plain.levels.back().dofs);
+  }
+}
+
 TEST(Adapt, OnTheGivenMeshOnlyItCertifiesAndStops)
 {
   const History history = adapt_t2d(2, "adapt.max_levels = 0\n");
@@ -122,7 +217,11 @@ TEST(Adapt, KeepsToEveryLimit)
   const History time = adapt_t2d(1, "adapt.max_time = 1e-9\n");
   EXPECT_EQ(time.levels.size(), 1u);
   EXPECT_THAT(time.verdict.reason, HasSubstr("adapt.max_time"));
-  for (const History* history : {&cells, &dofs, &time}) EXPECT_EQ(history->verdict.status, RunStatus::budget);
+  const History memory = adapt_t2d(1, "adapt.max_memory = 1e-6\n");
+  EXPECT_EQ(memory.levels.size(), 1u);
+  EXPECT_THAT(memory.verdict.reason, HasSubstr("more than adapt.max_memory = 1e-06 GB"));
+  for (const History* history : {&cells, &dofs, &time, &memory})
+    EXPECT_EQ(history->verdict.status, RunStatus::budget);
 }
 
 TEST(Adapt, MaximumMarkingReachesTheToleranceToo)
@@ -130,6 +229,46 @@ TEST(Adapt, MaximumMarkingReachesTheToleranceToo)
   const History history =
       adapt_t2d(2, "adapt = { marking = \"maximum\", theta = 0.5, tolerance = 0.02, max_levels = 60 }");
   EXPECT_EQ(history.verdict.status, RunStatus::certified) << history.verdict.reason;
+}
+
+/// The contact part is a tenth to a half of the bound here: its facets are refined for its own sake.
+TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
+{
+  const std::string keys = "adapt = { tolerance = 0.02, max_levels = 60, separate_contact = ";
+  const History together = adapt_t2d(2, keys + "false }");
+  const History separate = adapt_t2d(2, keys + "true }");
+  EXPECT_EQ(separate.verdict.status, RunStatus::certified) << separate.verdict.reason;
+  EXPECT_LE(separate.levels.size(), together.levels.size());
+  EXPECT_LE(separate.levels.back().dofs, 1.5 * together.levels.back().dofs);
+}
+
+/// On every cell is more than on the whole, less than to the last digit.
+TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
+{
+  const auto steps = [](Stopping stopping)
+  {
+    std::atomic<bool> stop = false;
+    const History history =
+        adapt_t2d(1, "adapt = { tolerance = 0.05, max_levels = 60 }", stop, {}, 50, stopping);
+    EXPECT_EQ(history.verdict.status, RunStatus::certified);
+    std::size_t sum = 0;
+    for (const Row& row : history.levels) sum += row.newton;
+    return double(sum) / double(history.levels.size());
+  };
+  const double global = steps(Stopping::adaptive);
+  const double local = steps(Stopping::adaptive_local);
+  const double converged = steps(Stopping::tolerance);
+  EXPECT_LE(global, local);
+  EXPECT_LT(local, converged);
+  EXPECT_LT(global, converged);
+}
+
+TEST(Adapt, ExpectedMemoryGrowsFasterThanTheUnknowns)
+{
+  EXPECT_EQ(expected_memory(100, 100, 3, 2), 100);
+  EXPECT_DOUBLE_EQ(expected_memory(100, 300, 1, 3), 300);
+  EXPECT_GT(expected_memory(100, 300, 2, 2), 500);
+  EXPECT_DOUBLE_EQ(expected_memory(100, 300, 8, 3), 100 + 200 * 16);
 }
 
 TEST(Adapt, InterruptedItKeepsTheLastCompleteLevel)
@@ -165,6 +304,19 @@ TEST(Adapt, WithoutTheFirstLevelThereIsNoCertificate)
   const History history = adapt_t2d(1, "", stop, {}, 1);  // one step leaves a linearisation error
   EXPECT_EQ(history.levels.size(), 1u);
   EXPECT_EQ(history.verdict.status, RunStatus::failed);
+}
+
+TEST(Adapt, LinearisationIsNegligibleOnTheWholeOrOnEveryCell)
+{
+  Estimate estimate;
+  estimate.cells.resize(2);
+  estimate.cells[0].str = estimate.global.str = 1;
+  estimate.cells[1].lin1 = estimate.global.lin1 = 0.05;
+  EXPECT_TRUE(linearisation_is_negligible(estimate, {.stopping = Stopping::adaptive}));
+  EXPECT_FALSE(linearisation_is_negligible(estimate, {.stopping = Stopping::adaptive_local}));
+  EXPECT_FALSE(linearisation_is_negligible(estimate, {.stopping = Stopping::tolerance}));
+  estimate.cells[1].cnt = 0.5;
+  EXPECT_TRUE(linearisation_is_negligible(estimate, {.stopping = Stopping::adaptive_local}));
 }
 
 TEST(Adapt, LinearisationIsNegligibleWhenItsPartsAre)

@@ -66,6 +66,51 @@ TEST(Equilibrate, DoesNotDependOnTheNumberOfThreads)
   EXPECT_EQ(one.lin, three.lin);
 }
 
+/// Iterates of a block with friction, one after the other through the same Equilibrator: nothing of one gets
+/// into the next, and sigma_lin alone is that of the whole.
+template <int dim>
+void expect_the_same_in_parts(const std::string& toml)
+{
+  DiscreteCase<dim> c(toml);
+  Equilibrator<dim> equilibrator(c.form, 2);
+  const Estimator<dim> estimator(c.form);
+  for (const int k : {1, 2, 3})
+  {
+    c.config.newton.max_steps = k;
+    const NewtonResult<dim> newton = c.solve();
+    const Stress<dim> whole = equilibrate<dim>(c.form, newton.u, newton.traction, 1);
+    const Stress<dim> lin = equilibrator.linearisation(newton.u, newton.traction);
+    EXPECT_EQ(equilibrator(newton.u, newton.traction).dis, whole.dis);
+    EXPECT_TRUE(lin.dis.empty());
+    EXPECT_EQ(lin.lin_place, whole.lin_place);
+    EXPECT_EQ(lin.lin, whole.lin);
+
+    const BoundComponents eta = estimator(newton.u, whole).global;
+    const BoundComponents part = estimator.linearisation(lin);
+    EXPECT_GT(part.lin1, 0) << "iterate " << k;
+    EXPECT_NEAR(part.lin1, eta.lin1, 1e-13 * eta.lin1);
+    EXPECT_NEAR(part.lin2n, eta.lin2n, 1e-13 * eta.lin2n);
+    EXPECT_NEAR(part.lin2t, eta.lin2t, 1e-13 * eta.lin2t);
+    EXPECT_EQ(part.str + part.cnt + part.frc + part.osc + part.neu, 0);
+  }
+}
+
+TEST(Equilibrator, KeepsNothingOfAnIterateAndGivesSigmaLinAlone)
+{
+  for (int p = 1; p <= 3; ++p)
+  {
+    expect_the_same_in_parts<2>(t2d_toml(p, 8, 4) + "load.body = [\"0.01*x\", -0.02]\n");
+    expect_the_same_in_parts<3>("degree = " + std::to_string(p) + R"(
+mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [4, 2, 2] }
+material = { E = 1.0, nu = 0.3 }
+boundary.left.displacement = [0, 0, 0]
+boundary.top.traction = [0, -0.1, 0]
+boundary.right.traction = [0.04, 0.06, 0.02]
+boundary.bottom.contact = { friction = "coulomb", coefficient = 0.3 }
+)");
+  }
+}
+
 TEST(Estimate, VanishesForAConstantStress)
 {
   // u = (A x + c + B y, D y) slips on y = 0, see the reference solutions.

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,9 +51,9 @@ struct Effectivities
   [[nodiscard]] double last() const { return of_iterates.back(); }
 };
 
-/// Prints a line of the table: bound / dual norm of each iterate.
+/// Prints a line of the table: bound / dual norm of each iterate; with T_delta for delta > 0.
 template <int dim>
-Effectivities effectivities(const EffectivityCase<dim>& which)
+Effectivities effectivities(const EffectivityCase<dim>& which, double delta = 0)
 {
   DiscreteCase<dim> c(fmt::format("degree = {}\n", which.degree) + which.problem.text, which.mesh.data);
   DualNorm<dim> dual_norm(c.form, {.refinements = 2, .degree = which.degree + 2});
@@ -65,8 +64,9 @@ Effectivities effectivities(const EffectivityCase<dim>& which)
   for (const int k : {1, 2, all_steps})
   {
     c.config.newton.max_steps = k;
-    const NewtonResult<dim> newton = c.solve();
-    const Estimate eta = estimate<dim>(c.form, newton.u, equilibrate<dim>(c.form, newton.u, newton.traction));
+    const NewtonResult<dim> newton = c.solve(delta);
+    const Estimate eta =
+        estimate<dim>(c.form, newton.u, equilibrate<dim>(c.form, newton.u, newton.traction, 0, delta));
     const double below = dual_norm(newton.u);
     result.of_iterates.push_back(eta.total_sharp / below);
     result.converged = newton.status == NewtonStatus::converged;
@@ -82,48 +82,6 @@ inline void expect_guaranteed(const Effectivities& found, const std::string& nam
 {
   EXPECT_TRUE(found.converged) << name;
   for (const double e : found.of_iterates) EXPECT_GE(e, 1.0) << name;
-}
-
-/// The mesh without the cells whose centre is in a region, and without the vertices that only they have.
-template <int dim, class Inside>
-MeshData<dim> without(MeshData<dim> data, const Inside& inside)
-{
-  std::vector<Cell<dim>> kept;
-  for (const Cell<dim>& cell : data.cells)
-  {
-    Point<dim> centre = Point<dim>::Zero();
-    for (const Index v : cell) centre += data.vertices[v] / (dim + 1);
-    if (!inside(centre)) kept.push_back(cell);
-  }
-  std::vector<Index> number(data.vertices.size(), -1);
-  std::vector<Point<dim>> vertices;
-  for (Cell<dim>& cell : kept)
-    for (Index& v : cell)
-    {
-      if (number[v] < 0)
-      {
-        number[v] = static_cast<Index>(vertices.size());
-        vertices.push_back(data.vertices[v]);
-      }
-      v = number[v];
-    }
-  std::set<std::set<Index>> facets;
-  for (const Cell<dim>& cell : kept)
-    for (int i = 0; i <= dim; ++i)
-    {
-      const auto facet = facet_vertices(cell, i);
-      facets.emplace(facet.begin(), facet.end());
-    }
-  std::erase_if(data.facets,
-                [&](TaggedFacet<dim>& facet)
-                {
-                  for (Index& v : facet.vertices) v = number[v];
-                  return !facets.contains(std::set<Index>(facet.vertices.begin(), facet.vertices.end()));
-                });
-  data.vertices = std::move(vertices);
-  data.regions.assign(kept.size(), 0);
-  data.cells = std::move(kept);
-  return data;
 }
 
 }  // namespace tribound::test

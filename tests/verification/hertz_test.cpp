@@ -1,6 +1,6 @@
 /// @file hertz_test.cpp
-/// The Hertz examples against half-space theory, and SSNV128 against its published displacements. The case
-/// files of the examples themselves are solved; what is printed is in their README.
+/// The Hertz examples against half-space theory, and SSNV128 against its published displacements. The
+/// examples themselves are run, adaptively; what is printed is in their README.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,11 +9,17 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "adapt/loop.h"
+#include "contact/nitsche.h"
+#include "mesh/gmsh.h"
 
 namespace tribound::test
 {
@@ -30,16 +36,6 @@ constexpr double R = 10;  ///< mm
 Config example(const std::string& name)
 {
   return read_config(std::filesystem::path(EXAMPLES) / name / "case.toml");
-}
-
-template <int dim>
-NewtonResult<dim> converged(const DiscreteCase<dim>& c)
-{
-  NewtonResult<dim> newton = c.solve();
-  EXPECT_EQ(newton.status, NewtonStatus::converged) << newton.message;
-  fmt::print("{} dofs, {} contact facets, {} Newton steps\n", c.space.n_dofs(),
-             c.form.contact_facets().size(), newton.steps.size());
-  return newton;
 }
 
 /// Hertz's pressure p(r) = p0 (1 - (r/a)^2)^(1/2) for r < a.
@@ -75,15 +71,15 @@ struct Sample
 /// At the quadrature points of the contact boundary, r the distance from the axis x = 0 (2D) or x = z = 0
 /// (3D).
 template <int dim>
-std::vector<Sample> pressure_samples(const DiscreteCase<dim>& c, std::span<const double> u)
+std::vector<Sample> pressure_samples(const NitscheForm<dim>& form, std::span<const double> u)
 {
-  const Quadrature<dim - 1>& rule = c.form.facet_rule();
-  const auto table = tabulate_on_facets<dim>(c.space.basis(), rule.points);
+  const Quadrature<dim - 1>& rule = form.facet_rule();
+  const auto table = tabulate_on_facets<dim>(form.space().basis(), rule.points);
   std::vector<Sample> samples;
-  for (std::size_t k = 0; k < c.form.contact_facets().size(); ++k)
+  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
   {
-    const double scale = c.form.contact_facets()[k].geometry.measure * (dim - 1);
-    const auto states = c.form.contact_states(u, static_cast<int>(k), table);
+    const double scale = form.contact_facets()[k].geometry.measure * (dim - 1);
+    const auto states = form.contact_states(u, static_cast<int>(k), table);
     for (int q = 0; q < rule.size(); ++q)
     {
       const Point<dim>& x = states[q].point;
@@ -92,6 +88,62 @@ std::vector<Sample> pressure_samples(const DiscreteCase<dim>& c, std::span<const
     }
   }
   return samples;
+}
+
+/// The largest contact facet with a point at r < r_max.
+template <int dim>
+double largest_facet(const NitscheForm<dim>& form, double r_max)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  double largest = 0;
+  for (const ContactFacet<dim>& facet : form.contact_facets())
+  {
+    const auto vertices = facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local);
+    if (std::ranges::any_of(vertices, [&](Index v) { return mesh.vertex(v).norm() < r_max; }))
+      largest = std::max(largest, facet.geometry.diameter);
+  }
+  return largest;
+}
+
+/// Runs the example as the program does; `look` is shown every level, the last one last.
+template <int dim>
+void run_example(const Config& config, const std::function<void(const LevelView<dim>&)>& look)
+{
+  Mesh<dim> mesh = std::get<Mesh<dim>>(read_mesh(config.mesh));
+  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  auto first = std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config);
+  const auto show = [&](const LevelView<dim>& view)
+  {
+    fmt::print("level {}: {} cells, {} contact facets, {} Newton steps, bound {:.3g} %\n", view.number,
+               view.discrete.mesh.n_cells(), view.discrete.form.contact_facets().size(),
+               view.level.steps.size(), 100 * view.level.estimate.total_sharp / view.level.sigma_norm);
+    look(view);
+  };
+  const Verdict verdict = adapt<dim>(problem, config, std::move(first), {{}, show}, false);
+  EXPECT_EQ(verdict.status, RunStatus::certified) << verdict.reason;
+}
+
+/// The contact boundary of the last level.
+struct ContactZone
+{
+  double force = 0;  ///< -(integral of T^n)
+  double h = 0;      ///< the largest facet in contact
+  std::vector<Sample> samples;
+};
+
+template <int dim>
+ContactZone contact_zone(const Config& config, double a)
+{
+  ContactZone zone;
+  run_example<dim>(config,
+                   [&](const LevelView<dim>& view)
+                   {
+                     const NitscheForm<dim>& form = view.discrete.form;
+                     const auto t = form.traction(view.level.u);
+                     zone = {-contact_resultants<dim>(form, t).normal, largest_facet(form, a),
+                             pressure_samples(form, view.level.u)};
+                   });
+  return zone;
 }
 
 /// The a and p0 of the profile p^2 = p0^2 (1 - (r/a)^2) that fits the samples with r < r_max best (least
@@ -163,88 +215,73 @@ void print_comparison(const std::string& what, double computed, double theory)
              100 * (computed / theory - 1));
 }
 
-template <int dim>
-double largest_facet_in_contact(const DiscreteCase<dim>& c, double a)
-{
-  double largest = 0;
-  for (const ContactFacet<dim>& facet : c.form.contact_facets())
-  {
-    const auto vertices = facet_vertices(c.mesh.cell(facet.facet.cell), facet.facet.local);
-    const bool near =
-        std::ranges::any_of(vertices, [&](Index v) { return c.mesh.vertex(v).norm() < 1.1 * a; });
-    if (near) largest = std::max(largest, facet.geometry.diameter);
-  }
-  return largest;
-}
-
 /// Compares profile and radius; `closed_radius` is the radius of the closed part of the boundary.
-template <int dim>
-void compare(const DiscreteCase<dim>& c, std::span<const Sample> samples, const Hertz& theory,
-             double closed_radius, double p0_tolerance)
+void compare(const ContactZone& zone, const Hertz& theory, double closed_radius, double tolerance)
 {
-  const double h = largest_facet_in_contact(c, theory.a);
-  const Hertz fit = fitted(samples, 0.8 * theory.a);
-  const double deviation = mean_deviation(samples, theory, 0.9 * theory.a);
-  fmt::print("facets of size {:.4f} = a/{:.1f}\n{:<32} {:>10} {:>10}\n", h, theory.a / h, "", "computed",
-             "theory");
+  const Hertz fit = fitted(zone.samples, 0.8 * theory.a);
+  const double deviation = mean_deviation(zone.samples, theory, 0.9 * theory.a);
+  fmt::print("facets in contact up to {:.4f} = a/{:.1f}\n{:<32} {:>10} {:>10}\n", zone.h, theory.a / zone.h,
+             "", "computed", "theory");
   print_comparison("p0 (fit over r < 0.8 a)", fit.p0, theory.p0);
   print_comparison("a (fit over r < 0.8 a)", fit.a, theory.a);
   print_comparison("a (closed part)", closed_radius, theory.a);
   fmt::print("mean deviation of p for r < 0.9 a: {:.2f} % of p0\n", 100 * deviation);
-  print_profile(samples, theory);
+  print_profile(zone.samples, theory);
 
-  EXPECT_NEAR(fit.p0, theory.p0, p0_tolerance * theory.p0);
-  EXPECT_NEAR(fit.a, theory.a, p0_tolerance * theory.a);
-  EXPECT_NEAR(closed_radius, theory.a, h);
-  EXPECT_LE(deviation, p0_tolerance);
+  EXPECT_NEAR(fit.p0, theory.p0, tolerance * theory.p0);
+  EXPECT_NEAR(fit.a, theory.a, tolerance * theory.a);
+  EXPECT_NEAR(closed_radius, theory.a, zone.h);
+  EXPECT_LE(deviation, tolerance);
 }
 
 TEST(Hertz, Cylinder)
 {
-  const DiscreteCase<2> c(example("03b_hertz_cylinder"));
-  const NewtonResult<2> newton = converged(c);
-  const double half = -contact_resultants<2>(c.form, newton.traction).normal;
-  EXPECT_NEAR(half, 2000, 1e-6 * half);
-  const std::vector<Sample> samples = pressure_samples(c, newton.u);
-  compare(c, samples, cylinder_theory(2 * half), closed_measure(samples), 0.01);
+  const Hertz whole = cylinder_theory(4000);
+  const ContactZone zone = contact_zone<2>(example("03b_hertz_cylinder"), whole.a);
+  EXPECT_NEAR(zone.force, 2000, 1e-4 * zone.force);
+  compare(zone, cylinder_theory(2 * zone.force), closed_measure(zone.samples), 0.01);
 }
 
 TEST(Hertz, Sphere)
 {
-  const DiscreteCase<3> c(example("03_hertz_sphere"));
-  const NewtonResult<3> newton = converged(c);
-  const double quarter = -contact_resultants<3>(c.form, newton.traction).normal;
-  EXPECT_NEAR(quarter, 100 * pi * R * R / 4,
-              5e-3 * quarter);  // straight facets leave out a part of the loaded disc
-  const std::vector<Sample> samples = pressure_samples(c, newton.u);
-  compare(c, samples, sphere_theory(4 * quarter), std::sqrt(4 * closed_measure(samples) / pi), 0.03);
+  const Hertz whole = sphere_theory(100 * pi * R * R);
+  const ContactZone zone = contact_zone<3>(example("03_hertz_sphere"), whole.a);
+  EXPECT_NEAR(zone.force, 100 * pi * R * R / 4,
+              2e-2 * zone.force);  // straight facets leave out a part of the loaded disc
+  compare(zone, sphere_theory(4 * zone.force), std::sqrt(4 * closed_measure(zone.samples) / pi), 0.03);
 }
 
-/// u_x at the node of the base y = 0 next to x.
-double base_displacement(const DiscreteCase<2>& c, std::span<const double> u, double x)
+/// u_x on the base y = 0, piecewise linear between the quadrature points (and beyond the outermost ones).
+double base_displacement(const NitscheForm<2>& form, std::span<const double> u, double x)
 {
-  const std::vector<Point<2>> nodes = c.space.node_points();
-  const auto distance = [&](const Point<2>& node) { return (node - Point<2>(x, 0)).norm(); };
-  const auto nearest = std::ranges::min_element(nodes, {}, distance) - nodes.begin();
-  return u[2 * nearest];
+  const auto table = tabulate_on_facets<2>(form.space().basis(), form.facet_rule().points);
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
+    for (const ContactState<2>& state : form.contact_states(u, static_cast<int>(k), table))
+      points.emplace_back(state.point[0], state.slip[0]);
+  std::ranges::sort(points);
+  const auto after = std::ranges::upper_bound(points, std::pair(x, 0.0));
+  const auto i = std::clamp<std::ptrdiff_t>(after - points.begin(), 1, std::ssize(points) - 1);
+  const auto& [x0, u0] = points[i - 1];
+  const auto& [x1, u1] = points[i];
+  return u0 + (u1 - u0) * (x - x0) / (x1 - x0);
 }
 
 TEST(Ssnv128, HorizontalDisplacementOfTheBase)
 {
-  const DiscreteCase<2> c(example("04_ssnv128"));
-  const NewtonResult<2> newton = converged(c);
-  struct Published
+  constexpr std::array<double, 5> x = {0, 1.25, 5, 7.5, 11.25};               // mm
+  constexpr std::array<double, 5> published = {2.86, 2.72, 2.28, 1.98, 1.5};  // 1e-5 m
+  std::array<double, 5> computed{};
+  run_example<2>(example("04_ssnv128"),
+                 [&](const LevelView<2>& view)
+                 {
+                   for (std::size_t i = 0; i < x.size(); ++i)
+                     computed[i] = 1e5 * base_displacement(view.discrete.form, view.level.u, 1e-3 * x[i]);
+                 });
+  for (std::size_t i = 0; i < x.size(); ++i)
   {
-    double x;    ///< mm
-    double u_x;  ///< 1e-5 m
-  };
-  constexpr std::array<Published, 5> published = {
-      {{0, 2.86}, {1.25, 2.72}, {5, 2.28}, {7.5, 1.98}, {11.25, 1.5}}};
-  for (const auto& [x, u_x] : published)
-  {
-    const double computed = base_displacement(c, newton.u, 1e-3 * x) * 1e5;
-    print_comparison(fmt::format("u_x at x = {} mm, 1e-5 m", x), computed, u_x);
-    EXPECT_NEAR(computed, u_x, 0.05 * u_x);
+    print_comparison(fmt::format("u_x at x = {} mm, 1e-5 m", x[i]), computed[i], published[i]);
+    EXPECT_NEAR(computed[i], published[i], 0.05 * published[i]);
   }
 }
 

@@ -139,15 +139,41 @@ TEST(Mark, NothingWhereNothingIsEstimated)
   EXPECT_THAT(mark_maximum({}, 0.5), IsEmpty());
 }
 
+/// Cells with these values of str and of cnt.
+std::vector<BoundComponents> cells_with(std::span<const double> str, std::span<const double> cnt)
+{
+  std::vector<BoundComponents> cells(str.size());
+  for (std::size_t c = 0; c < str.size(); ++c) cells[c].str = str[c], cells[c].cnt = cnt[c];
+  return cells;
+}
+
 TEST(Mark, AsTheCaseAsks)
 {
-  const std::vector<double> eta{1.0, 1.0, 1.0, 2.0};
+  const std::vector<BoundComponents> eta =
+      cells_with(std::vector{1.0, 1.0, 1.0, 2.0}, std::vector{0.0, 0.0, 0.0, 0.0});
   AdaptConfig config;
   config.theta = 0.5;
   config.marking = Marking::doerfler;
   EXPECT_THAT(mark(eta, config), ElementsAre(3));
   config.marking = Marking::maximum;
   EXPECT_THAT(mark(eta, config), ElementsAre(0, 1, 2, 3));
+  config.theta = 1;
+  EXPECT_THAT(mark(eta, config), ElementsAre(3));
+  config.marking = Marking::uniform;
+  EXPECT_THAT(mark(eta, config), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Mark, TheContactPartIsMarkedForItselfWhenAsked)
+{
+  const std::vector<double> str{1.0, 8.0, 1.0, 1.0};
+  AdaptConfig config;
+  config.theta = 0.9;
+  const std::vector<BoundComponents> cells = cells_with(str, std::vector{2.0, 0.0, 0.0, 0.5});
+  EXPECT_THAT(mark(cells, config), ElementsAre(1));
+  config.separate_contact = true;
+  EXPECT_THAT(mark(cells, config), ElementsAre(0, 1));
+  // Below a tenth of the bound it is left to the body.
+  EXPECT_THAT(mark(cells_with(str, std::vector{0.5, 0.0, 0.0, 0.0}), config), ElementsAre(1));
 }
 
 }  // namespace

@@ -56,6 +56,8 @@ max_levels = 3
 max_dofs = 3_000_000
 max_cells = 1000
 max_time = 60
+max_memory = 2.5
+separate_contact = true
 
 [certify]
 contact_rule = "reference"
@@ -66,9 +68,17 @@ package = "umfpack"
 tolerance = 1e-8
 max_iterations = 7
 
+[study]
+reference_degree = 4
+reference_factor = 0.125
+max_reference_dofs = 1000
+dual_norm_dofs = 0
+figures = false
+
 [output]
 directory = "results"
 vtu = false
+report = false
 )toml";
 
 const Point<2> somewhere(0.25, 4.0);
@@ -90,13 +100,39 @@ TEST(Config, ReadsEveryKey)
   EXPECT_EQ(config.adapt.max_dofs, 3'000'000);
   EXPECT_EQ(config.adapt.max_cells, 1000);
   EXPECT_EQ(config.adapt.max_time, 60.0);
+  EXPECT_EQ(config.adapt.max_memory, 2.5);
+  EXPECT_TRUE(config.adapt.separate_contact);
   EXPECT_EQ(config.certify.contact_rule, ContactRule::reference);
   EXPECT_EQ(config.solver.method, LinearMethod::iterative);
   EXPECT_EQ(config.solver.package, DirectPackage::umfpack);
   EXPECT_EQ(config.solver.tolerance, 1e-8);
   EXPECT_EQ(config.solver.max_iterations, 7);
+  EXPECT_EQ(config.study.reference_degree, 4);
+  EXPECT_EQ(config.study.reference_factor, 0.125);
+  EXPECT_EQ(config.study.max_reference_dofs, 1000);
+  EXPECT_EQ(config.study.dual_norm_dofs, 0);
+  EXPECT_FALSE(config.study.figures);
   EXPECT_EQ(config.output.directory, "results");
   EXPECT_FALSE(config.output.vtu);
+  EXPECT_FALSE(config.output.report);
+}
+
+TEST(Config, ReadsTheRegularisation)
+{
+  EXPECT_FALSE(parse_config(complete_case).regularisation) << "the plain method";
+  const Config with_defaults = parse_config(std::string(complete_case) + "[regularisation]\n");
+  ASSERT_TRUE(with_defaults.regularisation);
+  EXPECT_EQ(with_defaults.regularisation->delta, 1.0);
+  EXPECT_EQ(with_defaults.regularisation->factor, 0.25);
+  EXPECT_EQ(with_defaults.regularisation->gamma_reg, 0.1);
+  EXPECT_EQ(with_defaults.regularisation->max_updates, 20);
+  const Config config =
+      parse_config(std::string(complete_case) +
+                   "[regularisation]\ndelta = 0.5\nfactor = 0.1\ngamma_reg = 0.2\nmax_updates = 7\n");
+  EXPECT_EQ(config.regularisation->delta, 0.5);
+  EXPECT_EQ(config.regularisation->factor, 0.1);
+  EXPECT_EQ(config.regularisation->gamma_reg, 0.2);
+  EXPECT_EQ(config.regularisation->max_updates, 7);
 }
 
 TEST(Config, ReadsMaterialAndLoad)
@@ -166,11 +202,14 @@ TEST(Config, HasTheDefaultsOfTheHeader)
   EXPECT_EQ(config.adapt.max_dofs, 2'000'000);
   EXPECT_FALSE(config.adapt.max_cells);
   EXPECT_FALSE(config.adapt.max_time);
+  EXPECT_FALSE(config.adapt.max_memory);
+  EXPECT_FALSE(config.adapt.separate_contact);
   EXPECT_EQ(config.certify.contact_rule, ContactRule::resolved);
   EXPECT_EQ(config.solver.method, LinearMethod::automatic);
   EXPECT_EQ(config.solver.package, DirectPackage::automatic);
   EXPECT_EQ(config.output.directory, "out");
   EXPECT_TRUE(config.output.vtu);
+  EXPECT_TRUE(config.output.report);
   EXPECT_TRUE(std::holds_alternative<Frictionless>(config.boundaries[0].contact->friction));
   EXPECT_TRUE(config.boundaries[0].contact->gap.is_zero());
 }

@@ -210,6 +210,46 @@ TEST(LinearisedTraction, AgreesWithDifferences)
     }
 }
 
+/// T_delta has no kinks: its tangent is its derivative wherever u is, on either side of them and between.
+template <int dim>
+void expect_regularised_tangent_agrees(const Law& law, double delta)
+{
+  const DiscreteCase<dim> c(contact_case<dim>(2, law.slipping), bent_block<dim>(7));
+  const NitscheForm<dim>& form = c.form;
+  const std::vector<double> u = random_free_vector(form.constraints(), 0.02, 3);
+  const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
+  const std::vector<ContactStatus> found = statuses(form, u);
+  EXPECT_GT(std::ranges::count(found, ContactStatus::open), 0);
+  EXPECT_GT(std::ranges::count(found, ContactStatus::slip), 0);
+  constexpr double h = 1e-7;
+
+  const std::vector<Point<dim>> at_u = form.traction(u, delta);
+  std::vector<Point<dim>> difference = form.traction(sum(u, h, step), delta);
+  const std::vector<Point<dim>> behind = form.traction(sum(u, -h, step), delta);
+  const std::vector<Point<dim>> there =
+      form.linearised_traction(Linearisation::newton, u, sum(u, 1, step), delta);
+  for (std::size_t i = 0; i < at_u.size(); ++i)
+  {
+    difference[i] = (difference[i] - behind[i]) / (2 * h);
+    EXPECT_LE((there[i] - at_u[i] - difference[i]).norm(), 2e-5 * (1 + difference[i].norm()));
+  }
+  std::vector<double> forces(form.space().n_dofs(), 0.0);
+  form.add_contact_load(difference, forces);
+  const std::vector<double> tangent = multiply(form.contact_tangent(Linearisation::newton, u, delta), step);
+  EXPECT_LE(norm(sum(tangent, 1, free_part(form.constraints(), forces))), 2e-5 * norm(tangent));
+}
+
+TEST(RegularisedTangent, AgreesWithDifferencesEverywhere)
+{
+  for (const Law& law : {frictionless, tresca, coulomb})
+    for (const double delta : {0.05, 1.0})
+    {
+      SCOPED_TRACE(law.name);
+      expect_regularised_tangent_agrees<2>(law, delta);
+      expect_regularised_tangent_agrees<3>(law, delta);
+    }
+}
+
 /// A block with flat bottom of the friction law, moved by (0.02, -0.1) and stretched upwards by 1 %: with
 /// E = 1, nu = 0.25 in plane strain, lambda = mu = 0.4 and sigma_yy = 1.2 * 0.01, sigma_xy = 0; facets of
 /// length 0.5, gamma = gamma_0 1.2 / 0.5.

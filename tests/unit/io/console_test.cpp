@@ -138,13 +138,33 @@ TEST(Console, Summary)
             "results       out\n");
 }
 
+TEST(Console, SummaryJudgesSliding)
+{
+  RunRecord run;
+  LevelRecord level;
+  level.figures.boundary_contact = {{"base", {-12.0, 32.0}, -32.0, 12.0, 12.0, 0.75},
+                                    {"pad", {0.0, 4.0}, -4.0, 0.0, 0.0, 0.5},
+                                    {"rail", {1.0, 4.0}, -4.0, 1.0, 1.0, {}}};
+  run.levels = {level};
+  EXPECT_THAT(
+      summary_text(run, ""),
+      AllOf(
+          HasSubstr(
+              "sliding       base: sliding factor H/N = 0.375, mu_F = 0.75: factor of safety mu_F N/H = 2\n"),
+          HasSubstr("sliding       pad: sliding factor H/N = 0, mu_F = 0.5: no sliding force\n"),
+          Not(HasSubstr("rail: sliding"))));
+}
+
 TEST(Console, InfoLeavesOutWhatIsUnknown)
 {
   BuildFacts build = build_facts();
   build.blas = "OpenBLAS 0.3.21";
   build.blas_threads = 1;
   EXPECT_THAT(info_text(build), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
-                                      HasSubstr("OpenBLAS 0.3.21, 1 thread\n"), Not(HasSubstr("PETSc"))));
+                                      HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
+                                      HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
+  build.report_page = "/usr/share/tribound/report.html";
+  EXPECT_THAT(info_text(build), HasSubstr("report page   /usr/share/tribound/report.html\n"));
 }
 
 }  // namespace

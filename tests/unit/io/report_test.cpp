@@ -35,7 +35,7 @@ RunRecord uncertified_run()
   level.figures.max_displacement = 1.0 / 3.0;
   level.figures.contact = {"", {0.25, 2.0}, -2.0, 0.25, 0.375};
   level.figures.boundary_contact = {{"bottom", {0.25, 2.0}, -2.0, 0.25, 0.375}};
-  level.times = {1.5, {}, 2.0};
+  level.times = {.solve = 1.5, .certify = {}, .level = 2.0, .refinement = {}};
   run.levels = {level};
   return run;
 }
@@ -76,6 +76,64 @@ TEST(Report, NewtonTable)
                   "0,1,0.5,1,,,,,,,,,,0", "0,2,1e-12,0.5,1,2,3,4,5,6,7,8,20,1"));
 }
 
+TEST(Report, AStepWithoutABoundShowsItsLinearisationError)
+{
+  RunRecord run = certified_run();
+  run.levels[0].newton[0].linearisation = BoundComponents{.lin1 = 3, .lin2n = 2, .lin2t = 1};
+  EXPECT_EQ(lines(newton_csv(run))[1], "0,1,0.5,1,,,,3,,,2,1,,0");
+}
+
+TEST(Report, TimesOfEveryStage)
+{
+  RunRecord run = certified_run();
+  run.levels[0].times.refinement = {0.5, 0.25, 0.125};
+  run.levels[0].times.output = 0.0625;
+  run.levels[0].times.solve_cpu = 1.75;
+  run.levels[0].times.certify_cpu = 0.75;
+  run.levels[0].times.level_cpu = 3.0;
+  const json expected = {{"solve", 1.5},        {"certify", 0.25},  {"bisect", 0.5}, {"discretise", 0.25},
+                         {"transfer", 0.125},   {"output", 0.0625}, {"level", 2.0},  {"solve_cpu", 1.75},
+                         {"certify_cpu", 0.75}, {"level_cpu", 3.0}};
+  EXPECT_EQ(json::parse(certificate_json(run))["levels"][0]["times"], expected);
+}
+
+RunRecord regularised_run()
+{
+  RunRecord run = certified_run();
+  LevelRecord& level = run.levels[0];
+  level.bound->global.reg1 = 9;
+  level.bound->global.reg2n = 10;
+  level.bound->global.reg2t = 11;
+  level.newton[1].bound = level.bound;
+  level.newton[1].step.delta = 0.125;
+  level.delta_updates = 3;
+  return run;
+}
+
+TEST(Report, ARegularisedRunHasItsColumnsAtTheEnd)
+{
+  EXPECT_THAT(lines(convergence_csv(regularised_run())),
+              ::testing::ElementsAre(
+                  lines(convergence_csv(certified_run()))[0] + ",reg1,reg2n,reg2t,delta,delta_updates",
+                  lines(convergence_csv(certified_run()))[1] + ",9,10,11,0.125,3"));
+  const std::vector<std::string> plain = lines(newton_csv(certified_run()));
+  EXPECT_THAT(lines(newton_csv(regularised_run())),
+              ::testing::ElementsAre(plain[0] + ",reg1,reg2n,reg2t,delta", plain[1] + ",,,,0",
+                                     plain[2] + ",9,10,11,0.125"));
+}
+
+TEST(Report, CertificateOfARegularisedRun)
+{
+  const json certificate = json::parse(certificate_json(regularised_run()));
+  EXPECT_EQ(certificate["components"]["reg2t"], 11.0);
+  EXPECT_EQ(certificate["regularisation"]["delta"], 0.125);
+  EXPECT_EQ(certificate["regularisation"]["updates"], 3);
+  EXPECT_EQ(certificate["levels"][0]["newton"][1]["delta"], 0.125);
+  const json plain = json::parse(certificate_json(certified_run()));
+  EXPECT_FALSE(plain.contains("regularisation"));
+  EXPECT_FALSE(plain["components"].contains("reg1"));
+}
+
 TEST(Report, CertificateOfAnUncertifiedRun)
 {
   const json certificate = json::parse(certificate_json(uncertified_run()));
@@ -104,6 +162,35 @@ TEST(Report, CertificateOfACertifiedRun)
   EXPECT_EQ(certificate["relative"], 20.0);
   EXPECT_EQ(certificate["components"]["lin2t"], 8.0);
   EXPECT_EQ(certificate["identities"]["jump"], 2e-14);
+}
+
+TEST(Report, SlidingIsJudgedWhereFrictionIsCoulombs)
+{
+  RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(certificate_json(run))["contact"]["boundaries"]["bottom"]["sliding"].is_null());
+  run.levels[0].figures.boundary_contact[0].coefficient = 0.5;
+  const json certificate = json::parse(certificate_json(run));
+  for (const json& level : {certificate, certificate["levels"][0]})
+  {
+    const json& sliding = level["contact"]["boundaries"]["bottom"]["sliding"];
+    EXPECT_EQ(sliding["coefficient"], 0.5);
+    EXPECT_EQ(sliding["sliding_factor"], 0.125);
+    EXPECT_EQ(sliding["safety_factor"], 4.0);
+  }
+}
+
+TEST(Report, SlidingWithoutAForce)
+{
+  Resultants contact{"base", {0.0, 2.0}, -2.0, -0.25, 0.25, 0.5};
+  EXPECT_EQ(sliding(contact)->safety_factor, 4.0) << "the sign of the tangent is of no importance";
+  contact.tangential = 1e-11;  // round-off
+  EXPECT_FALSE(sliding(contact)->safety_factor.has_value());
+  contact.tangential = 1e-9;
+  EXPECT_TRUE(sliding(contact)->safety_factor.has_value());
+  contact.coefficient = 0.0;
+  EXPECT_EQ(sliding(contact)->safety_factor, 0.0);
+  contact.normal = 0.0;  // lifted off
+  EXPECT_FALSE(sliding(contact).has_value());
 }
 
 TEST(Report, CertificateWithoutALevelHasNoFigures)

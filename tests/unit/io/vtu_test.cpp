@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 #include <stdexcept>
+#include <string>
 
+#include "io/atomic_file.h"
 #include "io/vtu_file.h"
 
 namespace tribound
@@ -39,6 +42,31 @@ TEST(VtuFile, RefusesAnArrayOfWrongLength)
     EXPECT_THROW(write_vtu(path, grid), std::logic_error);
     EXPECT_FALSE(std::filesystem::exists(path));
   }
+}
+
+TEST(VtuSeries, RemovesOnlyWhatARunHasWritten)
+{
+  namespace fs = std::filesystem;
+  const fs::path directory = fs::path(::testing::TempDir()) / "old_series";
+  fs::remove_all(directory);
+  fs::create_directories(directory / "level_004.vtu");  // a directory
+  const std::set<std::string> kept = {"level_01.vtu",     "level_abc.vtu",   "level_001.vtu.bak",
+                                      "my_level_001.vtu", "contact_0x1.vtu", "contact_.vtu",
+                                      "contact.csv",      "levels_001.vtu",  "certificate.json",
+                                      "level_0011.vtux",  "level_-01.vtu",   "level_.vtu"};
+  for (const std::string& name : kept) write_file(directory / name, "");
+  for (const int level : {0, 12, 1234})
+    for (const char* stem : {"level", "contact"}) write_file(directory / level_file_name(stem, level), "");
+  write_series(directory, 3);
+
+  remove_series(directory);
+  std::set<std::string> left;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (entry.is_regular_file()) left.insert(entry.path().filename().string());
+  EXPECT_EQ(left, kept);
+  EXPECT_TRUE(fs::exists(directory / "level_004.vtu"));
+  remove_series(directory / "does_not_exist");  // nothing to do
+  fs::remove_all(directory);
 }
 
 }  // namespace

@@ -161,6 +161,26 @@ TEST(LinearSolver, ASingularMatrixIsAnError)
   }
 }
 
+/// One iteration is not enough for multigrid: who did not ask for it gets a factorisation, from then on.
+TEST(LinearSolver, FallsBackToAFactorisationUnlessToldOtherwise)
+{
+  const System<3> system;
+  const SparseMatrix a = system.matrix();
+  const std::span<const Point<3>> nodes(system.nodes);
+  std::vector<double> x(system.x.size(), 0.0);
+  LinearSolver automatic({.max_iterations = 1}, nodes, MatrixKind::general, 0);
+  EXPECT_EQ(automatic.method(), LinearMethod::iterative);
+  EXPECT_TRUE(automatic.solve(a, system.b, 1e-11 * norm(system.b), x).fell_back);
+  EXPECT_EQ(automatic.method(), LinearMethod::direct);
+  EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
+  const LinearSolve again = automatic.solve(a, system.b, 1e-11 * norm(system.b), x);
+  EXPECT_FALSE(again.fell_back);
+  EXPECT_FALSE(again.factorised);
+
+  LinearSolver told({.method = LinearMethod::iterative, .max_iterations = 1}, nodes);
+  EXPECT_THROW(told.solve(a, system.b, 1e-11 * norm(system.b), x), SolveError);
+}
+
 TEST(ChooseMethod, DirectUnlessLargeIn3DOrTold)
 {
   const SolverConfig automatic;

@@ -1,0 +1,41 @@
+# Completion of tribound for bash: commands, options, case files.
+
+_tribound()
+{
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  local commands="init info check run verify study" command= word candidates=
+
+  for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
+    if [[ " $commands " == *" $word "* ]]; then
+      command=$word
+      break
+    fi
+  done
+
+  case $previous in
+    --directory)
+      mapfile -t COMPREPLY < <(compgen -d -- "$current")
+      compopt -o filenames 2>/dev/null
+      return ;;
+    --refinements) candidates="1 2 3 4 5" ;;
+    --set) return ;;
+    *)
+      case $command in
+        "") candidates="$commands --help --version" ;;
+        init) candidates="block hertz dam --directory --help" ;;
+        info) candidates="--help" ;;
+        check) candidates="--set --quiet --json --help" ;;
+        run | study) candidates="--set --quiet --help" ;;
+        verify) candidates="--set --quiet --refinements --help" ;;
+      esac ;;
+  esac
+
+  if [[ $command =~ ^(check|run|verify|study)$ && $current != -* && $previous != --refinements ]]; then
+    mapfile -t COMPREPLY < <(compgen -f -X '!*.toml' -- "$current"; compgen -d -- "$current")
+    compopt -o filenames 2>/dev/null
+  else
+    mapfile -t COMPREPLY < <(compgen -W "$candidates" -- "$current")
+  fi
+}
+
+complete -F _tribound tribound

@@ -1,0 +1,247 @@
+#include "run_report.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "contact/rigid_motion.h"
+#include "doctor/solution_facts.h"
+#include "io/atomic_file.h"
+#include "io/console.h"
+#include "io/contact_line.h"
+#include "io/run_warnings.h"
+#include "io/shared_file.h"
+#include "io/vtu.h"
+#include "mesh/gmsh.h"
+#include "solve/linear_solver.h"
+#include "solve/petsc.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+ExitCode exit_code(RunStatus status)
+{
+  switch (status)
+  {
+    case RunStatus::certified:
+      return ExitCode::success;
+    case RunStatus::budget:
+      return ExitCode::budget_used_up;
+    default:
+      return ExitCode::failed;
+  }
+}
+
+/// eta_tot and the components cell by cell, for the VTU file.
+class CellComponents
+{
+ public:
+  CellComponents(const Estimate& estimate, bool regularised)
+  {
+    add("eta_tot", estimate, [](const BoundComponents& cell) { return cell.total_sharp(); });
+    for (const auto& [name, member] : names_of_components(regularised))
+      add(std::string("eta_") + name, estimate,
+          [m = member](const BoundComponents& cell) { return cell.*m; });
+  }
+
+  [[nodiscard]] std::vector<CellField> fields() const
+  {
+    std::vector<CellField> result;
+    for (const auto& [name, values] : columns_) result.push_back({name, values});
+    return result;
+  }
+
+ private:
+  template <typename Value>
+  void add(std::string name, const Estimate& estimate, const Value& value)
+  {
+    std::vector<double>& column = columns_.emplace_back(std::move(name), std::vector<double>{}).second;
+    column.reserve(estimate.cells.size());
+    for (const BoundComponents& cell : estimate.cells) column.push_back(value(cell));
+  }
+
+  std::vector<std::pair<std::string, std::vector<double>>> columns_;
+};
+
+}  // namespace
+
+BuildFacts library_facts()
+{
+  const AlgebraVersions algebra = algebra_versions();
+  BuildFacts build = build_facts();
+  build.petsc = algebra.petsc;
+  build.mumps = algebra.mumps;
+  build.mpi = algebra.mpi;
+  build.blas = algebra.blas;
+  build.blas_threads = algebra.blas_threads;
+  build.gmsh = gmsh_version();
+  build.features = {"2D", "3D", "degrees 1-4", "friction: none, Tresca, Coulomb"};
+  build.report_page = find_shared_file("report.html").string();
+  return build;
+}
+
+std::string describe_solver(LinearMethod method)
+{
+  return method == LinearMethod::direct ? "direct" : "GMRES with multigrid";
+}
+
+std::string describe_solver(std::span<const CertifiedStep> steps)
+{
+  const bool fell_back = std::ranges::any_of(steps, [](const auto& s) { return s.step.fell_back; });
+  return describe_solver(steps.back().step.method) +
+         (fell_back ? ", as GMRES with multigrid failed on this mesh" : "");
+}
+
+template <int dim>
+void write_level_fields(const std::filesystem::path& directory, int number,
+                        const Discretisation<dim>& discrete, const CertifiedLevel<dim>& level,
+                        std::span<const CellField> further)
+{
+  const CellComponents components(level.estimate, level.delta_updates.has_value());
+  std::vector<CellField> fields = components.fields();
+  fields.insert(fields.end(), further.begin(), further.end());
+  const std::array tensors = {equilibrated_stress_field(discrete.space, level.stress)};
+  write_level_vtu<dim>(directory / level_file_name("level", number), number, discrete.form.problem(),
+                       discrete.space, level.u, fields, tensors);
+}
+
+template <int dim>
+RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
+                          Clock::time_point begin, Printed printed)
+    : output_(config.output),
+      printed_(printed),
+      page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{})
+{
+  const LagrangeSpace<dim>& space = first.space;
+  const NitscheForm<dim>& form = first.form;
+  check_rigid_motions<dim>(problem, space, form.load());
+  prepare_output_directory(output_.directory);
+  record_.facts = case_facts(config, dim);
+  record_.mesh = mesh_facts<dim>(problem, space, form.constraints());
+  record_.build = library_facts();
+  record_.tolerance = config.adapt.tolerance;
+  record_.statements = statements(form, config.certify.contact_rule);
+  record_.statements.assumptions.emplace_back(
+      "linear_solver", describe_solver(choose_method(config.solver, dim, space.n_dofs())));
+  record_.times = {{"setup", seconds_since(begin)},
+                   {"solve", 0},
+                   {"certify", 0},
+                   {"bisect", 0},
+                   {"discretise", 0},
+                   {"transfer", 0},
+                   {"output", 0}};
+  if (printed_ == Printed::everything) print_header(record_.facts, record_.mesh);
+}
+
+template <int dim>
+void RunReport<dim>::write_fields(const LevelView<dim>& view) const
+{
+  const NitscheForm<dim>& form = view.discrete.form;
+  write_contact_csv(output_.directory / "contact.csv", form, view.level.u);
+  if (!output_.vtu) return;
+  write_level_fields<dim>(output_.directory, view.number, view.discrete, view.level);
+  write_contact_vtu<dim>(output_.directory / level_file_name("contact", view.number), view.number, form,
+                         view.level.u);
+  write_series(output_.directory, view.number + 1);
+}
+
+template <int dim>
+void RunReport<dim>::write_record() const
+{
+  write_report(output_.directory, record_);
+  page_.write(output_.directory, record_);
+}
+
+template <int dim>
+void RunReport<dim>::add_times(const LevelTimes& times)
+{
+  const std::array of_level = {times.solve,
+                               times.certify.value_or(0),
+                               times.refinement.bisect,
+                               times.refinement.discretise,
+                               times.refinement.transfer,
+                               times.output};
+  for (std::size_t i = 0; i < of_level.size(); ++i) record_.times[i + 1].second += of_level[i];
+}
+
+template <int dim>
+void RunReport<dim>::note_solver(const LevelRecord& level)
+{
+  if (level.newton.empty()) return;
+  auto& assumptions = record_.statements.assumptions;
+  const auto entry = std::ranges::find(assumptions, "linear_solver", [](const auto& a) { return a.first; });
+  entry->second = describe_solver(level.newton);
+}
+
+template <int dim>
+void RunReport<dim>::add(const LevelView<dim>& view)
+{
+  const NitscheForm<dim>& form = view.discrete.form;
+  if (record_.levels.empty()) remove_series(output_.directory);
+  LevelRecord& level = record_.levels.emplace_back();
+  level.level = view.number;
+  level.cells = view.discrete.mesh.n_cells();
+  level.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
+  level.newton = view.level.steps;
+  level.delta_updates = view.level.delta_updates;
+  level.figures = solution_figures<dim>(form, view.level.u, form.traction(view.level.u));
+  level.times.solve = view.level.solve_seconds;
+  level.times.certify = view.level.certify_seconds;
+  if (view.level.solved()) level.identities = view.level.identities;
+
+  const Clock::time_point before_output = Clock::now();
+  if (view.verdict.status == RunStatus::certified || view.verdict.status == RunStatus::budget)
+  {
+    level.bound = view.level.estimate;
+    write_fields(view);
+    page_.add(view.number, form, view.level);
+  }
+  else  // what violates an identity is no bound, and is not shown as one
+    for (CertifiedStep& step : level.newton) step.bound = {}, step.linearisation = {};
+  level.times.output = seconds_since(before_output);
+  level.times.refinement = view.level.refinement;
+  level.times.solve_cpu = view.level.solve_cpu;
+  level.times.certify_cpu = view.level.certify_cpu;
+  level.times.level = view.seconds + level.times.output;
+  const double cpu_now = cpu_seconds();
+  level.times.level_cpu = cpu_now - std::exchange(cpu_before_, cpu_now);
+  add_times(level.times);
+  note_solver(level);
+  record_.status = view.verdict.status;
+  record_.reason = view.verdict.reason;
+  record_.warnings = view.level.solved() ? run_warnings(level, contact_outcomes<dim>(form, view.level.u))
+                                         : std::vector<RunWarning>{};
+  write_record();
+  print_level(level);
+}
+
+template <int dim>
+ExitCode RunReport<dim>::close(const Verdict& verdict)
+{
+  record_.status = verdict.status;
+  record_.reason = verdict.reason;
+  write_record();
+  if (printed_ == Printed::everything) print_summary(record_, output_.directory.string());
+  return exit_code(verdict.status);
+}
+
+template <int dim>
+void RunReport<dim>::fail(const std::string& reason)
+{
+  remove_series(output_.directory);
+  record_.status = RunStatus::failed;
+  record_.reason = reason;
+  write_record();
+}
+
+template void write_level_fields(const std::filesystem::path&, int, const Discretisation<2>&,
+                                 const CertifiedLevel<2>&, std::span<const CellField>);
+template void write_level_fields(const std::filesystem::path&, int, const Discretisation<3>&,
+                                 const CertifiedLevel<3>&, std::span<const CellField>);
+template class RunReport<2>;
+template class RunReport<3>;
+
+}  // namespace tribound

@@ -1,0 +1,78 @@
+#pragma once
+
+/// @file run_report.h
+/// What a run tells and leaves behind, level by level.
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "adapt/loop.h"
+#include "base/clock.h"
+#include "case/config.h"
+#include "io/facts.h"
+#include "io/report.h"
+#include "io/report_page.h"
+#include "io/vtu.h"
+#include "run.h"
+#include "solve/linear_solver.h"
+
+namespace tribound
+{
+
+/// Versions of the program and of the libraries it runs with.
+[[nodiscard]] BuildFacts library_facts();
+
+/// "direct", "GMRES with multigrid": for people.
+[[nodiscard]] std::string describe_solver(LinearMethod method);
+/// The same of the steps on a mesh, at least one.
+[[nodiscard]] std::string describe_solver(std::span<const CertifiedStep> steps);
+
+/// Writes level_NNN.vtu: the fields of a level with the bound of every cell, and `further` numbers per cell.
+template <int dim>
+void write_level_fields(const std::filesystem::path& directory, int number,
+                        const Discretisation<dim>& discrete, const CertifiedLevel<dim>& level,
+                        std::span<const CellField> further = {});
+
+/// What a run says on stdout.
+enum class Printed
+{
+  everything,
+  levels  ///< a line per level, as a part of something larger
+};
+
+/// Keeps the record of a run and writes the files, level by level.
+template <int dim>
+class RunReport
+{
+ public:
+  /// On the first mesh; the run began at `begin`. Throws InputError for a body that can move rigidly, and
+  /// where nothing can be written.
+  RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
+            Clock::time_point begin, Printed printed = Printed::everything);
+
+  /// After every level: fields, tables and a certificate that holds should the program be killed.
+  void add(const LevelView<dim>& view);
+  /// The last word.
+  [[nodiscard]] ExitCode close(const Verdict& verdict);
+  /// The same where there is no level at all: leaves a certificate of the failure behind.
+  void fail(const std::string& reason);
+
+  [[nodiscard]] const RunRecord& record() const { return record_; }
+
+ private:
+  void write_fields(const LevelView<dim>& view) const;
+  void add_times(const LevelTimes& times);
+  /// How the systems of the level were solved, for the assumptions of the certificate.
+  void note_solver(const LevelRecord& level);
+
+  void write_record() const;
+
+  const OutputConfig& output_;
+  Printed printed_;
+  RunRecord record_;
+  ReportPage page_;
+  double cpu_before_ = cpu_seconds();  ///< CPU time up to the level in work
+};
+
+}  // namespace tribound

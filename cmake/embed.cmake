@@ -1,0 +1,12 @@
+# tribound_embed(<target> <file>...): compiles text files into a target; app/embedded_files.h gives access to them.
+function(tribound_embed target)
+  set(TRIBOUND_EMBEDDED "")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    file(READ ${file} text)
+    get_filename_component(name ${file} NAME)
+    string(APPEND TRIBOUND_EMBEDDED "      EmbeddedFile{\"${name}\", R\"__embedded__(${text})__embedded__\"},\n")
+  endforeach()
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/embedded_files.cpp.in embedded_files.cpp @ONLY)
+  target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/embedded_files.cpp)
+endfunction()

@@ -1,0 +1,78 @@
+// What is guaranteed, what the case was, where it ran, and the other files.
+
+import { count, element, number, seconds, section, table } from "./dom.js";
+
+const list = (items) => element("ul", {}, items.map((item) => element("li", {}, item)));
+
+const topics = { quadrature: "Quadrature", displacement: "Prescribed displacements", geometry: "Geometry", rounding: "Rounding",
+  linear_solver: "Linear solver" };
+
+function definitions(pairs) {
+  return element("dl", {}, pairs.filter(([, value]) => value).map(([name, value]) =>
+    element("div", {}, element("dt", {}, name), element("dd", {}, value))));
+}
+
+export function guaranteeSection(run) {
+  const identities = run.identities && Object.entries(run.identities)
+    .filter(([name, value]) => value !== null && (name !== "symmetry" || run.p > 1)) // degree 1 has none
+    .map(([name, value]) => [name, number(value, 2)]);
+  return section("guarantee", "Guarantee", "What is guaranteed, and what is not", null,
+    element("div", { class: "two-columns" },
+      element("div", {}, element("h3", {}, run.bound ? "The bound covers" : "A bound would cover"), list(run.covered),
+        element("h3", {}, "It does not cover"), list(run.not_covered),
+        element("h3", {}, "The law"), element("p", {}, run.law)),
+      element("div", {}, element("h3", {}, "It rests on"),
+        definitions(Object.entries(run.assumptions).map(([topic, text]) => [topics[topic] ?? topic, text])),
+        identities ? element("h3", {}, "Identities of the equilibrated stress") : null,
+        identities ? table(["identity", "#largest defect, relative"], identities) : null,
+        identities ? element("p", { class: "note" }, `Above ${number(run.constants.identity_limit)} an identity would count as violated.`) : null)));
+}
+
+export function caseSection(data) {
+  const run = data.certificate;
+  const measure = run.d === 2 ? ["area [L\u00b2]", "length [L]"] : ["volume [L\u00b3]", "area [L\u00b2]"];
+  return section("case", "Case", "The case", null,
+    table(["region", "#cells", `#${measure[0]}`, "material"],
+      run.mesh.regions.map((region) => [region.name, count(region.cells), number(region.measure), region.material])),
+    table(["boundary", "#facets", `#${measure[1]}`, "what holds there"],
+      run.mesh.boundaries.map((part) => [part.name, count(part.facets), number(part.measure), part.condition])),
+    element("p", { class: "note" }, `Cells and facets are those of the first mesh: ${count(run.mesh.vertices)} vertices, cells from `
+      + `${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)} L. Units are those of the case: L a length, S a stress `
+      + `(force per area)${run.d === 2 ? "; forces are per unit of depth" : ""}.`));
+}
+
+function levelTable(run) {
+  return table(["#level", "#cells", "#dofs", "#Newton steps", "#bound [%]", "#energy", "#solve", "#certify", "#whole level"],
+    run.levels.map((level) => [String(level.level), count(level.cells), count(level.dofs), String(level.newton.length),
+      level.relative === null ? "\u2013" : number(100 * level.relative), number(level.energy, 6), seconds(level.times.solve),
+      seconds(level.times.certify), seconds(level.times.level)]));
+}
+
+export function machineSection(data) {
+  const { certificate: run, machine } = data;
+  const program = run.program;
+  const memory = machine.memory > 0 ? `, ${Math.round(machine.memory / 2 ** 30)} GiB of memory` : "";
+  return section("times", "Times", "Levels, times, machine", null, levelTable(run),
+    element("div", { class: "two-columns" },
+      element("div", {}, element("h3", {}, "Times"),
+        definitions(Object.entries(run.times).map(([stage, value]) => [stage, seconds(value)]))),
+      element("div", {}, element("h3", {}, "Machine and program"), definitions([
+        ["processor", machine.processor && `${machine.processor}, ${machine.processors} logical processors${memory}`],
+        ["system", machine.system], ["tribound", `${program.version}, ${program.compiler}`], ["PETSc", program.petsc],
+        ["MUMPS", program.mumps], ["BLAS", program.blas && `${program.blas}${program.blas_threads ? `, threads: ${program.blas_threads}` : ""}`],
+        ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen]]))));
+}
+
+const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level",
+  "newton.csv": "a row per Newton step", "contact.csv": "the contact boundary, point by point",
+  "series.pvd": "all levels, for ParaView" };
+
+export function filesSection(files) {
+  if (files.length === 0) return null;
+  const item = (name) => element("li", {}, element("a", { href: encodeURI(name) }, name), contents[name] ? ` \u2013 ${contents[name]}` : "");
+  const vtu = files.filter((name) => name.endsWith(".vtu"));
+  return section("files", "Files", "The other files", "They lie beside this page.",
+    element("ul", { class: "files" }, files.filter((name) => !vtu.includes(name)).map(item)),
+    vtu.length === 0 ? null : element("details", {}, element("summary", {}, `Fields of each level (${vtu.length} files)`),
+      element("ul", { class: "files files-many" }, vtu.map(item))));
+}

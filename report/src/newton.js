@@ -1,0 +1,38 @@
+// Newton's method, step by step.
+
+import { csvParseRows } from "d3";
+import { number, percent, seconds, section, table } from "./dom.js";
+
+/** The rows of newton.csv as objects; an unknown number is null. (d3.csvParse builds code, which the page forbids.) */
+function newtonRows(text) {
+  const [head, ...rows] = csvParseRows(text);
+  return rows.map((row) => Object.fromEntries(row.map((cell, i) => [head[i], cell === "" ? null : Number(cell)])));
+}
+
+// A step in 3D whose linearisation part alone is too large has no other components: the bound was not completed.
+const linearisation = (row) => (row.lin1 === null ? null : row.lin1 + row.lin2n + row.lin2t);
+const others = (row) => (row.osc === null ? null : row.osc + row.str + row.neu + row.cnt + row.frc + (row.reg1 ?? 0) + (row.reg2n ?? 0) + (row.reg2t ?? 0));
+
+function stepCells(level, step, row, isFirst) {
+  const lin = row?.lin1 === undefined ? null : linearisation(row);
+  const rest = row?.osc === undefined ? null : others(row);
+  const cells = [isFirst ? String(level.level) : "", String(step.step), number(step.residual, 3), number(step.damping, 3),
+    number(step.total), number(lin, 3), lin === null || rest === null ? "\u2013" : percent(lin / rest),
+    step.linear_iterations === 0 ? "direct" : String(step.linear_iterations), seconds(step.seconds), step.accepted ? "accepted" : ""];
+  cells.class = [step.accepted ? "accepted" : "", isFirst ? "group" : ""].join(" ").trim() || null;
+  return cells;
+}
+
+export function newtonSection(run, text) {
+  const rows = newtonRows(text);
+  const steps = run.levels.flatMap((level) => level.newton.map((step, i) => stepCells(level, step,
+    rows.find((row) => row.level === level.level && row.step === step.step), i === 0)));
+  if (steps.length === 0) return null;
+  const body = table(["#level", "#step", "#residual", "#damping", "#bound, plain sums", "#linearisation", "#of the rest",
+    "#linear iterations", "#time", ""], steps, { class: "newton" });
+  body.classList.add("table-tall");
+  body.tabIndex = 0;
+  return section("newton", "Newton", "Newton\u2019s method",
+    run.bound === null ? null : "The bound holds for every iterate. Iterating ends where the linearisation part is a small fraction of the rest: further steps would not make the solution better on this mesh.",
+    body);
+}

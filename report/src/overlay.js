@@ -1,0 +1,87 @@
+// What is drawn over the picture of a surface, as SVG: axes and the contact boundary in 2D, directions in 3D.
+
+import { scaleLinear } from "d3";
+import { statusColours } from "./components.js";
+import { element, number } from "./dom.js";
+
+const manySegments = 120000; // beyond, the undeformed outline is not looked for
+
+/** The function that gives the pixels, in `place`, of points given about the centre of the body. */
+function toPixels({ clientWidth: width, clientHeight: height }, camera) {
+  const { right, up } = camera.axes();
+  const { target, scale } = camera;
+  const pixels = height / (2 * scale);
+  const along = (axis, x, y, z) => axis[0] * (x - target[0]) + axis[1] * (y - target[1]) + axis[2] * (z - target[2]);
+  return (x, y, z = 0) => [width / 2 + pixels * along(right, x, y, z), height / 2 - pixels * along(up, x, y, z)];
+}
+
+const point = ([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`;
+const stretch = (from, to) => `M${point(from)}L${point(to)}`;
+
+/** The boundary of the undeformed body. */
+function outline(surface, pixel) {
+  if (surface.nFaces * 3 * surface.subdivision > manySegments) return null;
+  const { points, box } = surface;
+  const segments = surface.segments().boundary;
+  const at = (v) => pixel(points[2 * v] - box.centre[0], points[2 * v + 1] - box.centre[1]);
+  let path = "";
+  for (let s = 0; s < segments.length; s += 2) path += stretch(at(segments[s]), at(segments[s + 1]));
+  return element("svg:path", { class: "outline", d: path });
+}
+
+/** The deformed contact boundary in the colours of its status, which changes halfway between two points. */
+function statusLines({ arc, points, displacement, status }, box, factor, pixel) {
+  const at = (i) => pixel(...[0, 1].map((c) => points[2 * i + c] + factor * displacement[2 * i + c] - box.centre[c]));
+  const paths = ["", "", ""];
+  for (let i = 0; i + 1 < status.length; ++i) {
+    const length = Math.hypot(points[2 * i + 2] - points[2 * i], points[2 * i + 3] - points[2 * i + 1]);
+    if (length > arc[i + 1] - arc[i] + 1e-5 * box.diagonal) continue; // another part of the boundary begins
+    const [a, b] = [at(i), at(i + 1)];
+    const middle = [0, 1].map((c) => (a[c] + b[c]) / 2);
+    paths[status[i]] += stretch(a, middle);
+    paths[status[i + 1]] += stretch(middle, b);
+  }
+  return paths.map((d, i) => element("svg:path", { class: "status-line", d, stroke: statusColours[i] }));
+}
+
+function axes({ box }, { target, scale }, { left, top, width, height }) {
+  const [cx, cy] = [box.centre[0] + target[0], box.centre[1] + target[1]];
+  const reach = (scale * width) / height;
+  const x = scaleLinear([cx - reach, cx + reach], [left, left + width]);
+  const y = scaleLinear([cy - scale, cy + scale], [top + height, top]);
+  const label = (value) => number(Math.abs(value) < 1e-9 * scale ? 0 : value, 6);
+  return [
+    ...x.ticks(Math.max(2, width / 90)).flatMap((tick) => [
+      element("svg:line", { x1: x(tick), x2: x(tick), y1: top + height, y2: top + height + 4 }),
+      element("svg:text", { x: x(tick), y: top + height + 16, "text-anchor": "middle" }, label(tick))]),
+    ...y.ticks(Math.max(2, height / 60)).flatMap((tick) => [
+      element("svg:line", { x1: left - 4, x2: left, y1: y(tick), y2: y(tick) }),
+      element("svg:text", { x: left - 7, y: y(tick) + 4, "text-anchor": "end" }, label(tick))]),
+    element("svg:text", { x: left + width, y: top + height + 30, "text-anchor": "end", class: "axis-name" }, "x [L] \u2192"),
+    element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, "\u2191 y [L]")];
+}
+
+function overlay2d(surface, camera, place, factor) {
+  const pixel = toPixels(place, camera);
+  const frame = { left: place.offsetLeft + place.clientLeft, top: place.offsetTop + place.clientTop, width: place.clientWidth,
+    height: place.clientHeight };
+  const inside = element("svg:svg", { x: frame.left, y: frame.top, width: frame.width, height: frame.height },
+    factor > 0 ? outline(surface, pixel) : null,
+    (surface.profiles ?? []).map((profile) => statusLines(profile, surface.box, factor, pixel)));
+  return [inside, ...axes(surface, camera, frame)];
+}
+
+/** The directions of the axes, the nearest last, and the size of the body. */
+function triad({ box }, camera, place) {
+  const { right, up, eye } = camera.axes();
+  const [x0, y0] = [44, place.clientHeight - 44];
+  const arrows = [0, 1, 2].sort((a, b) => eye[a] - eye[b]).flatMap((i) => [
+    element("svg:line", { class: `triad triad-${"xyz"[i]}`, x1: x0, y1: y0, x2: x0 + 28 * right[i], y2: y0 - 28 * up[i] }),
+    element("svg:text", { x: x0 + 38 * right[i], y: y0 - 38 * up[i] + 4, "text-anchor": "middle" }, "xyz"[i])]);
+  return [...arrows, element("svg:text", { x: 12, y: 20 }, `${box.size.map((length) => number(length, 3)).join(" \u00d7 ")} L`)];
+}
+
+/** `factor`: of the displacements. */
+export function overlay(surface, camera, place, factor) {
+  return surface.dimension === 2 ? overlay2d(surface, camera, place, factor) : triad(surface, camera, place);
+}

@@ -1,0 +1,176 @@
+// node page_test.mjs <tribound> <folder with playwright-core> <directory for results>
+//
+// Runs cases, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its driver
+// or the page is missing.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+import { browserPath, colours, launch, openPage } from "./browser.mjs";
+
+const [program, folder, results] = process.argv.slice(2);
+
+function skip(reason) {
+  console.log(`skipped: ${reason}`);
+  process.exit(77);
+}
+if (!browserPath) skip("there is no chromium (Debian: chromium), or name it in CHROMIUM");
+if (!existsSync(`${folder}/node_modules/playwright-core`)) skip("playwright-core is not installed");
+if (!/report page +\//.test(spawnSync(program, ["info"], { encoding: "utf8" }).stdout)) skip("the report page is not built");
+
+const title = `</script><img src=x onerror=alert(1)> "Bl\u00f6cke" & <b>\u4e2d\u6587</b>`;
+
+const cases = {
+  block: { exit: 0, status: "Certified", text: `
+title = '${title}'
+degree = 2
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, 0]
+[boundary.top]
+traction = [0, -0.1]
+[boundary.right]
+traction = [0.04, 0.06]
+[boundary.bottom]
+contact = { friction = "tresca", threshold = 0.03 }
+[adapt]
+tolerance = 0.04
+` },
+  cube: { exit: 3, status: "Budget used up", text: `
+title = "Cube on a rough floor"
+degree = 1
+mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [3, 3, 3] } }
+material = { E = 1000.0, nu = 0.3 }
+[boundary.top]
+displacement = [0.0, -0.01, 0.004]
+[boundary.bottom]
+contact = { friction = "coulomb", coefficient = 0.3, gap = "0.02*(x - 0.5)^2" }
+[adapt]
+max_levels = 2
+` },
+  stopped: { exit: 2, status: "Failed", text: `
+degree = 1
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, 0]
+[boundary.top]
+traction = [0, -0.1]
+[boundary.bottom]
+contact = { friction = "tresca", threshold = 0.03 }
+[newton]
+max_steps = 1
+stopping = "tolerance"
+` },
+};
+
+function run(name, { text, exit }) {
+  const directory = `${results}/${name}`;
+  rmSync(directory, { recursive: true, force: true });
+  mkdirSync(directory, { recursive: true });
+  writeFileSync(`${directory}/case.toml`, text);
+  const { status, stderr } = spawnSync(program, ["run", "case.toml", "--quiet"], { cwd: directory, encoding: "utf8" });
+  assert.equal(status, exit, stderr);
+  return `${directory}/out`;
+}
+
+/** Does something and expects the picture of `selector` to change. */
+async function changes(page, selector, what, action) {
+  const picture = () => page.locator(selector).screenshot();
+  const before = await picture();
+  await action();
+  for (let trial = 0; trial < 40; ++trial) {
+    await page.waitForTimeout(50);
+    if (!before.equals(await picture())) return;
+  }
+  assert.fail(`${what}: nothing changes`);
+}
+
+async function slide(page, id, value) {
+  await page.locator(id).evaluate((input, x) => { input.value = x; input.dispatchEvent(new Event("input")); }, value);
+}
+
+async function useFields(page, dimension) {
+  const view = ".view-frame";
+  await page.mouse.move(0, 0);
+  await page.locator("#fields").scrollIntoViewIfNeeded();
+  assert(await colours(page, ".view canvas") > 60, "the picture is blank");
+  const options = await page.locator("#field option").evaluateAll((list) => list.map(({ value }) => value));
+  for (const wanted of ["u", "ux", "von_mises", "eta-tot", "eta-str", ...(dimension === 3 ? ["contact-pressure", "contact-status"] : [])])
+    assert(options.includes(wanted), `no field ${wanted}`);
+  for (const field of ["ux", "eta-tot", ...(dimension === 3 ? ["contact-pressure", "contact-status"] : []), "u"])
+    await changes(page, ".view-row", `field ${field}`, () => page.selectOption("#field", field));
+  await changes(page, view, "displacement", () => slide(page, "#factor", 90));
+  await changes(page, view, "mesh", () => page.locator("#mesh").click());
+  await changes(page, view, "level", () => slide(page, "#level", 0));
+  await slide(page, "#level", 99);
+  await changes(page, view, "wheel with Ctrl", async () => {
+    await page.locator(".view").hover();
+    await page.keyboard.down("Control");
+    await page.mouse.wheel(0, -300);
+    await page.keyboard.up("Control");
+  });
+  await changes(page, view, "dragging", async () => {
+    const box = await page.locator(".view").boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width / 2 + 80, box.y + box.height / 2 + 30, { steps: 3 });
+    await page.mouse.up();
+  });
+  await changes(page, view, "a key", async () => { await page.locator(".view").focus(); await page.keyboard.press("ArrowLeft"); });
+  await changes(page, view, "whole body", () => page.getByRole("button", { name: "Reset view" }).click());
+  await page.locator(".view").hover();
+  await page.locator(".tooltip").waitFor({ state: "visible" });
+  assert.match(await page.locator(".tooltip").textContent(), /x = .*, y = /);
+}
+
+async function checkCertificate(page, directory, status) {
+  const certificate = JSON.parse(readFileSync(`${directory}/certificate.json`, "utf8"));
+  assert.doesNotMatch(await page.locator("body").innerText(), /Infinity|NaN|undefined/);
+  const verdict = await page.locator(".verdict").textContent();
+  assert(verdict.includes(status), verdict);
+  if (certificate.relative) assert(verdict.includes(`${Number((100 * certificate.relative).toPrecision(3))}`), verdict);
+  for (const link of await page.locator("#files a").evaluateAll((list) => list.map((a) => a.getAttribute("href"))))
+    assert(existsSync(`${directory}/${link}`), `${link} does not exist`);
+  const rows = readFileSync(`${directory}/newton.csv`, "utf8").trim().split("\n").length - 1;
+  assert.equal(await page.locator("#newton tbody tr").count(), rows);
+}
+
+async function checkNarrowAndDark(browser, url) {
+  const { page, complaints } = await openPage(browser, url, { width: 390, height: 800, colorScheme: "dark" });
+  assert(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the screen");
+  assert.deepEqual(complaints, []);
+  await page.close();
+}
+
+async function checkPrint(page, file) {
+  await page.pdf({ path: file, format: "A4", printBackground: true });
+  assert(readFileSync(file).length > 20000);
+  assert.match(await page.locator("svg.print-only image").getAttribute("href"), /^data:image\/png/);
+}
+
+const browser = await launch(folder);
+try {
+  for (const [name, what] of Object.entries(cases)) {
+    const directory = run(name, what);
+    const url = pathToFileURL(`${directory}/report.html`).href;
+    const { page, complaints, seconds } = await openPage(browser, url);
+    await checkCertificate(page, directory, what.status);
+    if (what.exit !== 2) {
+      await page.screenshot({ path: `${results}/${name}.png`, fullPage: true });
+      for (const chart of ["#bound .chart", "#convergence .chart", "#contact .chart"])
+        assert(await colours(page, chart) > 15, `${chart} is blank`);
+      await checkPrint(page, `${results}/${name}.pdf`);
+      await useFields(page, name === "cube" ? 3 : 2);
+      await checkNarrowAndDark(browser, url);
+    }
+    if (name === "block") assert.equal(await page.locator("h1").textContent(), title);
+    assert.equal(await page.locator("img").count(), 0);
+    assert.deepEqual(complaints, []);
+    console.log(`${name}: opens in ${seconds.toFixed(2)} s, ${(readFileSync(`${directory}/report.html`).length / 1e6).toFixed(2)} MB`);
+    await page.close();
+  }
+} finally {
+  await browser.close();
+}

@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file cost.h
+/// What solving on a mesh may take.
+
+#include <vector>
+
+#include "case/config.h"
+#include "mesh/mesh.h"
+#include "solve/linear_solver.h"
+
+namespace tribound
+{
+
+/// Of the first mesh, all Newton steps and the certificate included, on one core.
+struct CostEstimate
+{
+  int degree = 0;
+  double dofs = 0;  ///< fixed ones included
+  LinearMethod method = LinearMethod::direct;
+  double bytes = 0;
+  double seconds = 0;
+};
+
+/// Estimates for the degrees 1 to 4, from a model fitted to measured runs (docs/doctor.md): right within a
+/// factor of 2 to 3 where the runs were similar, no more than an order of magnitude elsewhere.
+template <int dim>
+[[nodiscard]] std::vector<CostEstimate> cost_estimates(const Mesh<dim>& mesh, const SolverConfig& config);
+
+}  // namespace tribound

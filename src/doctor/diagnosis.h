@@ -1,0 +1,50 @@
+#pragma once
+
+/// @file diagnosis.h
+/// All that `tribound check` finds out about a case before it is solved.
+
+#include <vector>
+
+#include "case/config.h"
+#include "contact/nitsche.h"
+#include "doctor/contact_facts.h"
+#include "doctor/cost.h"
+#include "doctor/load_facts.h"
+#include "doctor/mesh_quality.h"
+#include "doctor/support_facts.h"
+#include "doctor/units.h"
+
+namespace tribound
+{
+
+struct Diagnosis
+{
+  int degree = 1;
+  bool refines = true;  ///< whether the mesh is adapted
+  std::vector<ContactHeldMotion> held_by_contact;
+  std::vector<OverconstrainedCorner> corners;
+  std::vector<ContactBoundaryFacts> contacts;
+  LoadFacts loads;
+  std::vector<UnitSystem> units;
+  MeshQuality mesh;
+  std::vector<CostEstimate> costs;
+};
+
+/// For a case whose bodies are held, see check_rigid_motions().
+template <int dim>
+[[nodiscard]] Diagnosis diagnose(const Config& config, const NitscheForm<dim>& form)
+{
+  Diagnosis result;
+  result.degree = config.degree;
+  result.refines = config.adapt.max_levels > 0;
+  result.held_by_contact = motions_held_by_contact(form);
+  result.corners = overconstrained_corners(form);
+  result.contacts = contact_boundary_facts(form);
+  result.loads = load_facts(form);
+  result.units = plausible_units(result.loads);
+  result.mesh = mesh_quality(form.space().mesh());
+  result.costs = cost_estimates(form.space().mesh(), config.solver);
+  return result;
+}
+
+}  // namespace tribound

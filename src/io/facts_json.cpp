@@ -1,0 +1,24 @@
+#include "io/facts_json.h"
+
+namespace tribound
+{
+
+Json mesh_json(const MeshFacts& mesh)
+{
+  Json object{
+      {"vertices", mesh.vertices},         {"cells", mesh.cells},      {"smallest_cell", mesh.smallest_cell},
+      {"largest_cell", mesh.largest_cell}, {"regions", Json::array()}, {"boundaries", Json::array()}};
+  for (const RegionFacts& region : mesh.regions)
+    object["regions"].push_back({{"name", region.name},
+                                 {"cells", region.cells},
+                                 {"measure", region.measure},
+                                 {"material", region.material}});
+  for (const BoundaryFacts& boundary : mesh.boundaries)
+    object["boundaries"].push_back({{"name", boundary.name},
+                                    {"facets", boundary.facets},
+                                    {"measure", boundary.measure},
+                                    {"condition", boundary.condition}});
+  return object;
+}
+
+}  // namespace tribound

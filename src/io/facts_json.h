@@ -1,0 +1,15 @@
+#pragma once
+
+/// @file facts_json.h
+/// Facts as JSON.
+
+#include "io/facts.h"
+#include "io/json.h"
+
+namespace tribound
+{
+
+/// The `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
+[[nodiscard]] Json mesh_json(const MeshFacts& mesh);
+
+}  // namespace tribound

@@ -1,0 +1,69 @@
+#include "io/figures.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "io/shared_file.h"
+
+extern char** environ;
+
+namespace tribound
+{
+
+namespace
+{
+
+/// What became of a process that has ended; empty for success.
+std::string describe_end(int status)
+{
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  if (WIFEXITED(status)) return fmt::format("ended with exit code {}", WEXITSTATUS(status));
+  return fmt::format("was ended by signal {}", WTERMSIG(status));
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> find_figure_script()
+{
+  const std::filesystem::path script = find_shared_file("study_figures");
+  return ::access(script.c_str(), X_OK) == 0 ? std::optional(script) : std::nullopt;
+}
+
+std::string run_figure_script(const std::filesystem::path& script, const std::filesystem::path& directory)
+{
+  std::string program = script.string();
+  std::string argument = std::filesystem::absolute(directory).string();
+  const std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  // No shell, so that nothing in a name is taken for a command. The first line of the script names its
+  // Python.
+  if (const int error = ::posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
+      error != 0)
+    return fmt::format("cannot be started: {}", std::strerror(error));
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return fmt::format("cannot be waited for: {}", std::strerror(errno));
+  return describe_end(status);
+}
+
+void draw_figures(const std::filesystem::path& directory)
+{
+  std::fflush(stdout);
+  const auto script = find_figure_script();
+  const std::string problem = script ? run_figure_script(*script, directory)
+                                     : std::string("the script study_figures is not installed");
+  if (problem.empty())
+    fmt::print(stdout, "{:<14}{}\n", "figures", (directory / "figures").string());
+  else
+    fmt::print(stdout, "{:<14}not drawn: {}{}\n", "figures", script ? script->string() + " " : "", problem);
+  std::fflush(stdout);
+}
+
+}  // namespace tribound

@@ -1,0 +1,80 @@
+#pragma once
+
+/// @file report_page.h
+/// report.html: a run on one page, which opens without a network. Its program is the template that report/
+/// builds; here it is filled with the data of the run.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapt/level.h"
+#include "io/page_surface.h"
+#include "io/report.h"
+
+namespace tribound
+{
+
+/// The comment in the template which the data replace.
+inline constexpr std::string_view page_data_marker = "<!-- data of the run -->";
+
+/// JSON that can stand in a script element whatever the user's strings contain: every `<` becomes `\u003c`,
+/// so that none of them ends the element or starts a comment.
+[[nodiscard]] std::string script_safe(std::string_view json);
+
+/// The fields of a level, as JSON.
+struct PageLevel
+{
+  int number = 0;
+  std::size_t n_triangles = 0;
+  std::string json;
+};
+
+template <int dim>
+[[nodiscard]] PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
+                                   const PageLimits& limits = {});
+
+/// Leaves out levels between the first and the last, the largest first, until all have at most
+/// limits.all_levels triangles together.
+void drop_levels(std::vector<PageLevel>& levels, const PageLimits& limits);
+
+/// The comment in the template, and in a page without them, which add_true_errors() replaces.
+inline constexpr std::string_view true_errors_marker = "<!-- true errors -->";
+
+/// What a study knows of the error on a level.
+struct TrueErrors
+{
+  int level = 0;
+  std::optional<double> stress_error;  ///< ||sigma(u_ref - u_h)||
+  std::optional<double> dual_norm;     ///< of the residual, from below
+};
+
+/// Adds the true errors to a page that is written; does nothing where there is none. Throws InputError when
+/// it cannot be written.
+void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors);
+
+/// The page of a run: level by level.
+class ReportPage
+{
+ public:
+  /// `page_template`: what report/ builds; where there is none nothing is collected or written.
+  explicit ReportPage(const std::filesystem::path& page_template);
+
+  template <int dim>
+  void add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
+
+  /// Writes report.html into the directory, with links to those results that are there. Throws InputError
+  /// when the file cannot be written.
+  void write(const std::filesystem::path& directory, const RunRecord& run) const;
+
+ private:
+  std::string head_;  ///< the template before the marker
+  std::string tail_;  ///< and behind it
+  std::vector<PageLevel> levels_;
+};
+
+}  // namespace tribound

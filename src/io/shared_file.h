@@ -1,0 +1,17 @@
+#pragma once
+
+/// @file shared_file.h
+/// Files that the program needs beside itself: scripts that it runs, the template of the report page.
+
+#include <filesystem>
+#include <string>
+
+namespace tribound
+{
+
+/// The file of this name: in share/tribound of the installation the program belongs to, which may have been
+/// moved; else in the source or build tree; else under the prefix of the installation. Empty where it is in
+/// none of them.
+[[nodiscard]] std::filesystem::path find_shared_file(const std::string& name);
+
+}  // namespace tribound

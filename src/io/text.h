@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file text.h
+/// What the texts on the screen share.
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace tribound
+{
+
+constexpr std::size_t caption_width = 14;
+
+/// A line with a caption in the first column.
+[[nodiscard]] inline std::string line(std::string_view caption, std::string_view text)
+{
+  return fmt::format("{:<{}}{}\n", caption, caption_width, text);
+}
+
+}  // namespace tribound

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""The cases that `tribound init` writes: they pass `check` without a warning and `run` certifies them; nothing is overwritten.
+
+    init.py PROGRAM SCRATCH_DIRECTORY
+"""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+CASES = {"block": ["block.toml"], "hertz": ["hertz.geo", "hertz.toml"], "dam": ["dam.geo", "dam.toml"]}
+
+
+def tribound(program, directory, *arguments):
+    return subprocess.run([program, *arguments], cwd=directory, capture_output=True, text=True, timeout=300)
+
+
+def names(directory):
+    return sorted(path.name for path in directory.iterdir())
+
+
+def differences(program, directory, name, files):
+    """Yields what is not as it should be with one case."""
+    directory.mkdir(parents=True)
+    result = tribound(program, directory, "init", name)
+    if result.returncode or names(directory) != files:
+        yield f"exit code {result.returncode}, has written {names(directory)}\n{result.stderr}"
+        return
+    case = f"{name}.toml"
+
+    result = tribound(program, directory, "check", case, "--json")
+    if result.returncode:
+        yield f"check: exit code {result.returncode}\n{result.stderr}"
+        return
+    found = json.loads(result.stdout)
+    if found["warnings"]:
+        yield f"check warns: {[f['text'] for f in found['findings'] if f['severity'] == 'warning']}"
+
+    result = tribound(program, directory, "run", case)
+    certificate = json.loads((directory / "out" / name / "certificate.json").read_text())
+    if result.returncode or certificate["status"] != "certified":
+        yield f"run: exit code {result.returncode}\n{result.stdout}{result.stderr}"
+
+    (directory / case).write_text("mine")
+    result = tribound(program, directory, "init", name)
+    if result.returncode != 1 or (directory / case).read_text() != "mine" or case not in result.stderr:
+        yield f"init again: exit code {result.returncode}\n{result.stderr}"
+
+
+def refusals(program, directory):
+    """What init does not do."""
+    result = tribound(program, directory, "init", "hrtz")
+    if result.returncode != 1 or 'did you mean "hertz"' not in result.stderr:
+        yield f"init hrtz: exit code {result.returncode}\n{result.stderr}"
+    result = tribound(program, directory, "init", "--directory", "new/folder")
+    if result.returncode or names(directory / "new" / "folder") != ["block.toml"]:
+        yield f"init --directory: exit code {result.returncode}\n{result.stderr}"
+    (directory / "elsewhere").mkdir()
+    (directory / "elsewhere" / "dam.geo").write_text("mine")
+    result = tribound(program, directory, "init", "dam", "--directory", "elsewhere")
+    if result.returncode != 1 or names(directory / "elsewhere") != ["dam.geo"]:
+        yield f"init beside dam.geo: exit code {result.returncode}, {names(directory / 'elsewhere')}"
+
+
+def main():
+    program, scratch = sys.argv[1:]
+    scratch = Path(scratch)
+    shutil.rmtree(scratch, ignore_errors=True)
+    failed = 0
+    for name, files in CASES.items():
+        problems = list(differences(program, scratch / name, name, files))
+        print(f"{name}: {'as expected' if not problems else 'DIFFERS'}", *problems, sep="\n  ")
+        failed += len(problems)
+    problems = list(refusals(program, scratch))
+    print(f"refusals: {'as expected' if not problems else 'DIFFERS'}", *problems, sep="\n  ")
+    return 1 if failed + len(problems) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

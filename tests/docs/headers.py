@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""Checks that tribound.h reaches every public header.
+
+    headers.py ROOT
+
+What it does not reach are parts: of their own folder, of base, or of the program (app). A header that another folder uses
+is public.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+
+def includes(file):
+    return re.findall(r'#include "(.*?)"', file.read_text())
+
+
+def main():
+    root = Path(sys.argv[1])
+    source = root / "src"
+    users = {file.relative_to(source): includes(file) for file in source.rglob("*") if file.suffix in (".h", ".cpp")}
+    reached, pending = set(), ["tribound.h"]
+    while pending:
+        header = pending.pop()
+        if header not in reached:
+            reached.add(header)
+            pending += users[Path(header)]
+    problems = []
+    for file in users:
+        if file.suffix != ".h" or str(file) in reached or file.parent.name == "base":
+            continue
+        for user, headers in users.items():
+            if str(file) in headers and user.parent != file.parent:
+                problems.append(f"{file} is used by {user}, but tribound.h does not reach it")
+    print(f"tribound.h reaches {len(reached) - 1} headers", *problems, sep="\n")
+    return 1 if problems or len(reached) < 30 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,92 @@
+#pragma once
+
+/// @file case_format.h
+/// The tables of docs/case-format.md. Read are those whose first column is "key" (of the section they stand
+/// in) or "key of `...`" (of the table of that name in it).
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace tribound::test
+{
+
+/// A documented key.
+struct Row
+{
+  std::string table;  ///< dotted; empty for the top level
+  std::string key;
+  std::string type;
+  std::string standard;  ///< the column "default"; empty where there is none
+
+  [[nodiscard]] std::string name() const { return table.empty() ? key : table + "." + key; }
+};
+
+inline std::vector<std::string> split_cells(const std::string& line)
+{
+  std::vector<std::string> cells;
+  std::istringstream stream(line.substr(1));
+  for (std::string cell; std::getline(stream, cell, '|');)
+  {
+    const auto first = cell.find_first_not_of(' ');
+    cells.push_back(first == std::string::npos ? ""
+                                               : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
+  }
+  return cells;
+}
+
+/// What stands in backquotes: "`lower`, `upper`" gives lower and upper.
+inline std::vector<std::string> quoted(const std::string& text, const std::string& quote)
+{
+  const std::regex pattern(quote + "([^" + quote + "]*)" + quote);
+  std::vector<std::string> words;
+  for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
+    words.push_back((*it)[1]);
+  return words;
+}
+
+/// The table a section is about: "## [boundary.NAME]" is tried out on the boundary "top".
+inline std::string section_table(const std::string& heading)
+{
+  const auto open = heading.find('[');
+  if (open == std::string::npos) return {};
+  const std::string table = heading.substr(open + 1, heading.find(']') - open - 1);
+  return table == "boundary.NAME" ? "boundary.top" : table;
+}
+
+inline std::vector<Row> documented_keys()
+{
+  std::ifstream stream(TRIBOUND_DOCS "/case-format.md");
+  std::vector<Row> rows;
+  std::string section, table;
+  std::vector<std::string> columns;
+  for (std::string line; std::getline(stream, line);)
+  {
+    if (line.starts_with("## ")) section = section_table(line);
+    if (!line.starts_with("|"))
+    {
+      columns.clear();
+      continue;
+    }
+    const std::vector<std::string> cells = split_cells(line);
+    if (columns.empty())
+    {
+      columns = cells;
+      const std::vector<std::string> inner = quoted(columns[0], "`");
+      table = inner.empty() ? section : section + "." + inner[0];
+      continue;
+    }
+    if (!columns[0].starts_with("key") || line.starts_with("|---")) continue;
+    const auto standard = std::ranges::find(columns, "default") - columns.begin();
+    // The lowest degree of the valid case stands for what a key says of `degree`.
+    const std::string type = std::regex_replace(cells[1], std::regex("from `degree` "), "1 ");
+    for (const std::string& key : quoted(cells[0], "`"))
+      rows.push_back({table, key, type, standard < std::ssize(columns) ? cells[standard] : ""});
+  }
+  return rows;
+}
+
+}  // namespace tribound::test

@@ -1,0 +1,303 @@
+// The tables of docs/case-format.md against the program: keys, words, ranges and defaults cannot drift apart.
+//
+// A key's type says how it is tried out; see try_out().
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "case/config.h"
+#include "unit/case/case_format.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+/// A valid case; the contact of the boundary "top" is there only where its keys are tried out.
+std::string valid_case(const std::string& table)
+{
+  std::string text =
+      "mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\nmaterial = { E = 1, nu = 0 }\n";
+  if (table.starts_with("load")) text += "load.body = [0, 0]\n";
+  if (table == "boundary.top") text += "boundary.top.traction = [0, 0]\n";
+  if (table == "regularisation") text += "regularisation = {}\n";
+  if (table == "boundary.top.contact") text += "boundary.top.contact = {}\n";
+  return text;
+}
+
+/// What must be set beside a key so that it is allowed.
+std::vector<std::string> companions(const Row& row)
+{
+  if (row.key == "threshold") return {"boundary.top.contact.friction=tresca"};
+  if (row.key == "coefficient") return {"boundary.top.contact.friction=coulomb"};
+  return {};
+}
+
+/// The problem with "key = value" in its place, or nothing if it is accepted.
+std::optional<InputError> refusal(const Row& row, const std::string& value)
+{
+  std::vector<std::string> overrides = {row.name() + "=" + value};
+  if (row.name() == "mesh.file" || row.name() == "boundary.top.contact") overrides.clear();
+  for (const std::string& companion : companions(row)) overrides.push_back(companion);
+  std::string text = valid_case(row.table);
+  if (row.name() == "mesh.file") text = "mesh.file = " + value + "\nmaterial = { E = 1, nu = 0 }\n";
+  if (row.name() == "boundary.top.contact") text = valid_case("") + "boundary.top.contact = " + value + "\n";
+  try
+  {
+    (void)parse_config(text, "case", overrides);
+    return {};
+  }
+  catch (const InputError& error)
+  {
+    return error;
+  }
+}
+
+void expect_accepted(const Row& row, const std::string& value)
+{
+  const std::optional<InputError> error = refusal(row, value);
+  EXPECT_FALSE(error) << row.name() << " = " << value << ", documented as \"" << row.type
+                      << "\": " << error->what();
+}
+
+void expect_refused(const Row& row, const std::string& value)
+{
+  EXPECT_TRUE(refusal(row, value)) << row.name() << " = " << value << " is accepted, documented as \""
+                                   << row.type << '"';
+}
+
+/// The words of "`"a"`, `"b"`", which must be those the program lists.
+void try_out_words(const Row& row)
+{
+  const std::vector<std::string> words = quoted(row.type, "\"");
+  const std::optional<InputError> error = refusal(row, "\"no such word\"");
+  ASSERT_TRUE(error) << row.name();
+  EXPECT_THAT(quoted(error->hint(), "\""), testing::ElementsAreArray(words)) << row.name();
+}
+
+/// "number > 0", "number in (-1, 0.5)", "integer >= 1", "integer 1 to 4": the ends, and what lies beyond.
+void try_out_numbers(const Row& row)
+{
+  std::smatch match;
+  const bool integer = row.type.starts_with("integer");
+  const std::string step = integer ? "1" : "1e-9";
+  const auto beyond = [&](const std::string& end, int sign)
+  { return fmt::format("{}", std::stod(end) + sign * std::stod(step)); };
+  const auto end_point = [&](const std::string& end, bool included, int outward)
+  {
+    included ? expect_accepted(row, end) : expect_refused(row, end);
+    expect_refused(row, beyond(end, outward));
+    if (!integer) expect_accepted(row, beyond(end, -outward));
+  };
+  if (std::regex_match(row.type, match, std::regex("(?:number|datum|integer) (>=?) ([-0-9.]+)")))
+  {
+    end_point(match[2], match[1] == ">=", -1);
+    expect_accepted(row, "1000");
+  }
+  else if (std::regex_match(row.type, match, std::regex("number in ([[(])([-0-9.]+), ([-0-9.]+)([\\])])")))
+  {
+    end_point(match[2], match[1] == "[", -1);
+    end_point(match[3], match[4] == "]", 1);
+  }
+  else if (std::regex_match(row.type, match, std::regex("integer ([0-9]+) to ([0-9]+)")))
+  {
+    end_point(match[1], true, -1);
+    end_point(match[2], true, 1);
+  }
+  else
+    FAIL() << row.name() << ": the type \"" << row.type << "\" is not known here";
+  if (integer) expect_refused(row, "1.5");
+  if (!row.type.starts_with("datum")) expect_refused(row, "\"1 + x - x\"");
+}
+
+/// Tries values that the documented type allows, and values that it does not.
+void try_out(const Row& row)
+{
+  expect_refused(row, "1979-05-27");
+  if (row.type.starts_with("`\""))
+    try_out_words(row);
+  else if (row.type.starts_with("true"))
+  {
+    expect_accepted(row, "true");
+    expect_accepted(row, "false");
+    expect_refused(row, "1");
+  }
+  else if (row.type.starts_with("string"))
+  {
+    expect_accepted(row, "\"some words\"");
+    expect_refused(row, "1");
+    if (row.type.find("not empty") != std::string::npos) expect_refused(row, "\"\"");
+  }
+  else if (row.type.starts_with("vector"))
+  {
+    expect_accepted(row, "[0, \"x - x\"]");
+    expect_refused(row, "0");
+    const bool has_free = row.type.find("\"free\"") != std::string::npos;
+    has_free ? expect_accepted(row, "[0, \"free\"]") : expect_refused(row, "[0, \"free\"]");
+  }
+  else if (row.type == "datum")
+  {
+    expect_accepted(row, "\"2*x\"");
+    expect_accepted(row, "-1");
+    expect_refused(row, "[1, 2]");
+  }
+  else if (row.type == "table")
+    expect_refused(row, "1");
+  else if (row.type.starts_with("2 or 3"))
+    expect_refused(row, "[1]");
+  else
+    try_out_numbers(row);
+}
+
+TEST(CaseFormat, TypesAndRangesAreThoseOfTheProgram)
+{
+  for (const Row& row : documented_keys()) try_out(row);
+}
+
+/// The keys of a table that the program names when it meets an unknown one.
+std::set<std::string> allowed_keys(const std::string& table)
+{
+  const std::optional<InputError> error = refusal({table, "zzzz", "", ""}, "0");
+  if (!error || error->problem() != "unknown key") return {};
+  const std::string marker = "allowed here: ";
+  std::string list = error->hint().substr(error->hint().find(marker) + marker.size());
+  list = list.substr(0, list.find(", or tables"));
+  std::set<std::string> keys;
+  std::istringstream stream(list);
+  for (std::string key; std::getline(stream, key, ',');) keys.insert(key.substr(key.find_first_not_of(' ')));
+  return keys;
+}
+
+TEST(CaseFormat, KeysAreThoseOfTheProgram)
+{
+  std::map<std::string, std::set<std::string>> documented;
+  for (const Row& row : documented_keys())
+  {
+    documented[row.table].insert(row.key);
+    if (row.table.find('.') == std::string::npos && !row.table.empty()) documented[""].insert(row.table);
+  }
+  documented[""].insert("boundary");
+  for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
+}
+
+/// 2 000 000 as the tables write it.
+std::string with_spaces(long n)
+{
+  std::string text = std::to_string(n);
+  for (int i = static_cast<int>(text.size()) - 3; i > 0; i -= 3) text.insert(i, " ");
+  return text;
+}
+
+std::string choice(const Row& row, int number)
+{
+  return fmt::format("`\"{}\"`", quoted(row.type, "\"").at(number));
+}
+
+template <class T>
+std::string unlimited(const std::optional<T>& limit, const char* text)
+{
+  return limit ? fmt::format("{}", *limit) : text;
+}
+
+/// The default of a key as the tables write it, by the name of the key.
+std::map<std::string, std::function<std::string(const Config&, const Row&)>> defaults()
+{
+  const auto truth = [](bool value) { return std::string(value ? "true" : "false"); };
+  return {
+      {"title", [](const Config& c, const Row&) { return "`\"" + c.title + "\"`"; }},
+      {"degree", [](const Config& c, const Row&) { return std::to_string(c.degree); }},
+      {"material.plane",
+       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.materials[0].plane)); }},
+      {"load.body", [](const Config& c, const Row&) { return c.loads.empty() ? "zero" : "given"; }},
+      {"boundary.top.contact.friction", [](const Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.boundaries[0].contact->friction.index())); }},
+      {"boundary.top.contact.gap",
+       [](const Config& c, const Row&) { return c.boundaries[0].contact->gap.is_zero() ? "0" : "not 0"; }},
+      {"nitsche.gamma0", [](const Config&, const Row&)
+       { return fmt::format("{}; {} for degree 4", default_gamma0(3), default_gamma0(4)); }},
+      {"newton.stopping",
+       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.newton.stopping)); }},
+      {"newton.gamma_lin", [](const Config& c, const Row&) { return fmt::format("{}", c.newton.gamma_lin); }},
+      {"newton.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.newton.tolerance); }},
+      {"newton.max_steps", [](const Config& c, const Row&) { return std::to_string(c.newton.max_steps); }},
+      {"newton.damping", [=](const Config& c, const Row&) { return truth(c.newton.damping); }},
+      {"regularisation.delta",
+       [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->delta); }},
+      {"regularisation.factor",
+       [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->factor); }},
+      {"regularisation.gamma_reg",
+       [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->gamma_reg); }},
+      {"regularisation.max_updates",
+       [](const Config& c, const Row&) { return std::to_string(c.regularisation->max_updates); }},
+      {"adapt.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.adapt.tolerance); }},
+      {"adapt.marking",
+       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.adapt.marking)); }},
+      {"adapt.theta", [](const Config& c, const Row&) { return fmt::format("{}", c.adapt.theta); }},
+      {"adapt.separate_contact",
+       [=](const Config& c, const Row&) { return truth(c.adapt.separate_contact); }},
+      {"adapt.max_levels", [](const Config& c, const Row&) { return with_spaces(c.adapt.max_levels); }},
+      {"adapt.max_dofs", [](const Config& c, const Row&) { return with_spaces(c.adapt.max_dofs); }},
+      {"adapt.max_cells",
+       [](const Config& c, const Row&) { return unlimited(c.adapt.max_cells, "no limit"); }},
+      {"adapt.max_time", [](const Config& c, const Row&) { return unlimited(c.adapt.max_time, "no limit"); }},
+      {"adapt.max_memory",
+       [](const Config& c, const Row&) { return unlimited(c.adapt.max_memory, "9/10 of the machine's"); }},
+      {"certify.contact_rule",
+       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.certify.contact_rule)); }},
+      {"solver.method",
+       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.solver.method)); }},
+      {"solver.package",
+       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.solver.package)); }},
+      {"solver.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.solver.tolerance); }},
+      {"solver.max_iterations",
+       [](const Config& c, const Row&) { return with_spaces(c.solver.max_iterations); }},
+      {"study.reference_degree", [](const Config& c, const Row&)
+       { return unlimited(c.study.reference_degree, "min(`degree` + 1, 4)"); }},
+      {"study.reference_factor",
+       [](const Config& c, const Row&) { return fmt::format("{}", c.study.reference_factor); }},
+      {"study.max_reference_dofs",
+       [](const Config& c, const Row&) { return with_spaces(c.study.max_reference_dofs); }},
+      {"study.dual_norm_dofs",
+       [](const Config& c, const Row&) { return with_spaces(c.study.dual_norm_dofs); }},
+      {"study.figures", [=](const Config& c, const Row&) { return truth(c.study.figures); }},
+      {"output.directory",
+       [](const Config& c, const Row&) { return "`\"" + c.output.directory.string() + "\"`"; }},
+      {"output.vtu", [=](const Config& c, const Row&) { return truth(c.output.vtu); }},
+      {"output.report", [=](const Config& c, const Row&) { return truth(c.output.report); }},
+  };
+}
+
+TEST(CaseFormat, DefaultsAreThoseOfTheProgram)
+{
+  const auto values = defaults();
+  for (const Row& row : documented_keys())
+  {
+    if (row.standard.empty()) continue;
+    const auto value = values.find(row.name());
+    ASSERT_NE(value, values.end()) << row.name() << " has a default that this test does not know";
+    const std::string table = row.table == "load" ? "" : row.table;
+    EXPECT_EQ(value->second(parse_config(valid_case(table)), row), row.standard) << row.name();
+  }
+}
+
+/// A key without a default must be given, or is one of several.
+TEST(CaseFormat, TheTablesWereFound)
+{
+  const std::vector<Row> rows = documented_keys();
+  EXPECT_GE(rows.size(), 40u);
+  EXPECT_EQ(std::ranges::count_if(rows, [](const Row& row) { return row.table == "mesh.box"; }), 3);
+}
+
+}  // namespace
+}  // namespace tribound::test

@@ -1,0 +1,101 @@
+/// @file contact_facts_test.cpp
+/// Normals, kinks and gaps of contact boundaries of known shape.
+
+#include "doctor/contact_facts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/discrete_case.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using ::testing::ElementsAre;
+using ::testing::SizeIs;
+
+constexpr double degree = std::numbers::pi / 180;
+
+TEST(ContactFacts, FlatBoundaryWithAGap)
+{
+  const DiscreteCase<2> c(
+      "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\n"
+      "boundary.bottom.contact = { gap = \"0.1*x^2\" }",
+      box<2>({-1, 0}, {2, 1}, {6, 1}));
+  const auto facts = contact_boundary_facts(c.form);
+  ASSERT_THAT(facts, SizeIs(1));
+  EXPECT_EQ(facts[0].name, "bottom");
+  EXPECT_EQ(facts[0].facets, 6);
+  EXPECT_NEAR(facts[0].measure, 3, 1e-14);
+  EXPECT_THAT(facts[0].normal, ElementsAre(0, -1));
+  EXPECT_NEAR(facts[0].spread, 0, 1e-12);
+  EXPECT_NEAR(facts[0].kink, 0, 1e-12);
+  // The extreme points of the rule lie a little inside the facets, which end at 0 and at 2.
+  EXPECT_LT(facts[0].smallest_gap, 0.1 * 0.05 * 0.05);
+  EXPECT_NEAR(facts[0].smallest_gap_at[0], 0, 0.05);
+  EXPECT_NEAR(facts[0].largest_gap, 0.1 * std::pow(facts[0].largest_gap_at[0], 2), 1e-15);
+  EXPECT_NEAR(facts[0].largest_gap_at[0], 2, 0.05);
+}
+
+/// The bottom of a strip bent to a circle of radius 10, in six facets of one degree each.
+TEST(ContactFacts, PolygonHasEqualKinks)
+{
+  const auto bend = [](const Point<2>& x) -> Point<2> {
+    return {(10 - x[1]) * std::sin(x[0] * degree), 10 - (10 - x[1]) * std::cos(x[0] * degree)};
+  };
+  const DiscreteCase<2> c(
+      "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\nboundary.bottom.contact = {}",
+      mapped<2>(box<2>({-3, 0}, {3, 1}, {6, 1}), bend));
+  const auto facts = contact_boundary_facts(c.form);
+  ASSERT_THAT(facts, SizeIs(1));
+  EXPECT_NEAR(facts[0].kink, 1, 1e-10);
+  EXPECT_NEAR(facts[0].spread, 2.5, 1e-10);
+  EXPECT_NEAR(facts[0].normal[0], 0, 1e-12);
+  EXPECT_NEAR(facts[0].normal[1], -1, 1e-12);
+}
+
+TEST(ContactFacts, CornersOfTheBodyAreNoKinks)
+{
+  MeshData<2> mesh = box<2>({0, 0}, {1, 1}, {2, 2});
+  for (TaggedFacet<2>& facet : mesh.facets)
+    if (mesh.boundary_names[facet.tag] == "left")
+      facet.tag =
+          static_cast<int>(std::ranges::find(mesh.boundary_names, "bottom") - mesh.boundary_names.begin());
+  const DiscreteCase<2> c(
+      "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\nboundary.bottom.contact = {}",
+      mesh);
+  const auto facts = contact_boundary_facts(c.form);
+  ASSERT_THAT(facts, SizeIs(1));
+  EXPECT_EQ(facts[0].kink, 0);
+  EXPECT_NEAR(facts[0].spread, 45, 1e-10);
+}
+
+TEST(ContactFacts, RoofIn3D)
+{
+  const auto fold = [](const Point<3>& x) -> Point<3> {
+    return {x[0], x[1], x[2] + std::tan(5 * degree) * std::abs(x[0])};
+  };
+  const DiscreteCase<3> c(
+      "material = { E = 1, nu = 0.3 }\nboundary.front.displacement = [0, 0, 0]\nboundary.back.contact = { "
+      "gap = 0.5 }",
+      mapped<3>(box<3>({-1, 0, 0}, {1, 1, 1}, {2, 1, 1}), fold));
+  const auto facts = contact_boundary_facts(c.form);
+  ASSERT_THAT(facts, SizeIs(1));
+  EXPECT_EQ(facts[0].facets, 4);
+  EXPECT_NEAR(facts[0].kink, 10, 1e-10);
+  EXPECT_NEAR(facts[0].kink_at[0], 0, 1e-14);
+  EXPECT_NEAR(facts[0].spread, 5, 1e-10);
+  EXPECT_EQ(facts[0].smallest_gap, 0.5);
+  EXPECT_EQ(facts[0].largest_gap, 0.5);
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,108 @@
+/// @file load_facts_test.cpp
+/// Stresses, strains and units guessed from the data of a case.
+
+#include "doctor/load_facts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "doctor/units.h"
+#include "support/discrete_case.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+LoadFacts facts(const std::string& toml, double size = 1)
+{
+  return load_facts(DiscreteCase<2>(toml, box<2>({0, 0}, {2 * size, size}, {4, 2})).form);
+}
+
+TEST(LoadFacts, TractionAndWhatHoldsIt)
+{
+  const LoadFacts loads = facts(
+      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.traction = [0.3, "
+      "-0.4]");
+  EXPECT_THAT(loads.extent, ElementsAre(2, 1));
+  EXPECT_EQ(loads.size, 2);
+  EXPECT_NEAR(loads.traction_stress, 0.5, 1e-14);
+  EXPECT_NEAR(loads.support_stress, 1, 1e-14);  // force 1 on a side of length 1
+  EXPECT_NEAR(loads.stress(), 1, 1e-14);
+  EXPECT_NEAR(loads.strain(), 0.01, 1e-14);
+}
+
+TEST(LoadFacts, LoadsInEquilibriumDoNotReachTheSupports)
+{
+  const LoadFacts loads = facts(
+      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.pressure = 2\n"
+      "boundary.bottom.pressure = 2");
+  EXPECT_NEAR(loads.traction_stress, 2, 1e-14);
+  EXPECT_NEAR(loads.support_stress, 0, 1e-14);
+}
+
+TEST(LoadFacts, BodyForceOverTheLengthOfTheBody)
+{
+  const LoadFacts loads =
+      facts("material = { E = 100, nu = 0.3 }\nload.body = [0, -0.25]\nboundary.left.displacement = [0, 0]");
+  EXPECT_NEAR(loads.largest_body_force, 0.25, 1e-15);
+  EXPECT_NEAR(loads.body_stress, 0.5, 1e-14);
+  EXPECT_NEAR(loads.support_stress, 0.5, 1e-14);  // weight 0.25 * 2 on a side of length 1
+}
+
+TEST(LoadFacts, PrescribedDisplacements)
+{
+  const std::string both =
+      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0.5, \"free\"]\n"
+      "boundary.right.displacement = [0.7, \"free\"]\nboundary.bottom.displacement = [\"free\", 0]\n";
+  EXPECT_NEAR(facts(both).displacement_strain, 0.1, 1e-14);
+  const std::string pushed =
+      "material = { E = 100, nu = 0.3 }\nboundary.top.displacement = [0, -0.3]\nboundary.bottom.contact = "
+      "{}\n";
+  EXPECT_NEAR(facts(pushed).displacement_strain, 0.15, 1e-14);  // the obstacle stays
+  const std::string moved = "material = { E = 100, nu = 0.3 }\nboundary.top.displacement = [5, -3]\n";
+  EXPECT_NEAR(facts(moved).displacement_strain, 0, 1e-14);  // as a whole
+}
+
+TEST(LoadFacts, MaterialsAsGiven)
+{
+  const LoadFacts loads =
+      facts("material = { E = 7, nu = 0.25, plane = \"stress\" }\nboundary.left.displacement = [0, 0]");
+  EXPECT_NEAR(loads.smallest_E, 7, 1e-13);
+  EXPECT_NEAR(loads.materials[0].nu, 0.25, 1e-14);
+  EXPECT_TRUE(loads.materials[0].plane_stress);
+}
+
+std::vector<std::string> guesses(double E, double size, double body_force = 0)
+{
+  LoadFacts loads;
+  loads.materials = {{"body", E, 0.3, false}};
+  loads.smallest_E = E;
+  loads.size = size;
+  loads.largest_body_force = body_force;
+  std::vector<std::string> names;
+  for (const UnitSystem& units : plausible_units(loads))
+    names.push_back(units.length + " " + units.force + " " + units.stress);
+  return names;
+}
+
+TEST(Units, Guesses)
+{
+  EXPECT_THAT(guesses(2.1e11, 2), ElementsAre("m N Pa"));
+  EXPECT_THAT(guesses(2.1e5, 40)[0], "mm N MPa");
+  EXPECT_THAT(guesses(210, 40), ElementsAre("mm N MPa", "m MN MPa", "mm kN GPa"));
+  EXPECT_THAT(guesses(25e3, 30, 9.81 * 2400e-6), ElementsAre("m MN MPa"));  // concrete in m and MN
+  EXPECT_THAT(guesses(25e3, 30, 9.81 * 2400e-9), ElementsAre("mm N MPa"));  // in mm and N
+  EXPECT_THAT(guesses(25e6, 30, 9.81 * 2.4), ElementsAre("m kN kPa"));
+  EXPECT_THAT(guesses(1, 2), IsEmpty());
+  EXPECT_THAT(guesses(2.1e11, 4000), IsEmpty());  // 4 km of steel: mm with Pa
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,144 @@
+/// @file solution_facts_test.cpp
+/// Penetration, sliding and zigzags of given displacements. With E = 1, nu = 0 a displacement (0, w(x)) that
+/// is constant in y has sigma^n = 0 at the bottom, where the pressure is then gamma (-w - g)_+.
+
+#include "doctor/solution_facts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "support/discrete_case.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using ::testing::SizeIs;
+
+const std::string material = "degree = 1\nmaterial = { E = 1, nu = 0 }\nnitsche.gamma0 = 1\n";
+
+template <int dim>
+std::vector<double> interpolate(const LagrangeSpace<dim>& space,
+                                const std::function<Point<dim>(const Point<dim>&)>& f)
+{
+  std::vector<double> u;
+  for (const Point<dim>& x : space.node_points())
+  {
+    const Point<dim> value = f(x);
+    u.insert(u.end(), value.begin(), value.end());
+  }
+  return u;
+}
+
+/// Eight facets of length 1/4 at the bottom: gamma = 4.
+ContactOutcome outcome(const std::string& contact, const std::function<Point<2>(const Point<2>&)>& u)
+{
+  const DiscreteCase<2> c(material + "boundary.bottom.contact = " + contact, box<2>({0, 0}, {2, 1}, {8, 4}));
+  const auto outcomes = contact_outcomes<2>(c.form, interpolate<2>(c.space, u));
+  EXPECT_THAT(outcomes, SizeIs(1));
+  return outcomes.front();
+}
+
+TEST(SolutionFacts, Penetration)
+{
+  const ContactOutcome found = outcome("{ gap = 0.25 }",
+                                       [](const Point<2>& x) -> Point<2> {
+                                         return {0, -0.25 * x[0]};
+                                       });
+  EXPECT_EQ(found.boundary, "bottom");
+  EXPECT_EQ(found.facets, 8);
+  EXPECT_EQ(found.closed_facets, 4);  // u^n = x/4 passes the gap at x = 1
+  EXPECT_NEAR(found.closed, 1, 1e-12);
+  EXPECT_NEAR(found.penetration, 0.25 * found.penetration_at[0] - 0.25, 1e-14);
+  EXPECT_NEAR(found.penetration_at[0], 2, 0.02);
+  EXPECT_NEAR(found.largest_pressure, 4 * found.penetration, 1e-13);
+  EXPECT_FALSE(found.has_friction);
+  EXPECT_FALSE(found.coefficient);
+}
+
+TEST(SolutionFacts, OpenContact)
+{
+  const ContactOutcome found = outcome("{}",
+                                       [](const Point<2>&) -> Point<2> {
+                                         return {0, 1};
+                                       });
+  EXPECT_EQ(found.closed, 0);
+  EXPECT_EQ(found.closed_facets, 0);
+  EXPECT_EQ(found.penetration, 0);
+  EXPECT_TRUE(found.penetration_at.empty());
+}
+
+TEST(SolutionFacts, SlidingAndSticking)
+{
+  const std::string coulomb = "{ friction = \"coulomb\", coefficient = 0.5 }";
+  const ContactOutcome slides = outcome(coulomb,
+                                        [](const Point<2>&) -> Point<2> {
+                                          return {0.25, -0.25};
+                                        });
+  EXPECT_TRUE(slides.has_friction);
+  EXPECT_EQ(slides.coefficient, 0.5);
+  EXPECT_NEAR(slides.slipping, 2, 1e-12);
+  const ContactOutcome sticks = outcome(coulomb,
+                                        [](const Point<2>&) -> Point<2> {
+                                          return {0, -0.25};
+                                        });
+  EXPECT_EQ(sticks.slipping, 0);
+  EXPECT_NEAR(sticks.closed, 2, 1e-12);
+}
+
+TEST(SolutionFacts, LinearPressuresHaveNoZigzag)
+{
+  EXPECT_NEAR(outcome("{}",
+                      [](const Point<2>& x) -> Point<2> {
+                        return {0, -0.25 - 0.1 * x[0]};
+                      })
+                  .zigzag,
+              0, 1e-13);
+  EXPECT_NEAR(outcome("{}",
+                      [](const Point<2>& x) -> Point<2> {
+                        return {0, -1 + 0.1 * x[0] * x[0]};
+                      })
+                  .zigzag,
+              0,
+              1e-13);  // bent one way only
+}
+
+/// A gap that jumps by 2 a from facet to facet: mean pressures gamma (1 +- a), deviations of 2 gamma a.
+TEST(SolutionFacts, ZigzagOfTheGap)
+{
+  const ContactOutcome found = outcome("{ gap = \"0.01 + 0.01*(sin(4*pi*x) > 0 ? 1 : -1)\" }",
+                                       [](const Point<2>&) -> Point<2> {
+                                         return {0, -1};
+                                       });
+  EXPECT_NEAR(found.zigzag, 4 * 2 * 0.01, 1e-12);
+  EXPECT_NEAR(found.largest_pressure, 4, 1e-12);
+}
+
+TEST(SolutionFacts, ZigzagIn3D)
+{
+  const DiscreteCase<3> c(material + "boundary.back.contact = {}", box<3>({0, 0, 0}, {1, 1, 1}, {4, 4, 1}));
+  const auto zigzag = [&](const std::function<double(const Point<3>&)>& w)
+  {
+    return contact_outcomes<3>(c.form, interpolate<3>(c.space,
+                                                      [&](const Point<3>& x) -> Point<3> {
+                                                        return {0, 0, -w(x)};
+                                                      }))
+        .front()
+        .zigzag;
+  };
+  EXPECT_NEAR(zigzag([](const Point<3>& x) { return 1 + 0.1 * x[0] - 0.2 * x[1]; }), 0, 1e-12);
+  const double rough =
+      zigzag([](const Point<3>& x) { return 1 + 0.1 * std::cos(4 * std::numbers::pi * x[0]); });
+  EXPECT_GT(rough, 0.05);
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,270 @@
+/// @file regularisation_test.cpp
+/// The regularised variant, method section 7: the identities and the guarantee hold at every iterate whatever
+/// delta is, the parts of the stress add up, and with delta everything tends to the plain method.
+
+#include "adapt/regularisation.h"
+
+#include <cmath>
+
+#include "adapt/level.h"
+#include "base/norm.h"
+#include "certify/checks.h"
+#include "effectivity.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// A block on rollers that is pressed down and pulled aside; its contact tractions are about 0.1.
+template <int dim>
+NamedText problem(const std::string& name, const std::string& contact)
+{
+  const bool plane = dim == 2;
+  return {name, "material = { E = 1.0, nu = 0.3 }\nnewton.tolerance = 1e-12\nload.body = " +
+                    std::string(plane ? "[0.02, \"-0.05*y\"]" : "[0.02, \"-0.05*y\", 0.01]") +
+                    "\nboundary.left.displacement = " + (plane ? "[0, 0]" : "[0, 0, \"free\"]") +
+                    (plane ? "" : "\nboundary.back.displacement = [\"free\", \"free\", 0]") +
+                    "\nboundary.top.traction = " + (plane ? "[0, -0.1]" : "[0, -0.1, 0.02]") +
+                    "\nboundary.right.traction = " + (plane ? "[0.04, 0.06]" : "[0.04, 0.06, 0]") +
+                    "\nboundary.bottom.contact = " + contact + "\n"};
+}
+
+template <int dim>
+std::vector<NamedText> problems()
+{
+  return {problem<dim>("frictionless", "{ gap = \"0.01*x^2\" }"),
+          problem<dim>("Tresca", "{ friction = \"tresca\", threshold = 0.03 }"),
+          problem<dim>("Coulomb", "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.004*x^2\" }")};
+}
+
+template <int dim>
+MeshData<dim> bent_block()
+{
+  if constexpr (dim == 2)
+    return distorted(box<2>({0, 0}, {2, 1}, {4, 2}), 1);
+  else
+    return distorted(box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1}), 1);
+}
+
+constexpr double large_delta = 0.1;
+
+template <int dim>
+std::string toml(int p, const NamedText& problem)
+{
+  return fmt::format("degree = {}\n", p) + problem.text;
+}
+
+/// The largest defect of all iterates, Newton's method going on with a quarter of delta when it has
+/// converged.
+template <int dim>
+double largest_defect(int p, const NamedText& problem)
+{
+  const DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
+  double largest = 0;
+  int n_converged = 0;
+  const auto observer = [&](const NewtonIterate<dim>& iterate) -> NewtonAdvice
+  {
+    const double delta = iterate.step.delta;
+    const Stress<dim> stress = equilibrate<dim>(c.form, iterate.u, iterate.traction, 0, delta);
+    EXPECT_FALSE(stress.reg.empty());
+    largest = std::max(largest, check_identities<dim>(c.form, iterate.traction, stress).largest(p));
+    NewtonAdvice advice = false;
+    if (iterate.converged && ++n_converged < 3) advice.delta = delta / 4;
+    return advice;
+  };
+  const NewtonResult<dim> result =
+      solve<dim>(c.form, {}, c.config.newton, c.config.solver, observer, large_delta);
+  EXPECT_EQ(result.status, NewtonStatus::converged) << result.message;
+  EXPECT_EQ(result.steps.front().delta, large_delta);
+  EXPECT_EQ(result.steps.back().delta, large_delta / 16);
+  return largest;
+}
+
+class Regularisation : public ::testing::TestWithParam<int>
+{
+};
+
+template <int dim>
+void expect_identities(int p)
+{
+  for (const NamedText& problem : problems<dim>())
+  {
+    const double defect = largest_defect<dim>(p, problem);
+    fmt::print("{}D, p = {}, {}: largest defect {:.1e}\n", dim, p, problem.name, defect);
+    EXPECT_LE(defect, p <= 2 ? 1e-11 : 1e-10) << problem.name;
+  }
+}
+
+TEST_P(Regularisation, IdentitiesHoldAtEveryIterateIn2D)
+{
+  expect_identities<2>(GetParam());
+}
+
+TEST_P(Regularisation, IdentitiesHoldAtEveryIterateIn3D)
+{
+  expect_identities<3>(GetParam());
+}
+
+/// ||a - b - c|| / ||scale||; b and c may be empty, that is 0.
+double distance(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,
+                const std::vector<double>& scale)
+{
+  double square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    square += std::pow(a[i] - (b.empty() ? 0 : b[i]) - (c.empty() ? 0 : c[i]), 2);
+  return std::sqrt(square) / norm(scale);
+}
+
+/// The patch stresses depend linearly on their data: of the same iterate and the same t^k, sigma_dis does not
+/// know delta, and sigma_lin + sigma_reg is the plain sigma_lin. Without sigma_reg an identity fails.
+template <int dim>
+void expect_parts_to_add_up(int p)
+{
+  for (const NamedText& problem : problems<dim>())
+  {
+    SCOPED_TRACE(problem.name);
+    DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
+    c.config.newton.max_steps = 2;
+    const NewtonResult<dim> result = c.solve(large_delta);
+    const Stress<dim> plain = equilibrate<dim>(c.form, result.u, result.traction);
+    Stress<dim> stress = equilibrate<dim>(c.form, result.u, result.traction, 0, large_delta);
+    EXPECT_TRUE(plain.reg.empty());
+    EXPECT_LE(distance(stress.dis, plain.dis, {}, plain.dis), 1e-12);
+    EXPECT_LE(distance(plain.lin, stress.lin, stress.reg, plain.dis), 1e-12);
+    EXPECT_GT(norm(stress.reg), 1e-4 * norm(plain.dis));
+    stress.reg.clear();
+    EXPECT_GT(check_identities<dim>(c.form, result.traction, stress).contact, 1e-6);
+  }
+}
+
+TEST_P(Regularisation, PartsOfTheStressAddUp)
+{
+  expect_parts_to_add_up<2>(GetParam());
+  if (GetParam() < 3) expect_parts_to_add_up<3>(GetParam());
+}
+
+TEST_P(Regularisation, TheBoundHoldsForLargeDelta)
+{
+  for (const NamedText& problem : problems<2>())
+    for (const NamedMesh<2>& mesh : {NamedMesh<2>{"box 4x2", box<2>({0, 0}, {2, 1}, {4, 2})},
+                                     NamedMesh<2>{"distorted", bent_block<2>()}})
+      for (const double delta : {0.5, 0.05})
+      {
+        const std::string name = fmt::format("{}, delta = {}", problem.name, delta);
+        expect_guaranteed(effectivities<2>({GetParam(), {name, problem.text}, mesh}, delta), name);
+      }
+}
+
+TEST(Regularisation3D, TheBoundHoldsForLargeDelta)
+{
+  for (const NamedText& problem : problems<3>())
+  {
+    const std::string name = problem.name + ", delta = 0.2";
+    expect_guaranteed(effectivities<3>({1, {name, problem.text}, {"distorted", bent_block<3>()}}, 0.2), name);
+  }
+}
+
+/// u, bound and eta_reg of the converged solution with T_delta.
+struct Converged
+{
+  std::vector<double> u;
+  Estimate eta;
+};
+
+Converged converged(const DiscreteCase<2>& c, double delta)
+{
+  NewtonResult<2> result = c.solve(delta);
+  EXPECT_EQ(result.status, NewtonStatus::converged) << "delta = " << delta;
+  Estimate eta = estimate<2>(c.form, result.u, equilibrate<2>(c.form, result.u, result.traction, 0, delta));
+  return {std::move(result.u), std::move(eta)};
+}
+
+/// |T_delta - T| <= delta / 4 on that part of Gamma_C where P is nearer than delta to a kink, and nothing
+/// elsewhere: everything tends to the plain method at least as fast as delta.
+TEST_P(Regularisation, TendsToThePlainMethod)
+{
+  for (const NamedText& problem : problems<2>())
+  {
+    SCOPED_TRACE(problem.name);
+    const DiscreteCase<2> c(toml<2>(GetParam(), problem), bent_block<2>());
+    const Converged plain = converged(c, 0);
+    EXPECT_EQ(plain.eta.global.regularisation(), 0);
+    for (const double delta : {0.1, 1e-2, 1e-3, 1e-4, 1e-6})
+    {
+      const Converged regularised = converged(c, delta);
+      const double apart = distance(regularised.u, plain.u, {}, plain.u);
+      const double reg = regularised.eta.global.regularisation();
+      fmt::print(
+          "p = {}, {}, delta = {:g}: |u_delta - u| / |u| = {:.1e}, eta_reg = {:.1e}, bound {:.6f}, plain "
+          "{:.6f}\n",
+          GetParam(), problem.name, delta, apart, reg, regularised.eta.total_sharp, plain.eta.total_sharp);
+      EXPECT_LE(apart, delta);
+      EXPECT_LE(reg, delta);
+      EXPECT_NEAR(regularised.eta.total_sharp, plain.eta.total_sharp, delta);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, Regularisation, ::testing::Range(1, 4));
+
+/// The outer loop on one mesh: both criteria hold in the end, delta having shrunk by the factor each time.
+TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
+{
+  for (const std::string stopping : {"adaptive", "tolerance"})
+  {
+    SCOPED_TRACE(stopping);
+    const DiscreteCase<2> c(toml<2>(2, problems<2>()[1]) + "newton.stopping = \"" + stopping +
+                                "\"\nregularisation = { delta = 2, factor = 0.5, gamma_reg = 0.01 }\n",
+                            bent_block<2>());
+    const CertifiedLevel<2> level = solve_and_certify<2>(c.form, {}, c.config);
+    ASSERT_TRUE(level.solved()) << level.failure;
+    EXPECT_TRUE(regularisation_is_negligible(level.estimate.global, 0.01));
+    EXPECT_TRUE(linearisation_is_negligible(level.estimate.global, 0.1));
+    EXPECT_LE(level.identities.largest(2), 1e-10);
+    EXPECT_GT(*level.delta_updates, 0);
+    int n_updates = 0;
+    double delta = level.steps[1].step.delta;
+    EXPECT_EQ(level.steps[0].step.delta, 0) << "the first step shows the size of the traction";
+    for (std::size_t k = 2; k < level.steps.size(); ++k)
+    {
+      if (level.steps[k].step.delta == delta) continue;
+      EXPECT_DOUBLE_EQ(level.steps[k].step.delta, 0.5 * delta);
+      delta = level.steps[k].step.delta;
+      ++n_updates;
+    }
+    EXPECT_EQ(n_updates, *level.delta_updates);
+    EXPECT_EQ(level.delta, delta) << "carried to the next mesh";
+    const CertifiedLevel<2> again = solve_and_certify<2>(c.form, level.u, c.config, {}, level.delta);
+    EXPECT_EQ(again.steps[0].step.delta, delta);
+    EXPECT_EQ(again.delta_updates, 0);
+  }
+}
+
+TEST(RegularisedLevel, KeepsToTheLimitOfUpdates)
+{
+  const DiscreteCase<2> c(
+      toml<2>(1, problems<2>()[1]) + "regularisation = { delta = 5, gamma_reg = 1e-9, max_updates = 2 }\n",
+      bent_block<2>());
+  const CertifiedLevel<2> level = solve_and_certify<2>(c.form, {}, c.config);
+  ASSERT_TRUE(level.solved()) << level.failure;
+  EXPECT_EQ(level.delta_updates, 2);
+  EXPECT_GT(level.estimate.global.regularisation(), 0) << "which the bound contains";
+}
+
+TEST(MeanContactTraction, IsTheRootMeanSquare)
+{
+  const DiscreteCase<2> c(toml<2>(1, problems<2>()[1]), box<2>({0, 0}, {2, 1}, {4, 2}));
+  const std::vector<Point<2>> t(c.form.n_contact_points(), Point<2>(0.3, -0.4));
+  EXPECT_NEAR(mean_contact_traction<2>(c.form, t), 0.5, 1e-14);
+  const DiscreteCase<2> free(toml<2>(1, {"",
+                                         "material = { E = 1.0, nu = 0.3 }\n"
+                                         "boundary.left.displacement = [0, 0]\n"}),
+                             box<2>({0, 0}, {2, 1}, {4, 2}));
+  EXPECT_EQ(mean_contact_traction<2>(free.form, {}), 0);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
