@@ -17,7 +17,9 @@
 #include "io/atomic_file.h"
 #include "io/figures.h"
 #include "io/report_page.h"
+#include "io/shared_file.h"
 #include "io/study.h"
+#include "io/study_page.h"
 #include "mesh/bisect.h"
 #include "run_report.h"
 
@@ -111,6 +113,7 @@ class StudyCommand
         stop_(stop_on_signals())
   {
     study_.facts = case_facts(config, dim);
+    study_.build = library_facts();
     study_.gamma_lin = config.newton.gamma_lin;
     study_.marking = config.adapt.marking == Marking::doerfler ? "doerfler" : "maximum";
     study_.theta = config.adapt.theta;
@@ -128,6 +131,7 @@ class StudyCommand
     write();
     print_study(study_, config_.output.directory.string());
     if (config_.study.figures && !stop_) draw_figures(config_.output.directory);
+    write_page();
     return exit_code();
   }
 
@@ -142,7 +146,9 @@ class StudyCommand
   FinishedRun<dim> adapt_and_report(const Config& config, Keep keep);
   [[nodiscard]] double smallest_relative_bound() const;
   [[nodiscard]] ExitCode exit_code() const;
-  void write() const { write_study(config_.output.directory, study_); }
+  /// What is complete so far.
+  void write() const;
+  void write_page() const;
 
   const Config& config_;
   Mesh<dim> mesh_;
@@ -284,6 +290,20 @@ void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
   if (config.output.vtu)
     write_level_fields<dim>(config.output.directory, static_cast<int>(number), *discrete, level,
                             {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
+}
+
+template <int dim>
+void StudyCommand<dim>::write() const
+{
+  write_study(config_.output.directory, study_);
+  write_page();
+}
+
+template <int dim>
+void StudyCommand<dim>::write_page() const
+{
+  if (config_.output.report)
+    write_study_page(find_shared_file("report.html"), config_.output.directory, study_);
 }
 
 template <int dim>

@@ -33,9 +33,9 @@ function fromDifferences(codes, stride) {
 export async function unpack({ count, width, data, stride, offset, step, log }) {
   const codes = joinBytes(await inflate(bytesOf(data)), count, width);
   if (stride !== undefined) return fromDifferences(codes, stride);
-  if (log) return Float64Array.from(codes, (q) => (q === 0 ? 0 : 10 ** (offset + step * (q - 1))));
-  const values = new Float64Array(count);
-  for (let i = 0; i < count; ++i) values[i] = offset + step * codes[i];
+  const values = new Float64Array(count); // by loops: from() with a function takes five times as long
+  if (log) for (let i = 0; i < count; ++i) values[i] = codes[i] === 0 ? 0 : 10 ** (offset + step * (codes[i] - 1));
+  else for (let i = 0; i < count; ++i) values[i] = offset + step * codes[i];
   return values;
 }
 

@@ -1,55 +1,46 @@
-// Charts of the bound: its components over the levels, and its convergence.
+// What the charts share: drawing at the width there is, on paper too; legends; curves on logarithmic axes.
 
 import * as Plot from "@observablehq/plot";
-import { count, element, logTicks, number, percent, powerOfTen, section, table } from "./dom.js";
-import { boundUnit, components, componentsOf, shares } from "./components.js";
+import { count, element, logTicks, number, percent } from "./dom.js";
 
-/** A chart drawn anew by draw(width) whenever its place changes width. */
-export function responsive(label, draw, minimum = 280) {
+export const chartStyle = { fontSize: "12px", background: "none", overflow: "visible" };
+
+const paperWidth = 680; // CSS pixels between the margins of A4 and of US letter
+const charts = new Set();
+
+function drawAll(widthOf) {
+  for (const chart of charts) {
+    if (!chart.place.isConnected) charts.delete(chart);
+    else if (chart.width > 0) chart.place.replaceChildren(chart.draw(widthOf(chart)));
+  }
+}
+addEventListener("beforeprint", () => drawAll(({ share }) => Math.floor(share * paperWidth)));
+addEventListener("afterprint", () => drawAll(({ width }) => width));
+
+/** A chart drawn anew by draw(width) whenever its place changes width. `share`: of the width of paper. */
+export function responsive(label, draw, { minimum = 280, share = 1 } = {}) {
   const place = element("div", { class: "chart", role: "img", "aria-label": label });
-  let width = 0;
+  const chart = { place, draw, share, width: 0 };
+  charts.add(chart);
   new ResizeObserver(([entry]) => {
     const available = Math.max(minimum, Math.floor(entry.contentRect.width));
-    if (available === width || entry.contentRect.width === 0) return;
-    width = available;
-    place.replaceChildren(draw(width));
+    if (available === chart.width || entry.contentRect.width === 0) return;
+    chart.width = available;
+    place.replaceChildren(draw(available));
   }).observe(place);
   return place;
 }
 
-export const chartStyle = { fontSize: "12px", background: "none", overflow: "visible" };
-
-function legend(items, kind = "") {
-  return element("ul", { class: `legend ${kind}` }, items.map(({ name, colour, line, title }) =>
-    element("li", { title }, element("span", { class: line ? "swatch swatch-line" : "swatch", style: `--colour:${colour}` }), name)));
+/** The line of a curve in a legend, dashed like the curve. */
+function swatchLine({ colour, dash, strokeWidth }) {
+  return element("svg:svg", { class: "swatch-curve", width: 24, height: 8, "aria-hidden": "true" },
+    element("svg:line", { x1: 0, x2: 24, y1: 4, y2: 4, stroke: colour, "stroke-dasharray": dash, "stroke-width": strokeWidth }));
 }
 
-/** The components of the last level with bars. */
-function componentTable(run) {
-  const part = shares(run.components);
-  const rows = componentsOf(run).map(({ name, meaning, colour }, i) => [
-    element("span", { class: "component" }, element("span", { class: "swatch", style: `--colour:${colour}` }), name), meaning,
-    number(run.components[name]),
-    element("span", { class: "share" }, element("span", { class: "share-bar", style: `--share:${part[i]};--colour:${colour}` }),
-      `${(100 * part[i]).toFixed(1)}\u00a0%`)]);
-  return table(["component", "what it measures", `#value [${boundUnit(run.d)}]`, "#share of squares"], rows, { class: "components" });
-}
-
-function shareChart(levels) {
-  const rows = levels.flatMap((level) => shares(level.components).map((share, i) =>
-    ({ level: level.level, share, name: components[i].name, meaning: components[i].meaning })));
-  const present = components.filter(({ name }) => rows.some((row) => row.name === name && row.share > 5e-4));
-  return [responsive("Shares of the components of the bound over the levels", (width) => Plot.plot({
-    width, height: 270, marginLeft: 46, marginTop: 26, marginBottom: 36, style: chartStyle,
-    x: { label: "level", tickFormat: (d) => String(d), ticks: levels.length > 20 ? 10 : undefined },
-    y: { label: "share of the sum of squares [%]", percent: true, grid: true, domain: [0, 100], ticks: 5 },
-    color: { domain: components.map(({ name }) => name), range: components.map(({ colour }) => colour) },
-    marks: [
-      Plot.barY(rows, { x: "level", y: "share", fill: "name", insetLeft: 1, insetRight: 1,
-        order: components.map(({ name }) => name),
-        title: (d) => `level ${d.level}\n${d.name}: ${d.meaning}\n${percent(d.share)}`, tip: true }),
-      Plot.ruleY([0])],
-  })), legend(present.map(({ name, colour, meaning }) => ({ name, colour, title: meaning })))];
+/** `items`: name, colour and, for a curve, `line`. */
+export function legend(items, kind = "") {
+  return element("ul", { class: `legend ${kind}` }, items.map((item) => element("li", { title: item.title },
+    item.line ? swatchLine(item) : element("span", { class: "swatch", style: `--colour:${item.colour}` }), item.name)));
 }
 
 /** Least-squares slope of log y over log x. */
@@ -62,80 +53,61 @@ export function slope(points) {
   return variance > 0 ? x.reduce((sum, value, i) => sum + (value - mx) * (y[i] - my), 0) / variance : NaN;
 }
 
-/** The curves of the convergence plot: the bound, its components, and true errors where they are known. */
-function curves(levels) {
-  const curve = (name, colour, value, style) => ({ name, colour, ...style,
-    points: levels.map((level) => ({ x: level.dofs, y: value(level) / level.sigma_norm, level: level.level, name }))
-      .filter(({ y }) => y > 0 && Number.isFinite(y)) });
-  const known = [["stress_error", "true error of the stress"], ["dual_norm", "dual norm of the residual"]]
-    .filter(([key]) => levels.some((level) => level[key] > 0));
-  return [
-    ...components.map(({ name, colour, meaning }) =>
-      curve(name, colour, (level) => level.components[name] ?? 0, { strokeWidth: 1.25, meaning })),
-    ...known.map(([key, name], i) => curve(name, ["#009e73", "#e69f00"][i], (level) => level[key], { strokeWidth: 2, dash: "6 3" })),
-    curve("bound", "currentColor", (level) => level.bound, { strokeWidth: 2.75 }),
-  ].filter(({ points }) => points.length > 0);
-}
-
-/** A line of the slope -p/d below the last points of the bound. */
+/** A line of the slope -rate below the last points of a curve. */
 function referenceLine(points, rate) {
   const last = points.at(-1);
   const first = points[Math.max(0, Math.floor(points.length / 2) - 1)];
   return [first.x, last.x].map((x) => ({ x, y: 0.55 * last.y * (x / last.x) ** -rate }));
 }
 
-function convergenceChart(run, levels) {
-  const lines = curves(levels);
-  const bound = lines.at(-1).points;
-  const top = Math.max(...lines.flatMap(({ points }) => points.map(({ y }) => y)));
-  const floor = Math.min(...bound.map(({ y }) => y)) * 1e-3; // components that are round-off are not drawn
-  const shown = lines.map((line) => ({ ...line, points: line.points.filter(({ y }) => y >= floor) }))
-    .filter(({ points }) => points.length > 0);
-  const lowest = Math.min(run.tolerance, ...shown.flatMap(({ points }) => points.map(({ y }) => y)));
-  const last = bound.slice(Math.min(Math.floor(bound.length / 2), Math.max(0, bound.length - 3)));
-  const measured = slope(last);
-  const rate = run.p / run.d;
-  const [low, high] = [100 * lowest * 0.6, 100 * Math.max(top, run.tolerance) * 1.4];
-  const chart = responsive("Convergence of the bound and its components over the degrees of freedom", (width) => Plot.plot({
-    width, height: Math.min(440, 0.66 * width), marginLeft: 58, marginRight: 64, marginTop: 28, marginBottom: 44, style: chartStyle,
-    x: { type: "log", label: "degrees of freedom", grid: true, tickFormat: count,
-      ticks: logTicks(bound[0].x, bound.at(-1).x, width < 500 ? 4 : 7) },
-    y: { type: "log", label: "relative to the norm of the stress [%]", grid: true, tickFormat: powerOfTen, domain: [low, high],
-      ticks: logTicks(low, high, 6) },
+function referenceMarks(points, rate) {
+  const line = referenceLine(points, rate);
+  return [
+    Plot.line(line, { x: "x", y: "y", stroke: "currentColor", strokeOpacity: 0.45, strokeDasharray: "6 4" }),
+    Plot.text([line], { x: ([a, b]) => Math.sqrt(a.x * b.x), y: ([a, b]) => Math.sqrt(a.y * b.y), dx: -4, dy: 10, textAnchor: "end",
+      stroke: "var(--panel)", strokeWidth: 4, fill: "currentColor", fillOpacity: 0.65, text: () => `slope \u2212${number(rate, 2)}` })];
+}
+
+/** The axis of the degrees of freedom, for a chart of this width. */
+export function dofAxis(lines, width) {
+  const x = lines.flatMap(({ points }) => points.map((point) => point.x));
+  return { type: "log", label: "degrees of freedom", grid: true, tickFormat: count,
+    ticks: logTicks(Math.min(...x), Math.max(...x), width < 520 ? 4 : 7) };
+}
+
+/** Curves { name, colour, points: { x, y, level } } with what the pointer is told of the nearest one. */
+export function curveMarks(lines, valueText) {
+  const points = lines.flatMap(({ name, points: all }) => all.map((point) => ({ ...point, name })));
+  return [
+    ...lines.flatMap(({ points: all, colour, strokeWidth, dash }) => [
+      Plot.line(all, { x: "x", y: "y", stroke: colour, strokeWidth, strokeDasharray: dash }),
+      Plot.dot(all, { x: "x", y: "y", fill: colour, r: 1.25 + strokeWidth / 2 })]),
+    Plot.tip(points, Plot.pointer({ x: "x", y: "y",
+      title: (d) => `${d.name}, level ${d.level}\n${valueText(d.y)}\n${count(d.x)} degrees of freedom` }))];
+}
+
+/** The interval that all values lie in, with room on a logarithmic axis. */
+export function logRange(values) {
+  return [Math.min(...values) * 0.5, Math.max(...values) * 1.4];
+}
+
+/**
+ * Curves of relative quantities, in percent, over the degrees of freedom, both logarithmic; `reference`: { points, rate }, below
+ * which a line of the slope -rate is drawn.
+ */
+export function logLogChart({ label, yLabel, lines, range, reference, tolerance, height = (width) => 0.66 * width, ...options }) {
+  const inPercent = ({ y, ...point }) => ({ ...point, y: 100 * y });
+  const drawn = lines.map((line) => ({ ...line, points: line.points.map(inPercent) }));
+  const [low, high] = range.map((y) => 100 * y);
+  return responsive(label, (width) => Plot.plot({
+    width, height: Math.min(440, height(width)), marginLeft: 58, marginRight: tolerance ? 64 : 18, marginTop: 28, marginBottom: 44,
+    style: chartStyle, x: dofAxis(lines, width),
+    y: { type: "log", label: yLabel, grid: true, tickFormat: (y) => number(y, 1), domain: [low, high], ticks: logTicks(low, high, 6) },
     marks: [
-      Plot.ruleY([100 * run.tolerance], { stroke: "currentColor", strokeOpacity: 0.6, strokeDasharray: "2 3" }),
-      Plot.text([100 * run.tolerance], { y: (d) => d, frameAnchor: "right", dx: 6, textAnchor: "start", fillOpacity: 0.75,
-        text: () => "tolerance" }),
-      Plot.line(referenceLine(bound, rate), { x: "x", y: (d) => 100 * d.y, stroke: "currentColor", strokeOpacity: 0.45, strokeDasharray: "6 4" }),
-      Plot.text(referenceLine(bound, rate).slice(0, 1), { x: "x", y: (d) => 100 * d.y, dy: 13, dx: 2, textAnchor: "start", fillOpacity: 0.65,
-        stroke: "var(--panel)", strokeWidth: 4, fill: "currentColor", text: () => `slope \u2212${number(rate, 2)}` }),
-      ...shown.map((line) => Plot.line(line.points, { x: "x", y: (d) => 100 * d.y, stroke: line.colour,
-        strokeWidth: line.strokeWidth, strokeDasharray: line.dash, marker: "circle" })),
-      Plot.tip(shown.flatMap(({ points }) => points), Plot.pointer({ x: "x", y: (d) => 100 * d.y,
-        title: (d) => `${d.name}, level ${d.level}\n${percent(d.y)}\n${count(d.x)} dofs` }))],
-  }));
-  const known = lines.filter(({ dash }) => dash);
-  return element("div", { class: "chart-and-words" }, chart, element("div", {},
-    legend([...shown].reverse().map(({ name, colour, meaning }) =>
-      ({ name: meaning ? `${name}: ${meaning}` : name, colour, line: true })), "legend-column"),
-    element("p", { class: "note" },
-      `Over the last ${last.length} levels the bound falls with the slope ${number(measured, 3)} in the degrees of freedom; `
-      + `the best rate of degree ${run.p} in ${run.d}D is \u2212${number(rate, 2)}.`
-      + (known.length ? "" : " The true error is not known to a single run; tribound study measures it."))));
-}
-
-export function boundSection(run) {
-  if (run.bound === null || run.bound === undefined) return null;
-  const levels = run.levels.filter((level) => level.bound !== null);
-  return section("bound", "Bound", "The bound and its causes",
-    "The bound is the root of a sum over all cells; each component measures one cause of the error. Shares are those of the squares, which add up.",
-    element("div", { class: "two-columns" },
-      element("div", {}, componentTable(run)),
-      levels.length > 1 ? element("figure", {}, shareChart(levels), element("figcaption", {}, "Shares over the levels of adaptation.")) : null));
-}
-
-export function convergenceSection(run) {
-  const levels = run.levels.filter((level) => level.bound !== null);
-  if (levels.length < 2) return null;
-  return section("convergence", "Convergence", "Convergence", null, element("figure", {}, convergenceChart(run, levels)));
+      tolerance ? [Plot.ruleY([100 * tolerance], { stroke: "currentColor", strokeOpacity: 0.6, strokeDasharray: "2 3" }),
+        Plot.text([100 * tolerance], { y: (d) => d, frameAnchor: "right", dx: 6, textAnchor: "start", fillOpacity: 0.75,
+          text: () => "tolerance" })] : null,
+      reference ? referenceMarks(reference.points.map(inPercent), reference.rate) : null,
+      curveMarks(drawn, (y) => percent(y / 100))],
+  }), options);
 }

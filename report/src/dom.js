@@ -52,11 +52,9 @@ export function number(value, digits = 4) {
   return signed === "1" ? power : `${signed}\u00d7${power}`;
 }
 
-/** A tick label that is a power of ten. */
-export function powerOfTen(value) {
-  const exponent = Math.round(Math.log10(value));
-  if (exponent >= -2 && exponent <= 4) return String(Number((10 ** exponent).toPrecision(1)));
-  return `10${superscript(exponent)}`;
+/** A number with the given digits behind the point. */
+export function fixed(value, digits = 2) {
+  return value === null || value === undefined || Number.isNaN(value) ? "\u2013" : value.toFixed(digits).replace("-", "\u2212");
 }
 
 /** Ticks of a logarithmic axis: 1, 2, 5 times powers of ten, or the powers alone where those would be too many. */

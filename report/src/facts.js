@@ -7,7 +7,7 @@ const list = (items) => element("ul", {}, items.map((item) => element("li", {}, 
 const topics = { quadrature: "Quadrature", displacement: "Prescribed displacements", geometry: "Geometry", rounding: "Rounding",
   linear_solver: "Linear solver" };
 
-function definitions(pairs) {
+export function definitions(pairs) {
   return element("dl", {}, pairs.filter(([, value]) => value).map(([name, value]) =>
     element("div", {}, element("dt", {}, name), element("dd", {}, value))));
 }
@@ -45,27 +45,30 @@ function levelTable(run) {
   return table(["#level", "#cells", "#dofs", "#Newton steps", "#bound [%]", "#energy", "#solve", "#certify", "#whole level"],
     run.levels.map((level) => [String(level.level), count(level.cells), count(level.dofs), String(level.newton.length),
       level.relative === null ? "\u2013" : number(100 * level.relative), number(level.energy, 6), seconds(level.times.solve),
-      seconds(level.times.certify), seconds(level.times.level)]));
+      seconds(level.times.certify), seconds(level.times.level)]), { class: "long" });
 }
 
-export function machineSection(data) {
-  const { certificate: run, machine } = data;
-  const program = run.program;
+/** Wall seconds by stage, beside where they were measured. */
+export function timesAndMachine(times, machine, program) {
   const memory = machine.memory > 0 ? `, ${Math.round(machine.memory / 2 ** 30)} GiB of memory` : "";
-  return section("times", "Times", "Levels, times, machine", null, levelTable(run),
-    element("div", { class: "two-columns" },
-      element("div", {}, element("h3", {}, "Times"),
-        definitions(Object.entries(run.times).map(([stage, value]) => [stage, seconds(value)]))),
-      element("div", {}, element("h3", {}, "Machine and program"), definitions([
-        ["processor", machine.processor && `${machine.processor}, ${machine.processors} logical processors${memory}`],
-        ["system", machine.system], ["tribound", `${program.version}, ${program.compiler}`], ["PETSc", program.petsc],
-        ["MUMPS", program.mumps], ["BLAS", program.blas && `${program.blas}${program.blas_threads ? `, threads: ${program.blas_threads}` : ""}`],
-        ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen]]))));
+  return element("div", { class: "two-columns" },
+    element("div", {}, element("h3", {}, "Times"),
+      definitions(Object.entries(times).map(([stage, value]) => [stage, seconds(value)]))),
+    element("div", {}, element("h3", {}, "Machine and program"), definitions([
+      ["processor", machine.processor && `${machine.processor}, ${machine.processors} logical processors${memory}`],
+      ["system", machine.system], ["tribound", `${program.version}, ${program.compiler}`], ["PETSc", program.petsc],
+      ["MUMPS", program.mumps], ["BLAS", program.blas && `${program.blas}${program.blas_threads ? `, threads: ${program.blas_threads}` : ""}`],
+      ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen]])));
+}
+
+export function levelsSection({ certificate: run, machine }) {
+  return section("times", "Times", "Levels, times, machine", null, levelTable(run), timesAndMachine(run.times, machine, run.program));
 }
 
 const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level",
   "newton.csv": "a row per Newton step", "contact.csv": "the contact boundary, point by point",
-  "series.pvd": "all levels, for ParaView" };
+  "series.pvd": "all levels, for ParaView", "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
+  "../report.html": "the study that this run belongs to" };
 
 export function filesSection(files) {
   if (files.length === 0) return null;

@@ -9,6 +9,7 @@ import { areaVector, colourRange, cornerPositions, fieldsOf, readSurface, vertex
 import { colours, fieldLegend, onScale } from "./scales.js";
 import { Scene, transferFunction } from "./scene.js";
 
+const paperWidth = 530; // CSS pixels of the picture on paper, beside its legend
 const manySegments = 30000; // beyond, the mesh is not drawn unless asked for
 
 /** 1, 2 or 5 times a power of ten, not above x. */
@@ -248,10 +249,14 @@ class FieldView {
   keepPicture() {
     if (!this.scene) return;
     this.render();
-    const { offsetLeft: x, offsetTop: y, clientWidth: width, clientHeight: height } = this.place;
-    this.print.setAttribute("viewBox", `0 0 ${this.frame.clientWidth} ${this.frame.clientHeight}`);
+    const { offsetLeft: x, offsetTop: y, clientLeft, clientTop } = this.place;
+    const [right, bottom] = [this.frame.clientWidth - x - this.place.offsetWidth, this.frame.clientHeight - y - this.place.offsetHeight];
+    const width = paperWidth - x - right;
+    const height = (width * this.place.clientHeight) / this.place.clientWidth;
+    const place = { offsetLeft: x, offsetTop: y, clientLeft, clientTop, clientWidth: width, clientHeight: height };
+    this.print.setAttribute("viewBox", `0 0 ${paperWidth} ${y + height + bottom}`);
     this.print.replaceChildren(element("svg:image", { x, y, width, height, href: this.scene.canvas.toDataURL("image/png") }),
-      ...[...this.overlay.childNodes].map((node) => node.cloneNode(true)));
+      ...overlay(this.current, this.camera, place, this.state.factor));
   }
 }
 

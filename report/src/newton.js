@@ -29,7 +29,7 @@ export function newtonSection(run, text) {
     rows.find((row) => row.level === level.level && row.step === step.step), i === 0)));
   if (steps.length === 0) return null;
   const body = table(["#level", "#step", "#residual", "#damping", "#bound, plain sums", "#linearisation", "#of the rest",
-    "#linear iterations", "#time", ""], steps, { class: "newton" });
+    "#linear iterations", "#time", ""], steps, { class: "newton long" });
   body.classList.add("table-tall");
   body.tabIndex = 0;
   return section("newton", "Newton", "Newton\u2019s method",

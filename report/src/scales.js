@@ -1,7 +1,7 @@
 // Colour scales, perceptually uniform and safe for colour-blind people, and their legends.
 
 import { interpolateRgb, interpolateViridis, piecewise, scaleLinear, scaleLog } from "d3";
-import { element, number, powerOfTen } from "./dom.js";
+import { element, number } from "./dom.js";
 import { statusColours, statusNames } from "./components.js";
 
 // Blue to orange through a light grey: told apart by everybody.
@@ -39,7 +39,7 @@ function ticksOf(kind, range) {
   const scale = scaleLog([range.low, range.high], [1, 0]);
   const powers = scale.ticks().filter((value) => Number.isInteger(Number(Math.log10(value).toFixed(9))));
   const values = powers.length > 1 ? powers : [range.low, range.high];
-  return values.map((value) => ({ value, label: powers.length > 1 ? powerOfTen(value) : number(value, 2), place: scale(value) }));
+  return values.map((value) => ({ value, label: number(value, 2), place: scale(value) }));
 }
 
 export function fieldLegend(field, range, regionNames) {

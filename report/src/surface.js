@@ -55,7 +55,8 @@ export async function readSurface(level) {
   const lattice = new Uint32Array(nFaces * triangles.length); // per corner: its place in arrays of lattice points
   for (let face = 0, c = 0; face < nFaces; ++face)
     for (const point of triangles) lattice[c++] = face * nFacePoints + point;
-  const vertex = lattice.map((place) => faces[place]);
+  const vertex = new Uint32Array(lattice.length);
+  for (let c = 0; c < vertex.length; ++c) vertex[c] = faces[lattice[c]];
   let segments = null;
   const surface = { ...data, nVertices, nFaces, nFacePoints, lattice, vertex,
     trianglesPerFace: k * k, nContactFaces: data.contact ? data.contact.pressure.length / nFacePoints : 0,
@@ -103,16 +104,19 @@ export function cornerPositions({ vertex }, positions) {
   return result;
 }
 
+/** A value for each of n corners. */
+function perCorner(n, value) {
+  const result = new Float32Array(n);
+  for (let c = 0; c < n; ++c) result[c] = value(c);
+  return result;
+}
+
 /** Values per face, vertex, lattice point or triangle as values per corner. */
 const spread = {
-  face: ({ lattice, nFacePoints }, values) => Float32Array.from(lattice, (place) => values[Math.floor(place / nFacePoints)]),
-  lattice: ({ lattice }, values) => Float32Array.from(lattice, (place) => values[place]),
-  vertex: ({ vertex }, value) => Float32Array.from(vertex, value),
-  triangle: (surface, values) => {
-    const result = new Float32Array(3 * values.length);
-    for (let i = 0; i < result.length; ++i) result[i] = values[Math.floor(i / 3)];
-    return result;
-  },
+  face: ({ lattice, nFacePoints }, values) => perCorner(lattice.length, (c) => values[Math.floor(lattice[c] / nFacePoints)]),
+  lattice: ({ lattice }, values) => perCorner(lattice.length, (c) => values[lattice[c]]),
+  vertex: ({ vertex }, value) => perCorner(vertex.length, (c) => value(vertex[c])),
+  triangle: (_, values) => perCorner(3 * values.length, (c) => values[Math.floor(c / 3)]),
 };
 
 /** Contact values are those of the first faces only. */
@@ -156,18 +160,21 @@ export function areaVector({ points, dimension, vertex }, c) {
   return [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
 }
 
-/** The value below which the fraction `part` of the area lies. */
-function areaQuantile(surface, values, part) {
-  const n = values.length / 3;
-  const weight = Float64Array.from({ length: n }, (_, t) => Math.hypot(...areaVector(surface, 3 * t)));
-  const largest = Float64Array.from({ length: n }, (_, t) => Math.max(values[3 * t], values[3 * t + 1], values[3 * t + 2]));
-  const order = Uint32Array.from({ length: n }, (_, t) => t).sort((a, b) => largest[a] - largest[b]);
-  let rest = part * weight.reduce((a, b) => a + b, 0);
-  for (const t of order) {
-    rest -= weight[t];
-    if (rest <= 0) return largest[t];
+/** The value below which the fraction `part` of the area lies, rounded up to a bin of a logarithmic histogram. */
+function areaQuantile(surface, values, part, [low, high]) {
+  const nBins = 4096;
+  const bottom = Math.log(Math.max(low, 1e-6 * high));
+  const perBin = (Math.log(high) - bottom) / nBins || 1;
+  const area = new Float64Array(nBins);
+  for (let c = 0; c < values.length; c += 3) {
+    const [x, y, z] = areaVector(surface, c);
+    const largest = Math.max(values[c], values[c + 1], values[c + 2]);
+    const bin = Math.floor((Math.log(largest) - bottom) / perBin);
+    area[Math.max(0, Math.min(nBins - 1, bin))] += Math.sqrt(x * x + y * y + z * z);
   }
-  return largest[order.at(-1)];
+  let rest = part * area.reduce((a, b) => a + b, 0);
+  const last = area.findIndex((weight) => (rest -= weight) <= 0);
+  return last < 0 ? high : Math.exp(bottom + (last + 1) * perBin);
 }
 
 /** The range of colours of a field; stresses are cut off where a singular corner would take all colours. */
@@ -180,7 +187,7 @@ export function colourRange(surface, field, values) {
     if (value > 0 && value < positive) positive = value;
   }
   const range = { low, high, largest: high };
-  if (field.trimmed) range.high = Math.min(high, areaQuantile(surface, values, 0.995));
+  if (field.trimmed) range.high = Math.min(high, areaQuantile(surface, values, 0.995, [low, high]));
   if (field.kind === "sequential" && low >= 0 && low < 0.5 * high) range.low = 0;
   if (field.kind === "diverging") {
     range.high = Math.max(Math.abs(low), Math.abs(high));

@@ -1,4 +1,4 @@
-// What came out, in one sentence and a few figures.
+// What came out of a run, in one sentence and a few figures.
 
 import { count, element, number, percent, plural, seconds } from "./dom.js";
 import { boundUnit } from "./components.js";
@@ -24,7 +24,7 @@ function sentence({ status, relative, tolerance, reason }) {
   }
 }
 
-function figure(value, name, note) {
+export function figure(value, name, note) {
   return element("div", { class: "figure" }, element("div", { class: "figure-value" }, value),
     element("div", { class: "figure-name" }, name), note ? element("div", { class: "figure-note" }, note) : null);
 }
@@ -46,16 +46,25 @@ function figures(run) {
     figure(seconds(time), "wall time", `last level ${seconds(last.times.level)}`));
 }
 
-export function header(data) {
-  const run = data.certificate;
-  const { title, mark } = verdicts[run.status] ?? { title: run.status, mark: "?" };
-  const kind = `${run.d}D, degree ${run.p}${run.friction ? `, friction: ${run.friction}` : ", no contact"}`;
+/** What both kinds of page begin with; `verdict`: its title, mark, tone and body. */
+export function pageHeader({ program, machine, title, file, kind, verdict, figures: shown }) {
   return element("header", {},
-    element("p", { class: "brand" }, "Tribound", element("span", {}, ` ${run.program.version} \u00b7 ${data.machine.written}`)),
-    element("h1", {}, run.title || run.file),
-    element("p", { class: "subtitle" }, `${run.file} \u00b7 ${kind}`),
-    element("div", { class: `verdict verdict-${run.status.replace(" ", "-")}`, role: "status" },
-      element("span", { class: "verdict-mark", "aria-hidden": "true" }, mark),
-      element("div", {}, element("strong", {}, title), element("p", {}, sentence(run)))),
-    figures(run));
+    element("p", { class: "brand" }, "Tribound", element("span", {}, ` ${program.version} \u00b7 ${machine.written}`)),
+    element("h1", {}, title || file),
+    element("p", { class: "subtitle" }, `${file} \u00b7 ${kind}`),
+    element("div", { class: `verdict verdict-${verdict.tone}`, role: "status" },
+      element("span", { class: "verdict-mark", "aria-hidden": "true" }, verdict.mark),
+      element("div", {}, element("strong", {}, verdict.title), verdict.body)),
+    shown);
+}
+
+/** "2D, degree 1, friction: tresca" */
+export function kindOf({ d, p, friction }) {
+  return `${d}D, degree ${p}${friction ? `, friction: ${friction}` : ", no contact"}`;
+}
+
+export function header({ certificate: run, machine }) {
+  const { title, mark } = verdicts[run.status] ?? { title: run.status, mark: "?" };
+  return pageHeader({ program: run.program, machine, title: run.title, file: run.file, kind: kindOf(run),
+    verdict: { title, mark, tone: run.status.replace(" ", "-"), body: element("p", {}, sentence(run)) }, figures: figures(run) });
 }

@@ -1,7 +1,7 @@
 // node page_test.mjs <tribound> <folder with playwright-core> <directory for results>
 //
-// Runs cases, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its driver
-// or the page is missing.
+// Runs cases and a study, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its
+// driver or the page is missing.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -65,12 +65,34 @@ stopping = "tolerance"
 ` },
 };
 
-function run(name, { text, exit }) {
+const study = { command: "study", exit: 0, text: `
+title = "Block, studied"
+degree = 1
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, 0]
+[boundary.top]
+traction = [0, -0.1]
+[boundary.right]
+traction = [0.04, 0.06]
+[boundary.bottom]
+contact = { friction = "tresca", threshold = 0.03 }
+[adapt]
+tolerance = 0.2
+[study]
+reference_factor = 0.5
+max_reference_dofs = 5_000
+dual_norm_dofs = 5_000
+figures = false
+` };
+
+function solve(name, { command = "run", text, exit }) {
   const directory = `${results}/${name}`;
   rmSync(directory, { recursive: true, force: true });
   mkdirSync(directory, { recursive: true });
   writeFileSync(`${directory}/case.toml`, text);
-  const { status, stderr } = spawnSync(program, ["run", "case.toml", "--quiet"], { cwd: directory, encoding: "utf8" });
+  const { status, stderr } = spawnSync(program, [command, "case.toml", "--quiet"], { cwd: directory, encoding: "utf8" });
   assert.equal(status, exit, stderr);
   return `${directory}/out`;
 }
@@ -125,14 +147,19 @@ async function useFields(page, dimension) {
   assert.match(await page.locator(".tooltip").textContent(), /x = .*, y = /);
 }
 
+async function checkLinks(page, directory) {
+  const links = await page.locator("section a").evaluateAll((list) => list.map((a) => a.getAttribute("href")));
+  for (const link of links) assert(existsSync(`${directory}/${link}`), `${link} does not exist`);
+  return links;
+}
+
 async function checkCertificate(page, directory, status) {
   const certificate = JSON.parse(readFileSync(`${directory}/certificate.json`, "utf8"));
   assert.doesNotMatch(await page.locator("body").innerText(), /Infinity|NaN|undefined/);
   const verdict = await page.locator(".verdict").textContent();
   assert(verdict.includes(status), verdict);
   if (certificate.relative) assert(verdict.includes(`${Number((100 * certificate.relative).toPrecision(3))}`), verdict);
-  for (const link of await page.locator("#files a").evaluateAll((list) => list.map((a) => a.getAttribute("href"))))
-    assert(existsSync(`${directory}/${link}`), `${link} does not exist`);
+  await checkLinks(page, directory);
   const rows = readFileSync(`${directory}/newton.csv`, "utf8").trim().split("\n").length - 1;
   assert.equal(await page.locator("#newton tbody tr").count(), rows);
 }
@@ -144,33 +171,82 @@ async function checkNarrowAndDark(browser, url) {
   await page.close();
 }
 
+async function checkCharts(page, charts) {
+  for (const chart of charts) assert(await colours(page, chart) > 15, `${chart} is blank`);
+}
+
 async function checkPrint(page, file) {
   await page.pdf({ path: file, format: "A4", printBackground: true });
   assert(readFileSync(file).length > 20000);
+}
+
+async function checkPrintedFields(page) {
   assert.match(await page.locator("svg.print-only image").getAttribute("href"), /^data:image\/png/);
+}
+
+/** What the pointer is told on a point of a chart. */
+async function hover(page, chart) {
+  await page.locator(`${chart} circle`).first().hover({ force: true });
+  const tip = page.locator(`${chart} [aria-label="tip"] text`).first();
+  await tip.waitFor();
+  return tip.textContent();
+}
+
+/** The page of a study, and that of a variant, which shows the true errors. */
+async function checkStudy(browser, directory) {
+  const url = pathToFileURL(`${directory}/report.html`).href;
+  const { page, complaints, seconds } = await openPage(browser, url);
+  const found = JSON.parse(readFileSync(`${directory}/study.json`, "utf8"));
+  assert.doesNotMatch(await page.locator("body").innerText(), /Infinity|NaN|undefined/);
+  assert.match(await page.locator(".verdict").textContent(), /The bound holds.*is above the dual norm.*best rate.*Newton steps instead of.*Degree 2/);
+  await page.screenshot({ path: `${results}/study.png`, fullPage: true });
+  for (const section of ["convergence", "effectivity", "components"]) {
+    assert.equal(await page.locator(`#${section} .chart`).count(), 2);
+    await checkCharts(page, [`#${section} .chart >> nth=0`, `#${section} .chart >> nth=1`]);
+  }
+  assert.match(await hover(page, "#convergence .chart"), /level \d.*%.*degrees of freedom/);
+  const links = await checkLinks(page, directory);
+  for (const link of ["study.csv", "study.json", "reference/report.html", ...Object.keys(found.variants).map((name) => `${name}/report.html`)])
+    assert(links.includes(link), `no link to ${link}`);
+  assert.equal(await page.locator("#newton tbody tr").count(), found.newton_table.length + 1);
+  await checkPrint(page, `${results}/study.pdf`);
+  await checkNarrowAndDark(browser, url);
+  assert.deepEqual(complaints, []);
+  report("study", directory, seconds);
+  await page.close();
+  const variant = await openPage(browser, pathToFileURL(`${directory}/uniform/report.html`).href);
+  assert.match(await variant.page.locator("#convergence .legend").textContent(), /dual norm of the residual.*true error of the stress/);
+  assert((await checkLinks(variant.page, `${directory}/uniform`)).includes("../report.html"));
+  assert.deepEqual(variant.complaints, []);
+  await variant.page.close();
+}
+
+function report(name, directory, seconds) {
+  console.log(`${name}: opens in ${seconds.toFixed(2)} s, ${(readFileSync(`${directory}/report.html`).length / 1e6).toFixed(2)} MB`);
 }
 
 const browser = await launch(folder);
 try {
   for (const [name, what] of Object.entries(cases)) {
-    const directory = run(name, what);
+    const directory = solve(name, what);
     const url = pathToFileURL(`${directory}/report.html`).href;
     const { page, complaints, seconds } = await openPage(browser, url);
     await checkCertificate(page, directory, what.status);
     if (what.exit !== 2) {
       await page.screenshot({ path: `${results}/${name}.png`, fullPage: true });
-      for (const chart of ["#bound .chart", "#convergence .chart", "#contact .chart"])
-        assert(await colours(page, chart) > 15, `${chart} is blank`);
+      await checkCharts(page, ["#bound .chart", "#convergence .chart", "#contact .chart"]);
       await checkPrint(page, `${results}/${name}.pdf`);
+      await checkPrintedFields(page);
       await useFields(page, name === "cube" ? 3 : 2);
       await checkNarrowAndDark(browser, url);
     }
     if (name === "block") assert.equal(await page.locator("h1").textContent(), title);
     assert.equal(await page.locator("img").count(), 0);
     assert.deepEqual(complaints, []);
-    console.log(`${name}: opens in ${seconds.toFixed(2)} s, ${(readFileSync(`${directory}/report.html`).length / 1e6).toFixed(2)} MB`);
+    report(name, directory, seconds);
     await page.close();
   }
+  await checkStudy(browser, solve("study", study));
 } finally {
   await browser.close();
 }

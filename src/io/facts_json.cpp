@@ -3,6 +3,16 @@
 namespace tribound
 {
 
+Json program_json(const BuildFacts& build)
+{
+  return {{"name", "tribound"},         {"version", build.version},
+          {"compiler", build.compiler}, {"petsc", build.petsc},
+          {"mumps", build.mumps},       {"gmsh", build.gmsh},
+          {"blas", build.blas},         {"blas_threads", build.blas_threads},
+          {"mpi", build.mpi},           {"eigen", build.eigen},
+          {"features", build.features}};
+}
+
 Json mesh_json(const MeshFacts& mesh)
 {
   Json object{

@@ -9,6 +9,9 @@
 namespace tribound
 {
 
+/// The `program` of certificate.json and study.json.
+[[nodiscard]] Json program_json(const BuildFacts& build);
+
 /// The `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
 [[nodiscard]] Json mesh_json(const MeshFacts& mesh);
 

@@ -139,16 +139,6 @@ Json json(const LevelRecord& level)
   return object;
 }
 
-Json json(const BuildFacts& build)
-{
-  return {{"name", "tribound"},         {"version", build.version},
-          {"compiler", build.compiler}, {"petsc", build.petsc},
-          {"mumps", build.mumps},       {"gmsh", build.gmsh},
-          {"blas", build.blas},         {"blas_threads", build.blas_threads},
-          {"mpi", build.mpi},           {"eigen", build.eigen},
-          {"features", build.features}};
-}
-
 Json json(const RunWarning& warning)
 {
   return {{"code", warning.code},
@@ -289,7 +279,7 @@ std::string newton_csv(const RunRecord& run)
 
 std::string certificate_json(const RunRecord& run)
 {
-  Json object{{"schema", schema_version},        {"program", json(run.build)},
+  Json object{{"schema", schema_version},        {"program", program_json(run.build)},
               {"title", run.facts.title},        {"file", run.facts.file},
               {"status", to_string(run.status)}, {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},        {"p", run.facts.degree},

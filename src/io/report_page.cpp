@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
-#include "io/machine.h"
 #include "io/packed_array.h"
 #include "io/page_profile.h"
 #include "io/vtu.h"
@@ -98,48 +95,17 @@ std::string profiles_member(const NitscheForm<dim>& form, std::span<const double
   return profiles.empty() ? profiles : member("profiles", "[" + profiles + "]");
 }
 
-/// Empty where the file cannot be read.
-std::string read_text(const std::filesystem::path& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string machine_json()
-{
-  const MachineFacts machine = machine_facts();
-  return nlohmann::ordered_json{{"processor", machine.processor},
-                                {"processors", machine.n_processors},
-                                {"memory", machine.memory},
-                                {"system", machine.system},
-                                {"written", date_and_time()}}
-      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-/// Those of the run's files that exist, in the order in which a reader wants them.
-std::string files_json(const std::filesystem::path& directory, const RunRecord& run)
+/// The files of a run, in the order in which a reader wants them.
+std::vector<std::string> run_files(const RunRecord& run)
 {
   std::vector<std::string> names = {"certificate.json", "convergence.csv", "newton.csv", "contact.csv",
                                     "series.pvd"};
   for (const LevelRecord& level : run.levels)
     for (const char* stem : {"level", "contact"}) names.push_back(level_file_name(stem, level.level));
-  std::erase_if(names, [&](const std::string& name) { return !std::filesystem::exists(directory / name); });
-  return nlohmann::json(names).dump();
+  return names;
 }
 
 }  // namespace
-
-std::string script_safe(std::string_view json)
-{
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json)
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  return safe;
-}
 
 template <int dim>
 PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
@@ -187,40 +153,30 @@ void add_true_errors(const std::filesystem::path& page, std::span<const TrueErro
   write_file(page, text);
 }
 
-ReportPage::ReportPage(const std::filesystem::path& page_template)
-{
-  const std::string text = read_text(page_template);
-  const std::size_t marker = text.find(page_data_marker);
-  if (marker == std::string::npos) return;
-  head_ = text.substr(0, marker);
-  tail_ = text.substr(marker + page_data_marker.size());
-}
+ReportPage::ReportPage(const std::filesystem::path& page_template) : template_(page_template) {}
 
 template <int dim>
 void ReportPage::add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
 {
-  if (head_.empty()) return;
+  if (template_.empty()) return;
   levels_.push_back(page_level(number, form, level));
   drop_levels(levels_, {});
 }
 
 void ReportPage::write(const std::filesystem::path& directory, const RunRecord& run) const
 {
-  if (head_.empty()) return;
-  AtomicFile file(directory / "report.html");
-  file.write(head_);
-  file.write(R"(<script type="application/json" id="run-data">)");
-  file.write(script_safe(fmt::format(R"({{"certificate":{},"newton":{},"machine":{},"files":{},"fields":[)",
-                                     certificate_json(run), nlohmann::json(newton_csv(run)).dump(),
-                                     machine_json(), files_json(directory, run))));
-  for (std::size_t i = 0; i < levels_.size(); ++i)
+  if (template_.empty()) return;
+  const std::string head = fmt::format(R"({{"certificate":{},"newton":{},"machine":{},"files":{},"fields":[)",
+                                       certificate_json(run), nlohmann::json(newton_csv(run)).dump(),
+                                       machine_json(), files_json(directory, run_files(run)));
+  std::vector<std::string_view> json = {head};
+  for (const PageLevel& level : levels_)
   {
-    if (i > 0) file.write(",\n");
-    file.write(script_safe(levels_[i].json));
+    if (json.size() > 1) json.emplace_back(",\n");
+    json.emplace_back(level.json);
   }
-  file.write("]}</script>");
-  file.write(tail_);
-  file.commit();
+  json.emplace_back("]}");
+  template_.write(directory / "report.html", "run-data", json);
 }
 
 template PageLevel page_level(int, const NitscheForm<2>&, const CertifiedLevel<2>&, const PageLimits&);

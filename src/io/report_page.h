@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file report_page.h
-/// report.html: a run on one page, which opens without a network. Its program is the template that report/
-/// builds; here it is filled with the data of the run.
+/// report.html of a run: its data, put into the template of io/page_template.h.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,17 +13,11 @@
 
 #include "adapt/level.h"
 #include "io/page_surface.h"
+#include "io/page_template.h"
 #include "io/report.h"
 
 namespace tribound
 {
-
-/// The comment in the template which the data replace.
-inline constexpr std::string_view page_data_marker = "<!-- data of the run -->";
-
-/// JSON that can stand in a script element whatever the user's strings contain: every `<` becomes `\u003c`,
-/// so that none of them ends the element or starts a comment.
-[[nodiscard]] std::string script_safe(std::string_view json);
 
 /// The fields of a level, as JSON.
 struct PageLevel
@@ -72,8 +65,7 @@ class ReportPage
   void write(const std::filesystem::path& directory, const RunRecord& run) const;
 
  private:
-  std::string head_;  ///< the template before the marker
-  std::string tail_;  ///< and behind it
+  PageTemplate template_;
   std::vector<PageLevel> levels_;
 };
 

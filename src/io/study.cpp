@@ -7,6 +7,7 @@
 #include "adapt/rate.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "io/facts_json.h"
 #include "io/json.h"
 
 namespace tribound
@@ -257,6 +258,7 @@ std::string study_csv(const Study& study)
 std::string study_json(const Study& study)
 {
   Json object{{"schema", schema_version},
+              {"program", program_json(study.build)},
               {"title", study.facts.title},
               {"file", study.facts.file},
               {"d", study.facts.dimension},

@@ -58,6 +58,7 @@ struct StudyReference
 struct Study
 {
   CaseFacts facts;
+  BuildFacts build;
   double gamma_lin = 0;
   std::string marking;
   double theta = 0;

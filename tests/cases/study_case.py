@@ -83,7 +83,8 @@ def check_levels(study):
 
 
 def check_files(directory, study):
-    """Whole files, and the true error of every cell in those of ParaView."""
+    """Whole files, the page where pages are written, and the true error of every cell in those of ParaView."""
+    assert (directory / "report.html").exists() == (directory / "adaptive" / "report.html").exists(), "report.html"
     leftovers = [file for file in directory.rglob("*") if file.is_file() and file.suffix not in (".csv", ".json", ".vtu", ".pvd", ".html")]
     assert not leftovers, f"left behind: {leftovers}"
     for name in VARIANTS:

@@ -1,0 +1,56 @@
+// The convergence of a run: the bound, its components, and true errors where they are known.
+
+import { legend, logLogChart, logRange, slope } from "./charts.js";
+import { components } from "./components.js";
+import { element, number, section } from "./dom.js";
+
+// Drawn over the bound, which they may nearly be equal to.
+const trueErrors = [
+  { key: "dual_norm", name: "dual norm of the residual", colour: "#8a94a0", dash: "2 3" },
+  { key: "stress_error", name: "true error of the stress", colour: "#4fc38a", dash: "7 4" },
+];
+
+/** The curves of levels, relative to the norm of the stress; components that are round-off are left out. */
+export function boundCurves(levels) {
+  const curve = (style, value) => ({ ...style, points: levels
+    .map((level) => ({ x: level.dofs, y: value(level) / level.sigma_norm, level: level.level }))
+    .filter(({ y }) => y > 0 && Number.isFinite(y)) });
+  const bound = curve({ name: "bound", colour: "currentColor", strokeWidth: 2.75, isBound: true }, (level) => level.bound);
+  const floor = Math.min(...bound.points.map(({ y }) => y)) * 1e-3;
+  const parts = components.map(({ name, colour, meaning }) =>
+    curve({ name, colour, meaning, strokeWidth: 1.25 }, (level) => level.components[name] ?? 0));
+  const errors = trueErrors.map(({ key, ...style }) => curve({ ...style, strokeWidth: 1.75, isError: true }, (level) => level[key]));
+  return [...parts, bound, ...errors].map((line) => ({ ...line, points: line.points.filter(({ y }) => y >= floor) }))
+    .filter(({ points }) => points.length > 0);
+}
+
+/** The bound, the errors, the components, as a legend names them. */
+export function curveLegend(lines, kind) {
+  const rank = ({ isBound, isError }) => (isBound ? 0 : isError ? 1 : 2);
+  return legend([...lines].sort((a, b) => rank(a) - rank(b)).map((line) =>
+    ({ ...line, name: line.meaning ? `${line.name}: ${line.meaning}` : line.name, line: true })), kind);
+}
+
+export const valuesOf = (lines) => lines.flatMap(({ points }) => points.map(({ y }) => y));
+
+function convergenceChart(run, levels) {
+  const lines = boundCurves(levels);
+  const { points } = lines.find(({ isBound }) => isBound);
+  const last = points.slice(Math.min(Math.floor(points.length / 2), Math.max(0, points.length - 3)));
+  const rate = run.p / run.d;
+  const isKnown = lines.some(({ isError }) => isError);
+  return element("div", { class: "chart-and-words" },
+    logLogChart({ label: "Convergence of the bound and its components over the degrees of freedom",
+      yLabel: "relative to the norm of the stress [%]", lines, range: logRange([run.tolerance, ...valuesOf(lines)]),
+      reference: { points, rate }, tolerance: run.tolerance }),
+    element("div", {}, curveLegend(lines, "legend-column"), element("p", { class: "note" },
+      `Over the last ${last.length} levels the bound falls with the slope ${number(slope(last), 3)} in the degrees of freedom; `
+      + `the best rate of degree ${run.p} in ${run.d}D is \u2212${number(rate, 2)}.`
+      + (isKnown ? "" : " The true error is not known to a single run; tribound study measures it."))));
+}
+
+export function convergenceSection(run) {
+  const levels = run.levels.filter((level) => level.bound > 0 && level.sigma_norm > 0);
+  if (levels.length < 2) return null;
+  return section("convergence", "Convergence", "Convergence", null, element("figure", {}, convergenceChart(run, levels)));
+}

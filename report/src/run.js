@@ -1,0 +1,26 @@
+// The page of a run, with the data of src/io/report_page.cpp.
+
+import { boundSection } from "./bound.js";
+import { contactSection } from "./contact.js";
+import { convergenceSection } from "./convergence.js";
+import { caseSection, filesSection, guaranteeSection, levelsSection } from "./facts.js";
+import { fieldsSection } from "./fields.js";
+import { newtonSection } from "./newton.js";
+import { header } from "./verdict.js";
+
+/** `trueErrors`: what a study knows of the levels of a variant, else undefined. */
+export function runPage(data, trueErrors) {
+  const { certificate: run, machine } = data;
+  for (const { level, ...errors } of trueErrors ?? [])
+    Object.assign(run.levels.find((other) => other.level === level) ?? {}, errors);
+  const fields = fieldsSection(data);
+  const contact = contactSection(data);
+  const sections = [fields.element, boundSection(run), convergenceSection(run), contact.element, newtonSection(run, data.newton),
+    guaranteeSection(run), caseSection(data), levelsSection(data),
+    filesSection(trueErrors ? [...data.files, "../report.html"] : data.files)].filter(Boolean);
+  const start = async () => {
+    await fields.start();
+    await contact.start();
+  };
+  return { title: run.title || run.file, header: header(data), sections, start, machine, program: run.program };
+}

@@ -1,0 +1,49 @@
+#pragma once
+
+/// @file page_template.h
+/// report.html as report/ builds it: a page that opens without a network, and a place in it for data.
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tribound
+{
+
+/// The comment in the template which the data replace.
+inline constexpr std::string_view page_data_marker = "<!-- data of the page -->";
+
+/// JSON that can stand in a script element whatever the user's strings contain: every `<` becomes `\u003c`,
+/// so that none of them ends the element or starts a comment.
+[[nodiscard]] std::string script_safe(std::string_view json);
+
+class PageTemplate
+{
+ public:
+  /// Empty where there is no such file, or no place for data in it.
+  explicit PageTemplate(const std::filesystem::path& path);
+
+  [[nodiscard]] bool empty() const { return head_.empty(); }
+
+  /// Writes the page with the JSON, given in pieces, in a script element with this id. Does nothing where
+  /// the template is empty. Throws InputError when the file cannot be written.
+  void write(const std::filesystem::path& page, std::string_view id,
+             std::span<const std::string_view> json) const;
+
+ private:
+  std::string head_;  ///< the template before the marker
+  std::string tail_;  ///< and behind it
+};
+
+/// The text of a file; empty where it cannot be read.
+[[nodiscard]] std::string read_text(const std::filesystem::path& path);
+
+/// This computer, and when it writes.
+[[nodiscard]] std::string machine_json();
+
+/// Those of the files that are in the directory, in this order.
+[[nodiscard]] std::string files_json(const std::filesystem::path& directory,
+                                     std::span<const std::string> names);
+
+}  // namespace tribound
