@@ -99,16 +99,22 @@ class FieldView {
   /** The first picture; afterwards the page may be looked at. */
   async start() {
     await this.set({});
-    const resize = () => {
-      const style = getComputedStyle(this.frame);
-      this.scene?.resize(this.place.clientWidth, this.place.clientHeight, style.getPropertyValue("--panel").trim() || "#ffffff");
-      this.draw();
-    };
-    new ResizeObserver(resize).observe(this.place);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", resize);
+    new ResizeObserver(() => this.fit()).observe(this.place);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.fit());
     addEventListener("beforeprint", () => this.keepPicture());
     this.place.addEventListener("pointermove", (event) => this.point(event));
     this.place.addEventListener("pointerleave", () => { this.tooltip.hidden = true; });
+  }
+
+  /** Gives the picture the size and the background of its place; drawn only where they change, for that may take long. */
+  fit() {
+    const { clientWidth: width, clientHeight: height } = this.place;
+    const background = getComputedStyle(this.frame).getPropertyValue("--panel").trim() || "#ffffff";
+    const look = `${width} ${height} ${background}`;
+    if (look === this.look) return;
+    this.look = look;
+    this.scene?.resize(width, height, background);
+    this.draw();
   }
 
   async surface(index) {
@@ -147,6 +153,7 @@ class FieldView {
       }
       bindCamera(this.place, this.camera, () => this.home(), () => this.draw());
       this.home();
+      this.fit();
     }
     this.state.mesh ??= surface.nFaces * 3 * surface.subdivision <= manySegments;
     this.fields = fieldsOf(surface, components);

@@ -23,14 +23,14 @@ class StudyPageFile : public ::testing::Test
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_ / "figures");
     std::filesystem::create_directories(directory_ / "adaptive");
-    std::ofstream(template_) << page_data_marker;
+    std::ofstream(template_) << "<!doctype html>" << page_data_marker;
   }
 
   /// The data in the page.
   json data() const
   {
     const std::string page = read_text(directory_ / "report.html");
-    const std::string begin = R"(<script type="application/json" id="study-data">)";
+    const std::string begin = R"(<!doctype html><script type="application/json" id="study-data">)";
     const std::string end = "</script>";
     EXPECT_TRUE(page.starts_with(begin) && page.ends_with(end));
     return json::parse(page.substr(begin.size(), page.size() - begin.size() - end.size()));
