@@ -161,6 +161,13 @@ TEST(Findings, Cost)
             "degree 3 on this mesh: 1234567 degrees of freedom, about 12 GB and 72 min");
 }
 
+TEST(Findings, MegabytesThatAreAGigabyte)
+{
+  Diagnosis diagnosis = healthy();
+  diagnosis.costs = {{2, 1e5, LinearMethod::direct, 0.9996e9, 50}};
+  EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("about 1.0 GB"));
+}
+
 TEST(Findings, MemoryThatIsNotThere)
 {
   Diagnosis diagnosis = healthy();
