@@ -186,6 +186,9 @@ TEST(Findings, MemoryThatIsNotThere)
   EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("of 40 GB (adapt.max_memory)"));
   diagnosis.memory = {100e9, true};
   EXPECT_EQ(finding(diagnosis, "memory").severity, Severity::ok);
+  diagnosis.memory = {};  // not known
+  const std::vector<Finding> all = findings(diagnosis);
+  EXPECT_EQ(std::ranges::count(all, "memory", &Finding::code), 0);
 }
 
 TEST(Findings, OnTheScreen)
