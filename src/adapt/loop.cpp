@@ -106,7 +106,7 @@ class Loop
   std::vector<double> start_;  ///< the solution of the level before, on the current mesh
   double delta_ = 0;           ///< of the regularised variant after the level before
   RefinementSeconds refinement_;
-  std::optional<BoundComponents> coarser_;  ///< components of its bound
+  std::optional<double> expected_;  ///< osc + str + neu + cnt + frc on the current mesh, guessed
   Verdict last_{RunStatus::failed, {}};
   Verdict ended_{RunStatus::failed, {}};
 };
@@ -122,7 +122,7 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
   try
   {
     CertifiedLevel<dim> level =
-        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, coarser_);
+        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, expected_);
     level.refinement = refinement_;
     return level;
   }
@@ -181,7 +181,7 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
   const double growth = static_cast<double>(dofs) / std::max(1, current_->space.n_dofs() - fixed);
   if (auto limit = memory_limit_reached(growth); !limit.empty()) return limit;
   delta_ = level.delta;
-  coarser_ = level.estimate.global;
+  expected_ = level.estimate.global.discretisation() * std::pow(growth, -1.0 * config_.degree / dim);
   start_ = nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
   refinement_.transfer = lap();
   current_ = std::move(next);
