@@ -4,10 +4,36 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <limits>
+#include <string>
 
 namespace tribound
 {
+
+namespace
+{
+
+/// The smallest number that the files `name` hold in `mount` and the folders from there to `mount`/`group`;
+/// infinity where they say "max" or are not there.
+double smallest_limit(const std::filesystem::path& mount, const std::filesystem::path& group,
+                      const char* name)
+{
+  double limit = std::numeric_limits<double>::infinity();
+  const auto look_in = [&](const std::filesystem::path& folder)
+  {
+    std::ifstream file(folder / name);
+    double allowed = 0;
+    if (file >> allowed && allowed > 0) limit = std::min(limit, allowed);
+  };
+  std::filesystem::path folder = mount;
+  look_in(folder);
+  for (const std::filesystem::path& part : group) look_in(folder /= part);
+  return limit;
+}
+
+}  // namespace
 
 double peak_memory()
 {
@@ -28,13 +54,30 @@ double physical_memory()
   return pages > 0 && page > 0 ? pages * page : 0;
 }
 
+double control_group_memory(const std::filesystem::path& groups, const std::filesystem::path& root)
+{
+  double limit = std::numeric_limits<double>::infinity();
+  std::ifstream lines(groups);
+  for (std::string line; std::getline(lines, line);)  // number:controllers:/group
+  {
+    const std::size_t first = line.find(':');
+    const std::size_t second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    const std::filesystem::path group = std::filesystem::path(line.substr(second + 1)).relative_path();
+    if (controllers.empty())
+      limit = std::min(limit, smallest_limit(root, group, "memory.max"));
+    else if (("," + controllers + ",").find(",memory,") != std::string::npos)
+      limit = std::min(limit, smallest_limit(root / "memory", group, "memory.limit_in_bytes"));
+  }
+  return limit;
+}
+
 double machine_memory()
 {
   const double physical = physical_memory();
-  // "max" where the control group has no limit: reading a number then fails.
-  std::ifstream group("/sys/fs/cgroup/memory.max");
-  double allowed = 0;
-  if (!(group >> allowed) || allowed <= 0) return physical;
+  const double allowed = control_group_memory("/proc/self/cgroup", "/sys/fs/cgroup");
+  if (std::isinf(allowed)) return physical;
   return physical > 0 ? std::min(physical, allowed) : allowed;
 }
 

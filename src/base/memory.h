@@ -3,6 +3,8 @@
 /// @file memory.h
 /// Memory of this process and of the machine, in bytes.
 
+#include <filesystem>
+
 namespace tribound
 {
 
@@ -12,7 +14,13 @@ namespace tribound
 /// What the machine has; 0 where the system does not tell.
 [[nodiscard]] double physical_memory();
 
-/// The same, or the control group of the process where that allows less; 0 where the system does
+/// What the control groups of a process allow, the smallest limit of each and of those it lies in; infinity
+/// where there is none. `groups`: as /proc/self/cgroup; `root`: where the groups lie, as /sys/fs/cgroup.
+/// Versions 1 and 2 of control groups.
+[[nodiscard]] double control_group_memory(const std::filesystem::path& groups,
+                                          const std::filesystem::path& root);
+
+/// physical_memory(), or the control groups of this process where they allow less; 0 where the system does
 /// not tell.
 [[nodiscard]] double machine_memory();
 

@@ -23,8 +23,8 @@ struct CostEstimate
 };
 
 /// Estimates for the degrees 1 to 4, from a model fitted to measured runs (docs/doctor.md). On other runs of
-/// the same sizes, memory was right within a quarter and time within a factor of 2; beyond these sizes both
-/// are extrapolated.
+/// the same sizes, memory was right within a factor of 1.5, mostly a quarter, and time within 2; beyond these
+/// sizes both are extrapolated.
 template <int dim>
 [[nodiscard]] std::vector<CostEstimate> cost_estimates(const Mesh<dim>& mesh, const SolverConfig& config);
 

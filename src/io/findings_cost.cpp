@@ -25,7 +25,7 @@ std::string two_digits(double value)
 
 std::string bytes_in_words(double bytes)
 {
-  return bytes < 1e9 ? two_digits(bytes / 1e6) + " MB" : two_digits(bytes / 1e9) + " GB";
+  return bytes < 0.995e9 ? two_digits(bytes / 1e6) + " MB" : two_digits(bytes / 1e9) + " GB";
 }
 
 std::string seconds_in_words(double seconds)

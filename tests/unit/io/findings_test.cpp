@@ -161,6 +161,13 @@ TEST(Findings, Cost)
             "degree 3 on this mesh: 1234567 degrees of freedom, about 12 GB and 72 min");
 }
 
+TEST(Findings, MegabytesThatAreAGigabyte)
+{
+  Diagnosis diagnosis = healthy();
+  diagnosis.costs = {{2, 1e5, LinearMethod::direct, 0.9996e9, 50}};
+  EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("about 1.0 GB"));
+}
+
 TEST(Findings, MemoryThatIsNotThere)
 {
   Diagnosis diagnosis = healthy();
@@ -179,6 +186,9 @@ TEST(Findings, MemoryThatIsNotThere)
   EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("of 40 GB (adapt.max_memory)"));
   diagnosis.memory = {100e9, true};
   EXPECT_EQ(finding(diagnosis, "memory").severity, Severity::ok);
+  diagnosis.memory = {};  // not known
+  const std::vector<Finding> all = findings(diagnosis);
+  EXPECT_EQ(std::ranges::count(all, "memory", &Finding::code), 0);
 }
 
 TEST(Findings, OnTheScreen)
