@@ -54,9 +54,7 @@ TYPED_TEST(Lagrange, OneAtItsNodeZeroAtTheOthers)
   for (int p = 1; p <= 6; ++p)
   {
     const LagrangeBasis<k> basis(p);
-    std::vector<Point<k>> nodes;
-    for (int i = 0; i < basis.n_nodes(); ++i) nodes.push_back(basis.node_point(i));
-    const Tabulation<k> table = basis.tabulate(nodes);
+    const Tabulation<k> table = basis.tabulate(basis.node_points());
     ASSERT_EQ(table.n_points, basis.n_nodes());
     ASSERT_EQ(table.n_nodes, basis.n_nodes());
     for (int q = 0; q < table.n_points; ++q)
