@@ -58,6 +58,15 @@ Point<k> LagrangeBasis<k>::node_point(int i) const
 }
 
 template <int k>
+std::vector<Point<k>> LagrangeBasis<k>::node_points() const
+{
+  std::vector<Point<k>> points;
+  points.reserve(nodes_.size());
+  for (int i = 0; i < n_nodes(); ++i) points.push_back(node_point(i));
+  return points;
+}
+
+template <int k>
 Tabulation<k> LagrangeBasis<k>::tabulate(std::span<const Point<k>> points) const
 {
   const int n = n_nodes();

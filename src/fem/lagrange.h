@@ -44,6 +44,8 @@ class LagrangeBasis
   [[nodiscard]] const std::array<int, k + 1>& node(int i) const { return nodes_[i]; }
   /// Reference coordinates of node i.
   [[nodiscard]] Point<k> node_point(int i) const;
+  /// Those of all nodes.
+  [[nodiscard]] std::vector<Point<k>> node_points() const;
   [[nodiscard]] Tabulation<k> tabulate(std::span<const Point<k>> points) const;
 
  private:

@@ -127,9 +127,7 @@ template <int dim>
 std::vector<Point<dim>> LagrangeSpace<dim>::node_points() const
 {
   std::vector<Point<dim>> points(n_nodes_);
-  std::vector<Point<dim>> reference;
-  reference.reserve(basis_.n_nodes());
-  for (int i = 0; i < basis_.n_nodes(); ++i) reference.push_back(basis_.node_point(i));
+  const std::vector<Point<dim>> reference = basis_.node_points();
   for (Index c = 0; c < mesh_->n_cells(); ++c)
   {
     const CellMap<dim> map = cell_map(*mesh_, c);

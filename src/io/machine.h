@@ -17,7 +17,8 @@ struct MachineFacts
   std::string system;     ///< such as "Linux 6.1.0, x86_64"
 };
 
-[[nodiscard]] MachineFacts machine_facts();
+/// Found out once per process.
+[[nodiscard]] const MachineFacts& machine_facts();
 
 /// Now, as in "2024-05-17 09:30 UTC".
 [[nodiscard]] std::string date_and_time();

@@ -122,11 +122,8 @@ class SurfaceSampler
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
-    std::vector<Point<dim>> nodes;
-    nodes.reserve(space_.basis().n_nodes());
-    for (int i = 0; i < space_.basis().n_nodes(); ++i) nodes.push_back(space_.basis().node_point(i));
-    at_nodes_ = form.space().basis().tabulate(nodes);
-    values_.resize(nodes.size());
+    at_nodes_ = form.space().basis().tabulate(space_.basis().node_points());
+    values_.resize(at_nodes_.n_points);
     for (int local = 0; local < (dim == 2 ? 1 : dim + 1); ++local)
       lattices_.push_back(face_lattice<dim>(space_.basis(), local));
   }

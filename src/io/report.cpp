@@ -13,7 +13,7 @@ namespace tribound
 namespace
 {
 
-constexpr const char* schema_version = "1";
+constexpr const char* certificate_schema = "1";
 
 std::optional<double> member(const std::optional<Bound>& bound, double Bound::*value)
 {
@@ -207,15 +207,14 @@ std::optional<double> relative_bound(const LevelRecord& level)
 }
 
 template <int dim>
-SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const double> u,
-                                 std::span<const Point<dim>> t)
+SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
 {
   SolutionFigures figures;
-  const StressNorms norms = stress_norms(form.problem(), form.space(), u);
-  figures.energy = norms.energy;
-  figures.sigma_norm = norms.sigma;
-  for (std::size_t node = 0; node < u.size(); node += dim)
-    figures.max_displacement = std::max(figures.max_displacement, Point<dim>(u.data() + node).norm());
+  figures.energy = level.norms.energy;
+  figures.sigma_norm = level.norms.sigma;
+  for (std::size_t node = 0; node < level.u.size(); node += dim)
+    figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
+  const std::vector<Point<dim>> t = form.traction(level.u);
   figures.contact = resultants("", contact_resultants(form, t));
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
@@ -279,7 +278,7 @@ std::string newton_csv(const RunRecord& run)
 
 std::string certificate_json(const RunRecord& run)
 {
-  Json object{{"schema", schema_version},        {"program", program_json(run.build)},
+  Json object{{"schema", certificate_schema},    {"program", program_json(run.build)},
               {"title", run.facts.title},        {"file", run.facts.file},
               {"status", to_string(run.status)}, {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},        {"p", run.facts.degree},
@@ -308,9 +307,7 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   write_file(directory / "certificate.json", certificate_json(run));
 }
 
-template SolutionFigures solution_figures(const NitscheForm<2>&, std::span<const double>,
-                                          std::span<const Point<2>>);
-template SolutionFigures solution_figures(const NitscheForm<3>&, std::span<const double>,
-                                          std::span<const Point<3>>);
+template SolutionFigures solution_figures(const NitscheForm<2>&, const CertifiedLevel<2>&);
+template SolutionFigures solution_figures(const NitscheForm<3>&, const CertifiedLevel<3>&);
 
 }  // namespace tribound

@@ -23,16 +23,6 @@ namespace tribound
 namespace
 {
 
-/// The nodes of the reference cell.
-template <int dim>
-std::vector<Point<dim>> node_points(const LagrangeBasis<dim>& basis)
-{
-  std::vector<Point<dim>> nodes;
-  nodes.reserve(basis.n_nodes());
-  for (int i = 0; i < basis.n_nodes(); ++i) nodes.push_back(basis.node_point(i));
-  return nodes;
-}
-
 /// What every array of a level file needs.
 template <int dim>
 struct Level
@@ -162,7 +152,7 @@ TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<d
                               std::span<const double> u)
 {
   const auto tabulation =
-      std::make_shared<const Tabulation<dim>>(space.basis().tabulate(node_points(space.basis())));
+      std::make_shared<const Tabulation<dim>>(space.basis().tabulate(space.basis().node_points()));
   return {"stress", [&problem, &space, u, tabulation](Index cell, std::span<Tensor<dim>> values)
           {
             const Material& material = problem.material(space.mesh().region(cell));
@@ -177,7 +167,7 @@ TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<d
 template <int dim>
 TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space, const Stress<dim>& stress)
 {
-  const auto table = std::make_shared<const FrameTable<dim>>(stress.degree, node_points(space.basis()));
+  const auto table = std::make_shared<const FrameTable<dim>>(stress.degree, space.basis().node_points());
   const auto block = std::make_shared<std::vector<double>>(stress.block_size());
   const auto entries =
       std::make_shared<std::vector<double>>(static_cast<std::size_t>(dim) * dim * table->n_points());

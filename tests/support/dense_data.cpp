@@ -87,8 +87,6 @@ void coarsen(const NitscheForm<dim>& form, const BoundaryFacet& boundary, std::s
     facet.data.push_back({points[q], {states[q].traction, Point<dim>::Zero()}});
 }
 
-}  // namespace
-
 template <int dim>
 std::vector<DenseCell<dim>> dense_cells(const NitscheForm<dim>& form, std::span<const double> u)
 {
@@ -137,11 +135,22 @@ std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form, std::spa
   return facets;
 }
 
-template std::vector<DenseCell<2>> dense_cells(const NitscheForm<2>&, std::span<const double>);
-template std::vector<DenseCell<3>> dense_cells(const NitscheForm<3>&, std::span<const double>);
-template std::vector<DenseFacet<2>> dense_facets(const NitscheForm<2>&, std::span<const double>,
-                                                 std::span<const Point<2>>, Mutation);
-template std::vector<DenseFacet<3>> dense_facets(const NitscheForm<3>&, std::span<const double>,
-                                                 std::span<const Point<3>>, Mutation);
+}  // namespace
+
+template <int dim>
+DenseData<dim>::DenseData(const NitscheForm<dim>& form, std::span<const double> u,
+                          std::span<const Point<dim>> t, Mutation mistake)
+    : mesh(form.space().mesh()),
+      mutation(mistake),
+      p(form.space().degree()),
+      n(polynomial_dimension(dim, p)),
+      m(polynomial_dimension(dim, p - 1)),
+      cells(dense_cells(form, u)),
+      facets(dense_facets(form, u, t, mutation))
+{
+}
+
+template struct DenseData<2>;
+template struct DenseData<3>;
 
 }  // namespace tribound::test

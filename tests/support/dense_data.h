@@ -88,15 +88,26 @@ struct DenseFacet
   [[nodiscard]] bool contains(Index v) const { return std::ranges::find(vertices, v) != vertices.end(); }
 };
 
-/// All cells, with sigma(u).
+/// The iterate u^k with running traction t^k and the data of the problem, as the mutation leaves them.
 template <int dim>
-[[nodiscard]] std::vector<DenseCell<dim>> dense_cells(const NitscheForm<dim>& form,
-                                                      std::span<const double> u);
+struct DenseData
+{
+  DenseData(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
+            Mutation mutation);
 
-/// All facets as numbered by the topology, with the boundary data that the mutation leaves.
-template <int dim>
-[[nodiscard]] std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form,
-                                                        std::span<const double> u,
-                                                        std::span<const Point<dim>> t, Mutation mutation);
+  const Mesh<dim>& mesh;
+  Mutation mutation;
+  int p;
+  int n;  ///< dim P^p(T)
+  int m;  ///< dim P^{p-1}(T)
+  std::vector<DenseCell<dim>> cells;
+  std::vector<DenseFacet<dim>> facets;  ///< as numbered by the topology
+
+  /// The first coefficient of component (r, c) in the cell number `place` of a patch.
+  [[nodiscard]] int column(std::size_t place, int r, int c) const
+  {
+    return ((static_cast<int>(place) * dim + r) * dim + c) * n;
+  }
+};
 
 }  // namespace tribound::test

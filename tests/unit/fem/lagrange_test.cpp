@@ -8,12 +8,12 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <type_traits>
 #include <vector>
 
 #include "fem/polynomials.h"
 #include "fem/quadrature.h"
 #include "mesh/geometry.h"
+#include "support/dimensions.h"
 
 namespace tribound::test
 {
@@ -25,9 +25,7 @@ template <class T>
 class Lagrange : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 1>, std::integral_constant<int, 2>,
-                                    std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(Lagrange, Dimensions);
+TYPED_TEST_SUITE(Lagrange, AllDimensions);
 
 TYPED_TEST(Lagrange, NodesAreThePrincipalLatticeByEntity)
 {
@@ -54,9 +52,7 @@ TYPED_TEST(Lagrange, OneAtItsNodeZeroAtTheOthers)
   for (int p = 1; p <= 6; ++p)
   {
     const LagrangeBasis<k> basis(p);
-    std::vector<Point<k>> nodes;
-    for (int i = 0; i < basis.n_nodes(); ++i) nodes.push_back(basis.node_point(i));
-    const Tabulation<k> table = basis.tabulate(nodes);
+    const Tabulation<k> table = basis.tabulate(basis.node_points());
     ASSERT_EQ(table.n_points, basis.n_nodes());
     ASSERT_EQ(table.n_nodes, basis.n_nodes());
     for (int q = 0; q < table.n_points; ++q)

@@ -14,7 +14,7 @@
 #include "mesh/box.h"
 #include "mesh/mesh.h"
 
-namespace tribound::testing
+namespace tribound::test
 {
 
 template <int dim>
@@ -60,4 +60,4 @@ struct BoxCase
   }
 };
 
-}  // namespace tribound::testing
+}  // namespace tribound::test

@@ -9,7 +9,7 @@
 #include "certify/equilibrate.h"
 #include "unit/io/box_case.h"
 
-namespace tribound::testing
+namespace tribound::test
 {
 
 /// On (0, 2) x (0, 1) [x (0, 1)]: u = (0.1 x, -0.3 y) or (0.1 x, 0.1 y, -0.3 z); the floor is the side
@@ -64,4 +64,4 @@ CertifiedLevel<dim> constant_stress_level(const BoxCase<dim>& box)
   return level;
 }
 
-}  // namespace tribound::testing
+}  // namespace tribound::test

@@ -10,12 +10,10 @@
 
 #include "unit/io/box_case.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
-
-using testing::BoxCase;
 
 constexpr const char* two_contacts = R"(
 degree = 2
@@ -228,4 +226,4 @@ contact = { friction = "coulomb", coefficient = 0.5, gap = 0 }
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test

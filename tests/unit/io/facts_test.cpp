@@ -4,12 +4,10 @@
 
 #include "unit/io/box_case.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
-
-using testing::BoxCase;
 
 TEST(Facts, MaterialInEngineersConstants)
 {
@@ -63,4 +61,4 @@ contact = { friction = "tresca", threshold = 0.03, gap = 0 }
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace tribound::testing
+namespace tribound::test
 {
 
 inline std::vector<unsigned char> from_base64(const std::string& text)
@@ -66,4 +66,4 @@ inline std::vector<double> unpack(const nlohmann::json& packed)
   return values;
 }
 
-}  // namespace tribound::testing
+}  // namespace tribound::test

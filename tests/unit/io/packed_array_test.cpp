@@ -7,14 +7,13 @@
 
 #include "unit/io/packed_array.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
 
 using nlohmann::json;
 using ::testing::ElementsAreArray;
-using testing::unpack;
 
 std::string base64_of(const std::string& text)
 {
@@ -82,4 +81,4 @@ TEST(PackedArray, NumbersOfNeighboursTakeFewBytes)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test

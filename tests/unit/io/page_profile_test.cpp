@@ -4,15 +4,10 @@
 
 #include "unit/io/constant_stress.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
-
-using testing::BoxCase;
-using testing::constant_stress;
-using testing::constant_stress_case;
-using testing::constant_stress_displacement;
 
 TEST(PageProfile, ValuesAlongTheFloor)
 {
@@ -47,4 +42,4 @@ TEST(PageProfile, FewPointsPerFacetOnLongBoundaries)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test

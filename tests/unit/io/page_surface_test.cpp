@@ -8,16 +8,10 @@
 #include "io/vtu.h"
 #include "unit/io/constant_stress.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
-
-using testing::BoxCase;
-using testing::constant_stress;
-using testing::constant_stress_case;
-using testing::constant_stress_displacement;
-using testing::constant_stress_level;
 
 /// Vertex v in 3 coordinates.
 Point<3> position(const Surface& surface, int dim, Index v)
@@ -166,4 +160,4 @@ TEST(PageSurface, MergingIn3DKeepsContactBesideItsFaces)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test

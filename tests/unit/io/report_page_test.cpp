@@ -10,18 +10,14 @@
 #include "unit/io/constant_stress.h"
 #include "unit/io/packed_array.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
 
 using nlohmann::json;
-using testing::BoxCase;
-using testing::constant_stress_case;
-using testing::constant_stress_level;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::unpack;
 
 class ReportPageFile : public ::testing::Test
 {
@@ -153,4 +149,4 @@ TEST_F(ReportPageFile, SizeOfALevel)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test

@@ -11,12 +11,10 @@
 #include "io/vtu.h"
 #include "unit/io/box_case.h"
 
-namespace tribound
+namespace tribound::test
 {
 namespace
 {
-
-using testing::BoxCase;
 
 template <int dim>
 std::string case_text(int degree)
@@ -96,7 +94,7 @@ void write_without_contact(const std::filesystem::path& directory)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::test
 
 int main(int argc, char** argv)
 {
@@ -110,10 +108,10 @@ int main(int argc, char** argv)
   nlohmann::json manifest;
   for (int degree = 1; degree <= 4; ++degree)
   {
-    tribound::write<2>(directory, degree, manifest);
-    tribound::write<3>(directory, degree, manifest);
+    tribound::test::write<2>(directory, degree, manifest);
+    tribound::test::write<3>(directory, degree, manifest);
   }
   tribound::write_series(directory, 2);
-  tribound::write_without_contact(directory);
+  tribound::test::write_without_contact(directory);
   std::ofstream(directory / "manifest.json") << manifest.dump(2) << '\n';
 }
