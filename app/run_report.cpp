@@ -187,7 +187,7 @@ void RunReport<dim>::add(const LevelView<dim>& view)
   level.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
   level.newton = view.level.steps;
   level.delta_updates = view.level.delta_updates;
-  level.figures = solution_figures<dim>(form, view.level.u, form.traction(view.level.u));
+  level.figures = solution_figures(form, view.level);
   level.times.solve = view.level.solve_seconds;
   level.times.certify = view.level.certify_seconds;
   if (view.level.solved()) level.identities = view.level.identities;

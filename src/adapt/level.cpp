@@ -69,10 +69,10 @@ class Certifier
   {
     level.stress = equilibrator_(u, t, step.step.delta);
     level.estimate = estimator_(u, level.stress);
-    level.sigma_norm = stress_norms(form_.problem(), form_.space(), u).sigma;
+    level.norms = stress_norms(form_.problem(), form_.space(), u);
     step.bound = level.estimate;
     step.linearisation = with_linearisation({}, level.estimate.global);
-    if (level.sigma_norm > 0) step.relative = level.estimate.total_sharp / level.sigma_norm;
+    if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;
     known_ = level.estimate.global;
   }
 
@@ -153,6 +153,8 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
     last.accepted = true;
     level.identities = check_identities<dim>(form, newton.traction, level.stress);
   }
+  else
+    level.norms = stress_norms(form.problem(), form.space(), level.u);
   return level;
 }
 

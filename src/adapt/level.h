@@ -15,6 +15,7 @@
 #include "certify/checks.h"
 #include "certify/estimate.h"
 #include "certify/stress.h"
+#include "contact/elasticity.h"
 #include "contact/nitsche.h"
 #include "solve/newton.h"
 
@@ -69,7 +70,7 @@ struct CertifiedLevel
   std::optional<int> delta_updates;  ///< how often delta was shrunk; absent in the plain method
   Stress<dim> stress;
   Estimate estimate;
-  double sigma_norm = 0;  ///< ||sigma(u)||
+  StressNorms norms{};  ///< of u
   IdentityDefects identities;
   double solve_seconds = 0;    ///< wall time
   double certify_seconds = 0;  ///< of all iterates

@@ -145,7 +145,7 @@ template <int dim>
 Verdict Loop<dim>::judge_level(const CertifiedLevel<dim>& level) const
 {
   if (!level.solved()) return {RunStatus::failed, level.failure};
-  return judge(level.estimate, level.identities, config_.degree, level.sigma_norm, config_.adapt.tolerance);
+  return judge(level.estimate, level.identities, config_.degree, level.norms.sigma, config_.adapt.tolerance);
 }
 
 template <int dim>

@@ -217,19 +217,18 @@ std::optional<double> relative_bound(const LevelRecord& level)
 }
 
 template <int dim>
-SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const double> u,
-                                 std::span<const Point<dim>> t)
+SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
 {
   SolutionFigures figures;
-  const StressNorms norms = stress_norms(form.problem(), form.space(), u);
-  figures.energy = norms.energy;
-  figures.sigma_norm = norms.sigma;
-  for (std::size_t node = 0; node < u.size(); node += dim)
-    figures.max_displacement = std::max(figures.max_displacement, Point<dim>(u.data() + node).norm());
-  figures.contact = resultants("", contact_resultants(form, t));
+  figures.energy = level.norms.energy;
+  figures.sigma_norm = level.norms.sigma;
+  for (std::size_t node = 0; node < level.u.size(); node += dim)
+    figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
+  const std::vector<Point<dim>> t = form.traction(level.u);
+  figures.contact = resultants("", contact_resultants<dim>(form, t));
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (boundaries[tag].contact) figures.boundary_contact.push_back(boundary_resultants(form, t, tag));
+    if (boundaries[tag].contact) figures.boundary_contact.push_back(boundary_resultants<dim>(form, t, tag));
   return figures;
 }
 
@@ -318,9 +317,7 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   write_file(directory / "certificate.json", certificate_json(run));
 }
 
-template SolutionFigures solution_figures(const NitscheForm<2>&, std::span<const double>,
-                                          std::span<const Point<2>>);
-template SolutionFigures solution_figures(const NitscheForm<3>&, std::span<const double>,
-                                          std::span<const Point<3>>);
+template SolutionFigures solution_figures(const NitscheForm<2>&, const CertifiedLevel<2>&);
+template SolutionFigures solution_figures(const NitscheForm<3>&, const CertifiedLevel<3>&);
 
 }  // namespace tribound

@@ -53,10 +53,10 @@ struct SolutionFigures
   std::vector<Resultants> boundary_contact;  ///< of every boundary group with contact
 };
 
-/// The figures of u with the contact traction t at the contact points of the form.
+/// The figures of the solution on a level, with the contact traction T(u).
 template <int dim>
-[[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form, std::span<const double> u,
-                                               std::span<const Point<dim>> t);
+[[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form,
+                                               const CertifiedLevel<dim>& level);
 
 /// Seconds on a level, wall time where nothing else is said.
 struct LevelTimes

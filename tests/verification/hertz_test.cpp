@@ -116,7 +116,7 @@ void run_example(const Config& config, const std::function<void(const LevelView<
   {
     fmt::print("level {}: {} cells, {} contact facets, {} Newton steps, bound {:.3g} %\n", view.number,
                view.discrete.mesh.n_cells(), view.discrete.form.contact_facets().size(),
-               view.level.steps.size(), 100 * view.level.estimate.total_sharp / view.level.sigma_norm);
+               view.level.steps.size(), 100 * view.level.estimate.total_sharp / view.level.norms.sigma);
     look(view);
   };
   const Verdict verdict = adapt<dim>(problem, config, std::move(first), {{}, show}, false);
