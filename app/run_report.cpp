@@ -221,9 +221,13 @@ void RunReport<dim>::add(const LevelView<dim>& view)
 template <int dim>
 ExitCode RunReport<dim>::close(const Verdict& verdict)
 {
-  record_.status = verdict.status;
-  record_.reason = verdict.reason;
-  write_record();
+  // A certified run has been written with its last level.
+  if (record_.status != verdict.status || record_.reason != verdict.reason)
+  {
+    record_.status = verdict.status;
+    record_.reason = verdict.reason;
+    write_record();
+  }
   if (printed_ == Printed::everything) print_summary(record_, output_.directory.string());
   return exit_code(verdict.status);
 }

@@ -28,9 +28,7 @@ std::string processor_name()
   return {};
 }
 
-}  // namespace
-
-MachineFacts machine_facts()
+MachineFacts find_out()
 {
   MachineFacts facts;
   facts.processor = processor_name();
@@ -39,6 +37,14 @@ MachineFacts machine_facts()
   utsname system{};
   if (uname(&system) == 0)
     facts.system = std::string(system.sysname) + " " + system.release + ", " + system.machine;
+  return facts;
+}
+
+}  // namespace
+
+MachineFacts machine_facts()
+{
+  static const MachineFacts facts = find_out();
   return facts;
 }
 

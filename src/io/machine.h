@@ -17,6 +17,7 @@ struct MachineFacts
   std::string system;     ///< such as "Linux 6.1.0, x86_64"
 };
 
+/// Found out once per process.
 [[nodiscard]] MachineFacts machine_facts();
 
 /// Now, as in "2024-05-17 09:30 UTC".
