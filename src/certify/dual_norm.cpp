@@ -4,6 +4,7 @@
 
 #include "certify/true_error.h"
 #include "fem/nested.h"
+#include "fem/polynomials.h"
 
 namespace tribound
 {
@@ -39,16 +40,6 @@ Quadrature<k> composite_rule(int degree, int cuts)
         if (i + j < cuts - 1) add({(i + 1) * size, (j + 1) * size}, -size);
       }
   return composite;
-}
-
-/// The barycentric coordinates of a reference point.
-template <int dim>
-std::array<double, dim + 1> barycentric(const Point<dim>& xhat)
-{
-  std::array<double, dim + 1> lambda;
-  lambda[0] = 1 - xhat.sum();
-  for (int i = 0; i < dim; ++i) lambda[i + 1] = xhat[i];
-  return lambda;
 }
 
 /// The inverse of facet_to_cell.

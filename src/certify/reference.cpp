@@ -12,16 +12,6 @@ namespace tribound
 namespace
 {
 
-/// The barycentric coordinates of a reference point.
-template <int k>
-Eigen::Matrix<double, k + 1, 1> barycentric(const Point<k>& x)
-{
-  Eigen::Matrix<double, k + 1, 1> lambda;
-  lambda[0] = 1 - x.sum();
-  lambda.template tail<k>() = x;
-  return lambda;
-}
-
 /// Fills the matrices that are integrals over the reference cell.
 template <int dim, int p>
 void integrate_cell(Reference<dim, p>& r)

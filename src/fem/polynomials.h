@@ -3,6 +3,7 @@
 /// @file polynomials.h
 /// Orthonormal polynomials on the reference simplex (Dubiner/Koornwinder), ordered by degree.
 
+#include <array>
 #include <span>
 
 #include "base/types.h"
@@ -16,6 +17,16 @@ namespace tribound
   int n = 1;
   for (int i = 1; i <= k; ++i) n = n * (degree + i) / i;
   return degree < 0 ? 0 : n;
+}
+
+/// The barycentric coordinates of a reference point, the origin's first.
+template <int k>
+[[nodiscard]] std::array<double, k + 1> barycentric(const Point<k>& x)
+{
+  std::array<double, k + 1> lambda;
+  lambda[0] = 1 - x.sum();
+  for (int i = 0; i < k; ++i) lambda[i + 1] = x[i];
+  return lambda;
 }
 
 /// Values at x of an orthonormal basis of P^degree on the reference k-simplex; the first

@@ -10,7 +10,7 @@ namespace tribound
 namespace
 {
 
-constexpr const char* schema_version = "1";
+constexpr const char* check_schema = "1";
 
 Json finding_json(const Finding& finding)
 {
@@ -29,9 +29,9 @@ Json finding_json(const Finding& finding)
 std::string check_json(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
                        std::span<const Finding> findings)
 {
-  Json object{{"schema", schema_version}, {"title", facts.title},   {"file", facts.file},
-              {"d", facts.dimension},     {"p", facts.degree},      {"friction", facts.friction},
-              {"gamma0", facts.gamma0},   {"dofs", mesh.free_dofs}, {"solver", solver},
+  Json object{{"schema", check_schema}, {"title", facts.title},   {"file", facts.file},
+              {"d", facts.dimension},   {"p", facts.degree},      {"friction", facts.friction},
+              {"gamma0", facts.gamma0}, {"dofs", mesh.free_dofs}, {"solver", solver},
               {"mesh", mesh_json(mesh)}};
   object["warnings"] = std::ranges::count(findings, Severity::warning, &Finding::severity);
   object["findings"] = Json::array();

@@ -13,7 +13,7 @@ namespace tribound
 namespace
 {
 
-constexpr const char* schema_version = "1";
+constexpr const char* certificate_schema = "1";
 
 std::optional<double> member(const std::optional<Bound>& bound, double Bound::*value)
 {
@@ -288,7 +288,7 @@ std::string newton_csv(const RunRecord& run)
 
 std::string certificate_json(const RunRecord& run)
 {
-  Json object{{"schema", schema_version},        {"program", json(run.build)},
+  Json object{{"schema", certificate_schema},    {"program", json(run.build)},
               {"title", run.facts.title},        {"file", run.facts.file},
               {"status", to_string(run.status)}, {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},        {"p", run.facts.degree},

@@ -21,7 +21,7 @@ constexpr double large_penetration = 0.02;
 /// From here on friction can be stronger than the pressure that causes it.
 constexpr double large_coefficient = 1;
 /// Fewer closed facets do not resolve a contact zone.
-constexpr long few_facets = 4;
+constexpr long few_closed_facets = 4;
 
 std::string location(const std::string& boundary, const Place& where)
 {
@@ -56,7 +56,7 @@ void add_resolution(const ContactOutcome& outcome, std::vector<RunWarning>& warn
   if (outcome.closed == 0)
     warnings.push_back({"no_contact", "nothing touches there: the boundary might as well be free", 0,
                         location(outcome.boundary, {})});
-  else if (outcome.closed_facets < few_facets && outcome.closed_facets < outcome.facets)
+  else if (outcome.closed_facets < few_closed_facets && outcome.closed_facets < outcome.facets)
     warnings.push_back(
         {"few_contact_facets",
          fmt::format("the contact zone covers {} whole facet{}: too few for its size or its largest "

@@ -15,7 +15,7 @@ namespace tribound
 namespace
 {
 
-constexpr const char* schema_version = "1";
+constexpr const char* study_schema = "1";
 
 std::optional<double> energy_error(const StudiedLevel& level)
 {
@@ -133,7 +133,7 @@ Json json(const std::optional<StudyReference>& reference)
 }
 
 /// Newton steps per level, a column per variant.
-Json newton_table(const Study& study)
+Json newton_json(const Study& study)
 {
   std::size_t n_levels = 0;
   for (const StudyVariant& variant : study.variants) n_levels = std::max(n_levels, variant.levels.size());
@@ -256,7 +256,7 @@ std::string study_csv(const Study& study)
 
 std::string study_json(const Study& study)
 {
-  Json object{{"schema", schema_version},
+  Json object{{"schema", study_schema},
               {"title", study.facts.title},
               {"file", study.facts.file},
               {"d", study.facts.dimension},
@@ -270,7 +270,7 @@ std::string study_json(const Study& study)
               {"reference", json(study.reference)},
               {"variants", Json::object()}};
   for (const StudyVariant& variant : study.variants) object["variants"][variant.name] = json(variant);
-  object["newton_table"] = newton_table(study);
+  object["newton_table"] = newton_json(study);
   object["difference"] = differences(study);
   object["times"] = Json::object();
   for (const auto& [stage, seconds] : study.times) object["times"][stage] = seconds;

@@ -16,7 +16,7 @@ namespace tribound
 namespace
 {
 
-constexpr const char* schema_version = "1";
+constexpr const char* verification_schema = "1";
 
 std::string number_or_dash(const std::optional<double>& value)
 {
@@ -117,7 +117,7 @@ std::string verification_text(const Verification& v, const std::string& director
 std::string verification_json(const Verification& v)
 {
   const VerifiedIterate& last = v.iterates.back();
-  Json object{{"schema", schema_version},
+  Json object{{"schema", verification_schema},
               {"title", v.facts.title},
               {"file", v.facts.file},
               {"d", v.facts.dimension},

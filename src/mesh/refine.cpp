@@ -22,10 +22,10 @@ constexpr std::array<std::array<int, 6>, 3> octahedron_diagonals{
 
 /// Vertices of the refined mesh on one cell: the middles of its local edges.
 template <int dim>
-using Middles = std::array<Index, Topology<dim>::n_cell_edges>;
+using EdgeMiddles = std::array<Index, Topology<dim>::n_cell_edges>;
 
 template <int dim>
-Index middle_between(const Middles<dim>& middles, int a, int b)
+Index middle_between(const EdgeMiddles<dim>& middles, int a, int b)
 {
   const auto edge = std::ranges::find(local_edges<dim>, std::array{std::min(a, b), std::max(a, b)});
   return middles[edge - local_edges<dim>.begin()];
@@ -34,7 +34,7 @@ Index middle_between(const Middles<dim>& middles, int a, int b)
 /// The children of a cell, or of one of its facets, that sit at its vertices: each is the whole, halved
 /// towards the vertex. `corners`: local vertices.
 template <int dim, std::size_t n, class Visit>
-void for_each_corner_child(const Cell<dim>& cell, const Middles<dim>& middles,
+void for_each_corner_child(const Cell<dim>& cell, const EdgeMiddles<dim>& middles,
                            const std::array<int, n>& corners, const Visit& visit)
 {
   for (const int corner : corners)
@@ -48,7 +48,7 @@ void for_each_corner_child(const Cell<dim>& cell, const Middles<dim>& middles,
 
 /// The triangle between the middles of three edges, oriented as (a, b, c).
 template <int dim>
-std::array<Index, 3> middle_triangle(const Middles<dim>& middles, const std::array<int, 3>& corners)
+std::array<Index, 3> middle_triangle(const EdgeMiddles<dim>& middles, const std::array<int, 3>& corners)
 {
   const auto& [a, b, c] = corners;
   return {middle_between<dim>(middles, b, c), middle_between<dim>(middles, c, a),
@@ -56,7 +56,7 @@ std::array<Index, 3> middle_triangle(const Middles<dim>& middles, const std::arr
 }
 
 /// The shortest diagonal of the octahedron; of equal ones the first.
-const std::array<int, 6>& shortest_diagonal(std::span<const Point<3>> vertices, const Middles<3>& middles)
+const std::array<int, 6>& shortest_diagonal(std::span<const Point<3>> vertices, const EdgeMiddles<3>& middles)
 {
   constexpr double clearly_shorter = 1 - 1e-12;  // round-off must not choose between equal ones
   const auto* best = octahedron_diagonals.data();
@@ -72,7 +72,7 @@ const std::array<int, 6>& shortest_diagonal(std::span<const Point<3>> vertices, 
 }
 
 template <int dim>
-void add_children(const Cell<dim>& cell, const Middles<dim>& middles, MeshData<dim>& data)
+void add_children(const Cell<dim>& cell, const EdgeMiddles<dim>& middles, MeshData<dim>& data)
 {
   const auto add = [&](const Cell<dim>& child) { data.cells.push_back(child); };
   if constexpr (dim == 2)
@@ -91,7 +91,7 @@ void add_children(const Cell<dim>& cell, const Middles<dim>& middles, MeshData<d
 }
 
 template <int dim>
-void add_facet_children(const Cell<dim>& cell, const Middles<dim>& middles, const BoundaryFacet& facet,
+void add_facet_children(const Cell<dim>& cell, const EdgeMiddles<dim>& middles, const BoundaryFacet& facet,
                         MeshData<dim>& data)
 {
   const auto add = [&](const std::array<Index, dim>& child) { data.facets.push_back({child, facet.tag}); };
@@ -111,7 +111,7 @@ Mesh<dim> refine_once(const Mesh<dim>& mesh)
 
   const auto middles = [&](Index cell)
   {
-    Middles<dim> vertices;
+    EdgeMiddles<dim> vertices;
     for (std::size_t e = 0; e < vertices.size(); ++e)
       vertices[e] = mesh.n_vertices() + topology.cell_edges[cell][e];
     return vertices;
