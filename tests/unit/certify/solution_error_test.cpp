@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 #include <string>
-#include <type_traits>
 
 #include "fem/nested.h"
 #include "mesh/bisect.h"
+#include "support/dimensions.h"
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
@@ -25,7 +25,6 @@ template <class T>
 class SolutionErrorOf : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(SolutionErrorOf, Dimensions);
 
 /// Two regions in one box would need a mesh file; the material is the same everywhere here.

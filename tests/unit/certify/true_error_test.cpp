@@ -10,9 +10,9 @@
 #include <cmath>
 #include <functional>
 #include <string>
-#include <type_traits>
 
 #include "fem/nested.h"
+#include "support/dimensions.h"
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
@@ -27,7 +27,6 @@ template <class T>
 class TrueError : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(TrueError, Dimensions);
 
 /// The integral of f(x, y) over (0, 2) x (0, 1).

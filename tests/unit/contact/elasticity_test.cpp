@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
-#include <type_traits>
 #include <vector>
 
+#include "support/dimensions.h"
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
@@ -87,7 +87,6 @@ template <class T>
 class Stiffness : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Stiffness, Dimensions);
 
 TYPED_TEST(Stiffness, MatrixAndCellwiseProductAgree)

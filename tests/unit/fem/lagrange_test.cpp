@@ -8,12 +8,12 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <type_traits>
 #include <vector>
 
 #include "fem/polynomials.h"
 #include "fem/quadrature.h"
 #include "mesh/geometry.h"
+#include "support/dimensions.h"
 
 namespace tribound::test
 {
@@ -25,9 +25,7 @@ template <class T>
 class Lagrange : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 1>, std::integral_constant<int, 2>,
-                                    std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(Lagrange, Dimensions);
+TYPED_TEST_SUITE(Lagrange, AllDimensions);
 
 TYPED_TEST(Lagrange, NodesAreThePrincipalLatticeByEntity)
 {

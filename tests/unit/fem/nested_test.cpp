@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <type_traits>
 
 #include "mesh/bisect.h"
+#include "support/dimensions.h"
 #include "support/fields.h"
 #include "support/meshes.h"
 
@@ -55,7 +55,6 @@ template <class T>
 class Nested : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Nested, Dimensions);
 
 TYPED_TEST(Nested, CarriedToABisectedMeshValuesStay)

@@ -7,10 +7,10 @@
 
 #include <array>
 #include <cmath>
-#include <type_traits>
 #include <vector>
 
 #include "fem/quadrature.h"
+#include "support/dimensions.h"
 
 namespace tribound::test
 {
@@ -43,9 +43,7 @@ template <class T>
 class OrthonormalPolynomials : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 1>, std::integral_constant<int, 2>,
-                                    std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(OrthonormalPolynomials, Dimensions);
+TYPED_TEST_SUITE(OrthonormalPolynomials, AllDimensions);
 
 TYPED_TEST(OrthonormalPolynomials, AreOrthonormal)
 {

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <random>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "base/error.h"
 #include "fem/quadrature.h"
 #include "mesh/geometry.h"
+#include "support/dimensions.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -51,7 +51,6 @@ template <class T>
 class Space : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Space, Dimensions);
 
 TYPED_TEST(Space, FunctionsAreContinuousAcrossFacets)

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <type_traits>
 
+#include "support/dimensions.h"
 #include "unit/mesh/bisect_checks.h"
 #include "unit/mesh/mesh_testing.h"
 
@@ -130,7 +130,6 @@ template <class T>
 class Bisect : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Bisect, Dimensions);
 
 TYPED_TEST(Bisect, RandomLevels)

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <type_traits>
 #include <vector>
 
 #include "mesh/geometry.h"
+#include "support/dimensions.h"
 
 namespace tribound::test
 {
@@ -118,7 +118,6 @@ template <class T>
 class Marked : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Marked, Dimensions);
 
 TYPED_TEST(Marked, ChildrenArePositivelyOrientedHalves)

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <random>
 #include <stdexcept>
-#include <type_traits>
 
 #include "fem/nested.h"
 #include "mesh/bisect.h"
+#include "support/dimensions.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -74,7 +74,6 @@ template <class T>
 class Overlay : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Overlay, Dimensions);
 
 TYPED_TEST(Overlay, OfTwoCellsOneContainsTheOtherAndAllIsCovered)

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <type_traits>
 
+#include "support/dimensions.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound::test
@@ -25,7 +25,6 @@ template <class T>
 class Refine : public ::testing::Test
 {
 };
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Refine, Dimensions);
 
 /// Coordinates as a key: the same for points that differ by round-off.
