@@ -42,7 +42,7 @@ MachineFacts find_out()
 
 }  // namespace
 
-const MachineFacts& machine_facts()
+MachineFacts machine_facts()
 {
   static const MachineFacts facts = find_out();
   return facts;

@@ -18,7 +18,7 @@ struct MachineFacts
 };
 
 /// Found out once per process.
-[[nodiscard]] const MachineFacts& machine_facts();
+[[nodiscard]] MachineFacts machine_facts();
 
 /// Now, as in "2024-05-17 09:30 UTC".
 [[nodiscard]] std::string date_and_time();

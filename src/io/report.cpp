@@ -215,10 +215,10 @@ SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLe
   for (std::size_t node = 0; node < level.u.size(); node += dim)
     figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
   const std::vector<Point<dim>> t = form.traction(level.u);
-  figures.contact = resultants("", contact_resultants(form, t));
+  figures.contact = resultants("", contact_resultants<dim>(form, t));
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (boundaries[tag].contact) figures.boundary_contact.push_back(boundary_resultants(form, t, tag));
+    if (boundaries[tag].contact) figures.boundary_contact.push_back(boundary_resultants<dim>(form, t, tag));
   return figures;
 }
 
