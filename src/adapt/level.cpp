@@ -46,10 +46,10 @@ template <int dim>
 class Certifier
 {
  public:
-  Certifier(const NitscheForm<dim>& form, const Config& config, const std::optional<BoundComponents>& coarser)
+  Certifier(const NitscheForm<dim>& form, const Config& config, const std::optional<double>& expected)
       : form_(form),
         config_(config),
-        known_(coarser),
+        known_(expected),
         equilibrator_(form),
         estimator_(form, config.certify.contact_rule)
   {
@@ -73,7 +73,7 @@ class Certifier
     step.bound = level.estimate;
     step.linearisation = with_linearisation({}, level.estimate.global);
     if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;
-    known_ = level.estimate.global;
+    known_ = level.estimate.global.discretisation();
   }
 
  private:
@@ -82,20 +82,19 @@ class Certifier
     return dim == 2 || config_.newton.stopping == Stopping::tolerance || config_.regularisation;
   }
 
-  /// Whether the linearisation error may be negligible, the other components being those last known. What is
-  /// negligible on every cell is so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for
+  /// Whether the linearisation error may be negligible, the discretisation error being that last known. What
+  /// is negligible on every cell is so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for
   /// vectors x, y, z >= 0.
   bool may_be_accepted(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step)
   {
     const double factor = config_.newton.stopping == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
     step.linearisation = estimator_.linearisation(equilibrator_.linearisation(u, t));
-    return linearisation_is_negligible(with_linearisation(*known_, *step.linearisation),
-                                       factor * config_.newton.gamma_lin);
+    return step.linearisation->linearisation() <= factor * config_.newton.gamma_lin * *known_;
   }
 
   const NitscheForm<dim>& form_;
   const Config& config_;
-  std::optional<BoundComponents> known_;  ///< of the last complete bound
+  std::optional<double> known_;  ///< osc + str + neu + cnt + frc of the last complete bound, or as expected
   Equilibrator<dim> equilibrator_;
   Estimator<dim> estimator_;
 };
@@ -105,7 +104,7 @@ class Certifier
 template <int dim>
 CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<const double> start,
                                       const Config& config, const StepObserver& observer, double delta,
-                                      const std::optional<BoundComponents>& coarser)
+                                      const std::optional<double>& expected)
 {
   CertifiedLevel<dim> level;
   double wall = 0;
@@ -121,7 +120,7 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
     if (std::isfinite(iterate.step.residual))
     {
       const Charge charge(level.certify_seconds, level.certify_cpu);
-      if (!certifier) certifier.emplace(form, config, coarser);
+      if (!certifier) certifier.emplace(form, config, expected);
       advice = certifier->examine(iterate.u, iterate.traction, step, level);
       if (regularisation)
         advice = regularisation->advise(form, iterate, level.estimate.global,
@@ -159,10 +158,8 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
 }
 
 template CertifiedLevel<2> solve_and_certify(const NitscheForm<2>&, std::span<const double>, const Config&,
-                                             const StepObserver&, double,
-                                             const std::optional<BoundComponents>&);
+                                             const StepObserver&, double, const std::optional<double>&);
 template CertifiedLevel<3> solve_and_certify(const NitscheForm<3>&, std::span<const double>, const Config&,
-                                             const StepObserver&, double,
-                                             const std::optional<BoundComponents>&);
+                                             const StepObserver&, double, const std::optional<double>&);
 
 }  // namespace tribound

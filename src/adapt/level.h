@@ -103,15 +103,15 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// The iterate that is kept always has the complete bound of its own stress; so has every other in 2D, with
 /// Stopping::tolerance and in the regularised variant. Otherwise in 3D, where the patches cost as much as
 /// some steps, sigma_lin comes first, which needs those around Gamma_C alone: an iterate whose linearisation
-/// error is not negligible beside the last known other components, those of `coarser` to begin with, gets no
-/// complete bound, and Newton's method goes on. `coarser`: the components on the mesh before, if there is
-/// one.
+/// error is not negligible beside osc + str + neu + cnt + frc of the last complete bound, or at first beside
+/// what this sum is `expected` to be if something is known of it, gets no complete bound, and Newton's method
+/// goes on.
 ///
 /// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>
 [[nodiscard]] CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form,
                                                     std::span<const double> start, const Config& config,
                                                     const StepObserver& observer = {}, double delta = 0,
-                                                    const std::optional<BoundComponents>& coarser = {});
+                                                    const std::optional<double>& expected = {});
 
 }  // namespace tribound

@@ -23,6 +23,8 @@ namespace tribound
 namespace
 {
 
+constexpr double gigabyte = 1e9;
+
 /// Thrown out of Newton's method when the user wants the run to end.
 struct Interrupted
 {
@@ -90,7 +92,7 @@ class Loop
   /// Marks, bisects and carries the solution; or names the limit that the finer mesh would exceed.
   [[nodiscard]] std::string refine(const CertifiedLevel<dim>& level);
   /// The limit that a mesh with `growth` times as many unknowns would exceed, or nothing.
-  [[nodiscard]] std::string memory_limit(double growth) const;
+  [[nodiscard]] std::string memory_limit_reached(double growth) const;
 
   const Problem<dim>& problem_;
   const Config& config_;
@@ -104,7 +106,7 @@ class Loop
   std::vector<double> start_;  ///< the solution of the level before, on the current mesh
   double delta_ = 0;           ///< of the regularised variant after the level before
   RefinementSeconds refinement_;
-  std::optional<BoundComponents> coarser_;  ///< components of its bound
+  std::optional<double> expected_;  ///< osc + str + neu + cnt + frc on the current mesh, guessed
   Verdict last_{RunStatus::failed, {}};
   Verdict ended_{RunStatus::failed, {}};
 };
@@ -120,7 +122,7 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
   try
   {
     CertifiedLevel<dim> level =
-        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, coarser_);
+        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, expected_);
     level.refinement = refinement_;
     return level;
   }
@@ -177,9 +179,9 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
                        config_.adapt.max_dofs);
   const int fixed = current_->form.constraints().n_fixed();
   const double growth = static_cast<double>(dofs) / std::max(1, current_->space.n_dofs() - fixed);
-  if (auto limit = memory_limit(growth); !limit.empty()) return limit;
+  if (auto limit = memory_limit_reached(growth); !limit.empty()) return limit;
   delta_ = level.delta;
-  coarser_ = level.estimate.global;
+  expected_ = level.estimate.global.discretisation() * std::pow(growth, -1.0 * config_.degree / dim);
   start_ = nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
   refinement_.transfer = lap();
   current_ = std::move(next);
@@ -187,20 +189,24 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
 }
 
 template <int dim>
-std::string Loop<dim>::memory_limit(double growth) const
+std::string Loop<dim>::memory_limit_reached(double growth) const
 {
-  constexpr double gigabyte = 1e9;
-  constexpr double share_of_machine = 0.9;
-  const double limit =
-      config_.adapt.max_memory ? *config_.adapt.max_memory * gigabyte : share_of_machine * machine_memory();
+  const MemoryLimit limit = memory_limit(config_.adapt);
   const double expected = expected_memory(memory_before_, peak_memory(), growth, dim);
-  if (limit == 0 || expected <= limit) return {};
-  return fmt::format(
-      "the next mesh is expected to take {:.3g} GB, more than {} = {:.3g} GB", expected / gigabyte,
-      config_.adapt.max_memory ? "adapt.max_memory" : "nine tenths of the machine", limit / gigabyte);
+  if (limit.bytes == 0 || expected <= limit.bytes) return {};
+  return fmt::format("the next mesh is expected to take {:.3g} GB, more than {} = {:.3g} GB",
+                     expected / gigabyte, limit.from_case ? "adapt.max_memory" : "nine tenths of the machine",
+                     limit.bytes / gigabyte);
 }
 
 }  // namespace
+
+MemoryLimit memory_limit(const AdaptConfig& config)
+{
+  constexpr double share_of_machine = 0.9;
+  if (config.max_memory) return {*config.max_memory * gigabyte, true};
+  return {share_of_machine * machine_memory(), false};
+}
 
 double expected_memory(double before, double peak, double growth, int dim)
 {

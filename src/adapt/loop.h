@@ -35,6 +35,15 @@ struct LoopObserver
   std::function<void(const LevelView<dim>&)> level;
 };
 
+/// What a run may take of the machine's memory.
+struct MemoryLimit
+{
+  double bytes = 0;        ///< 0: not known
+  bool from_case = false;  ///< adapt.max_memory; else nine tenths of the machine
+};
+
+[[nodiscard]] MemoryLimit memory_limit(const AdaptConfig& config);
+
 /// The memory that a level is expected to take at most, in bytes: `before` the process had before the first
 /// level and `peak` after one with 1 / `growth` of its unknowns.
 [[nodiscard]] double expected_memory(double before, double peak, double growth, int dim);

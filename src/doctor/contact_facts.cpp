@@ -13,9 +13,6 @@ namespace tribound
 namespace
 {
 
-/// Above this angle between two facets, in degrees, the body has a corner there, not a curved surface.
-constexpr double corner_angle = 45;
-
 template <int dim>
 double degrees_between(const Point<dim>& a, const Point<dim>& b)
 {
@@ -94,8 +91,8 @@ class Collector
   void add_kink(const ContactFacet<dim>& a, const ContactFacet<dim>& b)
   {
     if (a.facet.tag != tag_) return;
-    const double angle = degrees_between<dim>(a.geometry.normal, b.geometry.normal);
-    if (angle <= facts_.kink || angle >= corner_angle) return;
+    const double angle = kink(a, b);
+    if (angle <= facts_.kink) return;
     facts_.kink = angle;
     facts_.kink_at = place<dim>(shared_point(form_.space().mesh(), a.facet, b.facet));
   }
@@ -107,6 +104,15 @@ class Collector
 };
 
 }  // namespace
+
+template <int dim>
+double kink(const ContactFacet<dim>& a, const ContactFacet<dim>& b)
+{
+  constexpr double corner = 45;
+  constexpr double round_off = 0.01;
+  const double angle = degrees_between<dim>(a.geometry.normal, b.geometry.normal);
+  return angle < corner && angle > round_off ? angle : 0;
+}
 
 template <int dim>
 std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<dim>& form)
@@ -147,6 +153,8 @@ std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<dim>&
 
 template std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<2>&);
 template std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<3>&);
+template double kink(const ContactFacet<2>&, const ContactFacet<2>&);
+template double kink(const ContactFacet<3>&, const ContactFacet<3>&);
 template std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<2>&);
 template std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<3>&);
 

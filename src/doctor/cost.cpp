@@ -1,6 +1,7 @@
 #include "doctor/cost.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "certify/true_error.h"
@@ -17,15 +18,15 @@ struct Model
   double seconds_per_dof;
 };
 
-/// Straight lines through measured runs of the block of example 01 and its 3D sibling from scratch, 6 to 22
-/// Newton steps, on one core (docs/doctor.md): 2D to 231k degrees of freedom, 3D to 28k direct and 90k with
-/// multigrid. Direct solvers grow faster than linearly beyond.
-Model model(int dim, int degree, LinearMethod method)
+/// Fitted to measured runs of the block of example 01 and its 3D sibling from scratch, 6 to 22 Newton steps,
+/// on one core (docs/doctor.md): 2D to 231k degrees of freedom, 3D to 54k direct and 90k with multigrid. The
+/// factors of a 3D matrix grow like n^(4/3), computing them costs n^2 [George73]; everything else is linear.
+Model model(int dim, int degree, LinearMethod method, double n)
 {
   if (dim == 2) return {2700.0 + 530 * degree, 1e-4};
-  const double seconds = 5e-4 * (1 + 0.25 * (degree - 1));
-  if (method == LinearMethod::direct) return {11000.0 + 2500 * degree, seconds};
-  return {4500.0 + 1200 * degree, seconds};
+  if (method == LinearMethod::direct)
+    return {-400.0 + 2400 * degree + 420 * std::cbrt(n), 3.8e-4 + 7.6e-9 * n};
+  return {4500.0 + 1200 * degree, 5e-4 * (1 + 0.25 * (degree - 1))};
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ std::vector<CostEstimate> cost_estimates(const Mesh<dim>& mesh, const SolverConf
     const double dofs = count_dofs(mesh, {.refinements = 0, .degree = degree});
     const auto n = static_cast<Index>(std::min<double>(dofs, std::numeric_limits<Index>::max()));
     const LinearMethod method = choose_method(config, dim, n);
-    const Model per_dof = model(dim, degree, method);
+    const Model per_dof = model(dim, degree, method, dofs);
     estimates.push_back(
         {degree, dofs, method, program + per_dof.bytes_per_dof * dofs, per_dof.seconds_per_dof * dofs});
   }

@@ -22,8 +22,9 @@ struct CostEstimate
   double seconds = 0;
 };
 
-/// Estimates for the degrees 1 to 4, from a model fitted to measured runs (docs/doctor.md): right within a
-/// factor of 2 to 3 where the runs were similar, no more than an order of magnitude elsewhere.
+/// Estimates for the degrees 1 to 4, from a model fitted to measured runs (docs/doctor.md). On other runs of
+/// the same sizes, memory was right within a quarter and time within a factor of 2; beyond these sizes both
+/// are extrapolated.
 template <int dim>
 [[nodiscard]] std::vector<CostEstimate> cost_estimates(const Mesh<dim>& mesh, const SolverConfig& config);
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "adapt/loop.h"
 #include "case/config.h"
 #include "contact/nitsche.h"
 #include "doctor/contact_facts.h"
@@ -28,6 +29,8 @@ struct Diagnosis
   std::vector<UnitSystem> units;
   MeshQuality mesh;
   std::vector<CostEstimate> costs;
+  double multigrid_bytes = 0;  ///< of the case's degree with solver.method = "iterative"
+  MemoryLimit memory;
 };
 
 /// For a case whose bodies are held, see check_rigid_motions().
@@ -44,6 +47,10 @@ template <int dim>
   result.units = plausible_units(result.loads);
   result.mesh = mesh_quality(form.space().mesh());
   result.costs = cost_estimates(form.space().mesh(), config.solver);
+  SolverConfig multigrid = config.solver;
+  multigrid.method = LinearMethod::iterative;
+  result.multigrid_bytes = cost_estimates(form.space().mesh(), multigrid)[config.degree - 1].bytes;
+  result.memory = memory_limit(config.adapt);
   return result;
 }
 

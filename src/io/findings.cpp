@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <span>
 
@@ -17,6 +16,8 @@ namespace
 /// Above, strains are no longer small: the quadratic terms that linear elasticity leaves out are of this
 /// relative size.
 constexpr double small_strain = 0.05;
+/// Below, loads and E are hardly in the same units: Pa for MPa is a factor of 1e6 off a usual 1e-4.
+constexpr double tiny_strain = 1e-9;
 /// Poisson's ratio from which elements of degree 1 lock.
 constexpr double nearly_incompressible = 0.49;
 constexpr double large_aspect = 10;    // 1 for the regular simplex
@@ -82,6 +83,11 @@ Finding strain_finding(const LoadFacts& loads)
                                 "expect strains of about {:.2g} % (prescribed displacements of {:.3g} "
                                 "over the size {:.4g})",
                                 100 * loads.strain(), loads.strain() * loads.size, loads.size);
+  if (loads.strain() < tiny_strain)
+  {
+    finding.severity = Severity::note;
+    finding.advice = "so little is unusual: look at the units of loads and E";
+  }
   if (loads.strain() <= small_strain) return finding;
   finding.severity = Severity::warning;
   finding.advice =
@@ -176,43 +182,6 @@ void add_mesh(const Diagnosis& diagnosis, Findings& findings)
   findings.push_back(sizes);
 }
 
-/// "0.52", "3.4", "150": two digits, no exponent.
-std::string two_digits(double value)
-{
-  const double scale = std::pow(10, 1 - std::floor(std::log10(value)));
-  const double rounded = std::round(value * scale) / scale;
-  return fmt::format("{:.{}f}", rounded, rounded >= 10 ? 0 : rounded >= 1 ? 1 : 2);
-}
-
-std::string bytes_in_words(double bytes)
-{
-  return bytes < 1e9 ? two_digits(bytes / 1e6) + " MB" : two_digits(bytes / 1e9) + " GB";
-}
-
-std::string seconds_in_words(double seconds)
-{
-  if (seconds < 1) return "under 1 s";
-  if (seconds < 120) return two_digits(seconds) + " s";
-  return seconds < 7200 ? two_digits(seconds / 60) + " min" : two_digits(seconds / 3600) + " h";
-}
-
-void add_costs(const Diagnosis& diagnosis, Findings& findings)
-{
-  for (const CostEstimate& cost : diagnosis.costs)
-  {
-    Finding finding{.code = fmt::format("cost_degree_{}", cost.degree)};
-    finding.numbers = {{"degree", static_cast<double>(cost.degree)},
-                       {"dofs", cost.dofs},
-                       {"bytes", cost.bytes},
-                       {"seconds", cost.seconds}};
-    finding.text =
-        fmt::format("degree {} on this mesh: {:.0f} degrees of freedom, roughly {} and {}{}", cost.degree,
-                    cost.dofs, bytes_in_words(cost.bytes), seconds_in_words(cost.seconds),
-                    cost.degree == diagnosis.degree ? " (this case)" : "");
-    findings.push_back(finding);
-  }
-}
-
 }  // namespace
 
 const char* to_string(Severity severity)
@@ -244,7 +213,7 @@ std::vector<Finding> findings(const Diagnosis& diagnosis)
   add_poisson(diagnosis, result);
   result.push_back(units_finding(diagnosis));
   add_mesh(diagnosis, result);
-  add_costs(diagnosis, result);
+  std::ranges::move(cost_findings(diagnosis), std::back_inserter(result));
   return result;
 }
 

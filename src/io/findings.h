@@ -40,6 +40,9 @@ struct Finding
 /// The part about contact boundaries.
 [[nodiscard]] std::vector<Finding> contact_findings(const Diagnosis& diagnosis);
 
+/// The part about memory and time.
+[[nodiscard]] std::vector<Finding> cost_findings(const Diagnosis& diagnosis);
+
 /// "(0.5, 1)" with six digits.
 [[nodiscard]] std::string describe(const Place& where);
 

@@ -8,7 +8,7 @@ namespace tribound
 namespace
 {
 
-/// Kinks below this are round-off of the coordinates in a file, degrees.
+/// Normals that differ by less differ by round-off of the coordinates in a file, degrees.
 constexpr double flat = 0.01;
 /// Gaps beyond this part of the body are not closed by small displacements.
 constexpr double far = 0.05;
@@ -30,15 +30,17 @@ Finding corner_finding(const OverconstrainedCorner& corner)
   {
     finding.severity = Severity::warning;
     finding.code = "contradicting_corner";
-    finding.text = fmt::format("{}, where the prescribed normal displacement {:.4g} is beyond the gap {:.4g}",
-                               place, corner.normal, corner.gap);
+    finding.text = fmt::format(
+        "{}, where the prescribed displacement towards the obstacle, {:.4g}, is beyond the gap of {:.4g}",
+        place, corner.normal, corner.gap);
     finding.advice =
         "the body is pushed into the obstacle there: no displacement satisfies both; reduce the "
         "displacement or enlarge the gap";
     return finding;
   }
-  finding.text = fmt::format("{}, where the normal displacement is prescribed ({:.4g}, gap {:.4g})", place,
-                             corner.normal, corner.gap);
+  finding.text = fmt::format(
+      "{}, where the displacement towards the obstacle is prescribed: {:.4g}, with a gap of {:.4g}", place,
+      corner.normal, corner.gap);
   finding.advice =
       corner.sticks ? "contact and friction have nothing to decide there; expect a stress singularity, and "
                       "do not read pressures from the last facet"
@@ -60,13 +62,13 @@ Finding surface_finding(const ContactBoundaryFacts& contact)
   }
   finding.text = fmt::format("contact \"{}\" {}, with normals up to {:.3g} degrees from that", contact.name,
                              direction, contact.spread);
-  if (contact.kink <= flat) return finding;
+  if (contact.kink == 0) return finding;
   finding.severity = Severity::note;
   finding.where = contact.kink_at;
   finding.text += fmt::format("; neighbouring facets differ by up to {:.3g} degrees", contact.kink);
   finding.advice =
-      "the pressure will zigzag from facet to facet by about this jump: refine the surface, or "
-      "take a flat boundary and put its curvature into the gap (docs/case-format.md)";
+      "the pressure will peak at such edges, the more the finer the facets on either side, as refinement "
+      "keeps the polygon: take a flat boundary and put its curvature into the gap (docs/case-format.md)";
   return finding;
 }
 

@@ -71,6 +71,7 @@ SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries) : size_(n)
   check(MatSetSizes(mat, n, n, n, n), "creating a matrix");
   check(MatSetType(mat, MATSEQAIJ), "creating a matrix");
   check(MatSetBlockSize(mat, block_size), "creating a matrix");
+  check(MatSetOption(mat, MAT_USE_INODES, PETSC_FALSE), "creating a matrix");  // slower than rows one by one
   check(MatSetPreallocationCOO(mat, static_cast<PetscCount>(entries.rows.size()), entries.rows.data(),
                                entries.cols.data()),
         "building the pattern of a matrix");

@@ -34,6 +34,8 @@ Diagnosis healthy()
   diagnosis.mesh = {45, {0, 0}, 90, {1, 1}, 1.4, {1, 0}, 0.1, 0.2};
   diagnosis.contacts = {{"base", 10, 2, {0, -1}, 0, 0, {}, 0, {0, 0}, 0, {0, 0}}};
   diagnosis.costs = {{2, 400, LinearMethod::direct, 1e8, 0.5}};
+  diagnosis.multigrid_bytes = 0.9e8;
+  diagnosis.memory = {8e9, false};
   return diagnosis;
 }
 
@@ -53,7 +55,9 @@ TEST(Findings, AHealthyCase)
   EXPECT_EQ(finding(healthy(), "units").text,
             "a guess at the units: m, N, Pa (E = 2.1e+11 Pa, a body of 2 m)");
   EXPECT_EQ(finding(healthy(), "cost_degree_2").text,
-            "degree 2 on this mesh: 400 degrees of freedom, roughly 100 MB and under 1 s (this case)");
+            "degree 2 on this mesh: 400 degrees of freedom, about 100 MB and under 1 s (this case)");
+  EXPECT_EQ(finding(healthy(), "memory").text,
+            "this case needs about 100 MB on this mesh, of 8.0 GB (nine tenths of the machine)");
 }
 
 TEST(Findings, MotionsThatContactStops)
@@ -82,8 +86,8 @@ TEST(Findings, Corners)
   const Finding pushed = finding(diagnosis, "contradicting_corner");
   EXPECT_EQ(pushed.severity, Severity::warning);
   EXPECT_THAT(pushed.text,
-              HasSubstr("3 vertices, such as (2, 0), where the prescribed normal displacement 0.5 is "
-                        "beyond the gap 0.25"));
+              HasSubstr("3 vertices, such as (2, 0), where the prescribed displacement towards the "
+                        "obstacle, 0.5, is beyond the gap of 0.25"));
   EXPECT_THAT(pushed.where, ElementsAre(2, 0));
 }
 
@@ -112,6 +116,9 @@ TEST(Findings, LoadsAgainstStiffness)
   EXPECT_EQ(finding(diagnosis, "strain").severity, Severity::warning);
   EXPECT_EQ(finding(diagnosis, "strain").text,
             "expect strains of about 10 % (stresses near 2.1e+10, E = 2.1e+11)");
+  diagnosis.loads.traction_stress = 100;  // MPa in a case in Pa
+  EXPECT_EQ(finding(diagnosis, "strain").severity, Severity::note);
+  EXPECT_THAT(finding(diagnosis, "strain").advice, HasSubstr("units of loads and E"));
   diagnosis.loads.traction_stress = 0;
   EXPECT_EQ(finding(diagnosis, "no_load").severity, Severity::note);
   diagnosis.loads.displacement_strain = 0.1;
@@ -151,7 +158,27 @@ TEST(Findings, Cost)
   Diagnosis diagnosis = healthy();
   diagnosis.costs = {{3, 1234567, LinearMethod::iterative, 12.34e9, 4321}};
   EXPECT_EQ(finding(diagnosis, "cost_degree_3").text,
-            "degree 3 on this mesh: 1234567 degrees of freedom, roughly 12 GB and 72 min");
+            "degree 3 on this mesh: 1234567 degrees of freedom, about 12 GB and 72 min");
+}
+
+TEST(Findings, MemoryThatIsNotThere)
+{
+  Diagnosis diagnosis = healthy();
+  diagnosis.costs = {{1, 1e5, LinearMethod::direct, 4e9, 50}, {2, 1e6, LinearMethod::direct, 30e9, 500}};
+  diagnosis.multigrid_bytes = 7e9;
+  const Finding warning = finding(diagnosis, "memory");
+  EXPECT_EQ(warning.severity, Severity::warning);
+  EXPECT_EQ(warning.text,
+            "this case needs about 30 GB on this mesh, more than 8.0 GB (nine tenths of the machine)");
+  EXPECT_EQ(
+      warning.advice,
+      "take solver.method = \"iterative\" (about 7.0 GB), or degree 1 (about 4.0 GB), or a coarser first "
+      "mesh, which the run refines where it pays");
+  diagnosis.memory = {40e9, true};  // within the uncertainty of the estimate
+  EXPECT_EQ(finding(diagnosis, "memory").severity, Severity::note);
+  EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("of 40 GB (adapt.max_memory)"));
+  diagnosis.memory = {100e9, true};
+  EXPECT_EQ(finding(diagnosis, "memory").severity, Severity::ok);
 }
 
 TEST(Findings, OnTheScreen)

@@ -38,6 +38,7 @@ ContactOutcome closed_contact()
   outcome.slipping = 0.5;
   outcome.has_friction = true;
   outcome.coefficient = 0.3;
+  outcome.force = 1.5;  // a mean pressure of 1.5
   outcome.largest_pressure = 2;
   outcome.penetration = 1e-4;
   outcome.zigzag = 1e-3;
@@ -81,21 +82,52 @@ TEST(RunWarnings, ContactThatIsNotResolved)
   EXPECT_THAT(codes(sound, outcome), ElementsAre("no_contact"));
 }
 
-TEST(RunWarnings, ZigzagAndPenetrationSayWhere)
+/// What is compared with a limit, from either side of it, and where it is.
+TEST(RunWarnings, Zigzag)
 {
   ContactOutcome outcome = closed_contact();
-  outcome.zigzag = 0.2;
+  outcome.zigzag = 0.035;
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome.zigzag = 0.06;
   outcome.zigzag_at = {0.25, 0};
+  const auto warnings = run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].code, "pressure_zigzag");
+  EXPECT_EQ(warnings[0].value, 0.06);
+  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.25, 0)");
+  EXPECT_THAT(warnings[0].text, HasSubstr("goes up and down by 6 % of itself"));
+}
+
+TEST(RunWarnings, PressureAtKinks)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.kink = 0.5;
+  outcome.kink_pressure = 2;  // a Hertz contact on a fine polygon
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome.kink_pressure = 4.5;
+  outcome.kink_at = {0.5, 0};
+  const auto warnings = run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].code, "pressure_at_kinks");
+  EXPECT_DOUBLE_EQ(warnings[0].value, 3);
+  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.5, 0)");
+  EXPECT_THAT(warnings[0].text,
+              HasSubstr("reaches 4.5, 3 times its mean, where facets meet at an angle (up to 0.5"));
+}
+
+TEST(RunWarnings, Penetration)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.penetration = 0.015;
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
   outcome.penetration = 0.1;
   outcome.penetration_at = {0.5, 0};
   const auto warnings = run_warnings(sound, std::array{outcome});
-  ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_EQ(warnings[0].code, "pressure_zigzag");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].code, "penetration");
   EXPECT_DOUBLE_EQ(warnings[0].value, 0.1);
-  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.25, 0)");
-  EXPECT_EQ(warnings[1].code, "penetration");
-  EXPECT_DOUBLE_EQ(warnings[1].value, 0.1);
-  EXPECT_THAT(warnings[1].text, HasSubstr("by 0.1, 10 % of the largest displacement"));
+  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.5, 0)");
+  EXPECT_THAT(warnings[0].text, HasSubstr("by 0.1, 10 % of the largest displacement"));
 }
 
 TEST(RunWarnings, Friction)
