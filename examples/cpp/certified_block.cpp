@@ -59,7 +59,7 @@ bool adapt_until_certified(const Config& config, Mesh<2> mesh, const Problem<2>&
       .level = [](const LevelView<2>& view)
       {
         std::printf("level %2d: %4d cells, bound %6.3f %%\n", view.number, view.discrete.mesh.n_cells(),
-                    100 * view.level.estimate.total_sharp / view.level.sigma_norm);
+                    100 * view.level.estimate.total_sharp / view.level.norms.sigma);
       }};
   const std::atomic<bool> stop = false;
   const Verdict verdict = adapt<2>(

@@ -117,7 +117,9 @@ def differences(program, row, table, directory):
         if found != expected:
             yield "\n".join(difflib.unified_diff(expected, found, "expected", "found", lineterm=""))
     for name, text in row.get("contents", {}).items():
-        if text not in (directory / name).read_text():
+        if not (directory / name).exists():  # it is missing in `written`, too
+            yield f"has not written {name}, but\n{result.stdout}{result.stderr}"
+        elif text not in (directory / name).read_text():
             yield f"{name} does not hold {text!r}"
     for text in row.get("fragments", []):
         if text not in result.stdout + result.stderr:
