@@ -20,12 +20,8 @@ if (!/report page +\//.test(spawnSync(program, ["info"], { encoding: "utf8" }).s
 
 const title = `</script><img src=x onerror=alert(1)> "Bl\u00f6cke" & <b>\u4e2d\u6587</b>`;
 
-const cases = {
-  block: { exit: 0, status: "Certified", text: `
-title = '${title}'
-degree = 2
-mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] } }
-material = { E = 1.0, nu = 0.3 }
+// A block that is held on the left, pressed down and pulled to the right, on a floor with friction.
+const pressedBlock = `material = { E = 1.0, nu = 0.3 }
 [boundary.left]
 displacement = [0, 0]
 [boundary.top]
@@ -33,7 +29,14 @@ traction = [0, -0.1]
 [boundary.right]
 traction = [0.04, 0.06]
 [boundary.bottom]
-contact = { friction = "tresca", threshold = 0.03 }
+contact = { friction = "tresca", threshold = 0.03 }`;
+
+const cases = {
+  block: { exit: 0, status: "Certified", text: `
+title = '${title}'
+degree = 2
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] } }
+${pressedBlock}
 [adapt]
 tolerance = 0.04
 ` },
@@ -69,15 +72,7 @@ const study = { command: "study", exit: 0, text: `
 title = "Block, studied"
 degree = 1
 mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
-material = { E = 1.0, nu = 0.3 }
-[boundary.left]
-displacement = [0, 0]
-[boundary.top]
-traction = [0, -0.1]
-[boundary.right]
-traction = [0.04, 0.06]
-[boundary.bottom]
-contact = { friction = "tresca", threshold = 0.03 }
+${pressedBlock}
 [adapt]
 tolerance = 0.2
 [study]
