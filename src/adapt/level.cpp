@@ -32,14 +32,16 @@ bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& c
   }
 }
 
-BoundComponents with_linearisation(BoundComponents eta, const BoundComponents& lin)
-{
-  for (const auto member : linearisation_components) eta.*member = lin.*member;
-  return eta;
-}
-
 namespace
 {
+
+/// lin1, lin2n and lin2t alone.
+BoundComponents linearisation_part(const BoundComponents& eta)
+{
+  BoundComponents part;
+  for (const auto member : linearisation_components) part.*member = eta.*member;
+  return part;
+}
 
 /// Bounds the iterates on one mesh.
 template <int dim>
@@ -71,7 +73,7 @@ class Certifier
     level.estimate = estimator_(u, level.stress);
     level.norms = stress_norms(form_.problem(), form_.space(), u);
     step.bound = level.estimate;
-    step.linearisation = with_linearisation({}, level.estimate.global);
+    step.linearisation = linearisation_part(level.estimate.global);
     if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;
     known_ = level.estimate.global.discretisation();
   }

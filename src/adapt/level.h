@@ -89,9 +89,6 @@ struct CertifiedLevel
 /// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.
 [[nodiscard]] bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& config);
 
-/// The components of `eta` with those of the linearisation from `lin`.
-[[nodiscard]] BoundComponents with_linearisation(BoundComponents eta, const BoundComponents& lin);
-
 /// Called after every Newton step; may throw to leave the level.
 using StepObserver = std::function<void(const CertifiedStep&)>;
 
