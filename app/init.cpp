@@ -35,6 +35,18 @@ std::vector<EmbeddedFile> files_of(const std::string& name)
                   fmt::join(names, ", ")));
 }
 
+void write(const std::filesystem::path& path, std::string_view text)
+{
+  try
+  {
+    write_file(path, text);
+  }
+  catch (const WriteError& error)
+  {
+    throw InputError({.file = path.string()}, error.problem(), "choose another --directory");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> template_names()
@@ -63,7 +75,7 @@ void init(const std::string& name, const std::filesystem::path& directory)
                      "choose another --directory");
   for (const EmbeddedFile& file : files)
   {
-    write_file(directory / file.name, file.text);
+    write(directory / file.name, file.text);
     fmt::print("{}\n", (directory / file.name).string());
   }
   const std::string case_file = (directory / (name + ".toml")).string();

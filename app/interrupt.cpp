@@ -1,6 +1,12 @@
 #include "interrupt.h"
 
+#include <unistd.h>
+
+#include <array>
 #include <csignal>
+#include <string_view>
+
+#include "run.h"
 
 namespace tribound
 {
@@ -10,18 +16,36 @@ namespace
 
 std::atomic<bool> stop_requested = false;
 
-void request_stop(int signal)
+constexpr std::array stop_signals = {SIGINT, SIGTERM};
+
+void request_stop(int)
 {
   stop_requested = true;
-  std::signal(signal, SIG_DFL);
+  for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
+}
+
+/// Calls only what may be called in a signal handler.
+void report_crash(int)
+{
+  constexpr std::string_view text =
+      "tribound: crashed, which it should not do whatever the input: please report the case\n"
+      "  hint: are numbers absurdly large or small? Results written before hold\n";
+  (void)!::write(STDERR_FILENO, text.data(), text.size());
+  ::_exit(static_cast<int>(ExitCode::failed));
 }
 
 }  // namespace
 
+void prepare_signals()
+{
+  std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal, report_crash);
+}
+
 const std::atomic<bool>& stop_on_signals()
 {
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
+  for (const int signal : stop_signals)
+    if (!stop_requested) std::signal(signal, request_stop);
   return stop_requested;
 }
 

@@ -6,21 +6,31 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/version.h"
 #include "init.h"
+#include "interrupt.h"
 #include "io/console.h"
+#include "io/shared_file.h"
 #include "mesh/gmsh.h"
 #include "run.h"
 #include "run_report.h"
 #include "solve/petsc.h"
 #include "study.h"
+#include "sweep.h"
 #include "verify.h"
 
 namespace
@@ -33,27 +43,45 @@ struct Arguments
   std::string case_file;
   std::vector<std::string> overrides;
   bool quiet = false;
-  int refinements = 2;          ///< of verify
-  bool json = false;            ///< of check
-  std::string start = "block";  ///< of init: the case to start from
-  std::string directory;        ///< of init
+  int refinements = 2;             ///< of verify
+  std::vector<std::string> swept;  ///< of sweep: key=values
+  std::string table;               ///< of sweep: a file with a row for each run
+  int jobs = 1;                    ///< of sweep
+  bool resume = false;             ///< of sweep
+  bool json = false;               ///< of check
+  std::string start = "block";     ///< of init: the case to start from
+  std::string directory;           ///< of init
 };
 
-void add_case_arguments(CLI::App& command, Arguments& arguments)
+/// The text of a file that the user names.
+std::string read_input_file(const std::string& name)
 {
-  command.add_option("case", arguments.case_file, "The case file (TOML)")->required();
+  std::ifstream stream(name, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(name))
+    throw InputError({.file = name}, "cannot be read", "the path of a file");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void add_set_option(CLI::App& command, Arguments& arguments)
+{
   command
       .add_option("--set", arguments.overrides, "Override a key of the case, as key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command.add_flag("-q,--quiet", arguments.quiet, "No progress on the terminal");
+}
+
+void add_case_arguments(CLI::App& command, Arguments& arguments)
+{
+  command.add_option("case", arguments.case_file, "The case file (TOML)")->required();
+  add_set_option(command, arguments);
+  command.add_flag("-q,--quiet", arguments.quiet, "No progress; of a run only warnings and status");
 }
 
 ExitCode run_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
   const Config config = read_config(arguments.case_file, arguments.overrides);
-  AnyMesh mesh = read_mesh(config.mesh);
+  AnyMesh mesh = read_mesh(config.mesh, &stop_on_signals());
   const Environment environment;  // behind the input: bad input then fails at once
   return std::visit([&](auto& m) { return run(config, std::move(m), progress); }, mesh);
 }
@@ -79,9 +107,20 @@ ExitCode study_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
   const Config config = read_config(arguments.case_file, arguments.overrides);
-  AnyMesh mesh = read_mesh(config.mesh);
+  AnyMesh mesh = read_mesh(config.mesh, &stop_on_signals());
   const Environment environment;
   return std::visit([&](auto& m) { return study(config, std::move(m), progress); }, mesh);
+}
+
+ExitCode sweep_command(const Arguments& arguments)
+{
+  if (arguments.swept.empty() == arguments.table.empty())
+    throw InputError({}, "tribound sweep takes either keys with values or a table",
+                     "tribound sweep case.toml degree=[1, 2], or --table runs.csv");
+  const SweepTable table = arguments.table.empty()
+                               ? sweep_grid(arguments.swept)
+                               : sweep_rows(read_input_file(arguments.table), arguments.table);
+  return sweep({arguments.case_file, arguments.overrides, arguments.jobs, arguments.resume}, table);
 }
 
 void info_command()
@@ -98,22 +137,44 @@ constexpr const char* help_footer = R"(Examples:
   tribound check block.toml                   examine it: supports, units, mesh, expected cost
   tribound run block.toml                     solve it, write out/block
   tribound run block.toml --set degree=3 --set boundary.bottom.contact.coefficient=0.5
+  tribound sweep block.toml degree=[1,2] boundary.bottom.contact.coefficient=0.1:0.8:8 --jobs 2
   tribound COMMAND --help                     the options of a command
 
 Exit codes:
   0  certified: the bound is below the tolerance and all identities hold; for other commands: done
   1  bad input; the message names the file, the key, what is wrong and what would be right
-  2  failed: no convergence, a singular matrix, an identity violated
+  2  failed: no convergence, a singular matrix, an identity violated, a full disk
   3  budget used up or interrupted: the certificate is valid, the tolerance is not reached
 
-The manual: man tribound. The keys of a case: docs/case-format.md. The results: docs/output.md.)";
+The manual: man tribound. The guide, with case-format.md, output.md and troubleshooting.md:
+  )";
+
+void describe_sweep(CLI::App& sweep, Arguments& arguments)
+{
+  sweep.add_option("case", arguments.case_file, "The case file (TOML)")->required();
+  sweep
+      .add_option(
+          "values", arguments.swept,
+          "Keys with values: key=0.1:0.8:8 (first, last, how many), key=[1, 2], key=value; all combinations, "
+          "the first key varying slowest")
+      ->type_name("KEY=VALUES");
+  sweep
+      .add_option("--table", arguments.table,
+                  "A file of comma-separated values instead: a line of keys, a line per run")
+      ->type_name("FILE");
+  sweep.add_option("--jobs", arguments.jobs, "Runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  sweep.add_flag("--resume", arguments.resume, "Keep the runs that an earlier sweep has completed");
+  add_set_option(sweep, arguments);
+}
 
 /// Commands and options as they stand in --help.
 void describe_command_line(CLI::App& app, Arguments& arguments)
 {
   app.set_version_flag("--version", std::string("tribound ") + version());
   app.require_subcommand(1);
-  app.footer(help_footer);
+  app.footer(help_footer + guide_directory().string());
   CLI::App* init = app.add_subcommand("init", "Write a commented case to start from");
   CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
   for (CLI::App* command : {init, info}) command->group(program_commands);
@@ -129,6 +190,9 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
     command->group(case_commands);
     add_case_arguments(*command, arguments);
   }
+  CLI::App* sweep = app.add_subcommand("sweep", "Solve a case with other values of some of its keys");
+  sweep->group(case_commands);
+  describe_sweep(*sweep, arguments);
   init->add_option("name", arguments.start,
                    fmt::format("The case to start from: {}", fmt::join(template_names(), ", ")))
       ->capture_default_str();
@@ -141,13 +205,41 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
       ->capture_default_str();
 }
 
+/// Several processes would do the same work and write the same files. The variables are those of Open MPI,
+/// and of MPICH with its relatives.
+void require_one_process()
+{
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
+  {
+    const char* value = std::getenv(variable);
+    if (value == nullptr || std::atoi(value) <= 1) continue;
+    throw InputError(
+        {}, fmt::format("started as {} processes ({})", value, variable),
+        "Tribound runs as one process: start it without mpirun, or with -n 1; threads are set by "
+        "OMP_NUM_THREADS and OPENBLAS_NUM_THREADS");
+  }
+}
+
+/// With less address space OpenBLAS asks for its memory for ever.
+void require_address_space()
+{
+  constexpr double least = 1e9;
+  const double limit = address_space_limit();
+  if (limit >= least) return;
+  throw InputError({}, fmt::format("the address space is limited to {:.3g} GB (ulimit -v)", 1e-9 * limit),
+                   "the libraries alone need 1 GB: ulimit -v unlimited, or more memory for the job");
+}
+
 /// Does what the command line asks for.
 ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
 {
+  require_one_process();
+  require_address_space();
   const std::string command = app.get_subcommands().front()->get_name();
   if (command == "run") return run_command(arguments);
   if (command == "verify") return verify_command(arguments);
   if (command == "study") return study_command(arguments);
+  if (command == "sweep") return sweep_command(arguments);
   if (command == "check") check_command(arguments);
   if (command == "init") init(arguments.start, arguments.directory);
   if (command == "info") info_command();
@@ -161,7 +253,8 @@ InputError usage_error(const CLI::App& app, const CLI::ParseError& error, std::s
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   const std::string hint = fmt::format(
       "the commands are {}, as in tribound run case.toml; more: tribound --help", fmt::join(commands, ", "));
-  if (!app.get_subcommands().empty()) return {{}, error.what(), hint};
+  if (!app.get_subcommands().empty())
+    return {{}, error.what(), hint + "; a key of the case is set by --set, as in --set degree=3"};
   if (words.size() < 2) return {{}, "a command is missing", hint};
   const std::string near = closest(words[1], commands);
   return {{},
@@ -179,6 +272,7 @@ int report(ExitCode code, const std::string& message)
 
 int main(int argc, char** argv)
 {
+  prepare_signals();
   CLI::App app("Solves unilateral contact with friction by the Nitsche finite element method.", "tribound");
   Arguments arguments;
   describe_command_line(app, arguments);

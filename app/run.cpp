@@ -9,7 +9,10 @@
 #include "contact/rigid_motion.h"
 #include "doctor/diagnosis.h"
 #include "interrupt.h"
+#include "io/balance_text.h"
 #include "io/findings.h"
+#include "io/forecast.h"
+#include "io/output_directory.h"
 #include "run_report.h"
 #include "solve/linear_solver.h"
 
@@ -22,10 +25,18 @@ ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress)
   const Clock::time_point begin = Clock::now();
   const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
   auto first = std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config);
-  RunReport<dim> report(config, problem, *first, begin);
   const std::atomic<bool>& stop = stop_on_signals();
+  if (stop) throw SolveError("interrupted before anything was solved; nothing is written");
+  RunReport<dim> report(config, problem, *first, begin,
+                        progress.quiet() ? Printed::verdict : Printed::everything);
   const LoopObserver<dim> observer = {[&](const CertifiedStep& step) { progress(step.step, step.relative); },
-                                      [&](const LevelView<dim>& view) { report.add(view); }};
+                                      [&](const LevelView<dim>& view)
+                                      {
+                                        report.add(view);
+                                        const std::string forecast =
+                                            forecast_text(report.record(), config.adapt.max_dofs);
+                                        if (!forecast.empty()) progress.stage(forecast);
+                                      }};
   try
   {
     return report.close(adapt<dim>(problem, config, std::move(first), observer, stop));
@@ -41,9 +52,11 @@ template <int dim>
 void check(const Config& config, const Mesh<dim>& mesh, bool as_json)
 {
   const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   const LagrangeSpace<dim> space(mesh, config.degree);
   const NitscheForm<dim> form(problem, space, config.gamma0());
   check_rigid_motions<dim>(problem, space, form.load());
+  try_output_directory(config.output.directory);
   print_check(case_facts(config, dim), mesh_facts<dim>(problem, space, form.constraints()),
               describe_solver(choose_method(config.solver, dim, space.n_dofs())),
               findings(diagnose(config, form)), as_json);

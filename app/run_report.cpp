@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <utility>
 
+#include "certify/balance.h"
 #include "contact/rigid_motion.h"
 #include "doctor/solution_facts.h"
 #include "io/atomic_file.h"
+#include "io/balance_text.h"
 #include "io/console.h"
 #include "io/contact_line.h"
 #include "io/run_warnings.h"
 #include "io/shared_file.h"
 #include "io/vtu.h"
 #include "mesh/gmsh.h"
+#include "mesh/gmsh_text.h"
 #include "solve/linear_solver.h"
 #include "solve/petsc.h"
 
@@ -43,8 +47,9 @@ class CellComponents
   {
     add("eta_tot", estimate, [](const BoundComponents& cell) { return cell.total_sharp(); });
     for (const auto& [name, member] : names_of_components(regularised))
-      add(std::string("eta_") + name, estimate,
-          [m = member](const BoundComponents& cell) { return cell.*m; });
+      if (is_of_cells(member))
+        add(std::string("eta_") + name, estimate,
+            [m = member](const BoundComponents& cell) { return cell.*m; });
   }
 
   [[nodiscard]] std::vector<CellField> fields() const
@@ -65,6 +70,21 @@ class CellComponents
 
   std::vector<std::pair<std::string, std::vector<double>>> columns_;
 };
+
+/// What writing throws, to be thrown again when the level is printed.
+template <typename Write>
+std::exception_ptr failure_of(const Write& write)
+{
+  try
+  {
+    write();
+  }
+  catch (const WriteError&)
+  {
+    return std::current_exception();
+  }
+  return nullptr;
+}
 
 }  // namespace
 
@@ -112,16 +132,25 @@ template <int dim>
 RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
                           Clock::time_point begin, Printed printed)
     : output_(config.output),
+      contact_rule_(config.certify.contact_rule),
       printed_(printed),
-      page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{})
+      page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
+      moment_about_(moment_point<dim>(config.output, first.mesh))
 {
   const LagrangeSpace<dim>& space = first.space;
   const NitscheForm<dim>& form = first.form;
   check_rigid_motions<dim>(problem, space, form.load());
-  prepare_output_directory(output_.directory);
+  directory_.emplace(output_.directory);
+  remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
+                                     "contact.csv", "adapted.msh"});
+  remove_series(output_.directory);
   record_.facts = case_facts(config, dim);
   record_.mesh = mesh_facts<dim>(problem, space, form.constraints());
   record_.build = library_facts();
+  for (const std::string& name : first.mesh.boundary_names())
+    if (std::ranges::count(config.boundaries, name, &BoundaryConfig::name) == 0) free_sides_.push_back(name);
+  record_.effective = config.effective;
+  record_.case_file = effective_file_name(config);
   record_.tolerance = config.adapt.tolerance;
   record_.statements = statements(form, config.certify.contact_rule);
   record_.statements.assumptions.emplace_back(
@@ -140,7 +169,8 @@ template <int dim>
 void RunReport<dim>::write_fields(const LevelView<dim>& view) const
 {
   const NitscheForm<dim>& form = view.discrete.form;
-  write_contact_csv(output_.directory / "contact.csv", form, view.level.u);
+  if (output_.mesh) write_file(output_.directory / "adapted.msh", gmsh_text(view.discrete.mesh, free_sides_));
+  write_contact_csv(output_.directory / "contact.csv", form, view.level.u, view.number);
   if (!output_.vtu) return;
   write_level_fields<dim>(output_.directory, view.number, view.discrete, view.level);
   write_contact_vtu<dim>(output_.directory / level_file_name("contact", view.number), view.number, form,
@@ -168,19 +198,17 @@ void RunReport<dim>::add_times(const LevelTimes& times)
 }
 
 template <int dim>
-void RunReport<dim>::note_solver(const LevelRecord& level)
+void RunReport<dim>::update_statements(const LevelView<dim>& view)
 {
-  if (level.newton.empty()) return;
-  auto& assumptions = record_.statements.assumptions;
-  const auto entry = std::ranges::find(assumptions, "linear_solver", [](const auto& a) { return a.first; });
-  entry->second = describe_solver(level.newton);
+  if (view.level.steps.empty()) return;
+  record_.statements = statements(view.discrete.form, contact_rule_, view.level.friedrichs);
+  record_.statements.assumptions.emplace_back("linear_solver", describe_solver(view.level.steps));
 }
 
 template <int dim>
 void RunReport<dim>::add(const LevelView<dim>& view)
 {
   const NitscheForm<dim>& form = view.discrete.form;
-  if (record_.levels.empty()) remove_series(output_.directory);
   LevelRecord& level = record_.levels.emplace_back();
   level.level = view.number;
   level.cells = view.discrete.mesh.n_cells();
@@ -193,11 +221,17 @@ void RunReport<dim>::add(const LevelView<dim>& view)
   if (view.level.solved()) level.identities = view.level.identities;
 
   const Clock::time_point before_output = Clock::now();
+  std::exception_ptr failure;
   if (view.verdict.status == RunStatus::certified || view.verdict.status == RunStatus::budget)
   {
     level.bound = view.level.estimate;
-    write_fields(view);
-    page_.add(view.number, form, view.level);
+    level.balance = balance<dim>(form, view.level.stress, moment_about_);
+    failure = failure_of(
+        [&]
+        {
+          write_fields(view);
+          page_.add(view.number, form, view.level);
+        });
   }
   else  // what violates an identity is no bound, and is not shown as one
     for (CertifiedStep& step : level.newton) step.bound = {}, step.linearisation = {};
@@ -209,13 +243,14 @@ void RunReport<dim>::add(const LevelView<dim>& view)
   const double cpu_now = cpu_seconds();
   level.times.level_cpu = cpu_now - std::exchange(cpu_before_, cpu_now);
   add_times(level.times);
-  note_solver(level);
+  update_statements(view);
   record_.status = view.verdict.status;
   record_.reason = view.verdict.reason;
   record_.warnings = view.level.solved() ? run_warnings(level, contact_outcomes<dim>(form, view.level.u))
                                          : std::vector<RunWarning>{};
-  write_record();
-  print_level(level);
+  if (!failure) failure = failure_of([&] { write_record(); });
+  if (printed_ != Printed::verdict) print_level(level);
+  if (failure) std::rethrow_exception(failure);
 }
 
 template <int dim>
@@ -229,13 +264,13 @@ ExitCode RunReport<dim>::close(const Verdict& verdict)
     write_record();
   }
   if (printed_ == Printed::everything) print_summary(record_, output_.directory.string());
+  if (printed_ == Printed::verdict) print_verdict(record_, output_.directory.string());
   return exit_code(verdict.status);
 }
 
 template <int dim>
 void RunReport<dim>::fail(const std::string& reason)
 {
-  remove_series(output_.directory);
   record_.status = RunStatus::failed;
   record_.reason = reason;
   write_record();

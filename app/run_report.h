@@ -4,6 +4,7 @@
 /// What a run tells and leaves behind, level by level.
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "base/clock.h"
 #include "case/config.h"
 #include "io/facts.h"
+#include "io/output_directory.h"
 #include "io/report.h"
 #include "io/report_page.h"
 #include "io/vtu.h"
@@ -38,7 +40,8 @@ void write_level_fields(const std::filesystem::path& directory, int number,
 enum class Printed
 {
   everything,
-  levels  ///< a line per level, as a part of something larger
+  levels,  ///< a line per level, as a part of something larger
+  verdict  ///< status and warnings at the end
 };
 
 /// Keeps the record of a run and writes the files, level by level.
@@ -46,12 +49,13 @@ template <int dim>
 class RunReport
 {
  public:
-  /// On the first mesh; the run began at `begin`. Throws InputError for a body that can move rigidly, and
-  /// where nothing can be written.
+  /// On the first mesh; the run began at `begin`. Removes what an earlier run has left in the directory, the
+  /// certificate first. Throws InputError for a body that can move rigidly, and where nothing can be written.
   RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
             Clock::time_point begin, Printed printed = Printed::everything);
 
-  /// After every level: fields, tables and a certificate that holds should the program be killed.
+  /// After every level: fields, tables and a certificate that holds should the program be killed. Throws
+  /// WriteError, the level being printed.
   void add(const LevelView<dim>& view);
   /// The last word.
   [[nodiscard]] ExitCode close(const Verdict& verdict);
@@ -63,16 +67,20 @@ class RunReport
  private:
   void write_fields(const LevelView<dim>& view) const;
   void add_times(const LevelTimes& times);
-  /// How the systems of the level were solved, for the assumptions of the certificate.
-  void note_solver(const LevelRecord& level);
+  /// What the certificate says about the level: its data, and how its systems were solved.
+  void update_statements(const LevelView<dim>& view);
 
   void write_record() const;
 
   const OutputConfig& output_;
+  ContactRule contact_rule_;
   Printed printed_;
+  std::optional<OutputDirectory> directory_;
   RunRecord record_;
   ReportPage page_;
-  double cpu_before_ = cpu_seconds();  ///< CPU time up to the level in work
+  Point<dim> moment_about_;
+  std::vector<std::string> free_sides_;  ///< boundaries that the case does not mention
+  double cpu_before_ = cpu_seconds();    ///< CPU time up to the level in work
 };
 
 }  // namespace tribound

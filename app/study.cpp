@@ -16,6 +16,7 @@
 #include "interrupt.h"
 #include "io/atomic_file.h"
 #include "io/figures.h"
+#include "io/output_directory.h"
 #include "io/report_page.h"
 #include "io/shared_file.h"
 #include "io/study.h"
@@ -66,7 +67,9 @@ Config variant_config(const Config& config, const std::string& name)
     variant.newton.stopping = Stopping::adaptive;
   if (name.starts_with("uniform")) variant.adapt.marking = Marking::uniform;
   variant.output.directory /= name;
+  variant.effective = {};  // that of the study stands beside its tables
   variant.output.vtu = config.output.vtu && !converged;
+  variant.output.mesh = false;
   return variant;
 }
 
@@ -84,7 +87,9 @@ Config reference_config(const Config& config, double required)
   reference.adapt.max_cells.reset();
   reference.adapt.max_dofs = config.study.max_reference_dofs;
   reference.output.directory /= "reference";
+  reference.effective = {};
   reference.output.vtu = false;
+  reference.output.mesh = false;
   return reference;
 }
 
@@ -121,7 +126,8 @@ class StudyCommand
 
   ExitCode run()
   {
-    prepare_output_directory(config_.output.directory);
+    const OutputDirectory directory(config_.output.directory);
+    remove_results(config_.output.directory, {"study.json", "study.csv", "report.html"});
     for (const char* name : variant_names)
       if (!stop_) solve_variant(name);
     if (!stop_) solve_reference();
@@ -196,10 +202,13 @@ void StudyCommand<dim>::solve_variant(const std::string& name)
 {
   Config variant = variant_config(config_, name);
   print_stage("variant", name);
+  std::string end_of_comparison;  // for a limit that is not of the case
   if (variant.adapt.marking == Marking::uniform && !study_.variants[0].levels.empty())
   {
     // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times larger.
     const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
+    if (std::lround(size) < variant.adapt.max_dofs)
+      end_of_comparison = fmt::format("adapt.max_dofs = {}", std::lround(size));
     variant.adapt.max_dofs = std::min(variant.adapt.max_dofs, std::lround(size));
   }
   const Clock::time_point begin = Clock::now();
@@ -209,6 +218,8 @@ void StudyCommand<dim>::solve_variant(const std::string& name)
   result.name = name;
   result.status = finished.verdict.status;
   result.reason = finished.verdict.reason;
+  if (!end_of_comparison.empty() && result.reason.ends_with(end_of_comparison))
+    result.reason = "as large as the last adaptive mesh, there the comparison ends";
   for (LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
   levels_.push_back(std::move(finished.levels));
   write();
@@ -295,6 +306,7 @@ void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
 template <int dim>
 void StudyCommand<dim>::write() const
 {
+  write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
   write_study(config_.output.directory, study_);
   write_page();
 }

@@ -12,8 +12,8 @@
 #include "certify/estimate.h"
 #include "certify/true_error.h"
 #include "contact/rigid_motion.h"
-#include "io/atomic_file.h"
 #include "io/facts.h"
+#include "io/output_directory.h"
 #include "io/verification.h"
 #include "solve/newton.h"
 
@@ -115,7 +115,8 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   const NitscheForm<dim> form(problem, space, config.gamma0());
   check_rigid_motions<dim>(problem, space, form.load());
   check_size(config, mesh, refinements);
-  prepare_output_directory(config.output.directory);
+  const OutputDirectory directory(config.output.directory);
+  remove_results(config.output.directory, {"verify.json"});
 
   Verification result;
   result.facts = case_facts(config, dim);

@@ -34,4 +34,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tribound-config-version.c
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/tribound-config-version.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindGmsh.cmake DESTINATION ${package_dir})
-install(FILES LICENSE COPYING DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE COPYING README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The guide and the examples it refers to, beside each other as in the sources; and the script of pictures.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png"
+                                                                                          PATTERN "*.svg" PATTERN "*.bib")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "out" EXCLUDE)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/picture DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)

@@ -62,7 +62,7 @@ class Program:
         if directory is None:
             with tempfile.TemporaryDirectory() as scratch:
                 return self.run(case, "output.vtu=false", *assignments, directory=Path(scratch), verdicts=verdicts)
-        arguments = [self.path, "run", ROOT / case, "--quiet", "--set", f'output.directory="{directory}"']
+        arguments = [self.path, "run", ROOT / case, "--set", f'output.directory="{directory}"']
         for assignment in assignments:
             arguments += ["--set", assignment]
         before = cpu_seconds()

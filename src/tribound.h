@@ -5,12 +5,15 @@
 /// are the parts of these parts.
 
 // The problem: what the case file says, and what holds where.
+#include "base/apart.h"
 #include "base/error.h"
 #include "base/types.h"
 #include "base/version.h"
 #include "case/config.h"
 #include "case/expression.h"
+#include "case/formula.h"
 #include "case/problem.h"
+#include "case/sweep_values.h"
 
 // The mesh.
 #include "mesh/bisect.h"
@@ -35,6 +38,7 @@
 #include "fem/space.h"
 
 // Its solution by the generalised Newton method.
+#include "solve/cholesky.h"
 #include "solve/linear_solver.h"
 #include "solve/newton.h"
 #include "solve/petsc.h"
@@ -46,6 +50,7 @@
 #include "certify/data_terms.h"
 #include "certify/equilibrate.h"
 #include "certify/estimate.h"
+#include "certify/friedrichs.h"
 #include "certify/stress.h"
 
 // What deserves a look before and after.

@@ -3,7 +3,7 @@
 _tribound()
 {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands="init info check run verify study" command= word candidates=
+  local commands="init info check run sweep verify study" command= word candidates=
 
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     if [[ " $commands " == *" $word "* ]]; then
@@ -17,6 +17,11 @@ _tribound()
       mapfile -t COMPREPLY < <(compgen -d -- "$current")
       compopt -o filenames 2>/dev/null
       return ;;
+    --table)
+      mapfile -t COMPREPLY < <(compgen -f -X '!*.csv' -- "$current"; compgen -d -- "$current")
+      compopt -o filenames 2>/dev/null
+      return ;;
+    --jobs) candidates="1 2 4 8" ;;
     --refinements) candidates="1 2 3 4 5" ;;
     --set) return ;;
     *)
@@ -26,11 +31,12 @@ _tribound()
         info) candidates="--help" ;;
         check) candidates="--set --quiet --json --help" ;;
         run | study) candidates="--set --quiet --help" ;;
+        sweep) candidates="--set --table --jobs --resume --help" ;;
         verify) candidates="--set --quiet --refinements --help" ;;
       esac ;;
   esac
 
-  if [[ $command =~ ^(check|run|verify|study)$ && $current != -* && $previous != --refinements ]]; then
+  if [[ $command =~ ^(check|run|sweep|verify|study)$ && $current != -* && ! $previous =~ ^--(refinements|jobs)$ ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.toml' -- "$current"; compgen -d -- "$current")
     compopt -o filenames 2>/dev/null
   else

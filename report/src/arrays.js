@@ -8,7 +8,7 @@ function bytesOf(base64) {
   return bytes;
 }
 
-async function inflate(bytes) {
+export async function inflate(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -26,17 +26,26 @@ function fromDifferences(codes, stride) {
     const difference = codes[i] & 1 ? -((codes[i] + 1) / 2) : codes[i] / 2;
     codes[i] = difference + (i < stride ? 0 : codes[i - stride]);
   }
-  return codes;
 }
 
 /** Float64Array of the numbers, Uint32Array for integers. */
 export async function unpack({ count, width, data, stride, offset, step, log }) {
   const codes = joinBytes(await inflate(bytesOf(data)), count, width);
-  if (stride !== undefined) return fromDifferences(codes, stride);
+  fromDifferences(codes, stride);
+  if (step === undefined) return codes;
   const values = new Float64Array(count); // by loops: from() with a function takes five times as long
   if (log) for (let i = 0; i < count; ++i) values[i] = codes[i] === 0 ? 0 : 10 ** (offset + step * (codes[i] - 1));
-  else for (let i = 0; i < count; ++i) values[i] = offset + step * codes[i];
+  else
+    for (let i = 0; i < count; ++i) {
+      const value = offset + step * codes[i];
+      values[i] = Math.abs(value) <= 0.5000001 * step ? 0 : value; // 0 is within rounding
+    }
   return values;
+}
+
+/** The text of pack_text(). */
+export async function unpackText({ text }) {
+  return new TextDecoder().decode(await inflate(bytesOf(text)));
 }
 
 /** The same object with every packed array in it, at any depth, unpacked. */

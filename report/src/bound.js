@@ -4,24 +4,32 @@ import * as Plot from "@observablehq/plot";
 import { chartStyle, legend, responsive } from "./charts.js";
 import { boundUnit, components, componentsOf, shares } from "./components.js";
 import { element, number, percent, section, table } from "./dom.js";
+import { boundFormula, typeset } from "./math.js";
 
 /** The components of the last level with bars. */
 function componentTable(run) {
   const part = shares(run.components);
-  const rows = componentsOf(run).map(({ name, meaning, colour }, i) => [
+  const all = componentsOf(run).map((component, i) => ({ ...component, share: part[i] }));
+  const isRoundOff = ({ name }) => run.components[name] <= roundOff * run.bound;
+  const rows = all.filter((component) => !isRoundOff(component)).map(({ name, meaning, colour, share }) => [
     element("span", { class: "component" }, element("span", { class: "swatch", style: `--colour:${colour}` }), name), meaning,
     number(run.components[name]),
-    element("span", { class: "share" }, element("span", { class: "share-bar", style: `--share:${part[i]};--colour:${colour}` }),
-      `${(100 * part[i]).toFixed(1)}\u00a0%`)]);
-  return table(["component", "what it measures", `#value [${boundUnit(run.d)}]`, "#share of squares"], rows, { class: "components" });
+    element("span", { class: "share" }, element("span", { class: "share-bar", style: `--share:${share};--colour:${colour}` }),
+      `${(100 * share).toFixed(1)}\u00a0%`)]);
+  const hidden = all.filter(isRoundOff).map(({ name, meaning }) => `${name} (${meaning})`);
+  return [table(["component", "what it measures", ["#value [", typeset(boundUnit(run.d)), "]"], "#share of squares"], rows, { class: "components" }),
+    hidden.length > 0 ? element("p", { class: "note" }, `Zero, or round-off: ${hidden.join(", ")}.`) : null];
 }
+
+// Below this part of the bound a component is round-off.
+const roundOff = 1e-9;
 
 function shareChart(levels) {
   const rows = levels.flatMap((level) => shares(level.components).map((share, i) =>
     ({ level: level.level, share, name: components[i].name, meaning: components[i].meaning })));
   const present = components.filter(({ name }) => rows.some((row) => row.name === name && row.share > 5e-4));
-  return [responsive("Shares of the components of the bound over the levels", (width) => Plot.plot({
-    width, height: 270, marginLeft: 46, marginTop: 26, marginBottom: 36, style: chartStyle,
+  return [responsive("Shares of the components of the bound over the levels", (width, onPaper) => Plot.plot({
+    width, height: onPaper ? 135 : 270, marginLeft: 46, marginTop: 26, marginBottom: 36, style: chartStyle,
     x: { label: "level", tickFormat: (d) => String(d), ticks: levels.length > 20 ? 10 : undefined },
     y: { label: "share of the sum of squares [%]", percent: true, grid: true, domain: [0, 100], ticks: 5 },
     color: { domain: components.map(({ name }) => name), range: components.map(({ colour }) => colour) },
@@ -30,7 +38,7 @@ function shareChart(levels) {
         order: components.map(({ name }) => name),
         title: (d) => `level ${d.level}\n${d.name}: ${d.meaning}\n${percent(d.share)}`, tip: true }),
       Plot.ruleY([0])],
-  })), legend(present.map(({ name, colour, meaning }) => ({ name, colour, title: meaning })))];
+  }), { name: "shares", rows: () => rows.map(({ level, name, share }) => ({ level, component: name, share })) }), legend(present.map(({ name, colour, meaning }) => ({ name, colour, title: meaning })))];
 }
 
 export function boundSection(run) {
@@ -38,6 +46,7 @@ export function boundSection(run) {
   const levels = run.levels.filter((level) => level.bound !== null);
   return section("bound", "Bound", "The bound and its causes",
     "The bound is the root of a sum over all cells; each component measures one cause of the error. Shares are those of the squares, which add up.",
+    boundFormula(run.components),
     element("div", { class: "two-columns" },
       element("div", {}, componentTable(run)),
       levels.length > 1 ? element("figure", {}, shareChart(levels), element("figcaption", {}, "Shares over the levels of adaptation.")) : null));

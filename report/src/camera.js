@@ -3,11 +3,20 @@
 
 const degrees = Math.PI / 180;
 
+/** Unit vectors to the right, upwards and towards the eye, for both angles 0. */
+function frameOf(up) {
+  const axis = Math.abs(up) - 1;
+  const upwards = [0, 1, 2].map((i) => (i === axis ? Math.sign(up) : 0));
+  const right = [0, 1, 2].map((i) => (i === (axis === 0 ? 1 : 0) ? 1 : 0));
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  return [right, upwards, cross(right, upwards)];
+}
+
 export class Camera {
-  /** Angles in degrees; the eye is behind the body's z axis for 0, 0. */
-  constructor(dimension, { azimuth = 0, elevation = 0 } = {}) {
+  /** Angles in degrees about the axis `up` of the body, 1, 2 or 3 for x, y, z, negative for the opposite direction. */
+  constructor(dimension, { azimuth = 0, elevation = 0, up = 2 } = {}) {
     this.dimension = dimension;
-    Object.assign(this, { azimuth, elevation });
+    Object.assign(this, { azimuth, elevation, frame: frameOf(up) });
     this.reset(1);
   }
 
@@ -21,7 +30,8 @@ export class Camera {
     if (this.dimension === 2) return { right: [1, 0, 0], up: [0, 1, 0], eye: [0, 0, 1] };
     const [sa, ca] = [Math.sin(this.azimuth * degrees), Math.cos(this.azimuth * degrees)];
     const [se, ce] = [Math.sin(this.elevation * degrees), Math.cos(this.elevation * degrees)];
-    return { right: [ca, 0, -sa], up: [-se * sa, ce, -se * ca], eye: [ce * sa, se, ce * ca] };
+    const inBody = (vector) => [0, 1, 2].map((c) => vector.reduce((sum, x, i) => sum + x * this.frame[i][c], 0));
+    return { right: inBody([ca, 0, -sa]), up: inBody([-se * sa, ce, -se * ca]), eye: inBody([ce * sa, se, ce * ca]) };
   }
 
   /** By lengths of the body to the right and upwards. */

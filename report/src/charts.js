@@ -2,23 +2,28 @@
 
 import * as Plot from "@observablehq/plot";
 import { count, element, logTicks, number, percent } from "./dom.js";
+import { exportButtons } from "./export.js";
 
 export const chartStyle = { fontSize: "12px", background: "none", overflow: "visible" };
 
 const paperWidth = 680; // CSS pixels between the margins of A4 and of US letter
 const charts = new Set();
 
-function drawAll(widthOf) {
+function drawAll(onPaper) {
   for (const chart of charts) {
-    if (!chart.place.isConnected) charts.delete(chart);
-    else if (chart.width > 0) chart.place.replaceChildren(chart.draw(widthOf(chart)));
+    const { place, width, share, draw } = chart;
+    if (!place.isConnected) charts.delete(chart);
+    else if (width > 0) place.replaceChildren(draw(onPaper ? Math.floor(share * paperWidth) : width, onPaper));
   }
 }
-addEventListener("beforeprint", () => drawAll(({ share }) => Math.floor(share * paperWidth)));
-addEventListener("afterprint", () => drawAll(({ width }) => width));
+addEventListener("beforeprint", () => drawAll(true));
+addEventListener("afterprint", () => drawAll(false));
 
-/** A chart drawn anew by draw(width) whenever its place changes width. `share`: of the width of paper. */
-export function responsive(label, draw, { minimum = 280, share = 1 } = {}) {
+/**
+ * A chart drawn anew by draw(width, onPaper) whenever its place changes width. `share`: of the width of paper; `name`: of the
+ * files that a reader saves, with the table rows().
+ */
+export function responsive(label, draw, { minimum = 280, share = 1, name, rows } = {}) {
   const place = element("div", { class: "chart", role: "img", "aria-label": label });
   const chart = { place, draw, share, width: 0 };
   charts.add(chart);
@@ -26,9 +31,10 @@ export function responsive(label, draw, { minimum = 280, share = 1 } = {}) {
     const available = Math.max(minimum, Math.floor(entry.contentRect.width));
     if (available === chart.width || entry.contentRect.width === 0) return;
     chart.width = available;
-    place.replaceChildren(draw(available));
+    place.replaceChildren(draw(available, false));
   }).observe(place);
-  return place;
+  const curves = () => [...place.querySelectorAll(":scope > svg, :scope > div > svg")];
+  return element("div", { class: "chart-box" }, place, exportButtons(name, curves, rows));
 }
 
 /** The line of a curve in a legend, dashed like the curve. */
@@ -86,6 +92,11 @@ export function curveMarks(lines, valueText) {
       title: (d) => `${d.name}, level ${d.level}\n${valueText(d.y)}\n${count(d.x)} degrees of freedom` }))];
 }
 
+/** Curves as rows of a table. */
+export function curveRows(lines) {
+  return lines.flatMap(({ name, points }) => points.map(({ level, x, y }) => ({ curve: name, level, dofs: x, value: y })));
+}
+
 /** The interval that all values lie in, with room on a logarithmic axis. */
 export function logRange(values) {
   return [Math.min(...values) * 0.5, Math.max(...values) * 1.4];
@@ -99,8 +110,8 @@ export function logLogChart({ label, yLabel, lines, range, reference, tolerance,
   const inPercent = ({ y, ...point }) => ({ ...point, y: 100 * y });
   const drawn = lines.map((line) => ({ ...line, points: line.points.map(inPercent) }));
   const [low, high] = range.map((y) => 100 * y);
-  return responsive(label, (width) => Plot.plot({
-    width, height: Math.min(440, height(width)), marginLeft: 58, marginRight: tolerance ? 64 : 18, marginTop: 28, marginBottom: 44,
+  return responsive(label, (width, onPaper) => Plot.plot({
+    width, height: Math.min(onPaper ? 220 : 440, height(width)), marginLeft: 58, marginRight: tolerance ? 64 : 18, marginTop: 28, marginBottom: 44,
     style: chartStyle, x: dofAxis(lines, width),
     y: { type: "log", label: yLabel, grid: true, tickFormat: (y) => number(y, 1), domain: [low, high], ticks: logTicks(low, high, 6) },
     marks: [
@@ -109,5 +120,5 @@ export function logLogChart({ label, yLabel, lines, range, reference, tolerance,
           text: () => "tolerance" })] : null,
       reference ? referenceMarks(reference.points.map(inPercent), reference.rate) : null,
       curveMarks(drawn, (y) => percent(y / 100))],
-  }), options);
+  }), { name: "curves", rows: () => curveRows(lines), ...options });
 }

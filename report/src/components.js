@@ -9,6 +9,7 @@ export const components = [
   { name: "lin1", symbol: "\u03b7 lin1", meaning: "linearisation, in the body", colour: "#cc79a7" },
   { name: "lin2n", symbol: "\u03b7 lin2n", meaning: "linearisation, normal", colour: "#a84f8c" },
   { name: "lin2t", symbol: "\u03b7 lin2t", meaning: "linearisation, tangential", colour: "#8458a3" },
+  { name: "quad", symbol: "\u03b7 quad", meaning: "quadrature of the loads", colour: "#5b6b7a" },
   { name: "reg1", symbol: "\u03b7 reg1", meaning: "regularisation, in the body", colour: "#7a7a2e" },
   { name: "reg2n", symbol: "\u03b7 reg2n", meaning: "regularisation, normal", colour: "#a5a058" },
   { name: "reg2t", symbol: "\u03b7 reg2t", meaning: "regularisation, tangential", colour: "#c9c48a" },

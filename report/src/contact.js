@@ -1,12 +1,12 @@
-// The contact boundary: in 2D curves over its length with open, sticking and slipping zones shaded, in 3D values over a
-// coordinate.
+// The contact boundary: in 2D curves over its length with open, sticking and slipping zones shaded, in 3D a plan view and values
+// over a coordinate.
 
 import * as Plot from "@observablehq/plot";
 import { chartStyle, responsive } from "./charts.js";
 import { statusColours, statusNames } from "./components.js";
-import { element, number, section, table } from "./dom.js";
-import { readSurface } from "./surface.js";
-import { unpackAll } from "./arrays.js";
+import { element, number, powerOfTen, section, table, withoutNoise } from "./dom.js";
+import { contactPlan } from "./plan.js";
+import { areaVector, readSurface } from "./surface.js";
 
 /** Stretches of equal status along a profile. */
 function zonesOf({ arc, status }) {
@@ -23,28 +23,32 @@ function zonesOf({ arc, status }) {
 }
 
 const panels = [
-  { title: "contact pressure [S]", curves: [{ key: "pressure", colour: "#0072b2" }], zero: true },
-  { title: "friction [S], dashed: its limit", limits: true, curves: [{ key: "friction", colour: "#d55e00" }] },
-  { title: "gap [L]", curves: [{ key: "gap", colour: "#009e73" }], zero: true },
-  { title: "slip [L]", curves: [{ key: "slip", colour: "#8458a3" }], zero: true },
+  { key: "pressure", title: (unit) => `contact pressure [${unit("S")}]`, colour: "#0072b2", zero: true },
+  { key: "friction", title: (unit) => `friction [${unit("S")}], dashed: its limit`, colour: "#d55e00", limits: true },
+  { key: "gap", title: (unit) => `gap [${unit("L")}]`, colour: "#009e73", zero: true },
+  { key: "slip", title: (unit) => `slip [${unit("L")}]`, colour: "#8458a3", zero: true },
 ];
 
-function panel(profile, rows, zones, { title, curves, limits, zero }, width, isLast) {
+function panel(rows, zones, { key, title, colour, limits, zero }, width, isLast) {
   const hasLimit = limits && rows.some((row) => row.limit > 0);
+  const { factor, unit } = powerOfTen(rows.map((row) => Math.max(Math.abs(row[key]), hasLimit ? row.limit : 0)));
+  const along = powerOfTen(rows.map((row) => row.arc));
+  const y = (row) => row[key] / factor;
+  const limit = (sign) => (hasLimit ? Plot.line(rows, { x: "arc", y: (row) => (sign * row.limit) / factor, strokeDasharray: "4 3", strokeOpacity: 0.8 }) : null);
   return Plot.plot({
     width, height: isLast ? 162 : 132, marginLeft: 58, marginTop: 24, marginBottom: isLast ? 44 : 16, marginRight: 12,
     style: chartStyle,
-    x: { domain: [rows[0].arc, rows.at(-1).arc], label: isLast ? "length along the boundary [L]" : null, ticks: isLast ? undefined : [] },
-    y: { label: title, labelAnchor: "top", labelArrow: "none", ticks: 4, nice: true, grid: true, zero, tickFormat: (value) => number(value, 3) },
+    x: { domain: [rows[0].arc, rows.at(-1).arc], label: isLast ? `length along the boundary [${along.unit("L")}]` : null,
+      ticks: isLast ? undefined : [], tickFormat: (value) => number(value / along.factor, 4) },
+    y: { label: title(unit), labelAnchor: "top", labelArrow: "none", ticks: 4, nice: true, grid: true, zero, tickFormat: (value) => number(value, 3) },
     marks: [
       Plot.rect(zones, { x1: "from", x2: "to", fill: (zone) => statusColours[zone.status], fillOpacity: 0.13 }),
       Plot.ruleY([0], { strokeOpacity: 0.5 }),
-      hasLimit ? Plot.line(rows, { x: "arc", y: "limit", strokeDasharray: "4 3", strokeOpacity: 0.8 }) : null,
-      hasLimit ? Plot.line(rows, { x: "arc", y: (row) => -row.limit, strokeDasharray: "4 3", strokeOpacity: 0.8 }) : null,
-      ...curves.map(({ key, colour }) => Plot.line(rows, { x: "arc", y: key, stroke: colour, strokeWidth: 1.75 })),
-      ...curves.map(({ key }) => Plot.ruleX(rows, Plot.pointerX({ x: "arc", py: key, strokeOpacity: 0.35 }))),
-      ...curves.map(({ key }) => Plot.tip(rows, Plot.pointerX({ x: "arc", y: key, title: (row) =>
-        `${number(row[key])}${limits && row.limit > 0 ? `, limit ${number(row.limit)}` : ""}, ${statusNames[row.status]}\nx = ${number(row.x)}, y = ${number(row.y)}` }))),
+      limit(1), limit(-1),
+      Plot.line(rows, { x: "arc", y, stroke: colour, strokeWidth: 1.75 }),
+      Plot.ruleX(rows, Plot.pointerX({ x: "arc", py: y, strokeOpacity: 0.35 })),
+      Plot.tip(rows, Plot.pointerX({ x: "arc", y, title: (row) =>
+        `${number(row[key])}${limits && row.limit > 0 ? `, limit ${number(row.limit)}` : ""}, ${statusNames[row.status]}\nx = ${number(row.x)}, y = ${number(row.y)}` })),
     ],
   });
 }
@@ -59,7 +63,8 @@ function profileCharts(profile) {
     element("ul", { class: "legend" }, present.map((kind) =>
       element("li", {}, element("span", { class: "swatch swatch-zone", style: `--colour:${statusColours[kind]}` }), statusNames[kind]))),
     responsive(`Contact pressure, friction, gap and slip along ${profile.boundary}`, (width) => element("div", {},
-      panels.map((what, i) => panel(profile, rows, zones, what, width, i === panels.length - 1)))),
+      panels.map((what, i) => panel(rows, zones, what, width, i === panels.length - 1))),
+      { name: `contact_${profile.boundary}`, rows: () => rows.map((row) => ({ ...row, status: statusNames[row.status] })) }),
     zoneText(zones));
 }
 
@@ -99,19 +104,25 @@ function bestCoordinate(rows, names) {
 function scatterCharts(surface) {
   const { rows, centre } = contactPoints(surface, 3000);
   const coordinates = { x: "x [L]", y: "y [L]", z: "z [L]", r: `distance from the largest pressure, at (${["x", "y", "z"].map((axis) => number(centre[axis], 3)).join(", ")}) [L]` };
-  const quantities = { pressure: "contact pressure [S]", friction: "friction, length [S]", gap: "gap [L]", slip: "slip, length [L]" };
+  const quantities = { pressure: ["contact pressure", "S"], friction: ["friction, length", "S"], gap: ["gap", "L"], slip: ["slip, length", "L"] };
   const options = (names) => Object.entries(names).map(([value, name]) => element("option", { value }, name));
   const coordinate = element("select", { id: "contact-coordinate" }, options(coordinates));
-  const quantity = element("select", { id: "contact-quantity" }, options(quantities));
+  const quantity = element("select", { id: "contact-quantity" }, Object.entries(quantities).map(([value, [name]]) => element("option", { value }, name)));
   const place = element("div", {});
-  const draw = () => place.replaceChildren(responsive("Contact values over a coordinate", (width) => Plot.plot({
-    width, height: 330, marginLeft: 58, marginTop: 26, marginBottom: 46, style: chartStyle, grid: true,
-    x: { label: coordinates[coordinate.value] }, y: { label: quantities[quantity.value], nice: true, tickFormat: (value) => number(value, 3) },
-    marks: [Plot.ruleY([0], { strokeOpacity: 0.5 }),
-      Plot.dot(rows, { x: coordinate.value, y: quantity.value, r: 2, fill: (row) => statusColours[row.status], fillOpacity: 0.75 }),
-      Plot.tip(rows, Plot.pointer({ x: coordinate.value, y: quantity.value, title: (row) =>
-        `${number(row[quantity.value])}, ${statusNames[row.status]}\n(${["x", "y", "z"].map((axis) => number(row[axis])).join(", ")})` }))],
-  })));
+  const plot = (width) => {
+    const [name, symbol] = quantities[quantity.value];
+    const { factor, unit } = powerOfTen(rows.map((row) => row[quantity.value]));
+    const y = (row) => row[quantity.value] / factor;
+    return Plot.plot({ width, height: 330, marginLeft: 58, marginTop: 26, marginBottom: 46, style: chartStyle, grid: true,
+      x: { label: coordinates[coordinate.value], tickFormat: (value) => number(value, 3) },
+      y: { label: `${name} [${unit(symbol)}]`, nice: true, tickFormat: (value) => number(value, 3) },
+      marks: [Plot.ruleY([0], { strokeOpacity: 0.5 }),
+        Plot.dot(rows, { x: coordinate.value, y, r: 2, fill: (row) => statusColours[row.status], fillOpacity: 0.75 }),
+        Plot.tip(rows, Plot.pointer({ x: coordinate.value, y, title: (row) =>
+          `${number(row[quantity.value])}, ${statusNames[row.status]}\n(${["x", "y", "z"].map((axis) => number(row[axis])).join(", ")})` }))] });
+  };
+  const draw = () => place.replaceChildren(responsive("Contact values over a coordinate", plot,
+    { name: "contact", rows: () => rows.map((row) => ({ ...row, status: statusNames[row.status] })) }));
   for (const input of [coordinate, quantity]) input.addEventListener("change", draw);
   coordinate.value = bestCoordinate(rows, Object.keys(coordinates));
   draw();
@@ -119,34 +130,66 @@ function scatterCharts(surface) {
     element("label", { class: "control" }, element("span", {}, "Show"), quantity),
     element("label", { class: "control" }, element("span", {}, "over"), coordinate)),
     element("ul", { class: "legend" }, statusNames.map((name, i) => element("li", {}, element("span", { class: "swatch", style: `--colour:${statusColours[i]}` }), name))),
-    place, element("figcaption", {}, "Points of the contact boundary. The picture above shows the same values in place."));
+    contactPlan(surface, quantity), place, element("figcaption", {}, "The boundary in plan, and its points over a coordinate."));
 }
 
 function resultants(run) {
   const parts = Object.entries(run.contact.boundaries);
   const unit = run.d === 2 ? "S L" : "S L\u00b2";
-  const isSliding = parts.some(([, part]) => part.sliding);
-  const row = (name, part) => [name, number(part.normal, 6), number(part.tangential, 6), number(part.abs_tangential, 6),
-    `(${part.force.map((f) => number(f, 6)).join(", ")})`,
-    ...(isSliding ? [number(part.sliding?.sliding_factor), number(part.sliding?.safety_factor)] : [])];
+  const isSliding = run.bound !== null && parts.some(([, part]) => part.sliding);
+  const row = (name, part) => {
+    const [normal, tangential, length, ...force] = withoutNoise([part.normal, part.tangential, part.abs_tangential, ...part.force])
+      .map((value) => number(value, 6));
+    return [name, normal, tangential, length, `(${force.join(", ")})`,
+      ...(isSliding ? [number(part.sliding?.sliding_factor), number(part.sliding?.safety_factor)] : [])];
+  };
   const rows = parts.map(([name, part]) => row(name, part));
   if (parts.length > 1) rows.push(row("in all", run.contact));
   return [element("h3", {}, "Resultants"), table(["boundary", `#normal [${unit}]`, `#tangential [${unit}]`, `#|tangential| [${unit}]`,
     `#force on the body [${unit}]`, ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows)];
 }
 
-/** `show(place)` fills the section once the data are unpacked. */
+/** What a length or an area adds up to, and how much of it is open. */
+function summaryOfProfiles(profiles) {
+  const summary = { size: 0, open: 0, largest: 0, place: null };
+  for (const { arc, status, pressure, points } of profiles)
+    for (let i = 0; i < arc.length; ++i) {
+      const half = [i - 1, i].reduce((sum, k) => sum + (k >= 0 && k + 1 < arc.length ? (arc[k + 1] - arc[k]) / 2 : 0), 0);
+      summary.size += half;
+      if (status[i] === 0) summary.open += half;
+      if (pressure[i] > summary.largest) Object.assign(summary, { largest: pressure[i], place: [points[2 * i], points[2 * i + 1]] });
+    }
+  return summary;
+}
+
+function summaryOfSurface(surface) {
+  const { contact, nContactFaces, nFacePoints, faces, points } = surface;
+  const summary = { size: 0, open: 0, largest: 0, place: null };
+  contact.status.forEach((status, triangle) => {
+    const area = Math.hypot(...areaVector(surface, 3 * triangle)) / 2;
+    summary.size += area;
+    if (status === 0) summary.open += area;
+  });
+  for (let place = 0; place < nContactFaces * nFacePoints; ++place)
+    if (contact.pressure[place] > summary.largest)
+      Object.assign(summary, { largest: contact.pressure[place], place: [...points.subarray(3 * faces[place], 3 * faces[place] + 3)] });
+  return summary;
+}
+
+/** `start()` fills the section, `summary()` says what the contact boundary comes to, once the data are unpacked. */
 export function contactSection(data) {
   const run = data.certificate;
-  if (!run.contact || run.status === "failed") return { element: null, start: async () => {} };
+  if (!run.contact || run.status === "failed") return { element: null, start: async () => {}, summary: async () => null };
   const place = element("div", { class: "contact" });
   const last = data.fields.at(-1);
   return {
     element: section("contact", "Contact", "The contact boundary", last?.profiles || last?.contact
       ? "Pressure is positive in compression; friction and slip are those of the body along the boundary; the gap is the distance left to the obstacle."
       : null, place, resultants(run)),
+    summary: async () => (last?.profiles ? summaryOfProfiles((await readSurface(last)).profiles)
+      : last?.contact ? summaryOfSurface(await readSurface(last)) : null),
     start: async () => {
-      if (last?.profiles) place.append(...(await unpackAll(last.profiles)).filter(({ arc }) => arc.length > 1).map(profileCharts));
+      if (last?.profiles) place.append(...(await readSurface(last)).profiles.filter(({ arc }) => arc.length > 1).map(profileCharts));
       if (last?.contact) place.append(scatterCharts(await readSurface(last)));
     },
   };

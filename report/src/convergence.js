@@ -41,7 +41,7 @@ function convergenceChart(run, levels) {
   const isKnown = lines.some(({ isError }) => isError);
   return element("div", { class: "chart-and-words" },
     logLogChart({ label: "Convergence of the bound and its components over the degrees of freedom",
-      yLabel: "relative to the norm of the stress [%]", lines, range: logRange([run.tolerance, ...valuesOf(lines)]),
+      yLabel: "relative to the norm of the stress [%]", lines, range: logRange([run.tolerance, ...valuesOf(lines)]), name: "convergence",
       reference: { points, rate }, tolerance: run.tolerance }),
     element("div", {}, curveLegend(lines, "legend-column"), element("p", { class: "note" },
       `Over the last ${last.length} levels the bound falls with the slope ${number(slope(last), 3)} in the degrees of freedom; `

@@ -1,10 +1,11 @@
 // Elements and numbers as text.
 
+const namespaces = { svg: "http://www.w3.org/2000/svg", math: "http://www.w3.org/1998/Math/MathML" };
+
 /** An element with attributes (on...: listeners) and children; strings become text, never markup. */
 export function element(name, attributes = {}, ...children) {
-  const result = name.startsWith("svg:")
-    ? document.createElementNS("http://www.w3.org/2000/svg", name.slice(4))
-    : document.createElement(name);
+  const [space, local] = name.includes(":") ? name.split(":") : ["", name];
+  const result = space ? document.createElementNS(namespaces[space], local) : document.createElement(local);
   for (const [key, value] of Object.entries(attributes)) {
     if (value === undefined || value === null || value === false) continue;
     if (key.startsWith("on")) result.addEventListener(key.slice(2), value);
@@ -20,13 +21,14 @@ export function section(id, short, title, lead, ...content) {
     element("h2", { id: `${id}-title` }, title), lead ? element("p", { class: "lead" }, lead) : null, content);
 }
 
-/** `head`: names of the columns, those with a leading "#" hold numbers. */
+/** `head`: names of the columns, as text or children, those with a leading "#" hold numbers. */
 export function table(head, rows, attributes = {}) {
-  const isNumber = head.map((name) => name.startsWith("#"));
+  const heads = head.map((name) => [name].flat(Infinity));
+  const isNumber = heads.map(([first]) => typeof first === "string" && first.startsWith("#"));
   const cell = (tag) => (content, i) =>
     element(tag, { class: isNumber[i] ? "number" : null, scope: tag === "th" ? "col" : null }, content ?? "");
   return element("div", { class: "table-scroll" }, element("table", attributes,
-    element("thead", {}, element("tr", {}, head.map((name) => name.replace("#", "")).map(cell("th")))),
+    element("thead", {}, element("tr", {}, heads.map(([first, ...rest]) => [first.replace("#", ""), ...rest]).map(cell("th")))),
     element("tbody", {}, rows.map((row) => element("tr", { class: row.class }, [...row].map(cell("td")))))));
 }
 
@@ -50,6 +52,19 @@ export function number(value, digits = 4) {
   if (exponent === undefined) return signed;
   const power = `10${superscript(Number(exponent))}`;
   return signed === "1" ? power : `${signed}\u00d7${power}`;
+}
+
+/** The values with 0 in place of those that are round-off beside the largest, or beside `scale`. */
+export function withoutNoise(values, scale = 0) {
+  const limit = 1e-9 * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), scale);
+  return values.map((value) => (Math.abs(value) <= limit ? 0 : value));
+}
+
+/** What the values of an axis are divided by, and how its title says so: values from 0.001 to 100 000 stay as they are. */
+export function powerOfTen(values) {
+  const largest = values.reduce((size, value) => Math.max(size, Math.abs(value)), 0);
+  const exponent = largest === 0 || (largest >= 5e-3 && largest < 1e5) ? 0 : Math.floor(Math.log10(largest));
+  return { factor: 10 ** exponent, unit: (name) => (exponent === 0 ? name : `10${superscript(exponent)} ${name}`) };
 }
 
 /** A number with the given digits behind the point. */
@@ -83,6 +98,7 @@ export function percent(value, digits = 3) {
 
 export function seconds(value) {
   if (value === null || value === undefined) return "\u2013";
+  if (value < 5e-5) return "< 0.1 ms";
   if (value < 0.1) return `${number(1000 * value, 3)} ms`;
   return value < 100 ? `${number(value, 3)} s` : `${Math.floor(value / 60)} min ${Math.round(value % 60)} s`;
 }

@@ -1,8 +1,11 @@
 // What is guaranteed, what the case was, where it ran, and the other files.
 
-import { count, element, number, seconds, section, table } from "./dom.js";
+import { unpackText } from "./arrays.js";
+import { count, element, number, seconds, section, table, withoutNoise } from "./dom.js";
+import { download } from "./export.js";
+import { guaranteeFormula, typeset } from "./math.js";
 
-const list = (items) => element("ul", {}, items.map((item) => element("li", {}, item)));
+const list = (items) => element("ul", {}, items.map((item) => element("li", {}, typeset(item))));
 
 const topics = { quadrature: "Quadrature", displacement: "Prescribed displacements", geometry: "Geometry", rounding: "Rounding",
   linear_solver: "Linear solver" };
@@ -18,27 +21,60 @@ export function guaranteeSection(run) {
     .map(([name, value]) => [name, number(value, 2)]);
   return section("guarantee", "Guarantee", "What is guaranteed, and what is not", null,
     element("div", { class: "two-columns" },
-      element("div", {}, element("h3", {}, run.bound ? "The bound covers" : "A bound would cover"), list(run.covered),
+      element("div", {}, element("h3", {}, run.bound ? "The bound covers" : "A bound would cover"), guaranteeFormula(), list(run.covered),
         element("h3", {}, "It does not cover"), list(run.not_covered),
-        element("h3", {}, "The law"), element("p", {}, run.law)),
+        element("h3", {}, "The law"), element("p", {}, typeset(run.law))),
       element("div", {}, element("h3", {}, "It rests on"),
-        definitions(Object.entries(run.assumptions).map(([topic, text]) => [topics[topic] ?? topic, text])),
+        definitions(Object.entries(run.assumptions).map(([topic, text]) => [topics[topic] ?? topic, typeset(text)])),
         identities ? element("h3", {}, "Identities of the equilibrated stress") : null,
         identities ? table(["identity", "#largest defect, relative"], identities) : null,
         identities ? element("p", { class: "note" }, `Above ${number(run.constants.identity_limit)} an identity would count as violated.`) : null)));
 }
 
+/** The case as it was solved, with what was overridden. */
+function caseText(effective) {
+  if (!effective?.text) return null;
+  const { text, overrides, sha256 } = effective;
+  return element("details", {}, element("summary", {}, "The effective case, with its formulas and body forces"),
+    overrides?.length > 0 ? element("p", { class: "note" }, "Set on the command line: ", overrides.map((item, i) => [i > 0 ? ", " : "", element("code", {}, item)]), ".") : null,
+    element("pre", { tabindex: 0 }, text), sha256 ? element("p", { class: "note" }, `SHA-256 ${sha256}`) : null);
+}
+
+const kindsOfRows = { load: "load", reaction: "reaction", contact: "contact", sum: "sum" };
+
+/** Loads, reactions and contact forces with their sum, which vanishes in equilibrium. */
+function balanceTable(balance, d) {
+  if (!balance?.rows?.length) return null;
+  const forces = d === 2 ? "S L" : "S L\u00b2";
+  const moments = d === 2 ? "S L\u00b2" : "S L\u00b3";
+  const scale = (key) => balance.rows.flatMap((row) => row[key] ?? []).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
+  const [largestForce, largestMoment] = [scale("force"), scale("moment")];
+  const cells = (values, n, largest) => (values ? withoutNoise([values].flat(), largest).map((value) => number(value, 6)) : Array(n).fill(""));
+  const axes = ["x", "y", "z"].slice(0, d);
+  const nMoments = d === 2 ? 1 : 3;
+  const rows = balance.rows.map(({ kind, name, source, force, moment }) => {
+    const cellsOfRow = [kindsOfRows[kind] ?? kind, name ?? "", source ?? "", ...cells(force, d, largestForce), ...cells(moment, nMoments, largestMoment)];
+    cellsOfRow.class = kind === "sum" ? "accepted group" : null;
+    return cellsOfRow;
+  });
+  const about = balance.about ? `, moments about (${balance.about.map((x) => number(x, 4)).join(", ")})` : "";
+  return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, `Forces on the body${about}; in equilibrium the sum is zero.`),
+    table(["", "where", "by", ...axes.map((axis) => `#force ${axis} [${forces}]`),
+      ...(d === 2 ? [`#moment [${moments}]`] : axes.map((axis) => `#moment ${axis} [${moments}]`))], rows, { class: "balance" })];
+}
+
 export function caseSection(data) {
   const run = data.certificate;
   const measure = run.d === 2 ? ["area [L\u00b2]", "length [L]"] : ["volume [L\u00b3]", "area [L\u00b2]"];
-  return section("case", "Case", "The case", null,
+  return section("case", "Case", "The case", null, caseText(data.case ?? run.case),
     table(["region", "#cells", `#${measure[0]}`, "material"],
       run.mesh.regions.map((region) => [region.name, count(region.cells), number(region.measure), region.material])),
     table(["boundary", "#facets", `#${measure[1]}`, "what holds there"],
       run.mesh.boundaries.map((part) => [part.name, count(part.facets), number(part.measure), part.condition])),
     element("p", { class: "note" }, `Cells and facets are those of the first mesh: ${count(run.mesh.vertices)} vertices, cells from `
       + `${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)} L. Units are those of the case: L a length, S a stress `
-      + `(force per area)${run.d === 2 ? "; forces are per unit of depth" : ""}.`));
+      + `(force per area)${run.d === 2 ? "; forces are per unit of depth" : ""}.`),
+    balanceTable(data.balance ?? run.balance, run.d));
 }
 
 function levelTable(run) {
@@ -70,11 +106,25 @@ const contents = { "certificate.json": "the whole result, for programs", "conver
   "series.pvd": "all levels, for ParaView", "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
   "../report.html": "the study that this run belongs to" };
 
-export function filesSection(files) {
-  if (files.length === 0) return null;
+/** Tables that the page holds: it may be read where the files are not. */
+function heldTables({ tables, newton, certificate }) {
+  const texts = { ...tables, "newton.csv": newton && { plain: newton }, "certificate.json": { plain: JSON.stringify(certificate, null, 2) } };
+  const held = Object.entries(texts).filter(([, packed]) => packed);
+  const save = async (name, packed) =>
+    download(name, name.endsWith(".json") ? "application/json" : "text/csv", packed.plain ?? await unpackText(packed));
+  const missing = Object.keys(texts).filter((name) => !texts[name]);
+  return element("div", { class: "screen-only" }, element("p", {}, "This page holds copies: ", held.map(([name, packed]) =>
+    [element("button", { type: "button", class: "save", onclick: () => save(name, packed) }, name), " "])),
+    missing.length > 0 ? element("p", { class: "note" }, `Too large for this page, or not written: ${missing.join(", ")}.`) : null);
+}
+
+/** `data`: of the page of a run. */
+export function filesSection(files, data) {
+  if (files.length === 0 && !data) return null;
   const item = (name) => element("li", {}, element("a", { href: encodeURI(name) }, name), contents[name] ? ` \u2013 ${contents[name]}` : "");
   const vtu = files.filter((name) => name.endsWith(".vtu"));
-  return section("files", "Files", "The other files", "They lie beside this page.",
+  return section("files", "Files", "The other files", null, data ? heldTables(data) : null,
+    files.length === 0 ? null : element("p", { class: "lead" }, "They lie beside this page:"),
     element("ul", { class: "files" }, files.filter((name) => !vtu.includes(name)).map(item)),
     vtu.length === 0 ? null : element("details", {}, element("summary", {}, `Fields of each level (${vtu.length} files)`),
       element("ul", { class: "files files-many" }, vtu.map(item))));

@@ -1,7 +1,7 @@
 // Newton's method, step by step.
 
 import { csvParseRows } from "d3";
-import { number, percent, seconds, section, table } from "./dom.js";
+import { number, percent, seconds, section, table, withoutNoise } from "./dom.js";
 
 /** The rows of newton.csv as objects; an unknown number is null. (d3.csvParse builds code, which the page forbids.) */
 function newtonRows(text) {
@@ -14,7 +14,8 @@ const linearisation = (row) => (row.lin1 === null ? null : row.lin1 + row.lin2n 
 const others = (row) => (row.osc === null ? null : row.osc + row.str + row.neu + row.cnt + row.frc + (row.reg1 ?? 0) + (row.reg2n ?? 0) + (row.reg2t ?? 0));
 
 function stepCells(level, step, row, isFirst) {
-  const lin = row?.lin1 === undefined ? null : linearisation(row);
+  const sum = row?.lin1 === undefined ? null : linearisation(row);
+  const lin = sum !== null && step.total !== null ? withoutNoise([sum], step.total)[0] : sum;
   const rest = row?.osc === undefined ? null : others(row);
   const cells = [isFirst ? String(level.level) : "", String(step.step), number(step.residual, 3), number(step.damping, 3),
     number(step.total), number(lin, 3), lin === null || rest === null ? "\u2013" : percent(lin / rest),

@@ -3,7 +3,9 @@
 import { scaleLinear } from "d3";
 import { statusColours } from "./components.js";
 import { element, number } from "./dom.js";
+import { obstaclePoints } from "./obstacle.js";
 
+const hatchDistance = 9; // pixels
 const manySegments = 120000; // beyond, the undeformed outline is not looked for
 
 /** The function that gives the pixels, in `place`, of points given about the centre of the body. */
@@ -18,6 +20,12 @@ function toPixels({ clientWidth: width, clientHeight: height }, camera) {
 const point = ([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`;
 const stretch = (from, to) => `M${point(from)}L${point(to)}`;
 
+/** Whether the points i and i + 1 of a profile are joined: otherwise another part of the boundary begins. */
+function isStretch({ arc, points }, i, box) {
+  const length = Math.hypot(points[2 * i + 2] - points[2 * i], points[2 * i + 3] - points[2 * i + 1]);
+  return length <= arc[i + 1] - arc[i] + 1e-5 * box.diagonal;
+}
+
 /** The boundary of the undeformed body. */
 function outline(surface, pixel) {
   if (surface.nFaces * 3 * surface.subdivision > manySegments) return null;
@@ -29,13 +37,36 @@ function outline(surface, pixel) {
   return element("svg:path", { class: "outline", d: path });
 }
 
+/** The obstacle with short lines on the side where it is. */
+function obstacleLine(profile, box, factor, pixel) {
+  const points = obstaclePoints(profile, box, factor);
+  const { arc, normal } = profile;
+  const [line, hatching] = [[], []];
+  let last = -Infinity;
+  for (let i = 0; i + 1 < points.length; ++i) {
+    if (!points[i] || !points[i + 1] || !isStretch(profile, i, box)) continue;
+    const [a, b] = [pixel(...points[i]), pixel(...points[i + 1])];
+    line.push(stretch(a, b));
+    const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+    const perPixel = (arc[i + 1] - arc[i]) / length;
+    for (let s = Math.max(0, last + hatchDistance * perPixel - arc[i]) / perPixel; s < length; s += hatchDistance) {
+      const foot = [0, 1].map((c) => a[c] + (s / length) * (b[c] - a[c]));
+      const along = [0, 1].map((c) => (b[c] - a[c]) / length);
+      const outwards = [normal[2 * i], -normal[2 * i + 1]];
+      hatching.push(stretch(foot, foot.map((x, c) => x + 6 * outwards[c] - 6 * along[c])));
+      last = arc[i] + s * perPixel;
+    }
+  }
+  return [element("svg:path", { class: "obstacle", d: line.join("") }), element("svg:path", { class: "obstacle hatching", d: hatching.join("") })];
+}
+
 /** The deformed contact boundary in the colours of its status, which changes halfway between two points. */
-function statusLines({ arc, points, displacement, status }, box, factor, pixel) {
+function statusLines(profile, box, factor, pixel) {
+  const { points, displacement, status } = profile;
   const at = (i) => pixel(...[0, 1].map((c) => points[2 * i + c] + factor * displacement[2 * i + c] - box.centre[c]));
   const paths = ["", "", ""];
   for (let i = 0; i + 1 < status.length; ++i) {
-    const length = Math.hypot(points[2 * i + 2] - points[2 * i], points[2 * i + 3] - points[2 * i + 1]);
-    if (length > arc[i + 1] - arc[i] + 1e-5 * box.diagonal) continue; // another part of the boundary begins
+    if (!isStretch(profile, i, box)) continue;
     const [a, b] = [at(i), at(i + 1)];
     const middle = [0, 1].map((c) => (a[c] + b[c]) / 2);
     paths[status[i]] += stretch(a, middle);
@@ -44,7 +75,8 @@ function statusLines({ arc, points, displacement, status }, box, factor, pixel) 
   return paths.map((d, i) => element("svg:path", { class: "status-line", d, stroke: statusColours[i] }));
 }
 
-function axes({ box }, { target, scale }, { left, top, width, height }) {
+/** Axes around a picture; `names`: of those to the right and upwards. */
+export function axes({ box }, { target, scale }, { left, top, width, height }, names = ["x", "y"]) {
   const [cx, cy] = [box.centre[0] + target[0], box.centre[1] + target[1]];
   const reach = (scale * width) / height;
   const x = scaleLinear([cx - reach, cx + reach], [left, left + width]);
@@ -57,16 +89,17 @@ function axes({ box }, { target, scale }, { left, top, width, height }) {
     ...y.ticks(Math.max(2, height / 60)).flatMap((tick) => [
       element("svg:line", { x1: left - 4, x2: left, y1: y(tick), y2: y(tick) }),
       element("svg:text", { x: left - 7, y: y(tick) + 4, "text-anchor": "end" }, label(tick))]),
-    element("svg:text", { x: left + width, y: top + height + 30, "text-anchor": "end", class: "axis-name" }, "x [L] \u2192"),
-    element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, "\u2191 y [L]")];
+    element("svg:text", { x: left + width, y: top + height + 30, "text-anchor": "end", class: "axis-name" }, `${names[0]} [L] \u2192`),
+    element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, `\u2191 ${names[1]} [L]`)];
 }
 
-function overlay2d(surface, camera, place, factor) {
+function overlay2d(surface, camera, place, { factor, obstacle }) {
   const pixel = toPixels(place, camera);
   const frame = { left: place.offsetLeft + place.clientLeft, top: place.offsetTop + place.clientTop, width: place.clientWidth,
     height: place.clientHeight };
   const inside = element("svg:svg", { x: frame.left, y: frame.top, width: frame.width, height: frame.height },
     factor > 0 ? outline(surface, pixel) : null,
+    obstacle ? (surface.profiles ?? []).map((profile) => obstacleLine(profile, surface.box, factor, pixel)) : null,
     (surface.profiles ?? []).map((profile) => statusLines(profile, surface.box, factor, pixel)));
   return [inside, ...axes(surface, camera, frame)];
 }
@@ -81,7 +114,7 @@ function triad({ box }, camera, place) {
   return [...arrows, element("svg:text", { x: 12, y: 20 }, `${box.size.map((length) => number(length, 3)).join(" \u00d7 ")} L`)];
 }
 
-/** `factor`: of the displacements. */
-export function overlay(surface, camera, place, factor) {
-  return surface.dimension === 2 ? overlay2d(surface, camera, place, factor) : triad(surface, camera, place);
+/** `state`: the factor of the displacements, and whether the obstacle is drawn. */
+export function overlay(surface, camera, place, state) {
+  return surface.dimension === 2 ? overlay2d(surface, camera, place, state) : triad(surface, camera, place);
 }

@@ -15,12 +15,15 @@ export function runPage(data, trueErrors) {
     Object.assign(run.levels.find((other) => other.level === level) ?? {}, errors);
   const fields = fieldsSection(data);
   const contact = contactSection(data);
+  const { element: top, showContact } = header(data);
   const sections = [fields.element, boundSection(run), convergenceSection(run), contact.element, newtonSection(run, data.newton),
     guaranteeSection(run), caseSection(data), levelsSection(data),
-    filesSection(trueErrors ? [...data.files, "../report.html"] : data.files)].filter(Boolean);
+    filesSection(trueErrors ? [...data.files, "../report.html"] : data.files, data)].filter(Boolean);
   const start = async () => {
+    const summary = await contact.summary();
+    if (summary) showContact(summary);
     await fields.start();
     await contact.start();
   };
-  return { title: run.title || run.file, header: header(data), sections, start, machine, program: run.program };
+  return { title: run.title || run.file, header: top, sections, start, machine, program: run.program };
 }

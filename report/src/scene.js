@@ -70,15 +70,18 @@ function triangleCells(first, end) {
 }
 
 /** A scale of colours for vtk.js; `colourAt(s)`, s in [0, 1]. */
-export function transferFunction({ low, high }, colourAt, n = 128) {
+function transferFunction({ low, high }, colourAt, n = 128) {
   const transfer = vtkColorTransferFunction.newInstance();
   for (let i = 0; i <= n; ++i) transfer.addRGBPoint(low + ((high - low) * i) / n, ...unit(colourAt(i / n)));
   transfer.setMappingRange(low, high);
   return transfer;
 }
 
+export function hasWebGL() {
+  return document.createElement("canvas").getContext("webgl2") !== null;
+}
+
 export class Scene {
-  /** Throws where the browser has no WebGL. */
   constructor(place, dimension) {
     this.window = vtkRenderWindow.newInstance();
     this.renderer = vtkRenderer.newInstance();
@@ -89,7 +92,8 @@ export class Scene {
     const lit = dimension === 3;
     this.coloured = new Layer(this.renderer, { lit, behind: true });
     this.plain = new Layer(this.renderer, { lit, behind: true, colour: "#b8bec6" });
-    this.lines = new Layer(this.renderer, { lit: false, colour: "#10161d", opacity: 0.32 });
+    this.obstacle = new Layer(this.renderer, { lit, behind: true, colour: "#8c8070" });
+    this.lines = new Layer(this.renderer, { lit: false, opacity: 0.32 });
     this.renderer.getActiveCamera().setParallelProjection(true);
   }
 
@@ -110,16 +114,15 @@ export class Scene {
     this.lines.setPoints(vertices);
   }
 
-  /** Values per corner, padded where only the first corners have one. */
-  setValues(values, nCorners, transfer) {
+  /** Values per corner, padded where only the first corners have one, and their colours. */
+  setValues(values, nCorners, range, colourAt) {
     let padded = values;
     if (values.length < nCorners) {
       padded = new Float32Array(nCorners);
       padded.set(values);
     }
-    this.coloured.setValues(padded, transfer);
-    this.plain.setValues(null);
-    this.lines.setValues(null);
+    this.coloured.setValues(padded, transferFunction(range, colourAt));
+    for (const layer of [this.plain, this.lines, this.obstacle]) layer.setValues(null);
   }
 
   /** Segments as pairs of vertices; null: none. */
@@ -131,10 +134,19 @@ export class Scene {
     this.lines.setCells("lines", cells);
   }
 
-  resize(width, height, background) {
+  /** Corners of triangles; null: none. */
+  setObstacle(corners) {
+    this.obstacle.actor.setVisibility(corners !== null);
+    if (corners === null) return;
+    this.obstacle.setPoints(corners);
+    this.obstacle.setCells("polys", triangleCells(0, corners.length / 9));
+  }
+
+  resize(width, height, background, line) {
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     this.view.setSize(Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio)));
     this.renderer.setBackground(...unit(background), 1);
+    this.lines.actor.getProperty().setColor(...unit(line));
   }
 
   /** `distance`: beyond the body from anywhere. */

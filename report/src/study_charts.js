@@ -1,7 +1,7 @@
 // The charts of a study, over the degrees of freedom: bound and error, effectivities, components.
 
 import * as Plot from "@observablehq/plot";
-import { chartStyle, curveMarks, dofAxis, legend, logLogChart, logRange, responsive } from "./charts.js";
+import { chartStyle, curveMarks, curveRows, dofAxis, legend, logLogChart, logRange, responsive } from "./charts.js";
 import { boundCurves, curveLegend, valuesOf } from "./convergence.js";
 import { element, fixed, number, section } from "./dom.js";
 import { curveOf, levelsOf, variantsOf } from "./variants.js";
@@ -53,7 +53,7 @@ function quotientChart(label, lines, [low, high]) {
     width, height: Math.max(240, 0.55 * width), marginLeft: 58, marginRight: 18, marginTop: 28, marginBottom: 44, style: chartStyle,
     x: dofAxis(lines, width), y: { label: "quotient", grid: true, ticks: 6, domain: [Math.min(low, 0.95), Math.max(high, 1.2)], nice: true },
     marks: [Plot.ruleY([1], { stroke: "currentColor", strokeWidth: 1.25 }), curveMarks(lines, (y) => number(y, 4))],
-  }), { share });
+  }), { share, name: "effectivity", rows: () => curveRows(lines) });
 }
 
 export function effectivitySection(study) {

@@ -1,6 +1,7 @@
 // The surface of src/io/page_surface.h as triangles with corners of their own, since stresses jump, and the fields on it.
 
 import { unpackAll } from "./arrays.js";
+import { stressFields, stressValues } from "./stress.js";
 
 /** The triangles of a face in the numbers of its lattice, in the order of triangle_middles(). */
 function latticeTriangles(k) {
@@ -45,7 +46,15 @@ function uniqueSegments(faces, nFacePoints, k, nVertices) {
   return { all: Uint32Array.from(all), boundary: Uint32Array.from(single) };
 }
 
-export async function readSurface(level) {
+const read = new Map();
+
+/** Each level is unpacked once. */
+export function readSurface(level) {
+  if (!read.has(level)) read.set(level, unpackSurface(level));
+  return read.get(level);
+}
+
+async function unpackSurface(level) {
   const data = await unpackAll(level);
   const { dimension, subdivision: k, faces } = data;
   const nVertices = data.points.length / dimension;
@@ -119,13 +128,27 @@ const spread = {
   triangle: (_, values) => perCorner(3 * values.length, (c) => values[Math.floor(c / 3)]),
 };
 
+/** At lattice points, or where a mesh is large one value per face. */
+function spreadStress(surface, value) {
+  const { stress, out_of_plane: ratios, region, nFaces, nFacePoints } = surface;
+  const perFace = stress[0].length === nFaces;
+  const ratio = ratios && ((i) => ratios[region ? region[perFace ? i : Math.floor(i / nFacePoints)] : 0]);
+  const values = stressValues(stress, ratio, value);
+  return perFace ? spread.face(surface, values) : spread.lattice(surface, values);
+}
+
+/** A value for each vertex of a volume. */
+function perPoint({ points }, value) {
+  return Float32Array.from({ length: points.length / 3 }, (_, v) => value(v));
+}
+
 /** Contact values are those of the first faces only. */
 const ofContact = (read) => (surface) => {
   const { lattice, nContactFaces, trianglesPerFace } = surface;
   return read({ ...surface, lattice: lattice.subarray(0, 3 * nContactFaces * trianglesPerFace) });
 };
 
-/** The fields of a surface: id, label, unit, group, kind of scale and corners(surface). */
+/** The fields of a surface: id, label, unit, group, kind of scale, corners(surface), and inside(volume) where it is known there. */
 export function fieldsOf(surface, components) {
   const d = surface.dimension;
   const axes = ["x", "y", "z"].slice(0, d);
@@ -134,11 +157,13 @@ export function fieldsOf(surface, components) {
   const etaUnit = d === 2 ? "S L" : "S L^(3/2)";
   return [
     { id: "u", label: "displacement, length", unit: "L", group: "Solution", kind: "sequential",
-      corners: (s) => spread.vertex(s, (v) => Math.hypot(...axes.map((_, c) => s.displacement[d * v + c]))) },
+      corners: (s) => spread.vertex(s, (v) => Math.hypot(...axes.map((_, c) => s.displacement[d * v + c]))),
+      inside: (volume) => perPoint(volume, (v) => Math.hypot(...axes.map((_, c) => volume.displacement[d * v + c]))) },
     ...axes.map((axis, c) => ({ id: `u${axis}`, label: `displacement, ${axis}`, unit: "L", group: "Solution", kind: "diverging",
-      corners: (s) => spread.vertex(s, (v) => s.displacement[d * v + c]) })),
-    { id: "von_mises", label: "von Mises (equilibrated)", unit: "S", group: "Solution", kind: "sequential", trimmed: true,
-      corners: (s) => spread.lattice(s, s.von_mises) },
+      corners: (s) => spread.vertex(s, (v) => s.displacement[d * v + c]),
+      inside: (volume) => perPoint(volume, (v) => volume.displacement[d * v + c]) })),
+    ...stressFields(d).map(({ value, ...field }) => ({ ...field, unit: "S", group: "Stress (equilibrated)", trimmed: true,
+      corners: (s) => spreadStress(s, value), inside: (volume) => stressValues(volume.stress, null, value) })),
     ...(surface.eta.tot ? [{ id: "eta-tot", label: "\u03b7 of the cell, total", unit: etaUnit, group: "Error", kind: "logarithmic",
       corners: (s) => spread.face(s, s.eta.tot) }] : []),
     ...components.filter(({ name }) => surface.eta[name]).map(({ name, symbol, meaning }) => ({ id: `eta-${name}`,
@@ -152,6 +177,17 @@ export function fieldsOf(surface, components) {
   ];
 }
 
+/** A field as a table of the points of the faces: those that share a point may have other values there. */
+export function fieldRows(surface, { id, corners }) {
+  const { lattice, faces, points, dimension: d } = surface;
+  const rows = [];
+  corners(surface).forEach((value, c) => {
+    const vertex = faces[lattice[c]];
+    rows[lattice[c]] ??= { ...Object.fromEntries(["x", "y", "z"].slice(0, d).map((axis, i) => [axis, points[d * vertex + i]])), [id]: value };
+  });
+  return rows;
+}
+
 /** Twice the area of the triangle with the first corner c, undeformed, times its normal, which points outwards. */
 export function areaVector({ points, dimension, vertex }, c) {
   const side = (i, axis) => (axis < dimension ? points[dimension * vertex[c + i] + axis] - points[dimension * vertex[c] + axis] : 0);
@@ -160,15 +196,16 @@ export function areaVector({ points, dimension, vertex }, c) {
   return [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
 }
 
-/** The value below which the fraction `part` of the area lies, rounded up to a bin of a logarithmic histogram. */
-function areaQuantile(surface, values, part, [low, high]) {
+/** The size below which the fraction `part` of the area lies, rounded up to a bin of a logarithmic histogram. */
+function areaQuantile(surface, values, part, high) {
   const nBins = 4096;
-  const bottom = Math.log(Math.max(low, 1e-6 * high));
+  if (high === 0) return 0;
+  const bottom = Math.log(1e-6 * high);
   const perBin = (Math.log(high) - bottom) / nBins || 1;
   const area = new Float64Array(nBins);
   for (let c = 0; c < values.length; c += 3) {
     const [x, y, z] = areaVector(surface, c);
-    const largest = Math.max(values[c], values[c + 1], values[c + 2]);
+    const largest = Math.max(Math.abs(values[c]), Math.abs(values[c + 1]), Math.abs(values[c + 2]));
     const bin = Math.floor((Math.log(largest) - bottom) / perBin);
     area[Math.max(0, Math.min(nBins - 1, bin))] += Math.sqrt(x * x + y * y + z * z);
   }
@@ -187,11 +224,12 @@ export function colourRange(surface, field, values) {
     if (value > 0 && value < positive) positive = value;
   }
   const range = { low, high, largest: high };
-  if (field.trimmed) range.high = Math.min(high, areaQuantile(surface, values, 0.995, [low, high]));
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  if (field.trimmed) range.high = Math.min(size, areaQuantile(surface, values, 0.995, size));
   if (field.kind === "sequential" && low >= 0 && low < 0.5 * high) range.low = 0;
   if (field.kind === "diverging") {
-    range.high = Math.max(Math.abs(low), Math.abs(high));
-    range.low = -range.high;
+    if (!field.trimmed) range.high = size;
+    Object.assign(range, { low: -range.high, largest: size });
   }
   if (field.kind === "logarithmic") range.low = Math.max(positive, high * 1e-4);
   if (field.kind === "status") Object.assign(range, { low: 0, high: 2 });

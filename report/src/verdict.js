@@ -1,7 +1,8 @@
 // What came out of a run, in one sentence and a few figures.
 
-import { count, element, number, percent, plural, seconds } from "./dom.js";
 import { boundUnit } from "./components.js";
+import { count, element, number, percent, plural } from "./dom.js";
+import { typeset } from "./math.js";
 
 const verdicts = {
   certified: { title: "Certified", mark: "\u2713" },
@@ -20,34 +21,64 @@ function sentence({ status, relative, tolerance, reason }) {
     case "not certified":
       return `A solution was computed, but nothing is guaranteed of its error: ${reason}.`;
     default:
-      return `There is no solution: ${reason ?? "unknown reason"}.`;
+      return `No solution was found: ${reason ?? "unknown reason"}.`;
   }
+}
+
+/** A warning or a note of the program, with its place and what may be done. */
+function warningItem({ severity, where, text, hint, advice }) {
+  const said = hint ?? advice;
+  return element("li", {}, severity && severity !== "warning" ? `${severity}: ` : null, where ? element("strong", {}, `${where}: `) : null,
+    typeset(text), said ? element("p", { class: "hint" }, typeset(said)) : null);
+}
+
+/** What deserves a look before the result is used; beside the verdict, on paper too. */
+function warningBox({ warnings }) {
+  if (!warnings || warnings.length === 0) return null;
+  return element("div", { class: "verdict verdict-budget warnings", role: "status" },
+    element("span", { class: "verdict-mark", "aria-hidden": "true" }, "!"),
+    element("div", {}, element("strong", {}, plural(warnings.length, "warning", "warnings")),
+      element("ul", {}, warnings.map(warningItem))));
 }
 
 export function figure(value, name, note) {
   return element("div", { class: "figure" }, element("div", { class: "figure-value" }, value),
-    element("div", { class: "figure-name" }, name), note ? element("div", { class: "figure-note" }, note) : null);
+    element("div", { class: "figure-name" }, name), note ? element("div", { class: "figure-note" }, typeset(note)) : null);
 }
 
-function figures(run) {
+const isSolved = ({ status }) => status === "certified" || status === "budget";
+
+/** The smallest factor of safety against sliding that the certificate has. */
+function safetyFigure(run) {
+  const parts = Object.entries(run.contact?.boundaries ?? {}).filter(([, { sliding }]) => sliding?.safety_factor > 0);
+  if (parts.length === 0) return null;
+  const [name, { sliding }] = parts.reduce((least, part) => (part[1].sliding.safety_factor < least[1].sliding.safety_factor ? part : least));
+  return figure(number(sliding.safety_factor, 4), "safety against sliding", name);
+}
+
+function placeText(place) {
+  return `at (${place.map((x) => number(x, 4)).join(", ")})`;
+}
+
+/** `contact`: the summary of contact.js, null where the page has no picture of the contact boundary. */
+function figures(run, contact) {
   if (run.cells === undefined) return null;
-  const last = run.levels.at(-1);
-  const steps = run.levels.reduce((sum, level) => sum + level.newton.length, 0);
-  const time = Object.values(run.times).reduce((a, b) => a + b, 0);
-  const isSolved = run.status !== "failed";
-  return element("div", { class: "figures" },
-    run.bound === null ? null
-      : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
-    figure(count(run.dofs), "degrees of freedom", `${plural(run.cells, "cell", "cells")}, degree ${run.p}`),
-    figure(String(run.levels.length), run.levels.length === 1 ? "level" : "levels",
-      plural(steps, "Newton step", "Newton steps")),
-    isSolved && figure(number(run.max_displacement), "largest displacement", "L"),
-    isSolved && run.contact !== null && figure(number(-run.contact.normal), "contact force, normal", run.d === 2 ? "S L" : "S L\u00b2"),
-    figure(seconds(time), "wall time", `last level ${seconds(last.times.level)}`));
+  const force = run.d === 2 ? "S L" : "S L\u00b2";
+  return [
+    run.bound === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
+    ...(isSolved(run) ? [
+      safetyFigure(run),
+      contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", `S, ${placeText(contact.place)}`) : null,
+      contact ? figure(percent(contact.open / contact.size), run.d === 2 ? "length that is open" : "area that is open",
+        `${number(contact.open, 3)} of ${number(contact.size, 3)} ${run.d === 2 ? "L" : "L\u00b2"}`) : null,
+      run.contact ? figure(number(-run.contact.normal), "contact force, normal", force) : null,
+      figure(number(run.max_displacement), "largest displacement", "L")] : []),
+    figure(count(run.cells), run.cells === 1 ? "cell" : "cells", `${plural(run.levels.length, "mesh", "meshes")}, degree ${run.p}`),
+  ].filter(Boolean);
 }
 
 /** What both kinds of page begin with; `verdict`: its title, mark, tone and body. */
-export function pageHeader({ program, machine, title, file, kind, verdict, figures: shown }) {
+export function pageHeader({ program, machine, title, file, kind, verdict, warnings, figures: shown }) {
   return element("header", {},
     element("p", { class: "brand" }, "Tribound", element("span", {}, ` ${program.version} \u00b7 ${machine.written}`)),
     element("h1", {}, title || file),
@@ -55,7 +86,7 @@ export function pageHeader({ program, machine, title, file, kind, verdict, figur
     element("div", { class: `verdict verdict-${verdict.tone}`, role: "status" },
       element("span", { class: "verdict-mark", "aria-hidden": "true" }, verdict.mark),
       element("div", {}, element("strong", {}, verdict.title), verdict.body)),
-    shown);
+    warnings, shown);
 }
 
 /** "2D, degree 1, friction: tresca" */
@@ -63,8 +94,15 @@ export function kindOf({ d, p, friction }) {
   return `${d}D, degree ${p}${friction ? `, friction: ${friction}` : ", no contact"}`;
 }
 
+/** `showContact(summary)` adds what is known once the data are unpacked. */
 export function header({ certificate: run, machine }) {
   const { title, mark } = verdicts[run.status] ?? { title: run.status, mark: "?" };
-  return pageHeader({ program: run.program, machine, title: run.title, file: run.file, kind: kindOf(run),
-    verdict: { title, mark, tone: run.status.replace(" ", "-"), body: element("p", {}, sentence(run)) }, figures: figures(run) });
+  const shown = figures(run, null);
+  const place = shown && element("div", { class: "figures" }, shown);
+  return {
+    element: pageHeader({ program: run.program, machine, title: run.title, file: run.file, kind: kindOf(run),
+      verdict: { title, mark, tone: run.status.replace(" ", "-"), body: element("p", {}, typeset(sentence(run))) },
+      warnings: warningBox(run), figures: place }),
+    showContact: (summary) => place?.replaceChildren(...figures(run, summary)),
+  };
 }

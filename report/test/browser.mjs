@@ -10,21 +10,21 @@ export const browserPath = places.find((path) => path && existsSync(path));
 /**
  * The browser without a sandbox, which root cannot have, and with WebGL by software, as there need not be a graphics card; all but
  * WebGL is drawn without it, which makes a screenshot take a fifth of the time. `folder` is that in which playwright-core is
- * installed.
+ * installed. `webgl: false`: without any, as on remote desktops.
  */
-export async function launch(folder) {
+export async function launch(folder, { webgl = true } = {}) {
   const { chromium } = createRequire(`${folder}/package.json`)("playwright-core");
-  return chromium.launch({ executablePath: browserPath, headless: true,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing",
-      "--disable-gpu-rasterization", "--disable-dev-shm-usage", "--disable-gpu-watchdog"] });
+  const graphics = webgl ? ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing",
+    "--disable-gpu-rasterization", "--disable-gpu-watchdog"] : ["--disable-gpu", "--disable-3d-apis"];
+  return chromium.launch({ executablePath: browserPath, headless: true, args: ["--no-sandbox", "--disable-dev-shm-usage", ...graphics] });
 }
 
 // What the software renderer says of its own speed is no fault of the page.
 const isOfTheRenderer = (text) => /GPU stall|SwiftShader|software WebGL/i.test(text);
 
 /** A page on which whatever is wrong is collected in `complaints`: exceptions, messages on the console, requests. */
-export async function openPage(browser, url, { width = 1240, height = 900, colorScheme = "light" } = {}) {
-  const page = await browser.newPage({ viewport: { width, height }, colorScheme });
+export async function openPage(browser, url, { width = 1240, height = 900, colorScheme = "light", hasTouch = false } = {}) {
+  const page = await browser.newPage({ viewport: { width, height }, colorScheme, hasTouch });
   page.setDefaultTimeout(120000); // WebGL by software takes its time on a busy machine
   const complaints = [];
   page.on("console", (message) => {

@@ -7,6 +7,7 @@ import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { browserPath, colours, launch, openPage } from "./browser.mjs";
+import { saved, useFields } from "./fields.mjs";
 
 const [program, folder, results] = process.argv.slice(2);
 
@@ -89,57 +90,7 @@ function solve(name, { command = "run", text, exit }) {
   writeFileSync(`${directory}/case.toml`, text);
   const { status, stderr } = spawnSync(program, [command, "case.toml", "--quiet"], { cwd: directory, encoding: "utf8" });
   assert.equal(status, exit, stderr);
-  return `${directory}/out`;
-}
-
-/** Does something and expects the picture of `selector` to change. */
-async function changes(page, selector, what, action) {
-  const picture = () => page.locator(selector).screenshot();
-  const before = await picture();
-  await action();
-  for (let trial = 0; trial < 40; ++trial) {
-    await page.waitForTimeout(50);
-    if (!before.equals(await picture())) return;
-  }
-  assert.fail(`${what}: nothing changes`);
-}
-
-async function slide(page, id, value) {
-  await page.locator(id).evaluate((input, x) => { input.value = x; input.dispatchEvent(new Event("input")); }, value);
-}
-
-async function useFields(page, dimension) {
-  const view = ".view-frame";
-  await page.mouse.move(0, 0);
-  await page.locator("#fields").scrollIntoViewIfNeeded();
-  assert(await colours(page, ".view canvas") > 60, "the picture is blank");
-  const options = await page.locator("#field option").evaluateAll((list) => list.map(({ value }) => value));
-  for (const wanted of ["u", "ux", "von_mises", "eta-tot", "eta-str", ...(dimension === 3 ? ["contact-pressure", "contact-status"] : [])])
-    assert(options.includes(wanted), `no field ${wanted}`);
-  for (const field of ["ux", "eta-tot", ...(dimension === 3 ? ["contact-pressure", "contact-status"] : []), "u"])
-    await changes(page, ".view-row", `field ${field}`, () => page.selectOption("#field", field));
-  await changes(page, view, "displacement", () => slide(page, "#factor", 90));
-  await changes(page, view, "mesh", () => page.locator("#mesh").click());
-  await changes(page, view, "level", () => slide(page, "#level", 0));
-  await slide(page, "#level", 99);
-  await changes(page, view, "wheel with Ctrl", async () => {
-    await page.locator(".view").hover();
-    await page.keyboard.down("Control");
-    await page.mouse.wheel(0, -300);
-    await page.keyboard.up("Control");
-  });
-  await changes(page, view, "dragging", async () => {
-    const box = await page.locator(".view").boundingBox();
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    await page.mouse.down();
-    await page.mouse.move(box.x + box.width / 2 + 80, box.y + box.height / 2 + 30, { steps: 3 });
-    await page.mouse.up();
-  });
-  await changes(page, view, "a key", async () => { await page.locator(".view").focus(); await page.keyboard.press("ArrowLeft"); });
-  await changes(page, view, "whole body", () => page.getByRole("button", { name: "Reset view" }).click());
-  await page.locator(".view").hover();
-  await page.locator(".tooltip").waitFor({ state: "visible" });
-  assert.match(await page.locator(".tooltip").textContent(), /x = .*, y = /);
+  return `${directory}/out/case`;
 }
 
 async function checkLinks(page, directory) {
@@ -173,6 +124,69 @@ async function checkCharts(page, charts) {
 async function checkPrint(page, file) {
   await page.pdf({ path: file, format: "A4", printBackground: true });
   assert(readFileSync(file).length > 20000);
+}
+
+/** Pictures and tables can be saved from the page alone, the tables as they are in the files. */
+async function checkSaved(page, directory) {
+  assert.match((await saved(page, "#convergence", "SVG")).toString(), /^<svg.*<path/s);
+  assert.match((await saved(page, "#convergence", "CSV")).toString(), /^curve,level,dofs,value\nstr,0,/);
+  for (const place of ["#contact", "#fields"]) assert.equal((await saved(page, place, "PNG")).subarray(1, 4).toString(), "PNG");
+  assert.match((await saved(page, "#fields", "CSV")).toString(), /^x,y/);
+  for (const name of ["convergence.csv", "newton.csv", "contact.csv"])
+    assert.equal((await saved(page, "#files", name)).toString(), readFileSync(`${directory}/${name}`, "utf8"), name);
+  assert.deepEqual(JSON.parse(await saved(page, "#files", "certificate.json")), JSON.parse(readFileSync(`${directory}/certificate.json`, "utf8")));
+}
+
+/** The same page with other data: what belongs to the certificate is shown as it stands there. */
+async function checkGivenCertificate(browser, directory) {
+  const page = readFileSync(`${directory}/report.html`, "utf8");
+  const [, text] = page.match(/id="run-data">(.*?)<\/script>/s);
+  const data = JSON.parse(text);
+  Object.assign(data.certificate, {
+    warnings: [{ code: "a", severity: "warning", where: "boundary \"bottom\"", text: "of ||sigma(u_h)||", hint: "raise gamma_0", value: 1 }],
+    balance: { about: [0, 0.5], rows: [{ kind: "load", name: "top", source: "traction", force: [1e-15, -0.2], moment: [-0.2] },
+      { kind: "reaction", name: "left", source: "displacement", force: [0, 0.2], moment: null },
+      { kind: "sum", name: "", source: "", force: [2e-16, 1e-15], moment: [1e-16] }] } });
+  data.case = { file: "case.toml", sha256: "0123", overrides: ["degree=3"], text: "[load]\nbody = [0, \"-x\"]" };
+  const changed = `${directory}/given.html`;
+  writeFileSync(changed, page.replace(text, () => JSON.stringify(data).replaceAll("<", "\\u003c")));
+  const given = await openPage(browser, pathToFileURL(changed).href);
+  assert.match(await given.page.locator(".warnings").innerText(), /1 warning.*boundary "bottom": of .*raise/s);
+  assert.equal(await given.page.locator(".warnings math").count(), 2);
+  const shown = await given.page.locator("#case").textContent();
+  for (const words of ["degree=3", "body = [0, \"-x\"]", "SHA-256 0123", "moments about (0, 0.5)"]) assert(shown.includes(words), words);
+  const rows = await given.page.locator(".balance tbody tr").evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  assert.deepEqual(rows, [["load", "top", "traction", "0", "\u22120.2", "\u22120.2"], ["reaction", "left", "displacement", "0", "0.2", ""],
+    ["sum", "", "", "0", "0", "0"]]);
+  assert.deepEqual(given.complaints, []);
+  await given.page.close();
+}
+
+/** Without WebGL the page draws the picture itself. */
+async function checkWithoutWebGL(url, dimension) {
+  const plain = await launch(folder, { webgl: false });
+  try {
+    const { page, complaints } = await openPage(plain, url);
+    assert.match(await page.locator(".fields > .note").first().textContent(), /^This browser has no WebGL/);
+    await useFields(page, dimension);
+    assert.deepEqual(complaints, []);
+  } finally {
+    await plain.close();
+  }
+}
+
+/** The first swipe over the picture scrolls the page; a tap gives the picture the fingers. */
+async function checkTouch(browser, url) {
+  const { page } = await openPage(browser, url, { width: 390, height: 800, hasTouch: true });
+  const action = () => page.locator(".view").evaluate((view) => getComputedStyle(view).touchAction);
+  assert.equal(await action(), "pan-y");
+  await page.locator(".view").tap();
+  assert.equal(await action(), "none");
+  for (const cell of ["td:nth-child(3)", ".share"]) {
+    const box = await page.locator(`.components ${cell}`).first().boundingBox();
+    assert(box.x >= 0 && box.x + box.width <= 390, `${cell} is cut off`);
+  }
+  await page.close();
 }
 
 async function checkPrintedFields(page) {
@@ -235,7 +249,14 @@ try {
       await useFields(page, name === "cube" ? 3 : 2);
       await checkNarrowAndDark(browser, url);
     }
-    if (name === "block") assert.equal(await page.locator("h1").textContent(), title);
+    if (name === "block") {
+      assert.equal(await page.locator("h1").textContent(), title);
+      assert.doesNotMatch(await page.locator("#guarantee").innerText(), /\|\||\^|_/);
+      await checkSaved(page, directory);
+      await checkTouch(browser, url);
+      await checkGivenCertificate(browser, directory);
+    }
+    if (name === "cube") await checkWithoutWebGL(url, 3);
     assert.equal(await page.locator("img").count(), 0);
     assert.deepEqual(complaints, []);
     report(name, directory, seconds);

@@ -48,12 +48,13 @@ template <int dim>
 class Certifier
 {
  public:
-  Certifier(const NitscheForm<dim>& form, const Config& config, const std::optional<double>& expected)
+  Certifier(const NitscheForm<dim>& form, const Config& config, const std::optional<double>& expected,
+            const std::optional<FriedrichsConstant>& friedrichs)
       : form_(form),
         config_(config),
         known_(expected),
         equilibrator_(form),
-        estimator_(form, config.certify.contact_rule)
+        estimator_(form, config.certify.contact_rule, friedrichs)
   {
   }
 
@@ -71,6 +72,7 @@ class Certifier
   {
     level.stress = equilibrator_(u, t, step.step.delta);
     level.estimate = estimator_(u, level.stress);
+    level.friedrichs = estimator_.friedrichs();
     level.norms = stress_norms(form_.problem(), form_.space(), u);
     step.bound = level.estimate;
     step.linearisation = linearisation_part(level.estimate.global);
@@ -96,7 +98,7 @@ class Certifier
 
   const NitscheForm<dim>& form_;
   const Config& config_;
-  std::optional<double> known_;  ///< osc + str + neu + cnt + frc of the last complete bound, or as expected
+  std::optional<double> known_;  ///< discretisation() of the last complete bound, or as expected
   Equilibrator<dim> equilibrator_;
   Estimator<dim> estimator_;
 };
@@ -106,7 +108,8 @@ class Certifier
 template <int dim>
 CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<const double> start,
                                       const Config& config, const StepObserver& observer, double delta,
-                                      const std::optional<double>& expected)
+                                      const std::optional<double>& expected,
+                                      const std::optional<FriedrichsConstant>& friedrichs)
 {
   CertifiedLevel<dim> level;
   double wall = 0;
@@ -122,7 +125,7 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
     if (std::isfinite(iterate.step.residual))
     {
       const Charge charge(level.certify_seconds, level.certify_cpu);
-      if (!certifier) certifier.emplace(form, config, expected);
+      if (!certifier) certifier.emplace(form, config, expected, friedrichs);
       advice = certifier->examine(iterate.u, iterate.traction, step, level);
       if (regularisation)
         advice = regularisation->advise(form, iterate, level.estimate.global,
@@ -160,8 +163,10 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
 }
 
 template CertifiedLevel<2> solve_and_certify(const NitscheForm<2>&, std::span<const double>, const Config&,
-                                             const StepObserver&, double, const std::optional<double>&);
+                                             const StepObserver&, double, const std::optional<double>&,
+                                             const std::optional<FriedrichsConstant>&);
 template CertifiedLevel<3> solve_and_certify(const NitscheForm<3>&, std::span<const double>, const Config&,
-                                             const StepObserver&, double, const std::optional<double>&);
+                                             const StepObserver&, double, const std::optional<double>&,
+                                             const std::optional<FriedrichsConstant>&);
 
 }  // namespace tribound

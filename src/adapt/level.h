@@ -27,8 +27,9 @@ namespace tribound
 template <int dim>
 struct Discretisation
 {
-  Discretisation(Mesh<dim> m, const Problem<dim>& problem, const Config& config)
-      : mesh(std::move(m)), space(mesh, config.degree), form(problem, space, config.gamma0())
+  Discretisation(Mesh<dim> m, const Problem<dim>& problem, const Config& config,
+                 const DataAccuracy& accuracy = {})
+      : mesh(std::move(m)), space(mesh, config.degree), form(problem, space, config.gamma0(), accuracy)
   {
   }
   Discretisation(const Discretisation&) = delete;
@@ -72,9 +73,10 @@ struct CertifiedLevel
   Estimate estimate;
   StressNorms norms{};  ///< of u
   IdentityDefects identities;
-  double solve_seconds = 0;    ///< wall time
-  double certify_seconds = 0;  ///< of all iterates
-  double solve_cpu = 0;        ///< CPU time, all threads
+  std::optional<FriedrichsConstant> friedrichs;  ///< where it was needed, on this mesh or one before
+  double solve_seconds = 0;                      ///< wall time
+  double certify_seconds = 0;                    ///< of all iterates
+  double solve_cpu = 0;                          ///< CPU time, all threads
   double certify_cpu = 0;
   RefinementSeconds refinement;
 
@@ -104,11 +106,14 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// what this sum is `expected` to be if something is known of it, gets no complete bound, and Newton's method
 /// goes on.
 ///
+/// `friedrichs`: of a mesh of which this is a refinement, if it is known.
+///
 /// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>
 [[nodiscard]] CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form,
                                                     std::span<const double> start, const Config& config,
                                                     const StepObserver& observer = {}, double delta = 0,
-                                                    const std::optional<double>& expected = {});
+                                                    const std::optional<double>& expected = {},
+                                                    const std::optional<FriedrichsConstant>& friedrichs = {});
 
 }  // namespace tribound

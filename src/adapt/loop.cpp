@@ -25,6 +25,9 @@ namespace
 
 constexpr double gigabyte = 1e9;
 
+/// Of the bound on the mesh before: what the data may leave out of the next one.
+constexpr double share_of_data = 0.01;
+
 /// Thrown out of Newton's method when the user wants the run to end.
 struct Interrupted
 {
@@ -106,6 +109,7 @@ class Loop
   std::vector<double> start_;  ///< the solution of the level before, on the current mesh
   double delta_ = 0;           ///< of the regularised variant after the level before
   RefinementSeconds refinement_;
+  std::optional<FriedrichsConstant> friedrichs_;  ///< of the mesh on which it was first needed
   std::optional<double> expected_;  ///< osc + str + neu + cnt + frc on the current mesh, guessed
   Verdict last_{RunStatus::failed, {}};
   Verdict ended_{RunStatus::failed, {}};
@@ -122,7 +126,8 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
   try
   {
     CertifiedLevel<dim> level =
-        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, expected_);
+        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, expected_, friedrichs_);
+    friedrichs_ = level.friedrichs;
     level.refinement = refinement_;
     return level;
   }
@@ -171,7 +176,9 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
   if (config_.adapt.max_cells && finer.mesh.n_cells() > *config_.adapt.max_cells)
     return fmt::format("the next mesh has {} cells, more than adapt.max_cells = {}", finer.mesh.n_cells(),
                        *config_.adapt.max_cells);
-  auto next = std::make_shared<const Discretisation<dim>>(std::move(finer.mesh), problem_, config_);
+  auto next = std::make_shared<const Discretisation<dim>>(
+      std::move(finer.mesh), problem_, config_,
+      DataAccuracy{.absolute = share_of_data * level.estimate.total_sharp});
   refinement_.discretise = lap();
   const long dofs = next->space.n_dofs() - next->form.constraints().n_fixed();
   if (dofs > config_.adapt.max_dofs)

@@ -42,8 +42,9 @@ std::optional<double> rate_between(const RatePoint& before, const RatePoint& now
 
 std::optional<double> fitted_rate(std::span<const RatePoint> points)
 {
-  if (points.size() < 2) return std::nullopt;
-  return slope(points.last(std::max<std::size_t>(2, (points.size() + 1) / 2)));
+  constexpr std::size_t fewest = 3;  // a line through two points fits whatever they are
+  if (points.size() < fewest) return std::nullopt;
+  return slope(points.last(std::max(fewest, (points.size() + 1) / 2)));
 }
 
 std::optional<double> value_at(std::span<const RatePoint> points, double dofs)

@@ -20,9 +20,9 @@ struct RatePoint
 /// log(value / value before) / log(N / N before); nothing where a value is 0 or N does not change.
 [[nodiscard]] std::optional<double> rate_between(const RatePoint& before, const RatePoint& now);
 
-/// The slope of log value over log N by least squares over the last half of the points, at least two of them;
-/// the middle one of an odd number counts. Nothing where there are fewer than two, where a value is 0 or N
-/// does not change.
+/// The slope of log value over log N by least squares over the last half of the points, at least three of
+/// them; the middle one of an odd number counts. Nothing where there are fewer than three, where a value is 0
+/// or N does not change.
 [[nodiscard]] std::optional<double> fitted_rate(std::span<const RatePoint> points);
 
 /// The value at `dofs` degrees of freedom: c N^r between the two neighbouring points. `points` ascend in N.

@@ -54,6 +54,13 @@ double physical_memory()
   return pages > 0 && page > 0 ? pages * page : 0;
 }
 
+double address_space_limit()
+{
+  rlimit limit{};
+  const bool is_limited = ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return is_limited ? static_cast<double>(limit.rlim_cur) : std::numeric_limits<double>::infinity();
+}
+
 double control_group_memory(const std::filesystem::path& groups, const std::filesystem::path& root)
 {
   double limit = std::numeric_limits<double>::infinity();
@@ -76,7 +83,8 @@ double control_group_memory(const std::filesystem::path& groups, const std::file
 double machine_memory()
 {
   const double physical = physical_memory();
-  const double allowed = control_group_memory("/proc/self/cgroup", "/sys/fs/cgroup");
+  const double allowed =
+      std::min(control_group_memory("/proc/self/cgroup", "/sys/fs/cgroup"), address_space_limit());
   if (std::isinf(allowed)) return physical;
   return physical > 0 ? std::min(physical, allowed) : allowed;
 }

@@ -20,8 +20,11 @@ namespace tribound
 [[nodiscard]] double control_group_memory(const std::filesystem::path& groups,
                                           const std::filesystem::path& root);
 
-/// physical_memory(), or the control groups of this process where they allow less; 0 where the system does
-/// not tell.
+/// What `ulimit -v` allows this process; infinity where it is not limited.
+[[nodiscard]] double address_space_limit();
+
+/// physical_memory(), or the control groups or `ulimit -v` of this process where they allow less; 0 where the
+/// system does not tell.
 [[nodiscard]] double machine_memory();
 
 }  // namespace tribound

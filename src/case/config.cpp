@@ -168,16 +168,42 @@ StudyConfig read_study(const Node& node, int degree)
   return study;
 }
 
-OutputConfig read_output(const Node& node)
+OutputConfig read_output(const Node& node, OutputConfig output)
 {
-  const TableReader table(node, {"directory", "vtu", "report"});
-  OutputConfig output;
+  const TableReader table(node, {"directory", "vtu", "report", "mesh", "moment_about"});
   table.read("directory", output.directory, to_text);
   if (output.directory.empty())
     throw InputError(table.find("directory")->where, "is empty", "a directory to write to, such as \"out\"");
   table.read("vtu", output.vtu, to_bool);
   table.read("report", output.report, to_bool);
+  table.read("mesh", output.mesh, to_bool);
+  if (const Node* point = table.find("moment_about"))
+  {
+    output.moment_about_where = point->where;
+    for (const Node& item : to_components(*point, "one coordinate per dimension"))
+      output.moment_about.push_back(to_number(item));
+  }
   return output;
+}
+
+/// The document as a case file in the output directory: paths lead from there.
+EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
+{
+  auto& tables = std::get<Node::Table>(document.value);
+  if (const auto* file = std::get_if<MeshFile>(&config.mesh))
+  {
+    std::error_code unknown;
+    const std::filesystem::path path = std::filesystem::absolute(file->path, unknown);
+    const std::filesystem::path from_there =
+        std::filesystem::relative(path, std::filesystem::absolute(config.output.directory, unknown), unknown);
+    auto& mesh = std::get<Node::Table>(find(tables, "mesh")->node.value);
+    find(mesh, "file")->node.value = (unknown || from_there.empty() ? path : from_there).string();
+  }
+  if (find(tables, "output") == nullptr) tables.push_back({"output", {}, {Node::Table{}, {}}});
+  auto& output = std::get<Node::Table>(find(tables, "output")->node.value);
+  if (find(output, "directory") == nullptr)
+    output.insert(output.begin(), {"directory", {}, {config.output.directory.string(), {}}});
+  return {to_toml(document), {overrides.begin(), overrides.end()}};
 }
 
 Config read_document(const Node& document, std::string file)
@@ -202,11 +228,17 @@ Config read_document(const Node& document, std::string file)
   root.read("certify", config.certify, read_certify);
   root.read("solver", config.solver, read_solver);
   root.read("study", config.study, [&](const Node& node) { return read_study(node, config.degree); });
-  root.read("output", config.output, read_output);
+  config.output.directory = default_directory(config.file);
+  root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
   return config;
 }
 
 }  // namespace
+
+std::filesystem::path default_directory(const std::filesystem::path& case_file)
+{
+  return std::filesystem::path("out") / case_file.stem();
+}
 
 double default_gamma0(int degree)
 {
@@ -232,7 +264,9 @@ Config parse_config(std::string_view text, std::string name, std::span<const std
   for (const std::string& assignment : overrides) apply_override(document, assignment);
   // The document itself stands nowhere in particular.
   document.where.line = document.where.column = 0;
-  return read_document(document, std::move(name));
+  Config config = read_document(document, std::move(name));
+  config.effective = effective_case(std::move(document), config, overrides);
+  return config;
 }
 
 Config read_config(const std::filesystem::path& file, std::span<const std::string> overrides)

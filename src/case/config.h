@@ -195,9 +195,22 @@ struct StudyConfig
 
 struct OutputConfig
 {
-  std::filesystem::path directory = "out";  ///< relative to the working directory
+  std::filesystem::path directory;  ///< relative to the working directory; default_directory() of the case
   bool vtu = true;
-  bool report = true;  ///< the page report.html
+  bool report = true;                ///< the page report.html
+  bool mesh = true;                  ///< the last mesh, adapted.msh
+  std::vector<double> moment_about;  ///< point of the moments in the balance; empty: centroid of the body
+  Where moment_about_where;
+};
+
+/// Where results go if the case does not say: out/block for block.toml.
+[[nodiscard]] std::filesystem::path default_directory(const std::filesystem::path& case_file);
+
+/// What is solved: the case file with every --set.
+struct EffectiveCase
+{
+  std::string text;                    ///< TOML; a case file that stands in output.directory
+  std::vector<std::string> overrides;  ///< as given
 };
 
 struct Config
@@ -217,6 +230,7 @@ struct Config
   SolverConfig solver;
   StudyConfig study;
   OutputConfig output;
+  EffectiveCase effective;
 
   [[nodiscard]] double gamma0() const { return nitsche.gamma0.value_or(default_gamma0(degree)); }
 };

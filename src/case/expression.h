@@ -13,8 +13,12 @@
 namespace tribound
 {
 
-/// A scalar datum: a constant, or a formula in x, y, z (muParser syntax; pi and e are constants).
-/// Evaluation is not thread-safe on one object; copies are independent.
+struct Affine;
+struct Enclosure;
+class Formula;
+
+/// A scalar datum: a constant, or a formula in x, y, z. Use of one object by several threads at once is safe.
+/// What it returns of a formula is described in formula.h.
 class Expression
 {
  public:
@@ -29,12 +33,6 @@ class Expression
   /// result ("1,5"), an assignment, a constant that is not finite.
   Expression(std::string text, Where where);
 
-  Expression(const Expression& other);
-  Expression(Expression&&) noexcept;
-  Expression& operator=(const Expression& other);
-  Expression& operator=(Expression&&) noexcept;
-  ~Expression();
-
   /// The value at `x` (z = 0 in 2D). Throws InputError naming the key and the point if it is not finite.
   template <int dim>
   [[nodiscard]] double operator()(const Point<dim>& x) const
@@ -42,6 +40,18 @@ class Expression
     if (!formula_) return value_;
     return evaluate({x.data(), dim});
   }
+
+  /// The values at all points, x[i*dim + k]. Throws as the evaluation at a point does.
+  void evaluate(std::span<const double> points, int dim, std::span<double> values) const;
+
+  /// Total degree of a polynomial, 0 for a constant, otherwise Formula::not_polynomial.
+  [[nodiscard]] int degree() const;
+  /// Where it may jump or kink: Formula::switches.
+  [[nodiscard]] std::span<const Affine> switches() const;
+  /// Values and derivatives over the convex hull of `vertices`: Formula::enclose.
+  void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients) const;
+  /// All values within `radius` of `x` in every coordinate.
+  [[nodiscard]] Enclosure around(std::span<const double> x, double radius) const;
 
   /// Whether the value is the same everywhere (a number, or a formula without x, y, z).
   [[nodiscard]] bool is_constant() const { return !formula_; }
@@ -52,11 +62,11 @@ class Expression
   [[nodiscard]] const Where& where() const { return where_; }
 
  private:
-  struct Formula;
   [[nodiscard]] double evaluate(std::span<const double> x) const;
+  [[noreturn]] void fail(double value, std::span<const double> x) const;
 
   double value_ = 0.0;
-  std::unique_ptr<Formula> formula_;  ///< null for a constant
+  std::shared_ptr<const Formula> formula_;  ///< null for a constant
   Where where_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -52,6 +53,18 @@ struct Entry
 
 /// Parses a TOML document; `file` stands for it in messages. Throws InputError with line and column.
 [[nodiscard]] Node parse_toml(std::string_view text, const std::string& file);
+
+/// The document as TOML that parse_toml() reads back to the same values: first the keys of a table, then its
+/// tables with a header each. Numbers have the fewest digits that read back as the same number.
+[[nodiscard]] std::string to_toml(const Node& document);
+
+/// A value as it stands behind "key = ".
+[[nodiscard]] std::string to_inline_toml(const Node& node);
+
+/// "key" and "value" of "key=value"; the first "=" outside quotes divides. Throws InputError with the hint.
+[[nodiscard]] std::pair<std::string, std::string> split_assignment(const std::string& assignment,
+                                                                   const Where& where,
+                                                                   const std::string& hint);
 
 /// Carries out one "dotted.key=TOML value" on the document: adds the key or replaces its value; a bare word
 /// that is no TOML value counts as a string. Throws InputError.

@@ -13,23 +13,6 @@ namespace tribound
 namespace
 {
 
-/// "key" and "value" of "key=value"; the first "=" outside quotes divides.
-std::pair<std::string, std::string> split(const std::string& assignment, const Where& where)
-{
-  char quote = 0;
-  for (std::size_t i = 0; i < assignment.size(); ++i)
-  {
-    const char c = assignment[i];
-    if (quote != 0)
-      quote = c == quote ? '\0' : quote;
-    else if (c == '"' || c == '\'')
-      quote = c;
-    else if (c == '=')
-      return {assignment.substr(0, i), assignment.substr(i + 1)};
-  }
-  throw InputError(where, "there is no \"=\"", "--set key=value, such as --set adapt.tolerance=0.02");
-}
-
 /// The entry a document of the form "a.b.c = value" sets, and the number of tables around it.
 std::pair<Entry*, int> leaf(Node& document, int max_depth)
 {
@@ -80,7 +63,8 @@ std::pair<Node, int> parse_assignment(const std::string& assignment, const Where
 {
   if (assignment.find_first_of("\r\n") != std::string::npos)
     throw InputError(where, "holds a line break", "one --set for each key");
-  const auto [key, value] = split(assignment, where);
+  const auto [key, value] =
+      split_assignment(assignment, where, "--set key=value, such as --set adapt.tolerance=0.02");
   Node with_zero;
   try
   {
@@ -130,6 +114,23 @@ void merge(Node::Table& table, Entry& entry, int depth)
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> split_assignment(const std::string& assignment, const Where& where,
+                                                     const std::string& hint)
+{
+  char quote = 0;
+  for (std::size_t i = 0; i < assignment.size(); ++i)
+  {
+    const char c = assignment[i];
+    if (quote != 0)
+      quote = c == quote ? '\0' : quote;
+    else if (c == '"' || c == '\'')
+      quote = c;
+    else if (c == '=')
+      return {assignment.substr(0, i), assignment.substr(i + 1)};
+  }
+  throw InputError(where, "there is no \"=\"", hint);
+}
 
 void apply_override(Node& document, const std::string& assignment)
 {

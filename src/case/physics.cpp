@@ -21,8 +21,9 @@ PlaneModel to_plane(const Node& node)
 MaterialConfig read_material(const TableReader& table, std::string region, PlaneModel plane)
 {
   MaterialConfig material{.region = std::move(region), .plane = plane, .where = table.where()};
-  material.E = to_number_in(table.require("E", "Young's modulus, in the units of stress: E = 210e9"),
-                            positive, "Young's modulus in the units of stress, such as 210e9");
+  const Node& E = table.require("E", "Young's modulus, in the units of stress: E = 210e9");
+  material.E = to_number_in(E, positive, "Young's modulus in the units of stress, such as 210e9");
+  (void)to_number_in(E, reasonable, "squares of stresses must be numbers, too: take other units");
   material.nu = to_number_in(table.require("nu", "Poisson's ratio in (-1, 0.5): nu = 0.3"),
                              {.lower = -1.0, .upper = 0.5},
                              "Poisson's ratio, such as 0.3; nearly incompressible is 0.499, not 0.5");
@@ -98,7 +99,7 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
       if (table.has(key))
         fail(key, "stands beside contact on the same boundary",
              "a part of the boundary is either in contact or has displacement, traction and pressure; "
-             "split the group in the mesh");
+             "split the group in the mesh; a pressure in the joint itself, such as uplift, is not modelled");
   if (boundary.displacement.empty()) return;
 
   const auto is_fixed = [](const std::optional<Expression>& component) { return component.has_value(); };

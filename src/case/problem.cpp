@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "case/formula.h"
 #include "case/node.h"
 
 namespace tribound
@@ -67,13 +68,15 @@ std::array<Expression, dim> vector_of(std::span<const Expression> components, co
 template <int dim>
 double nonnegative_at(const Expression& expression, const Point<dim>& x)
 {
+  constexpr double rounding = 1e-12;  // of a point on a facet, relative to its coordinates
   const double value = expression(x);
-  if (value < 0)
+  if (value >= 0) return value;
+  if (expression.around({x.data(), dim}, rounding * x.template lpNorm<Eigen::Infinity>()).upper < 0)
     throw InputError(expression.where(),
                      fmt::format("is negative, {:.9g}, at the point ({:.9g})", value,
                                  fmt::join(x.data(), x.data() + dim, ", ")),
                      "cut it off: \"max(0, ...)\"");
-  return value;
+  return 0;
 }
 
 template <int dim>

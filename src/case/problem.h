@@ -46,8 +46,9 @@ struct BoundaryCondition
   [[nodiscard]] Point<dim> load(const Point<dim>& x, const Point<dim>& n) const;
 };
 
-/// Gap g(x) >= 0 and, for Tresca, threshold s(x) >= 0, else the Coulomb coefficient.
-/// Throw InputError naming the point where the value is negative.
+/// Gap g(x) >= 0 and Tresca's threshold s(x) >= 0. Values that may be 0 within the rounding of x are: "y" on
+/// a floor y = 0 whose points have rounded coordinates. Throw InputError naming the point where the value is
+/// negative.
 template <int dim>
 [[nodiscard]] double gap_at(const Contact& contact, const Point<dim>& x);
 template <int dim>
@@ -67,7 +68,8 @@ class Problem
           std::span<const std::string> boundary_names);
 
   [[nodiscard]] const Material& material(int region) const { return materials_[region]; }
-  /// f(x) in the region; force per volume.
+  /// f in the region; force per volume.
+  [[nodiscard]] const std::array<Expression, dim>& body_force(int region) const { return body_[region]; }
   [[nodiscard]] Point<dim> body_force(int region, const Point<dim>& x) const;
   /// Whether f is the same everywhere in the region.
   [[nodiscard]] bool body_force_is_constant(int region) const;

@@ -78,6 +78,8 @@ std::string to_text(const Node& node)
 {
   const auto* text = std::get_if<std::string>(&node.value);
   if (text == nullptr) fail_type(node, "a string", "strings stand in quotes");
+  if (text->find('\0') != std::string::npos)
+    throw InputError(node.where, "holds the character \\u0000", "letters, digits and ordinary signs");
   return *text;
 }
 
@@ -102,7 +104,11 @@ Expression to_expression(const Node& node)
   if (const auto* text = std::get_if<std::string>(&node.value)) return Expression(*text, node.where);
   if (!std::holds_alternative<std::int64_t>(node.value) && !std::holds_alternative<double>(node.value))
     fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
-  return Expression(to_number(node), node.where);
+  const double number = to_number(node);
+  if (std::abs(number) > reasonable.upper)
+    throw InputError(node.where, fmt::format("is beyond all physics, {}", number),
+                     "its square must be a number, too: take other units");
+  return Expression(number, node.where);
 }
 
 Expression to_nonnegative_expression(const Node& node)

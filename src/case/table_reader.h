@@ -83,6 +83,9 @@ struct Interval
   bool includes_upper = false;
 };
 inline constexpr Interval positive{.lower = 0.0};
+/// Positive numbers whose squares and products are in the range of a double.
+inline constexpr Interval reasonable{
+    .lower = 1e-60, .upper = 1e60, .includes_lower = true, .includes_upper = true};
 inline constexpr Interval not_negative{.lower = 0.0, .includes_lower = true};
 
 /// A number in the interval; the hint is a sentence about what would be right.

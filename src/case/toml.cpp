@@ -78,10 +78,81 @@ std::string redefined_key(std::string_view description)
       "strings and formulas stand in quotes, arrays in [ ], tables in { } or below a [header]; see toml.io");
 }
 
+/// Dots in a key, and brackets open at a time. toml++ recurses on both, as convert() does; a case needs 4.
+constexpr int deepest = 20;
+
+/// Walks over a document without a parser: what matters is outside strings and comments.
+class DepthCheck
+{
+ public:
+  DepthCheck(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+  void run()
+  {
+    while (position_ < text_.size()) step();
+  }
+
+ private:
+  void step()
+  {
+    const char c = text_[position_];
+    if (c == '"' || c == '\'') return skip_string(c);
+    if (c == '#') return skip_to(text_.find('\n', position_));
+    if (c == '.') count(dots_);
+    if (c == '[' || c == '{') count(open_);
+    if ((c == ']' || c == '}') && open_ > 0) --open_;
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) dots_ = 0;
+    advance();
+  }
+
+  void count(int& depth)
+  {
+    if (++depth <= deepest) return;
+    throw InputError(Where{file_, {}, line_, static_cast<int>(position_ - line_begin_) + 1},
+                     fmt::format("tables or arrays are nested more than {} deep", deepest),
+                     "a case needs no more than 4, as in boundary.top.contact.gap");
+  }
+
+  void advance()
+  {
+    if (text_[position_++] != '\n') return;
+    ++line_;
+    line_begin_ = position_;
+  }
+
+  void skip_to(std::size_t end)
+  {
+    while (position_ < std::min(end, text_.size())) advance();
+  }
+
+  /// A string that does not end is left to the parser.
+  void skip_string(char quote)
+  {
+    const bool is_multiline = text_.substr(position_, 3) == std::string(3, quote);
+    const std::string end = is_multiline ? std::string(3, quote) : std::string(1, quote);
+    skip_to(position_ + end.size());
+    while (position_ < text_.size() && text_.substr(position_, end.size()) != end)
+    {
+      if (!is_multiline && text_[position_] == '\n') return;
+      skip_to(position_ + (quote == '"' && text_[position_] == '\\' ? 2 : 1));
+    }
+    skip_to(position_ + end.size());
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  std::size_t position_ = 0;
+  std::size_t line_begin_ = 0;
+  int line_ = 1;
+  int open_ = 0;  ///< brackets
+  int dots_ = 0;  ///< in the key so far
+};
+
 }  // namespace
 
 Node parse_toml(std::string_view text, const std::string& file)
 {
+  DepthCheck(text, file).run();
   try
   {
     return convert(toml::parse(text, file), file, {});

@@ -1,6 +1,6 @@
 #include "certify/cell_operator.h"
 
-#include "base/error.h"
+#include "certify/too_flat.h"
 #include "contact/elasticity.h"
 
 namespace tribound
@@ -36,7 +36,7 @@ void CellOperator<dim, p>::factor(const Frame<dim>& frame)
       for (int i = 0; i < m; ++i) std::copy_n(block.row(i), m, factor_.row(r * m + i) + s * m);
     }
   if (!cholesky<S::u>(factor_.data(), factor_.stride, reciprocal_.data()))
-    throw SolveError("a cell is too flat for an equilibrated stress");
+    throw no_equilibrated_stress<dim>(frame.origin, slenderness(frame));
 }
 
 /// C(a, b) = delta_ab (B_U N^T - ...) + grad_a lambda D_b E'^T / 2, times -|grad lambda|^{-1/2}.

@@ -16,8 +16,7 @@
 namespace tribound
 {
 
-/// Moments of psi_a f on U for every vertex of every cell, or nothing where f = 0. Formulas of the case are
-/// evaluated by one thread only.
+/// Moments of psi_a f on U for every vertex of every cell, or nothing where f = 0.
 template <int dim, int p>
 class BodyMoments
 {
@@ -27,24 +26,22 @@ class BodyMoments
   explicit BodyMoments(const NitscheForm<dim>& form)
   {
     const Mesh<dim>& mesh = form.space().mesh();
-    const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
+    const Quadrature<dim>& rule = form.data().cell_rule();
+    std::vector<Point<dim>> f(rule.size());
     std::vector<Table> tables;  // by permutation_number(frame.local), filled when first needed
     for (Index c = 0; c < mesh.n_cells(); ++c)
     {
-      if (form.problem().body_force_is_zero(mesh.region(c))) continue;
+      if (!form.data().has_body_force(c)) continue;
       if (moments_.empty()) moments_.resize(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1));
       const Frame<dim> frame = make_frame(mesh, c);
       const auto number = static_cast<std::size_t>(permutation_number(frame.local));
       if (number >= tables.size()) tables.resize(number + 1);
       if (tables[number].points.empty()) tables[number] = Table(rule, frame.local);
       const auto& [points, chi] = tables[number];
+      form.data().body_force(c, f);
       for (int q = 0; q < rule.size(); ++q)
-      {
-        const Point<dim> f =
-            form.problem().body_force(mesh.region(c), frame.origin + frame.jacobian * points[q]);
         add(&moments_[static_cast<std::size_t>(c) * (dim + 1)], points[q],
-            rule.weights[q] * std::sqrt(frame.det) * f, &chi[m * q]);
-      }
+            rule.weights[q] * std::sqrt(frame.det) * f[q], &chi[m * q]);
     }
   }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -64,22 +65,26 @@ std::string describe_law(const Problem<dim>& problem)
   return "unilateral contact without friction or with Tresca friction: the solution exists and is unique";
 }
 
-template <int dim>
-bool has_variable_body_force(const NitscheForm<dim>& form)
+/// What was done about data that are no polynomials.
+std::string describe_data(const DataEffort& effort, int degree)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-    if (!form.problem().body_force_is_constant(mesh.region(c))) return true;
-  return false;
+  std::string exact = fmt::format(
+      "loads, gaps and thresholds that are polynomials of degree {} are integrated exactly", degree);
+  if (effort.formulas == 0) return exact;
+  const std::string cut =
+      effort.subdivided == 0 ? std::string()
+                             : fmt::format(", {} of them cut into {} parts", effort.subdivided, effort.parts);
+  return exact + fmt::format(
+                     "; other formulas are enclosed by intervals on {} cells and boundary facets{}, and "
+                     "what their integrals may miss is in osc, neu, cnt, frc and quad",
+                     effort.formulas, cut);
 }
 
 /// How the integrals in the bound are evaluated.
 template <int dim>
 std::string describe_quadrature(const NitscheForm<dim>& form, ContactRule rule)
 {
-  std::string text =
-      fmt::format("integrals of loads and of contact tractions are exact for polynomials of degree {}",
-                  data_quadrature_degree(form.space().degree()));
+  std::string text = describe_data(form.data().effort(), form.space().degree() + 2);
   if (!form.problem().has_contact()) return text;
   return text +
          (rule == ContactRule::resolved
@@ -115,7 +120,32 @@ double dirichlet_interpolation_error(const NitscheForm<dim>& form)
 }
 
 template <int dim>
-Statements statements(const NitscheForm<dim>& form, ContactRule rule)
+double dirichlet_interpolation_bound(const NitscheForm<dim>& form)
+{
+  // Of equispaced nodes on triangles, p = 1, ..., 4, rounded up; those on segments have smaller ones.
+  constexpr std::array<double, 5> lebesgue = {1, 1, 1.67, 2.28, 3.48};
+  const Mesh<dim>& mesh = form.space().mesh();
+  const int p = form.space().degree();
+  double largest = 0;
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(facet.cell), facet.local));
+    for (int c = 0; c < dim; ++c)
+    {
+      if (!boundary.fixes(c) || boundary.displacement[c]->degree() <= p) continue;
+      std::array<Enclosure, 6> taylor;
+      boundary.displacement[c]->enclose(std::span(points[0].data(), dim * points.size()), dim,
+                                        std::span(taylor).first(p + 2));
+      largest = std::max(largest, (1 + lebesgue[p]) * distance_from_polynomials(taylor, p + 1));
+    }
+  }
+  return largest;
+}
+
+template <int dim>
+Statements statements(const NitscheForm<dim>& form, ContactRule rule,
+                      const std::optional<FriedrichsConstant>& friedrichs)
 {
   constexpr double pi = std::numbers::pi;
   Statements result;
@@ -130,31 +160,34 @@ Statements statements(const NitscheForm<dim>& form, ContactRule rule)
   result.constants = {{"poincare", 1 / pi},
                       {"trace_squared", 1 / (pi * pi) + 2 / (dim * pi)},
                       {"identity_limit", identity_limit}};
+  if (friedrichs) result.constants.emplace_back("friedrichs", friedrichs->value);
 
   double largest = 0;
   for (const double value : form.constraints().values) largest = std::max(largest, std::abs(value));
-  const double interpolation = dirichlet_interpolation_error(form);
+  const double interpolation = dirichlet_interpolation_bound(form);
   const bool exact = interpolation <= 1e-12 * largest;
   result.assumptions = {
       {"quadrature", describe_quadrature(form, rule)},
-      {"displacement",
-       exact ? std::string("the prescribed displacements are in the finite element space")
-             : fmt::format("the prescribed displacements are interpolated at the nodes; largest "
-                           "difference {:.3g}",
-                           interpolation)},
+      {"displacement", exact ? std::string("the prescribed displacements are in the finite element space")
+                             : fmt::format("the prescribed displacements are interpolated at the nodes; they "
+                                           "differ by {:.3g} where they were compared, by {:.3g} at most",
+                                           dirichlet_interpolation_error(form), interpolation)},
       {"geometry", "facets are straight"},
       {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
 
-  if (!exact) result.not_covered.emplace_back("the interpolation of the prescribed displacements");
-  if (has_variable_body_force(form))
-    result.not_covered.emplace_back("quadrature of a body force that is not a polynomial");
+  if (!exact)
+    result.not_covered.push_back(
+        fmt::format("the interpolation of the prescribed displacements, which changes them by {:.3g} at most",
+                    interpolation));
   result.not_covered.emplace_back("straight facets in place of a curved boundary");
   result.not_covered.emplace_back("the model: linear elasticity, small strains, the friction law, the data");
   return result;
 }
 
-template Statements statements(const NitscheForm<2>&, ContactRule);
-template Statements statements(const NitscheForm<3>&, ContactRule);
+template Statements statements(const NitscheForm<2>&, ContactRule, const std::optional<FriedrichsConstant>&);
+template Statements statements(const NitscheForm<3>&, ContactRule, const std::optional<FriedrichsConstant>&);
+template double dirichlet_interpolation_bound(const NitscheForm<2>&);
+template double dirichlet_interpolation_bound(const NitscheForm<3>&);
 template double dirichlet_interpolation_error(const NitscheForm<2>&);
 template double dirichlet_interpolation_error(const NitscheForm<3>&);
 

@@ -4,6 +4,7 @@
 /// What may be claimed of a computed solution: the verdict on its bound, and in words what is guaranteed,
 /// under which assumptions, and what lies outside.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,12 +51,19 @@ struct Statements
   std::vector<std::string> not_covered;                          ///< errors outside the bound
 };
 
+/// C_F is given where the bound contains it.
 template <int dim>
-[[nodiscard]] Statements statements(const NitscheForm<dim>& form, ContactRule rule);
+[[nodiscard]] Statements statements(const NitscheForm<dim>& form, ContactRule rule,
+                                    const std::optional<FriedrichsConstant>& friedrichs = {});
 
 /// The largest |u_D - I u_D| at the points of the facet rule, I the interpolation at the nodes, in a fixed
 /// component on Gamma_D; length.
 template <int dim>
 [[nodiscard]] double dirichlet_interpolation_error(const NitscheForm<dim>& form);
+
+/// An upper bound of it anywhere: on a facet (1 + Lambda) times an enclosed distance of u_D from P^p, Lambda
+/// the Lebesgue constant of the nodes.
+template <int dim>
+[[nodiscard]] double dirichlet_interpolation_bound(const NitscheForm<dim>& form);
 
 }  // namespace tribound

@@ -162,20 +162,20 @@ class CellStress
 /// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The rule has its points where L(v)
 /// has them, in the numbering of the cell: collapsed rules are not symmetric.
 template <int dim>
-double squared_divergence_defect(const Problem<dim>& problem, int region, const Tables<dim>& tables,
+double squared_divergence_defect(const DiscreteData<dim>& data, Index cell, const Tables<dim>& tables,
                                  const CellStress<dim>& sigma, const CellMap<dim>& map)
 {
   std::vector<Point<dim>> moments = sigma.divergence(tables);
-  if (!problem.body_force_is_zero(region))
+  if (data.has_body_force(cell))
   {
     std::vector<double> chi(tables.n_less);
+    std::vector<Point<dim>> f(tables.data_rule.size());
+    data.body_force(cell, f);
     for (int q = 0; q < tables.data_rule.size(); ++q)
     {
-      const Point<dim> x = map(tables.data_rule.points[q]);
-      const Point<dim> f = problem.body_force(region, x);
-      sigma.truncated_basis_at(x, chi);
+      sigma.truncated_basis_at(map(tables.data_rule.points[q]), chi);
       for (int i = 0; i < tables.n_less; ++i)
-        moments[i] += tables.data_rule.weights[q] * std::sqrt(map.det) * chi[i] * f;
+        moments[i] += tables.data_rule.weights[q] * std::sqrt(map.det) * chi[i] * f[q];
     }
   }
   double sum = 0;
@@ -218,9 +218,8 @@ double check_cells(const NitscheForm<dim>& form, const Stress<dim>& stress, cons
     const CellStress<dim> sigma(mesh, stress, c);
     norm_squared += sigma.squared_norm();
     squares.symmetry += sigma.squared_skew_part(tables.n_less);
-    squares.divergence +=
-        std::pow(cell_diameter(mesh, c), 2) *
-        squared_divergence_defect(form.problem(), mesh.region(c), tables, sigma, cell_map(mesh, c));
+    squares.divergence += std::pow(cell_diameter(mesh, c), 2) *
+                          squared_divergence_defect(form.data(), c, tables, sigma, cell_map(mesh, c));
   }
   return norm_squared;
 }
@@ -264,18 +263,19 @@ void check_boundary(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
   const Mesh<dim>& mesh = form.space().mesh();
   const Quadrature<dim - 1>& rule = form.facet_rule();
   std::size_t contact_point = 0;
-  for (const BoundaryFacet& facet : mesh.boundary())
+  std::vector<Point<dim>> traction(rule.size());
+  for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
+    const BoundaryFacet& facet = mesh.boundary()[number];
     const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
     const CellMap<dim> map = cell_map(mesh, facet.cell);
     std::vector<Point<dim>> x;
-    std::vector<Point<dim>> traction;
-    for (const Point<dim - 1>& s : rule.points)
-    {
-      x.push_back(map(facet_to_cell<dim>(facet.local, s)));
-      traction.push_back(boundary.contact ? t[contact_point++] : boundary.load(x.back(), geometry.normal));
-    }
+    for (const Point<dim - 1>& s : rule.points) x.push_back(map(facet_to_cell<dim>(facet.local, s)));
+    if (boundary.contact)
+      for (Point<dim>& at_point : traction) at_point = t[contact_point++];
+    else
+      form.data().traction(number, traction);
     const double defect =
         geometry.diameter * squared_trace_defect<dim>(CellStress<dim>(mesh, stress, facet.cell),
                                                       stress.degree, rule, x, traction, geometry, boundary);

@@ -34,18 +34,6 @@ std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
   return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
 }
 
-/// |piece| / |reference simplex|.
-double fraction(const std::array<Point<1>, 2>& s)
-{
-  return std::abs(s[1][0] - s[0][0]);
-}
-double fraction(const std::array<Point<2>, 3>& s)
-{
-  const Point<2> a = s[1] - s[0];
-  const Point<2> b = s[2] - s[0];
-  return std::abs(a[0] * b[1] - a[1] * b[0]);
-}
-
 /// The range of a function over the points it was seen at, and whether it may change sign near them.
 class Range
 {
@@ -55,11 +43,9 @@ class Range
     lower_ = std::min(lower_, value);
     upper_ = std::max(upper_, value);
   }
-  [[nodiscard]] bool may_change_sign() const
-  {
-    const double margin = (upper_ - lower_) / 2;
-    return lower_ - margin <= 0 && upper_ + margin >= 0;
-  }
+  [[nodiscard]] bool may_change_sign() const { return lowest() <= 0 && upper_ + (upper_ - lower_) / 2 >= 0; }
+  /// With a margin for what lies between the points.
+  [[nodiscard]] double lowest() const { return lower_ - (upper_ - lower_) / 2; }
 
  private:
   double lower_ = std::numeric_limits<double>::infinity();
@@ -123,7 +109,7 @@ std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> v
 template <int dim>
 std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const double> block) const
 {
-  const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
   const int n_points = form_.n_facet_points();
   std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
   stress_table_[facet.local].evaluate(make_frame(form_.space().mesh(), facet.cell), block, entries);
@@ -138,7 +124,7 @@ std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const d
 template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
 {
-  const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
   const Point<dim>& n = geometry.normal;
   const LagrangeSpace<dim>& space = form_.space();
   const Material& material = form_.problem().material(space.mesh().region(facet.cell));
@@ -157,7 +143,7 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<di
 template <int dim>
 auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece) const -> Integrals
 {
-  const auto& [facet, geometry, gamma, contact] = form_.contact_facets()[k];
+  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
   const Point<dim>& n = geometry.normal;
   const CellMap<dim> map = cell_map(form_.space().mesh(), facet.cell);
   const Quadrature<dim - 1>& rule = form_.facet_rule();
@@ -167,8 +153,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   Range tangential_range;
   for (int q = 0; q < rule.size(); ++q)
   {
-    FacetPoint s = piece[0];
-    for (int i = 1; i < dim; ++i) s += rule.points[q][i - 1] * (piece[i] - piece[0]);
+    const FacetPoint s = point_in<dim - 1>(piece, rule.points[q]);
     orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
     const Point<dim> x = map(facet_to_cell<dim>(facet.local, s));
     Point<dim> p = gamma * gap_at<dim>(*contact, x) * n;
@@ -185,11 +170,12 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
 
     const Point<dim> difference = contact_traction<dim>(contact->friction, threshold, p, n) - dis;
     const double normal = difference.dot(n);
-    const double weight = fraction(piece) * rule.weights[q];
+    const double weight = fraction<dim - 1>(piece) * rule.weights[q];
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
   const bool frictionless = std::holds_alternative<Frictionless>(contact->friction);
+  result.lowest = normal_range.lowest();
   result.may_kink = normal_range.may_change_sign() || (!frictionless && tangential_range.may_change_sign());
   return result;
 }
@@ -226,25 +212,42 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
                                              const Stress<dim>& stress) const
 {
   const Fields on_facet = fields(k, u, stress);
-  Piece all;  // the vertices of the reference facet
-  for (int i = 0; i < dim; ++i)
-  {
-    all[i].setZero();
-    if (i > 0) all[i][i - 1] = 1;
-  }
-  Integrals integrals = integrate(k, on_facet, all);
-  if (rule_ == ContactRule::resolved && integrals.may_kink)
-    integrals =
-        settle(k, on_facet, all, integrals, settled<dim> * (integrals.normal + integrals.tangential), 1);
-
-  ContactSquares result = linearisation(k, stress);
   const ContactFacet<dim>& contact = form_.contact_facets()[k];
-  const double scale = norm_scale(contact);
-  result.cnt = scale * integrals.normal;
-  result.frc = scale * integrals.tangential;
+  ContactSquares result = linearisation(k, stress);
+  const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
+  const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
+  for (const auto& part : parts.empty() ? std::span(&whole, 1) : parts)
+  {
+    Integrals integrals = integrate(k, on_facet, part.part);
+    const double lowest = integrals.lowest;
+    if (rule_ == ContactRule::resolved && integrals.may_kink)
+      integrals = settle(k, on_facet, part.part, integrals,
+                         settled<dim> * (integrals.normal + integrals.tangential), 1);
+    integrals.lowest = lowest;
+    add_part(contact, part, integrals, result);
+  }
   if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
     add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
   return result;
+}
+
+/// T is Lipschitz continuous in g and s: [.]_- and the projections on balls do not expand, and neither does
+/// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
+/// the rule and at most 2 |K|^{1/2} times what the remainders change.
+template <int dim>
+void ContactTerms<dim>::add_part(const ContactFacet<dim>& contact, const ContactDatumPart<dim>& part,
+                                 const Integrals& integrals, ContactSquares& squares) const
+{
+  const double scale = norm_scale(contact);
+  const double missed =
+      2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fraction<dim - 1>(part.part));
+  // Where the contact is open whatever the gap is between the points, the gap does not matter.
+  const bool open = integrals.lowest > 2 * contact.gamma * part.gap;
+  const double pressure = open ? 0 : contact.gamma * part.gap;
+  const auto* coulomb = std::get_if<Coulomb>(&contact.contact->friction);
+  const double limit = coulomb ? coulomb->coefficient * pressure : part.threshold;
+  squares.cnt += std::pow(std::sqrt(scale * integrals.normal) + missed * pressure, 2);
+  squares.frc += std::pow(std::sqrt(scale * integrals.tangential) + missed * limit, 2);
 }
 
 template <int dim>

@@ -41,7 +41,7 @@ class ContactTerms
 
  private:
   using FacetPoint = Point<dim - 1>;
-  using Piece = std::array<FacetPoint, dim>;  ///< vertices of a part of the reference facet
+  using Piece = Part<dim - 1>;  ///< of the reference facet
 
   /// Vector polynomials of degree p on a facet in the orthonormal basis of the reference facet.
   struct Fields
@@ -55,6 +55,7 @@ class ContactTerms
     double normal = 0;      ///< of ([P^n]_- - sigma_dis^n)^2
     double tangential = 0;  ///< of |[P^t]_S - sigma_dis^t|^2
     bool may_kink = false;
+    double lowest = 0;  ///< P^n is above, up to what the gap leaves out
   };
 
   /// Coefficients of sigma n on the facet from those of sigma on its cell.
@@ -62,6 +63,8 @@ class ContactTerms
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Stress<dim>& stress) const;
   [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> values) const;
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
+  void add_part(const ContactFacet<dim>& contact, const ContactDatumPart<dim>& part,
+                const Integrals& integrals, ContactSquares& squares) const;
   [[nodiscard]] Integrals settle(int k, const Fields& fields, const Piece& piece, const Integrals& whole,
                                  double tolerance, int depth) const;
 

@@ -2,71 +2,12 @@
 
 #include <cmath>
 #include <numbers>
-#include <span>
-
-#include "fem/polynomials.h"
-#include "fem/quadrature.h"
 
 namespace tribound
 {
 
 namespace
 {
-
-/// The projection of vector functions on P^degree of the reference k-simplex, by a rule.
-template <int k, int dim>
-class Projection
-{
- public:
-  Projection(int degree, const Quadrature<k>& rule)
-      : rule_(rule), n_(polynomial_dimension(k, degree)), basis_(static_cast<std::size_t>(n_) * rule.size())
-  {
-    for (int q = 0; q < rule.size(); ++q)
-      orthonormal_values<k>(degree, rule.points[q],
-                            std::span(basis_).subspan(static_cast<std::size_t>(q) * n_, n_));
-  }
-
-  /// The integral of |g - Pi g|^2 over the reference simplex, g given at the points of the rule.
-  [[nodiscard]] double squared_remainder(std::span<const Point<dim>> g) const
-  {
-    std::vector<Point<dim>> projection(n_, Point<dim>::Zero());
-    for (int q = 0; q < rule_.size(); ++q)
-      for (int j = 0; j < n_; ++j) projection[j] += rule_.weights[q] * basis_[q * n_ + j] * g[q];
-    double sum = 0;
-    for (int q = 0; q < rule_.size(); ++q)
-    {
-      Point<dim> difference = g[q];
-      for (int j = 0; j < n_; ++j) difference -= basis_[q * n_ + j] * projection[j];
-      sum += rule_.weights[q] * difference.squaredNorm();
-    }
-    return sum;
-  }
-
- private:
-  const Quadrature<k>& rule_;
-  int n_;
-  std::vector<double> basis_;  ///< [q * n + j]
-};
-
-template <int dim>
-std::vector<double> oscillation(const NitscheForm<dim>& form)
-{
-  const Mesh<dim>& mesh = form.space().mesh();
-  const int p = form.space().degree();
-  const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
-  const Projection<dim, dim> projection(p - 1, rule);
-  std::vector<double> osc(mesh.n_cells(), 0.0);
-  std::vector<Point<dim>> f(rule.size());
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-  {
-    if (form.problem().body_force_is_constant(mesh.region(c))) continue;
-    const CellMap<dim> map = cell_map(mesh, c);
-    for (int q = 0; q < rule.size(); ++q)
-      f[q] = form.problem().body_force(mesh.region(c), map(rule.points[q]));
-    osc[c] = cell_diameter(mesh, c) / std::numbers::pi * std::sqrt(map.det * projection.squared_remainder(f));
-  }
-  return osc;
-}
 
 /// C_{T,F} = h_T (|F|/|T| (1/pi^2 + 2/(d pi)))^{1/2}.
 template <int dim>
@@ -76,36 +17,41 @@ double trace_constant(double h, double facet_measure, double volume)
   return h * std::sqrt(facet_measure / volume * (1 / (pi * pi) + 2 / (dim * pi)));
 }
 
-template <int dim>
-std::vector<double> neumann_terms(const NitscheForm<dim>& form)
-{
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Quadrature<dim - 1>& rule = form.facet_rule();
-  const Projection<dim - 1, dim> projection(form.space().degree(), rule);
-  std::vector<double> neu(mesh.n_cells(), 0.0);
-  std::vector<Point<dim>> g(rule.size());
-  for (const BoundaryFacet& facet : mesh.boundary())
-  {
-    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
-    if (!boundary.is_loaded()) continue;
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    for (int q = 0; q < rule.size(); ++q)
-      g[q] = boundary.load(map(facet_to_cell<dim>(facet.local, rule.points[q])), geometry.normal);
-    const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
-    neu[facet.cell] +=
-        trace_constant<dim>(cell_diameter(mesh, facet.cell), geometry.measure, map.det / (dim == 2 ? 2 : 6)) *
-        std::sqrt(scale * projection.squared_remainder(g));
-  }
-  return neu;
-}
-
 }  // namespace
 
+/// A mean value m of the error of g_N on F goes into the cell: with div((x - P) v) = d v + (x - P) . grad v,
+/// P the vertex opposite to F, (m, v)_F = |F|/|T| (m, v + (x - P) . grad v / d)_T, the first term like that
+/// of a body force and the second at most |m| |F|/|T| h_T |T|^{1/2} / d ||grad v||_T.
 template <int dim>
 DataTerms data_terms(const NitscheForm<dim>& form)
 {
-  return {oscillation(form), neumann_terms(form)};
+  const Mesh<dim>& mesh = form.space().mesh();
+  const DiscreteData<dim>& data = form.data();
+  std::vector<double> missed(mesh.n_cells(), 0.0);  // of the integrals of loads on the cell and its facets
+  DataTerms terms{std::vector<double>(mesh.n_cells(), 0.0), std::vector<double>(mesh.n_cells(), 0.0), 0};
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const auto [oscillation, mean] = data.body_remainder(c);
+    missed[c] = mean;
+    if (oscillation > 0) terms.osc[c] = cell_diameter(mesh, c) / std::numbers::pi * oscillation;
+  }
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    const auto [oscillation, mean] = data.traction_remainder(k);
+    if (oscillation == 0 && mean == 0) continue;
+    const BoundaryFacet& facet = mesh.boundary()[k];
+    const double h = cell_diameter(mesh, facet.cell);
+    const double volume = cell_map(mesh, facet.cell).det / (dim == 2 ? 2 : 6);
+    const double measure = facet_geometry(mesh, facet.cell, facet.local).measure;
+    missed[facet.cell] += mean;
+    terms.neu[facet.cell] +=
+        trace_constant<dim>(h, measure, volume) * oscillation + h / dim * mean / std::sqrt(volume);
+  }
+  double squares = 0;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    if (missed[c] > 0) squares += missed[c] * missed[c] / (cell_map(mesh, c).det / (dim == 2 ? 2 : 6));
+  terms.missed = std::sqrt(squares);
+  return terms;
 }
 
 template DataTerms data_terms(const NitscheForm<2>&);

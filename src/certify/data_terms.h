@@ -10,14 +10,16 @@
 namespace tribound
 {
 
-/// Per cell; stress units times length^(dim/2).
+/// Per cell osc and neu; stress units times length^(dim/2).
 struct DataTerms
 {
   std::vector<double> osc;  ///< (h_T / pi) ||f - Pi^{p-1} f||_T
   std::vector<double> neu;  ///< sum over the Neumann facets of T of C_{T,F} ||g_N - Pi^p_F g_N||_F
+  /// ||rho||, rho the cell means of what quadrature may miss of the loads: C_F ||rho|| bounds its effect.
+  double missed = 0;
 };
 
-/// With the reference rule, exact to data_quadrature_degree(p).
+/// Upper bounds where the data are no polynomials: contact/discrete_data.h.
 template <int dim>
 [[nodiscard]] DataTerms data_terms(const NitscheForm<dim>& form);
 

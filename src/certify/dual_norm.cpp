@@ -105,8 +105,7 @@ template <int dim>
 DualNorm<dim>::DualNorm(const NitscheForm<dim>& form, const RicherSpace& richer)
     : form_(form),
       refined_(refine_uniformly(form.space().mesh(), richer.refinements)),
-      space_(refined_.mesh, richer.degree),
-      load_(assemble_load(form.problem(), space_))
+      space_(refined_.mesh, richer.degree)
 {
   assert(richer.degree >= form.space().degree());
   find_contact_parts();
@@ -226,9 +225,19 @@ void DualNorm<dim>::add_contact_load(std::span<const double> u, std::span<double
 }
 
 template <int dim>
-std::vector<double> DualNorm<dim>::residual(std::span<const double> u) const
+std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
 {
-  std::vector<double> r = load_;
+  constexpr double share = 1e-5;  // of the effect of the data: well below any bound
+  if (load_.empty())
+    load_ = assemble_load(
+        DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(), {.share = share}), space_);
+  return residual(u, load_);
+}
+
+template <int dim>
+std::vector<double> DualNorm<dim>::residual(std::span<const double> u, std::span<const double> load) const
+{
+  std::vector<double> r(load.begin(), load.end());
   const std::vector<double> internal = apply_stiffness<dim>(
       form_.problem(), space_, nested_interpolant<dim>(form_.space(), u, refined_, space_));
   for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal[i];
@@ -238,10 +247,9 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u) const
 
 /// With z from an inexact solver <R, z> / ||z|| is still below the dual norm, ||z|| might not be.
 template <int dim>
-double DualNorm<dim>::operator()(std::span<const double> u)
+double DualNorm<dim>::of(std::span<const double> r)
 {
   constexpr double tolerance = 1e-12;
-  const std::vector<double> r = residual(u);
   double pairing = 0;       // <R, z>
   double norm_squared = 0;  // ||z||_{C,h}^2
   std::vector<double> rhs(space_.n_nodes());

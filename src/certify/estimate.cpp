@@ -33,8 +33,8 @@ double BoundComponents::total_sharp() const
 namespace
 {
 
-/// Component by component the root of the sum of squares, and both totals.
-void add_up(Estimate& estimate)
+/// Component by component the root of the sum of squares, and both totals with what no cell has.
+void add_up(Estimate& estimate, double quad)
 {
   double total = 0;
   double total_sharp = 0;
@@ -46,20 +46,25 @@ void add_up(Estimate& estimate)
     total_sharp += std::pow(cell.total_sharp(), 2);
   }
   for (const auto& [name, member] : all_component_names) global.*member = std::sqrt(global.*member);
-  estimate.total = std::sqrt(total);
-  estimate.total_sharp = std::sqrt(total_sharp);
+  global.quad = quad;
+  estimate.total = std::sqrt(total) + quad;
+  estimate.total_sharp = std::sqrt(total_sharp) + quad;
 }
 
 }  // namespace
 
 template <int dim>
-Estimator<dim>::Estimator(const NitscheForm<dim>& form, ContactRule rule)
+Estimator<dim>::Estimator(const NitscheForm<dim>& form, ContactRule rule,
+                          const std::optional<FriedrichsConstant>& known)
     : form_(form),
       data_(data_terms(form)),
+      friedrichs_(known),
       contact_(form, rule),
       rule_(quadrature<dim>(2 * form.space().degree())),
       stress_table_(form.space().degree(), rule_.points)
 {
+  if (data_.missed > 0 && !friedrichs_)
+    friedrichs_ = friedrichs_constant(form.problem(), form.space().mesh());
   const Tabulation<dim> table = form.space().basis().tabulate(rule_.points);
   const int n_points = rule_.size();
   gradient_.resize(static_cast<std::size_t>(dim) * table.n_nodes * n_points);
@@ -81,7 +86,7 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
   }
   stress_terms(u, stress, n_threads > 0 ? n_threads : omp_get_max_threads(), result);
   contact_terms(u, stress, result);
-  add_up(result);
+  add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0);
   return result;
 }
 

@@ -4,12 +4,14 @@
 /// The components of the bound, method section 5.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "certify/contact_terms.h"
 #include "certify/data_terms.h"
+#include "certify/friedrichs.h"
 
 namespace tribound
 {
@@ -25,6 +27,8 @@ struct BoundComponents
   double frc = 0;    ///< (sum h_F ||[P^t]_S - sigma_dis^t||_F^2)^{1/2}
   double lin2n = 0;  ///< (sum h_F ||sigma_lin^n||_F^2)^{1/2}
   double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
+  double quad =
+      0;  ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
   double reg1 = 0;   ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
   double reg2n = 0;  ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
   double reg2t = 0;  ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
@@ -37,15 +41,15 @@ struct BoundComponents
   [[nodiscard]] double total() const;
   /// The same with b = contact(): normal and tangential part are orthogonal.
   [[nodiscard]] double total_sharp() const;
-  /// osc + str + neu + cnt + frc: neither Newton's method nor the regularisation.
-  [[nodiscard]] double discretisation() const { return osc + str + neu + cnt + frc; }
+  /// osc + str + neu + cnt + frc + quad: neither Newton's method nor the regularisation.
+  [[nodiscard]] double discretisation() const { return osc + str + neu + cnt + frc + quad; }
   [[nodiscard]] double linearisation() const { return lin1 + lin2n + lin2t; }
   [[nodiscard]] double regularisation() const { return reg1 + reg2n + reg2t; }
 };
 
 using NamedComponent = std::pair<const char*, double BoundComponents::*>;
 
-inline constexpr std::array<NamedComponent, 11> all_component_names{{{"osc", &BoundComponents::osc},
+inline constexpr std::array<NamedComponent, 12> all_component_names{{{"osc", &BoundComponents::osc},
                                                                      {"str", &BoundComponents::str},
                                                                      {"neu", &BoundComponents::neu},
                                                                      {"lin1", &BoundComponents::lin1},
@@ -53,12 +57,13 @@ inline constexpr std::array<NamedComponent, 11> all_component_names{{{"osc", &Bo
                                                                      {"frc", &BoundComponents::frc},
                                                                      {"lin2n", &BoundComponents::lin2n},
                                                                      {"lin2t", &BoundComponents::lin2t},
+                                                                     {"quad", &BoundComponents::quad},
                                                                      {"reg1", &BoundComponents::reg1},
                                                                      {"reg2n", &BoundComponents::reg2n},
                                                                      {"reg2t", &BoundComponents::reg2t}}};
 
 /// The components of every run, in the order of all tables.
-inline constexpr std::span component_names = std::span(all_component_names).first<8>();
+inline constexpr std::span component_names = std::span(all_component_names).first<9>();
 
 /// Those that a regularised run has beside them.
 inline constexpr std::span regularisation_names = std::span(all_component_names).last<3>();
@@ -70,6 +75,12 @@ inline constexpr std::span regularisation_names = std::span(all_component_names)
       .first(regularised ? all_component_names.size() : component_names.size());
 }
 
+/// Those of cells: quad is of the whole body.
+inline constexpr bool is_of_cells(double BoundComponents::*member)
+{
+  return member != &BoundComponents::quad;
+}
+
 /// Those that stopping Newton's method causes.
 inline constexpr std::array linearisation_components{&BoundComponents::lin1, &BoundComponents::lin2n,
                                                      &BoundComponents::lin2t};
@@ -78,8 +89,8 @@ inline constexpr std::array linearisation_components{&BoundComponents::lin1, &Bo
 struct Bound
 {
   BoundComponents global;  ///< (sum of squares over the cells)^{1/2}, component by component
-  double total = 0;        ///< (sum_T total_T^2)^{1/2}, as in the paper
-  double total_sharp = 0;  ///< the bound: ||R(u^k)||_* <= total_sharp
+  double total = 0;        ///< (sum_T total_T^2)^{1/2} + quad, as in the paper
+  double total_sharp = 0;  ///< the bound with total_sharp_T: ||R(u^k)||_* <= total_sharp
 };
 
 struct Estimate : Bound
@@ -92,8 +103,13 @@ template <int dim>
 class Estimator
 {
  public:
-  /// Evaluates what depends on the data alone.
-  explicit Estimator(const NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved);
+  /// Evaluates what depends on the data alone. C_F may be `known` from a mesh of which the form's is a
+  /// refinement; it is computed if it is needed and is not.
+  explicit Estimator(const NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved,
+                     const std::optional<FriedrichsConstant>& known = {});
+
+  /// C_F, where it is known.
+  [[nodiscard]] const std::optional<FriedrichsConstant>& friedrichs() const { return friedrichs_; }
 
   /// The components of the iterate u with its equilibrated stress. Cells are shared out to `n_threads`
   /// threads (0: as many as OpenMP offers).
@@ -110,6 +126,7 @@ class Estimator
 
   const NitscheForm<dim>& form_;
   DataTerms data_;
+  std::optional<FriedrichsConstant> friedrichs_;
   ContactTerms<dim> contact_;
   Quadrature<dim> rule_;          ///< exact to degree 2p
   FrameTable<dim> stress_table_;  ///< basis of the stress at its points

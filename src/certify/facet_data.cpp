@@ -91,8 +91,10 @@ FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const doubl
   const std::vector<Point<dim>> t_u = form.traction(u);
   const std::vector<Point<dim>> t_delta = delta > 0 ? form.traction(u, delta) : t_u;
   std::size_t contact_point = 0;  // contact facets come in the order of Mesh::boundary()
-  for (const BoundaryFacet& facet : mesh.boundary())
+  std::vector<Point<dim>> load(rule.size());
+  for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
+    const BoundaryFacet& facet = mesh.boundary()[number];
     const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     Condition& condition = conditions_.emplace_back();
     number_[mesh.topology().cell_facets[facet.cell][facet.local]] = static_cast<int>(conditions_.size()) - 1;
@@ -122,12 +124,9 @@ FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const doubl
       }
       continue;
     }
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    form.data().traction(number, load);
     for (int q = 0; q < rule.size(); ++q)
-    {
-      const Point<dim> x = map(facet_to_cell<dim>(facet.local, rule.points[q]));
-      add_point<dim, p>(moments, table, q, scale * rule.weights[q], boundary.load(x, frame.normal(opposite)));
-    }
+      add_point<dim, p>(moments, table, q, scale * rule.weights[q], load[q]);
   }
 }
 

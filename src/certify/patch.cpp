@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "base/error.h"
+#include "certify/too_flat.h"
 
 namespace tribound
 {
@@ -51,13 +50,20 @@ void Patch<dim, p>::solve()
   make_compatible();
   assemble();
   fix_rigid_motions(static_cast<int>(facets_.size()) - 1);
-  if (!matrix_.factor())
-    throw SolveError("the patch of vertex " + std::to_string(vertex_) + " has no equilibrated stress");
+  if (!matrix_.factor()) throw failure();
   for (int problem = 0; problem < n_problems_; ++problem)
   {
     matrix_.solve(std::span(x_[problem]).first(facets_.size()));
     for (int k = 0; k < n_cells_; ++k) recover(cells_[k], problem);
   }
+}
+
+template <int dim, int p>
+SolveError Patch<dim, p>::failure() const
+{
+  double flattest = 0;
+  for (int k = 0; k < n_cells_; ++k) flattest = std::max(flattest, slenderness(cells_[k].prepared->frame));
+  return no_equilibrated_stress<dim>(mesh_.vertex(vertex_), flattest);
 }
 
 /// Renames the facets by the order of elimination.
@@ -138,7 +144,7 @@ void Patch<dim, p>::condense(CellPart& part)
   const PreparedCell<dim, p>& cell = *part.prepared;
   const int o = part.vertex;
   part.outer = cell.shape ? &cell.shape->outer[o] : &part.own_outer;
-  if (!cell.shape) part.own_outer.factor(*cell.op, o);
+  if (!cell.shape) part.own_outer.factor(*cell.op, cell.frame, o);
   for (int f = 0; f <= dim; ++f)
     for (int g = 0; g <= dim; ++g)
     {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/error.h"
 #include "certify/block_cholesky.h"
 #include "certify/facet_data.h"
 #include "certify/prepared_cell.h"
@@ -28,7 +29,7 @@ class Patch
   void begin(Index vertex);
   /// `shares` takes the results: dis, and on Gamma_C those of the other problems.
   void add_cell(Index cell, const PreparedCell<dim, p>& prepared, std::span<CellShare<dim, p>> shares);
-  /// Solves the problems. Throws SolveError naming the vertex if the patch is not what section 4 requires.
+  /// Solves the problems. Throws SolveError naming the place if the patch is not what section 4 requires.
   void solve();
 
  private:
@@ -67,6 +68,8 @@ class Patch
     Tensor<dim> position_position;  ///< (x_d, x_e)
   };
 
+  /// What to throw where the patch has no solution.
+  [[nodiscard]] SolveError failure() const;
   void order_facets();
   /// In patch_compatibility.cpp, as what it calls: Z_a, y_a and w_a.
   void make_compatible();

@@ -1,9 +1,6 @@
 /// @file patch_compatibility.cpp
 /// What makes the data of a patch compatible: its rigid motions Z_a, y_a and w_a.
 
-#include <string>
-
-#include "base/error.h"
 #include "certify/patch.h"
 
 namespace tribound
@@ -119,8 +116,7 @@ void Patch<dim, p>::find_divergence_part(const Moments& moments)
       y[problem][i] += (problem == 0 ? -1 : 1) * traction_work(problem, i);
   }
   RigidVector reciprocal;
-  if (!cholesky<S::rigid>(gram.data(), gram.stride, reciprocal.data()))
-    throw SolveError("the cells around vertex " + std::to_string(vertex_) + " are too flat");
+  if (!cholesky<S::rigid>(gram.data(), gram.stride, reciprocal.data())) throw failure();
   for (int problem = 0; problem < n_problems_; ++problem)
   {
     solve_transposed<S::rigid>(gram.data(), gram.stride, reciprocal.data(), y[problem].data());

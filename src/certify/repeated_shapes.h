@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include "base/error.h"
 #include "certify/cell_operator.h"
+#include "certify/too_flat.h"
 
 namespace tribound
 {
@@ -30,12 +30,12 @@ struct OuterElimination
   std::array<double, S::block> reciprocal;  ///< of the diagonal of U(o, o)
 
   /// Throws SolveError for a cell that is too flat.
-  void factor(const Operator& op, int o)
+  void factor(const Operator& op, const Frame<dim>& frame, int o)
   {
     std::copy_n(op.schur(o), S::block * row, rows.data());
     double* const pivot = rows.data() + o * stride;
     if (!cholesky<S::block>(pivot, row, reciprocal.data()))
-      throw SolveError("a cell is too flat for an equilibrated stress");
+      throw no_equilibrated_stress<dim>(frame.origin, slenderness(frame));
     for (int f = 0; f <= dim; ++f)
       if (f != o)
         solve_transposed<S::block, stride>(pivot, row, reciprocal.data(), rows.data() + f * stride, row);
@@ -64,7 +64,7 @@ struct RepeatedShape
     op.condense(frame);
     for (int o = 0; o <= dim; ++o)
     {
-      outer[o].factor(op, o);
+      outer[o].factor(op, frame, o);
       for (int f = 0; f <= dim; ++f)
         for (int g = 0; g <= dim; ++g)
           if (f != o && g != o) outer[o].add_block(op, f, g, reduced[o][f][g]);

@@ -38,8 +38,9 @@ template <int dim>
 ///     <R(u), v> = L(v) - a(u, v) + (T(u), v)_C,
 /// ||z||_{C,h} <= ||R(u)||_*, with equality as W grows. h_F, and gamma in T(u), are those of the facets of
 /// the original mesh. The operator couples no components: one scalar matrix for each set of fixed nodes,
-/// factored once. a(u, v) is exact; f and g_N are integrated to degree 2q + 5 on the refined mesh, T(u)
-/// likewise on facets cut further, because it has kinks. Keeps a reference to the form.
+/// factored once. a(u, v) is exact; f and g_N are integrated as in a form of degree q on the refined mesh
+/// (DiscreteData), T(u) with the rule on facets cut further, because it has kinks. Keeps a reference to the
+/// form.
 template <int dim>
 class DualNorm
 {
@@ -50,12 +51,16 @@ class DualNorm
 
   /// ||z||_{C,h} for any function u of the form's space. The first call factorises. Throws SolveError when
   /// that fails.
-  [[nodiscard]] double operator()(std::span<const double> u);
+  [[nodiscard]] double operator()(std::span<const double> u) { return of(residual(u)); }
+  /// The dual norm in W of a functional with the given values at the basis functions of W.
+  [[nodiscard]] double of(std::span<const double> functional);
 
   /// W, fixed degrees of freedom included.
   [[nodiscard]] const LagrangeSpace<dim>& space() const { return space_; }
   /// <R(u), phi_i> for every degree of freedom of W.
-  [[nodiscard]] std::vector<double> residual(std::span<const double> u) const;
+  [[nodiscard]] std::vector<double> residual(std::span<const double> u);
+  /// The same with the given values for L(phi_i).
+  [[nodiscard]] std::vector<double> residual(std::span<const double> u, std::span<const double> load) const;
 
  private:
   /// The scalar problem of the components that are fixed at the same nodes.
@@ -81,7 +86,7 @@ class DualNorm
   const NitscheForm<dim>& form_;
   Refined<dim> refined_;
   LagrangeSpace<dim> space_;
-  std::vector<double> load_;  ///< L(phi_i)
+  std::vector<double> load_;  ///< L(phi_i), when it has been needed
   std::vector<ContactPart> contact_parts_;
   std::vector<Operator> operators_;
 };

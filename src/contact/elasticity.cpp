@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "contact/discrete_data.h"
 #include "fem/quadrature.h"
 #include "mesh/geometry.h"
 
@@ -237,42 +238,39 @@ void add_point_load(std::span<const Index> nodes, std::span<const double> values
 }  // namespace
 
 template <int dim>
-std::vector<double> assemble_load(const Problem<dim>& problem, const LagrangeSpace<dim>& space)
+std::vector<double> assemble_load(const DiscreteData<dim>& data, const LagrangeSpace<dim>& space)
 {
   const Mesh<dim>& mesh = space.mesh();
-  const int degree = data_quadrature_degree(space.degree());
   std::vector<double> load(space.n_dofs(), 0.0);
 
   // (f, phi_i)
-  const Quadrature<dim> cell_rule = quadrature<dim>(degree);
+  const Quadrature<dim>& cell_rule = data.cell_rule();
   const Tabulation<dim> cell_table = space.basis().tabulate(cell_rule.points);
+  std::vector<Point<dim>> f(cell_rule.size());
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    if (problem.body_force_is_zero(mesh.region(c))) continue;
+    if (!data.has_body_force(c)) continue;
     const CellMap<dim> map = cell_map(mesh, c);
+    data.body_force(c, f);
     for (int q = 0; q < cell_rule.size(); ++q)
-      add_point_load<dim>(
-          space.cell_nodes(c), cell_table.values_at(q),
-          cell_rule.weights[q] * map.det * problem.body_force(mesh.region(c), map(cell_rule.points[q])),
-          load);
+      add_point_load<dim>(space.cell_nodes(c), cell_table.values_at(q), cell_rule.weights[q] * map.det * f[q],
+                          load);
   }
 
   // (g_N, phi_i)_N
-  const Quadrature<dim - 1> facet_rule = quadrature<dim - 1>(degree);
+  const Quadrature<dim - 1>& facet_rule = data.facet_rule();
   const FacetTabulation<dim> facet_table = tabulate_on_facets<dim>(space.basis(), facet_rule.points);
-  for (const BoundaryFacet& facet : mesh.boundary())
+  std::vector<Point<dim>> g(facet_rule.size());
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
-    const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
-    if (!boundary.is_loaded()) continue;
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
+    if (!data.has_traction(k)) continue;
+    const BoundaryFacet& facet = mesh.boundary()[k];
+    const double scale =
+        facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
+    data.traction(k, g);
     for (int q = 0; q < facet_rule.size(); ++q)
-    {
-      const Point<dim> x = map(facet_to_cell<dim>(facet.local, facet_rule.points[q]));
       add_point_load<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
-                          scale * facet_rule.weights[q] * boundary.load(x, geometry.normal), load);
-    }
+                          scale * facet_rule.weights[q] * g[q], load);
   }
   return load;
 }
@@ -285,7 +283,7 @@ template std::vector<double> apply_stiffness(const Problem<3>&, const LagrangeSp
                                              std::span<const double>);
 template StressNorms stress_norms(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
 template StressNorms stress_norms(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
-template std::vector<double> assemble_load(const Problem<2>&, const LagrangeSpace<2>&);
-template std::vector<double> assemble_load(const Problem<3>&, const LagrangeSpace<3>&);
+template std::vector<double> assemble_load(const DiscreteData<2>&, const LagrangeSpace<2>&);
+template std::vector<double> assemble_load(const DiscreteData<3>&, const LagrangeSpace<3>&);
 
 }  // namespace tribound

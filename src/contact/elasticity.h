@@ -13,6 +13,9 @@
 namespace tribound
 {
 
+template <int dim>
+class DiscreteData;
+
 /// sigma = lambda tr(eps) I + 2 mu eps with eps = sym(grad u).
 template <int dim>
 [[nodiscard]] Tensor<dim> sigma(const Material& material, const Tensor<dim>& gradient)
@@ -86,8 +89,10 @@ template <int dim>
 [[nodiscard]] StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
                                        std::span<const double> u);
 
-/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included.
+/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included. The data are
+/// those for the degree of the space.
 template <int dim>
-[[nodiscard]] std::vector<double> assemble_load(const Problem<dim>& problem, const LagrangeSpace<dim>& space);
+[[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,
+                                                const LagrangeSpace<dim>& space);
 
 }  // namespace tribound

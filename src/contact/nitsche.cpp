@@ -11,6 +11,16 @@ namespace tribound
 namespace
 {
 
+/// The modulus in gamma: lambda + 2 mu, but not more than at nu = 0.45. Nearly incompressible materials would
+/// otherwise have a penalty of the size of lambda against everything that deforms, and Newton's method fails
+/// (docs/choosing.md).
+double penalty_modulus(const Material& material)
+{
+  constexpr double nu = 0.45;
+  constexpr double largest = 2 + 2 * nu / (1 - 2 * nu);  // (lambda + 2 mu) / mu
+  return std::min(material.lambda + 2 * material.mu, largest * material.mu);
+}
+
 /// Column (j, b) is sigma(phi_j e_b) n - gamma phi_j e_b.
 template <int dim>
 Tensor<dim> augmented_block(const Material& material, double gamma, const Point<dim>& n, double value,
@@ -24,32 +34,32 @@ Tensor<dim> augmented_block(const Material& material, double gamma, const Point<
 }  // namespace
 
 template <int dim>
-NitscheForm<dim>::NitscheForm(const Problem<dim>& problem, const LagrangeSpace<dim>& space, double gamma0)
+NitscheForm<dim>::NitscheForm(const Problem<dim>& problem, const LagrangeSpace<dim>& space, double gamma0,
+                              const DataAccuracy& accuracy)
     : problem_(&problem),
       space_(&space),
       gamma0_(gamma0),
       constraints_(dirichlet(problem, space)),
-      load_(assemble_load(problem, space)),
-      facet_rule_(quadrature<dim - 1>(data_quadrature_degree(space.degree()))),
+      data_(problem, space.mesh(), space.degree(), accuracy),
+      load_(assemble_load(data_, space)),
+      facet_rule_(data_.facet_rule()),
       facet_table_(tabulate_on_facets<dim>(space.basis(), facet_rule_.points))
 {
   const Mesh<dim>& mesh = space.mesh();
-  for (const BoundaryFacet& facet : mesh.boundary())
+  std::vector<double> gap(facet_rule_.size());
+  std::vector<double> threshold(facet_rule_.size());
+  for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
+    const BoundaryFacet& facet = mesh.boundary()[number];
     const auto& contact = problem.boundary(facet.tag).contact;
     if (!contact) continue;
     const Material& material = problem.material(mesh.region(facet.cell));
     const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    const double gamma = gamma0 * (material.lambda + 2 * material.mu) / geometry.diameter;
-    contact_facets_.push_back({facet, geometry, gamma, &*contact});
-
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
-    for (const Point<dim - 1>& s : facet_rule_.points)
-    {
-      const Point<dim> x = map(facet_to_cell<dim>(facet.local, s));
-      gap_.push_back(gap_at<dim>(*contact, x));
-      threshold_.push_back(threshold_if_any<dim>(contact->friction, x));
-    }
+    const double gamma = gamma0 * penalty_modulus(material) / geometry.diameter;
+    contact_facets_.push_back({facet, geometry, gamma, &*contact, number});
+    data_.contact(number, gap, threshold);
+    gap_.insert(gap_.end(), gap.begin(), gap.end());
+    threshold_.insert(threshold_.end(), threshold.begin(), threshold.end());
   }
 }
 
@@ -63,7 +73,7 @@ template <int dim>
 Point<dim> NitscheForm<dim>::augmented_traction(std::span<const double> u, std::size_t k, int q,
                                                 const Tensor<dim>& inverse_transpose) const
 {
-  const auto& [facet, geometry, gamma, contact] = contact_facets_[k];
+  const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
   const Tabulation<dim>& table = facet_table_.on_facet[facet.local];
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
   const Material& material = problem_->material(space_->mesh().region(facet.cell));
@@ -147,7 +157,7 @@ void NitscheForm<dim>::add_contact_load(std::span<const Point<dim>> t, std::span
   assert(t.size() == n_contact_points());
   for (std::size_t k = 0; k < contact_facets_.size(); ++k)
   {
-    const auto& [facet, geometry, gamma, contact] = contact_facets_[k];
+    const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
     const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
     const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
     for (int q = 0; q < n_facet_points(); ++q)
@@ -187,7 +197,7 @@ Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const d
   std::vector<Tensor<dim>> block(static_cast<std::size_t>(n) * n);
   for (std::size_t k = 0; k < contact_facets_.size(); ++k)
   {
-    const auto& [facet, geometry, gamma, contact] = contact_facets_[k];
+    const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
     const Tensor<dim> inverse = inverse_transpose(k);
     const Tabulation<dim>& table = facet_table_.on_facet[facet.local];
     const Material& material = problem_->material(space_->mesh().region(facet.cell));
@@ -214,7 +224,7 @@ template <int dim>
 std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const double> u, int k,
                                                                 const FacetTabulation<dim>& table) const
 {
-  const auto& [facet, geometry, gamma, contact] = contact_facets_[k];
+  const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
   const Point<dim>& n = geometry.normal;
   const CellMap<dim> map = cell_map(space_->mesh(), facet.cell);
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);

@@ -9,6 +9,7 @@
 
 #include "base/types.h"
 #include "case/problem.h"
+#include "contact/discrete_data.h"
 #include "contact/elasticity.h"
 #include "fem/quadrature.h"
 #include "fem/space.h"
@@ -44,8 +45,9 @@ struct ContactFacet
 {
   BoundaryFacet facet;
   FacetGeometry<dim> geometry;
-  double gamma;  ///< gamma_0 (lambda + 2 mu) / h_F
+  double gamma;  ///< gamma_0 min(lambda + 2 mu, 11 mu) / h_F
   const Contact* contact;
+  std::size_t number;  ///< in Mesh::boundary()
 };
 
 /// Which linearisation of T a Newton step uses.
@@ -63,11 +65,13 @@ template <int dim>
 class NitscheForm
 {
  public:
-  /// Throws InputError for a negative gap or threshold and for data that are not finite, naming the place.
-  NitscheForm(const Problem<dim>& problem, const LagrangeSpace<dim>& space, double gamma0);
+  /// `accuracy` and errors: as DiscreteData.
+  NitscheForm(const Problem<dim>& problem, const LagrangeSpace<dim>& space, double gamma0,
+              const DataAccuracy& accuracy = {});
 
   [[nodiscard]] const Problem<dim>& problem() const { return *problem_; }
   [[nodiscard]] const LagrangeSpace<dim>& space() const { return *space_; }
+  [[nodiscard]] const DiscreteData<dim>& data() const { return data_; }
   [[nodiscard]] const Constraints& constraints() const { return constraints_; }
   [[nodiscard]] double gamma0() const { return gamma0_; }
   /// L(phi_i) for every degree of freedom, fixed ones included.
@@ -110,6 +114,7 @@ class NitscheForm
   const LagrangeSpace<dim>* space_;
   double gamma0_;
   Constraints constraints_;
+  DiscreteData<dim> data_;
   std::vector<double> load_;
   Quadrature<dim - 1> facet_rule_;
   FacetTabulation<dim> facet_table_;

@@ -43,11 +43,38 @@ std::vector<Point<dim>> tangents(const Point<dim>& n)
   return directions;
 }
 
-/// Whether Coulomb friction obeys its coefficient or holds whatever is pressed.
-enum class CoulombFriction
+/// Which friction counts among the forces that grow with the pressure without a limit.
+enum class ConeFriction
 {
-  limited,
-  unlimited
+  unlimited,      ///< all friction holds whatever is pressed
+  coulomb_limit,  ///< Coulomb's obeys its coefficient, Tresca's holds
+  no_tresca       ///< Coulomb's obeys its coefficient, there is no other
+};
+
+/// The rule on the halves (2D) or quarters (3D) of the facet.
+template <int k>
+Quadrature<k> on_halves(const Quadrature<k>& rule)
+{
+  Quadrature<k> result;
+  const auto add = [&](const Point<k>& origin, double scale)
+  {
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      result.points.push_back(origin + scale * rule.points[q]);
+      result.weights.push_back(rule.weights[q] / (2 * k));
+    }
+  };
+  add(Point<k>::Zero(), 0.5);
+  for (int i = 0; i < k; ++i) add(0.5 * Point<k>::Unit(i), 0.5);
+  if constexpr (k == 2) add(Point<k>::Constant(0.5), -0.5);
+  return result;
+}
+
+/// What Tresca friction can do against a motion z at most.
+struct FrictionWork
+{
+  Eigen::VectorXd in_motions;  ///< integral of s z^t/|z^t| . y^t for each motion y of a basis
+  double most = 0;             ///< integral of s |z^t|
 };
 
 /// One body with what holds and drives it.
@@ -63,15 +90,19 @@ class BodyCheck
   /// Throws InputError for a motion that nothing stops.
   void check_held() const;
   /// Throws InputError for loads that contact cannot balance; work(z) = L(z) up to `round_off`.
-  void check_balanced(const Coefficients<dim>& work, double round_off, int quadrature_degree) const;
+  void check_balanced(const Coefficients<dim>& work, double round_off,
+                      const Quadrature<dim - 1>& facet_rule) const;
 
  private:
-  /// The work in each motion of the contact forces, one column for each generator of their cone. Tresca
-  /// friction is unlimited in both cases: its bound does not scale with the pressure.
-  [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, CoulombFriction coulomb) const;
-  /// Integral of s |z^t| over Tresca contact, the most that its friction can hold back; infinite where other
-  /// friction resists z.
-  [[nodiscard]] double tresca_capacity(const Coefficients<dim>& motion, int quadrature_degree) const;
+  /// The work in each motion of the contact forces, one column for each generator of their cone.
+  [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, ConeFriction friction) const;
+  [[nodiscard]] FrictionWork tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                         const Quadrature<dim - 1>& rule) const;
+  /// A motion in which the loads do more work than Tresca friction can take up, and contact and Coulomb
+  /// friction none; nothing where there is none, or it is too close to tell. See check_rigid_motions().
+  [[nodiscard]] std::optional<Eigen::VectorXd> beyond_tresca(const MotionBasis& motions,
+                                                             const Eigen::VectorXd& loads, double tolerance,
+                                                             const Quadrature<dim - 1>& rule) const;
   /// What to do against motions that nothing stops, with a component for each of them.
   [[nodiscard]] std::string hint(std::span<const Coefficients<dim>> free) const;
   [[noreturn]] void fail(const Coefficients<dim>& motion, const std::string& reason) const;
@@ -121,7 +152,7 @@ void BodyCheck<dim>::check_held() const
 }
 
 template <int dim>
-Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, CoulombFriction limit) const
+Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
 {
   std::vector<Eigen::VectorXd> generators;
   const auto add = [&](const Point<dim>& push, const Point<dim>& x)
@@ -137,10 +168,12 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, Coulomb
         add(n, x);
         if (!has_friction(law)) return;
         const auto* coulomb = std::get_if<Coulomb>(&law);
+        if (!coulomb && friction == ConeFriction::no_tresca) return;
         const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
         for (const Point<dim>& t : tangents<dim>(n))
-          add(coulomb && limit == CoulombFriction::limited ? Point<dim>(n + coulomb->coefficient / around * t)
-                                                           : t,
+          add(coulomb && friction != ConeFriction::unlimited
+                  ? Point<dim>(n + coulomb->coefficient / around * t)
+                  : t,
               x);
       });
   Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
@@ -149,28 +182,70 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, Coulomb
 }
 
 template <int dim>
-double BodyCheck<dim>::tresca_capacity(const Coefficients<dim>& motion, int quadrature_degree) const
+FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                         const Quadrature<dim - 1>& rule) const
 {
-  const Quadrature<dim - 1> rule = quadrature<dim - 1>(quadrature_degree);
-  double capacity = 0;
+  FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
   for (const BoundaryFacet& facet : body_.facets)
   {
     const auto& contact = problem_.boundary(facet.tag).contact;
-    if (!contact || !has_friction(contact->friction)) continue;
-    const auto* tresca = std::get_if<Tresca>(&contact->friction);
+    const auto* tresca = contact ? std::get_if<Tresca>(&contact->friction) : nullptr;
+    if (!tresca) continue;
     const CellMap<dim> map = cell_map(mesh_, facet.cell);
     const FacetGeometry<dim> geometry = facet_geometry(mesh_, facet.cell, facet.local);
-    const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
+    const Point<dim>& n = geometry.normal;
     for (int q = 0; q < rule.size(); ++q)
     {
       const Point<dim> x = map(facet_to_cell<dim>(facet.local, rule.points[q]));
-      const Point<dim> z = body_.modes.at(x) * motion;
-      const double z_t = (z - z.dot(geometry.normal) * geometry.normal).norm();
-      if (!tresca && z_t > 1e-12 * motion.norm()) return HUGE_VAL;
-      if (tresca) capacity += scale * rule.weights[q] * threshold_at<dim>(*tresca, x) * z_t;
+      const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
+      const Point<dim> z_x = at_x * z;
+      const Point<dim> z_t = z_x - z_x.dot(n) * n;
+      if (z_t.norm() <= 1e-12 * z.norm()) continue;
+      const double force = geometry.measure * (dim - 1) * rule.weights[q] * threshold_at<dim>(*tresca, x);
+      result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
+      result.most += force * z_t.norm();
     }
   }
-  return capacity;
+  return result;
+}
+
+// Tresca friction can do work in a convex set Z, all other contact forces in the cone K. The loads c are
+// balanced if c lies in K + Z. The nearest point of it is looked for with K and those points of Z that
+// proved useful, among them 0 (fully corrective Frank-Wolfe method); that their weights add up to at most 1
+// is one more row. What is left of c is a motion r that K can do nothing against, and c is outside as soon
+// as c.r exceeds what Z can do.
+template <int dim>
+std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& motions,
+                                                             const Eigen::VectorXd& loads, double tolerance,
+                                                             const Quadrature<dim - 1>& rule) const
+{
+  constexpr int max_points = 200;
+  constexpr double relative = 1e-8;
+  const Eigen::Index m = loads.size();
+  const double one = loads.norm();
+  const Eigen::MatrixXd cone = contact_cone(motions, ConeFriction::no_tresca);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(m + 1, cone.cols() + 1);
+  columns.topLeftCorner(m, cone.cols()) = cone;
+  columns(m, cone.cols()) = one;
+  Eigen::VectorXd target(m + 1);
+  target << loads, one;
+  for (int i = 0; i < max_points; ++i)
+  {
+    const Eigen::VectorXd r = remainder_outside_cone(columns, target).head(m);
+    if (r.norm() <= tolerance) return {};
+    const FrictionWork friction = tresca_work(motions, r, rule);
+    const double driving = r.dot(loads);
+    if (driving > (1 + relative) * friction.most + tolerance * r.norm())
+    {
+      // |z^t| has kinks and s is any function: refuse only what refinement of the rule does not change.
+      const double finer = tresca_work(motions, r, on_halves(on_halves(rule))).most;
+      const double most = std::max(friction.most, finer) + std::abs(finer - friction.most);
+      return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
+    }
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) << friction.in_motions, one;
+  }
+  return {};
 }
 
 template <int dim>
@@ -187,7 +262,7 @@ void BodyCheck<dim>::fail(const Coefficients<dim>& motion, const std::string& re
 
 template <int dim>
 void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_off,
-                                    int quadrature_degree) const
+                                    const Quadrature<dim - 1>& facet_rule) const
 {
   constexpr double relative = 1e-8;
   const MotionBasis motions = support_.left_by_displacements();  // what contact alone has to stop
@@ -195,24 +270,25 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
   if (motions.cols() == 0 || c.norm() <= round_off) return;
 
   const double tolerance = relative * c.norm() + round_off;
-  const Eigen::VectorXd lifted = remainder_outside_cone(contact_cone(motions, CoulombFriction::unlimited), c);
+  const Eigen::VectorXd lifted = remainder_outside_cone(contact_cone(motions, ConeFriction::unlimited), c);
   if (lifted.norm() > tolerance) fail(motions * lifted, "contact only pushes");
 
-  // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
-  const Eigen::MatrixXd pressed = support_.contact_gram(false);
-  const MotionBasis sliding = motions * null_space(motions.transpose() * pressed * motions, pressed.trace());
-  const Coefficients<dim> slide = sliding * (sliding.transpose() * work);
-  const Eigen::VectorXd slipped = remainder_outside_cone(contact_cone(motions, CoulombFriction::limited), c);
+  const Eigen::VectorXd slipped =
+      remainder_outside_cone(contact_cone(motions, ConeFriction::coulomb_limit), c);
   if (slipped.norm() > tolerance)
+  {
+    // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
+    const Eigen::MatrixXd pressed = support_.contact_gram(false);
+    const MotionBasis sliding =
+        motions * null_space(motions.transpose() * pressed * motions, pressed.trace());
+    const Coefficients<dim> slide = sliding * (sliding.transpose() * work);
     fail(slide.norm() > tolerance ? slide : Coefficients<dim>(motions * slipped),
          "friction is too weak for the load along the contact boundary");
+  }
 
-  if (slide.norm() <= tolerance) return;
-  const double driving = slide.dot(work);
-  const double capacity = tresca_capacity(slide, quadrature_degree);
-  if (driving > (1 + relative) * capacity)
-    fail(slide, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
-                            100 * capacity / driving));
+  if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance, facet_rule))
+    fail(motions * *z, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
+                                   100 * tresca_work(motions, *z, facet_rule).most / z->dot(c)));
 }
 
 }  // namespace
@@ -222,6 +298,7 @@ void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& 
                          std::span<const double> load)
 {
   constexpr double relative_round_off = 1e-11;
+  const Quadrature<dim - 1> facet_rule = quadrature<dim - 1>(data_quadrature_degree(space.degree()));
   const std::vector<Body<dim>> bodies = find_bodies(space);
   const std::vector<Point<dim>> points = space.node_points();
   for (const Body<dim>& body : bodies)
@@ -237,7 +314,7 @@ void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& 
       work += body.modes.at(points[i]).transpose() * force;
       terms += force.norm();
     }
-    check.check_balanced(work, relative_round_off * terms, data_quadrature_degree(space.degree()));
+    check.check_balanced(work, relative_round_off * terms, facet_rule);
   }
 }
 

@@ -33,19 +33,26 @@ void measure_extent(const Mesh<dim>& mesh, LoadFacts& facts)
   facts.size = extent.maxCoeff();
 }
 
-/// The integral of f; sets the largest |f|. The rule of the centroid: an estimate is all that is wanted.
+/// The integral of f; sets the largest mean of |f| over a cell.
 template <int dim>
-Point<dim> body_force_resultant(const Problem<dim>& problem, const Mesh<dim>& mesh, LoadFacts& facts)
+Point<dim> body_force_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
 {
   constexpr double factorial = dim == 2 ? 2 : 6;
+  const Mesh<dim>& mesh = form.space().mesh();
+  const Quadrature<dim>& rule = form.data().cell_rule();
   Point<dim> resultant = Point<dim>::Zero();
+  std::vector<Point<dim>> f(rule.size());
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    if (problem.body_force_is_zero(mesh.region(c))) continue;
-    const CellMap<dim> map = cell_map(mesh, c);
-    const Point<dim> f = problem.body_force(mesh.region(c), map(Point<dim>::Constant(1.0 / (dim + 1))));
-    facts.largest_body_force = std::max(facts.largest_body_force, f.norm());
-    resultant += map.det / factorial * f;
+    if (!form.data().has_body_force(c)) continue;
+    form.data().body_force(c, f);
+    double magnitude = 0;  // mean
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      magnitude += factorial * rule.weights[q] * f[q].norm();
+      resultant += cell_map(mesh, c).det * rule.weights[q] * f[q];
+    }
+    facts.largest_body_force = std::max(facts.largest_body_force, magnitude);
   }
   return resultant;
 }
@@ -65,20 +72,19 @@ Point<dim> traction_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
   const Quadrature<dim - 1>& rule = form.facet_rule();
   Point<dim> resultant = Point<dim>::Zero();
   std::vector<BoundaryLoad> loads(form.problem().boundaries().size());
-  for (const BoundaryFacet& facet : mesh.boundary())
+  std::vector<Point<dim>> g(rule.size());
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
-    const BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
-    if (facet.tag < 0 || !condition.is_loaded()) continue;
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
-    loads[facet.tag].measure += geometry.measure;
+    const BoundaryFacet& facet = mesh.boundary()[k];
+    if (facet.tag < 0 || !form.data().has_traction(k)) continue;
+    const double measure = facet_geometry(mesh, facet.cell, facet.local).measure;
+    loads[facet.tag].measure += measure;
+    form.data().traction(k, g);
     for (int q = 0; q < rule.size(); ++q)
     {
-      const double weight = geometry.measure * (dim - 1) * rule.weights[q];
-      const Point<dim> g =
-          condition.load(map(facet_to_cell<dim>(facet.local, rule.points[q])), geometry.normal);
-      resultant += weight * g;
-      loads[facet.tag].magnitude += weight * g.norm();
+      const double weight = measure * (dim - 1) * rule.weights[q];
+      resultant += weight * g[q];
+      loads[facet.tag].magnitude += weight * g[q].norm();
     }
   }
   for (const BoundaryLoad& load : loads)
@@ -153,7 +159,7 @@ LoadFacts load_facts(const NitscheForm<dim>& form)
   for (int region = 0; region < static_cast<int>(problem.region_names().size()); ++region)
     facts.materials.push_back(region_material(problem, region));
   facts.smallest_E = std::ranges::min_element(facts.materials, {}, &RegionMaterial::E)->E;
-  const Point<dim> resultant = body_force_resultant(problem, mesh, facts) + traction_resultant(form, facts);
+  const Point<dim> resultant = body_force_resultant(form, facts) + traction_resultant(form, facts);
   const double support = supporting_measure(problem, mesh);
   if (support > 0) facts.support_stress = resultant.norm() / support;
   facts.body_stress = facts.largest_body_force * facts.size;

@@ -37,7 +37,7 @@ struct LoadFacts
   double size = 0;             ///< its longest side L
   std::vector<RegionMaterial> materials;
   double smallest_E = 0;
-  double largest_body_force = 0;   ///< max |f| at the centroids of the cells
+  double largest_body_force = 0;   ///< largest mean of |f| over a cell
   double traction_stress = 0;      ///< the largest mean of |g_N| over a boundary
   double support_stress = 0;       ///< |int f + int g_N| over the area that contact or displacements hold
   double body_stress = 0;          ///< max |f| L

@@ -6,9 +6,6 @@
 #include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
-
-#include "base/error.h"
 
 namespace tribound
 {
@@ -31,7 +28,16 @@ std::string reason(int error)
   return std::generic_category().message(error);
 }
 
-std::string hint_for(int error)
+}  // namespace
+
+WriteError::WriteError(const std::filesystem::path& path, std::string problem, std::string hint)
+    : std::runtime_error(path.string() + ": " + problem + "\n  hint: " + hint),
+      problem_(std::move(problem)),
+      hint_(std::move(hint))
+{
+}
+
+std::string hint_for_writing(int error)
 {
   switch (error)
   {
@@ -45,19 +51,6 @@ std::string hint_for(int error)
       return "choose an output.directory that you may write to";
   }
 }
-
-/// The directory and those above it that do not exist, innermost first.
-std::vector<std::filesystem::path> missing_directories(std::filesystem::path directory)
-{
-  std::vector<std::filesystem::path> missing;
-  std::error_code error;
-  for (; !directory.empty() && !std::filesystem::exists(directory, error);
-       directory = directory.parent_path())
-    missing.push_back(directory);
-  return missing;
-}
-
-}  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path)
     : path_(std::move(path)), temporary_(temporary_name(path_)), file_(std::fopen(temporary_.c_str(), "wb"))
@@ -109,8 +102,7 @@ void AtomicFile::commit()
 
 void AtomicFile::fail(int error) const
 {
-  throw InputError({.file = path_.string(), .key = {}}, "cannot write this file: " + reason(error),
-                   hint_for(error));
+  throw WriteError(path_, "cannot write this file: " + reason(error), hint_for_writing(error));
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text)
@@ -118,38 +110,6 @@ void write_file(const std::filesystem::path& path, std::string_view text)
   AtomicFile file(path);
   file.write(text);
   file.commit();
-}
-
-void prepare_output_directory(const std::filesystem::path& directory)
-{
-  const Where where{.file = directory.string(), .key = "output.directory"};
-  std::error_code error;
-  if (std::filesystem::exists(directory, error) && !std::filesystem::is_directory(directory, error))
-    throw InputError(where, "exists and is not a directory", "choose another output.directory");
-
-  const std::vector<std::filesystem::path> missing = missing_directories(directory);
-  const auto undo = [&]
-  {
-    std::error_code ignored;
-    for (const std::filesystem::path& created : missing) std::filesystem::remove(created, ignored);
-  };
-  std::filesystem::create_directories(directory, error);
-  if (error)
-  {
-    undo();
-    throw InputError(where, "cannot create this directory: " + error.message(), hint_for(error.value()));
-  }
-  try
-  {
-    AtomicFile probe(directory / "probe");
-    probe.write("probe");
-    probe.flush();
-  }
-  catch (const InputError& failure)
-  {
-    undo();
-    throw InputError(where, "cannot write to this directory: " + failure.problem(), failure.hint());
-  }
 }
 
 }  // namespace tribound

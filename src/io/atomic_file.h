@@ -8,14 +8,34 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace tribound
 {
 
+/// A file of results that cannot be written: a disk that is full, no permission. Exit code 2: what was
+/// computed before is in order.
+class WriteError : public std::runtime_error
+{
+ public:
+  WriteError(const std::filesystem::path& path, std::string problem, std::string hint);
+
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+  [[nodiscard]] const std::string& hint() const { return hint_; }
+
+ private:
+  std::string problem_;
+  std::string hint_;
+};
+
+/// What to do about an error number of the system.
+[[nodiscard]] std::string hint_for_writing(int error);
+
 /// A file written under a temporary name beside its final one and renamed by commit(). Without commit() the
 /// temporary file is removed and an older file of the final name stays as it was.
-/// Every function throws InputError naming the file and the system's reason (disk full, no permission).
+/// Every function throws WriteError naming the file and the system's reason (disk full, no permission).
 class AtomicFile
 {
  public:
@@ -35,7 +55,7 @@ class AtomicFile
 
   /// Flushes, closes and renames; nothing may be written afterwards.
   void commit();
-  /// Hands all that has been written to the system, which may find the disk full. Throws InputError.
+  /// Hands all that has been written to the system, which may find the disk full. Throws WriteError.
   void flush();
 
  private:
@@ -52,11 +72,7 @@ class AtomicFile
   std::uint64_t position_ = 0;
 };
 
-/// Writes `text` to the file at `path`, completely or not at all. Throws InputError.
+/// Writes `text` to the file at `path`, completely or not at all. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view text);
-
-/// Creates the directory with its parents and verifies that files can be written there, so that a long run
-/// does not fail at its end. Throws InputError naming the directory and the system's reason.
-void prepare_output_directory(const std::filesystem::path& directory);
 
 }  // namespace tribound

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "io/balance_text.h"
 #include "io/check_json.h"
 #include "io/text.h"
 
@@ -84,7 +85,7 @@ std::string wrapped(std::string_view text, std::size_t width)
 
 std::string paragraph(std::string_view caption, std::string_view text)
 {
-  return line(caption, wrapped(text, 90));
+  return line(caption, wrapped(text, 80 - caption_width));
 }
 
 /// What each component measures, in the order of all_component_names.
@@ -97,6 +98,7 @@ constexpr std::array<std::string_view, all_component_names.size()> component_mea
     "friction",
     "linearisation, normal",
     "linearisation, tangential",
+    "quadrature of the loads",
     "regularisation, body",
     "regularisation, normal",
     "regularisation, tangential"};
@@ -111,6 +113,7 @@ std::string component_lines(const BoundComponents& components, bool regularised)
   for (std::size_t i = 0; i < names.size(); ++i)
   {
     const double value = components.*names[i].second;
+    if (value == 0 && !is_of_cells(names[i].second)) continue;
     const double share = squares > 0 ? 100 * value * value / squares : 0;
     text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", names[i].first, component_meaning[i],
                                  value, share));
@@ -118,9 +121,10 @@ std::string component_lines(const BoundComponents& components, bool regularised)
   return text;
 }
 
+/// A reader that has gone, such as `head`, is no reason to end a run.
 void print(const std::string& text)
 {
-  fmt::print(stdout, "{}", text);
+  (void)std::fwrite(text.data(), 1, text.size(), stdout);
   std::fflush(stdout);
 }
 
@@ -148,7 +152,7 @@ std::string level_text(const LevelRecord& level)
   const std::string bound =
       relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level)) : std::string("none");
   return line(fmt::format("level {}", level.level),
-              fmt::format("{:>9} cells  {:>9} dofs  newton {:>2}  bound {:<9}  {:.2f} s", level.cells,
+              fmt::format("{:>8} cells  {:>8} dofs  newton {:>2}  bound {:<8}  {:.2f} s", level.cells,
                           level.dofs, level.newton.size(), bound, level.times.level));
 }
 
@@ -189,19 +193,24 @@ std::string summary_text(const RunRecord& run, const std::string& directory)
       text += resultants_line("contact", part.boundary, part);
     if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
     for (const Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
+    if (last.balance) text += balance_text(*last.balance);
     text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
     text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
                                        last.figures.sigma_norm));
     text += certificate_text(run);
     text += warnings_text(run.warnings);
   }
+  return text + verdict_text(run, directory);
+}
+
+std::string verdict_text(const RunRecord& run, const std::string& directory)
+{
   std::string reason = run.reason;
   if (run.status == RunStatus::certified)
     reason =
         fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||", 100 * run.tolerance);
-  text += line("status", to_string(run.status) + (reason.empty() ? "" : ": " + reason));
-  text += line_if_any("results", directory);
-  return text;
+  return line("status", to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
+         line_if_any("results", directory);
 }
 
 std::string check_text(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver)
@@ -265,6 +274,11 @@ void print_summary(const RunRecord& run, const std::string& directory)
   print(summary_text(run, directory));
 }
 
+void print_verdict(const RunRecord& run, const std::string& directory)
+{
+  print(warnings_text(run.warnings) + verdict_text(run, directory));
+}
+
 void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
                  std::span<const Finding> findings, bool as_json)
 {
@@ -277,16 +291,21 @@ void print_info(const BuildFacts& build)
   print(info_text(build));
 }
 
-Progress::Progress(bool quiet) : shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool quiet) : quiet_(quiet), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
 void Progress::operator()(const NewtonStep& step, std::optional<double> relative_bound) const
 {
-  if (shown_) fmt::print(stderr, "{}", newton_text(step, relative_bound));
+  show(newton_text(step, relative_bound));
 }
 
 void Progress::stage(const std::string& text) const
 {
-  if (shown_) fmt::print(stderr, "{}\n", text);
+  show(text + "\n");
+}
+
+void Progress::show(const std::string& text) const
+{
+  if (shown_) (void)std::fputs(text.c_str(), stderr);
 }
 
 }  // namespace tribound

@@ -27,6 +27,8 @@ namespace tribound
 [[nodiscard]] std::string warnings_text(std::span<const RunWarning> warnings);
 /// Resultants, largest displacement, the certificate, warnings, status, and where the files are.
 [[nodiscard]] std::string summary_text(const RunRecord& run, const std::string& directory);
+/// The end of the summary: status, and where the files are.
+[[nodiscard]] std::string verdict_text(const RunRecord& run, const std::string& directory);
 /// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
 [[nodiscard]] std::string check_text(const CaseFacts& facts, const MeshFacts& mesh,
                                      const std::string& solver);
@@ -38,6 +40,8 @@ namespace tribound
 void print_header(const CaseFacts& facts, const MeshFacts& mesh);
 void print_level(const LevelRecord& level);
 void print_summary(const RunRecord& run, const std::string& directory);
+/// Warnings and status only.
+void print_verdict(const RunRecord& run, const std::string& directory);
 void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
                  std::span<const Finding> findings, bool as_json);
 void print_info(const BuildFacts& build);
@@ -50,10 +54,15 @@ class Progress
   explicit Progress(bool quiet);
 
   void operator()(const NewtonStep& step, std::optional<double> relative_bound = {}) const;
+  /// Whether the user has asked for quiet.
+  [[nodiscard]] bool quiet() const { return quiet_; }
   /// A line about a stage, such as "reading block.msh".
   void stage(const std::string& text) const;
 
  private:
+  void show(const std::string& text) const;
+
+  bool quiet_;
   bool shown_;
 };
 

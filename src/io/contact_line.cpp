@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -91,67 +92,90 @@ template <int dim>
 std::string columns()
 {
   return dim == 2
-             ? "boundary,facet,x,y,nx,ny,arc,pressure,traction_x,traction_y,limit,status,gap,slip_x,slip_y"
+             ? "boundary,facet,x,y,nx,ny,arc,pressure,traction_x,traction_y,limit,status,gap,slip_x,slip_y,"
+               "weight,level"
              : "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,"
-               "slip_x,slip_y,slip_z";
+               "slip_x,slip_y,slip_z,weight,level";
 }
 
 template <int dim>
-void add_point(CsvTable& table, const Point<dim>& x)
+void add_point(CsvTable& table, const Point<dim>& x, double round_off = 0)
 {
-  for (const double component : x) table.add(component);
+  for (const double component : x) table.add(std::abs(component) > round_off ? component : 0.0);
 }
 
-/// One row; `arc` is absent in 3D.
+/// What every row needs.
 template <int dim>
-void add_row(CsvTable& table, const std::string& boundary, int facet, const ContactState<dim>& state,
-             const double* arc)
+struct Rows
 {
-  table.add(boundary);
-  table.add(facet);
-  add_point<dim>(table, state.point);
-  add_point<dim>(table, state.normal);
-  if (arc) table.add(*arc);
-  table.add(state.pressure);
-  add_point<dim>(table, state.traction);
-  table.add(state.limit);
-  table.add(static_cast<int>(state.status));
-  table.add(state.gap);
-  add_point<dim>(table, state.slip);
-  table.end_row();
-}
+  Rows(const NitscheForm<dim>& f, std::span<const double> displacement, int number)
+      : form(f),
+        u(displacement),
+        level(number),
+        at_rule(tabulate_on_facets<dim>(f.space().basis(), f.facet_rule().points))
+  {
+    double size = 0;
+    for (const Point<dim>& x : f.space().mesh().vertices()) size = std::max(size, x.cwiseAbs().maxCoeff());
+    round_off = relative_round_off * size;
+  }
 
-void add_chains(CsvTable& table, const NitscheForm<2>& form, std::span<const double> u, int tag)
+  /// `arc` is absent in 3D.
+  void add(CsvTable& table, int facet, int q, const ContactState<dim>& state, const double* arc) const
+  {
+    const ContactFacet<dim>& contact = form.contact_facets()[facet];
+    table.add(form.problem().boundary(contact.facet.tag).name);
+    table.add(facet);
+    add_point<dim>(table, state.point, round_off);
+    add_point<dim>(table, state.normal, relative_round_off);
+    if (arc) table.add(*arc);
+    table.add(state.pressure);
+    add_point<dim>(table, state.traction);
+    table.add(state.limit);
+    table.add(static_cast<int>(state.status));
+    table.add(state.gap);
+    add_point<dim>(table, state.slip);
+    table.add(contact.geometry.measure * (dim - 1) * form.facet_rule().weights[q]);
+    table.add(level);
+    table.end_row();
+  }
+
+  static constexpr double relative_round_off = 1e-14;
+  const NitscheForm<dim>& form;
+  std::span<const double> u;
+  int level;
+  FacetTabulation<dim> at_rule;
+  double round_off = 0;  ///< of coordinates
+};
+
+void add_chains(CsvTable& table, const Rows<2>& rows, int tag)
 {
-  const Quadrature<1>& rule = form.facet_rule();
-  const FacetTabulation<2> at_rule = tabulate_on_facets<2>(form.space().basis(), rule.points);
+  const Quadrature<1>& rule = rows.form.facet_rule();
   std::vector<int> along(rule.size());
   for (int q = 0; q < rule.size(); ++q) along[q] = q;
   std::ranges::sort(along, {}, [&rule](int q) { return rule.points[q][0]; });
 
-  for (const ChainLink& link : contact_chains(form, tag))
+  for (const ChainLink& link : contact_chains(rows.form, tag))
   {
-    const double length = form.contact_facets()[link.facet].geometry.measure;
-    const auto states = form.contact_states(u, link.facet, at_rule);
+    const double length = rows.form.contact_facets()[link.facet].geometry.measure;
+    const auto states = rows.form.contact_states(rows.u, link.facet, rows.at_rule);
     for (std::size_t i = 0; i < along.size(); ++i)
     {
       const int q = along[link.reversed ? along.size() - 1 - i : i];
       const double s = rule.points[q][0];
       const double arc = link.arc + length * (link.reversed ? 1.0 - s : s);
-      add_row<2>(table, form.problem().boundary(tag).name, link.facet, states[q], &arc);
+      rows.add(table, link.facet, q, states[q], &arc);
     }
   }
 }
 
-void add_facets(CsvTable& table, const NitscheForm<3>& form, std::span<const double> u, int tag)
+void add_facets(CsvTable& table, const Rows<3>& rows, int tag)
 {
-  const auto facets = form.contact_facets();
-  const FacetTabulation<3> at_rule = tabulate_on_facets<3>(form.space().basis(), form.facet_rule().points);
+  const auto facets = rows.form.contact_facets();
   for (int k = 0; k < static_cast<int>(facets.size()); ++k)
   {
     if (facets[k].facet.tag != tag) continue;
-    for (const ContactState<3>& state : form.contact_states(u, k, at_rule))
-      add_row<3>(table, form.problem().boundary(tag).name, k, state, nullptr);
+    const auto states = rows.form.contact_states(rows.u, k, rows.at_rule);
+    for (int q = 0; q < static_cast<int>(states.size()); ++q) rows.add(table, k, q, states[q], nullptr);
   }
 }
 
@@ -172,30 +196,33 @@ std::vector<ChainLink> contact_chains(const NitscheForm<2>& form, int tag)
 }
 
 template <int dim>
-std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u)
+std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level)
 {
   CsvTable table(columns<dim>());
+  const Rows<dim> rows(form, u, level);
   const int n_boundaries = static_cast<int>(form.problem().boundaries().size());
   for (int tag = 0; tag < n_boundaries; ++tag)
   {
     if constexpr (dim == 2)
-      add_chains(table, form, u, tag);
+      add_chains(table, rows, tag);
     else
-      add_facets(table, form, u, tag);
+      add_facets(table, rows, tag);
   }
   return table.text();
 }
 
 template <int dim>
 void write_contact_csv(const std::filesystem::path& path, const NitscheForm<dim>& form,
-                       std::span<const double> u)
+                       std::span<const double> u, int level)
 {
-  write_file(path, contact_csv(form, u));
+  write_file(path, contact_csv(form, u, level));
 }
 
-template std::string contact_csv(const NitscheForm<2>&, std::span<const double>);
-template std::string contact_csv(const NitscheForm<3>&, std::span<const double>);
-template void write_contact_csv(const std::filesystem::path&, const NitscheForm<2>&, std::span<const double>);
-template void write_contact_csv(const std::filesystem::path&, const NitscheForm<3>&, std::span<const double>);
+template std::string contact_csv(const NitscheForm<2>&, std::span<const double>, int);
+template std::string contact_csv(const NitscheForm<3>&, std::span<const double>, int);
+template void write_contact_csv(const std::filesystem::path&, const NitscheForm<2>&, std::span<const double>,
+                                int);
+template void write_contact_csv(const std::filesystem::path&, const NitscheForm<3>&, std::span<const double>,
+                                int);
 
 }  // namespace tribound

@@ -28,13 +28,15 @@ struct ChainLink
 
 /// contact.csv: one row per quadrature point of form.facet_rule(), sorted along each boundary in 2D, facet by
 /// facet in 3D. Columns: boundary,facet,x,y[,z],nx,ny[,nz][,arc],pressure,traction_x,traction_y[,traction_z],
-/// limit,status,gap,slip_x,slip_y[,slip_z]; arc in 2D only, status 0 open, 1 stick, 2 slip.
+/// limit,status,gap,slip_x,slip_y[,slip_z],weight,level; arc in 2D only, status 0 open, 1 stick, 2 slip. The
+/// sum of weight times a column is its integral over the boundary as the program takes it. Coordinates and
+/// components of normals that are rounding are 0.
 template <int dim>
-[[nodiscard]] std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u);
+[[nodiscard]] std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level = 0);
 
 /// Writes contact_csv() to `path`. Throws InputError when the file cannot be written.
 template <int dim>
 void write_contact_csv(const std::filesystem::path& path, const NitscheForm<dim>& form,
-                       std::span<const double> u);
+                       std::span<const double> u, int level);
 
 }  // namespace tribound

@@ -12,6 +12,15 @@
 namespace tribound
 {
 
+/// A text as it stands in a cell.
+[[nodiscard]] inline std::string csv_cell(std::string_view value)
+{
+  if (value.find_first_of(",\"\n") == std::string_view::npos) return std::string(value);
+  std::string cell = "\"";
+  for (const char c : value) cell.append(c == '"' ? 2 : 1, c);
+  return cell + '"';
+}
+
 /// Builds a table row by row. Numbers are printed with the fewest digits that read back as the same number.
 class CsvTable
 {
@@ -22,14 +31,7 @@ class CsvTable
   void add(std::string_view value)
   {
     separate();
-    if (value.find_first_of(",\"\n") == std::string_view::npos)
-    {
-      text_ += value;
-      return;
-    }
-    text_ += '"';
-    for (const char c : value) text_.append(c == '"' ? 2 : 1, c);
-    text_ += '"';
+    text_ += csv_cell(value);
   }
   /// -0 is written as 0: the sign of nothing is no result.
   void add(double value)

@@ -1,5 +1,8 @@
 #include "io/facts_json.h"
 
+#include "base/sha256.h"
+#include "io/balance_text.h"
+
 namespace tribound
 {
 
@@ -28,6 +31,27 @@ Json mesh_json(const MeshFacts& mesh)
                                     {"facets", boundary.facets},
                                     {"measure", boundary.measure},
                                     {"condition", boundary.condition}});
+  return object;
+}
+
+Json effective_case_json(const RunRecord& run)
+{
+  if (run.effective.text.empty()) return nullptr;
+  return {{"file", run.case_file},
+          {"sha256", sha256(run.effective.text)},
+          {"overrides", run.effective.overrides}};
+}
+
+Json balance_json(const Balance& balance)
+{
+  Json object{{"about", balance.about}, {"rows", Json::array()}};
+  for (const BalanceRow& row : balance.rows)
+    object["rows"].push_back({{"kind", to_string(row.kind)},
+                              {"name", row.name},
+                              {"source", row.source},
+                              {"force", row.force},
+                              {"moment", row.moment ? Json(*row.moment) : Json(nullptr)}});
+  object["note"] = text_or_null(moment_note(balance));
   return object;
 }
 

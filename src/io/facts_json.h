@@ -3,8 +3,10 @@
 /// @file facts_json.h
 /// Facts as JSON.
 
+#include "certify/balance.h"
 #include "io/facts.h"
 #include "io/json.h"
+#include "io/report.h"
 
 namespace tribound
 {
@@ -14,5 +16,11 @@ namespace tribound
 
 /// The `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
 [[nodiscard]] Json mesh_json(const MeshFacts& mesh);
+
+/// `case` of the certificate: the effective case by the hash of its text; null where there is none.
+[[nodiscard]] Json effective_case_json(const RunRecord& run);
+
+/// `balance` of the certificate.
+[[nodiscard]] Json balance_json(const Balance& balance);
 
 }  // namespace tribound

@@ -10,25 +10,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/apart.h"
 #include "io/shared_file.h"
 
 extern char** environ;
 
 namespace tribound
 {
-
-namespace
-{
-
-/// What became of a process that has ended; empty for success.
-std::string describe_end(int status)
-{
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  if (WIFEXITED(status)) return fmt::format("ended with exit code {}", WEXITSTATUS(status));
-  return fmt::format("was ended by signal {}", WTERMSIG(status));
-}
-
-}  // namespace
 
 std::optional<std::filesystem::path> find_figure_script()
 {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <span>
 
@@ -199,8 +200,12 @@ const char* to_string(Severity severity)
 
 std::string describe(const Place& where)
 {
+  constexpr double round_off = 1e-12;
   std::vector<double> x = where;
-  for (double& component : x) component += 0.0;  // no -0
+  double largest = 0;
+  for (const double component : where) largest = std::max(largest, std::abs(component));
+  for (double& component : x)
+    if (std::abs(component) <= round_off * largest) component = 0;
   return fmt::format("({:.6g})", fmt::join(x, ", "));
 }
 

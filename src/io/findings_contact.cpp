@@ -12,6 +12,8 @@ namespace
 constexpr double flat = 0.01;
 /// Gaps beyond this part of the body are not closed by small displacements.
 constexpr double far = 0.05;
+/// A gap may open with the curvature of the obstacle, up to the size of the body.
+constexpr double beyond = 1;
 /// Fewer facets do not show how the pressure is distributed.
 constexpr long few_facets = 4;
 
@@ -68,7 +70,9 @@ Finding surface_finding(const ContactBoundaryFacts& contact)
   finding.text += fmt::format("; neighbouring facets differ by up to {:.3g} degrees", contact.kink);
   finding.advice =
       "the pressure will peak at such edges, the more the finer the facets on either side, as refinement "
-      "keeps the polygon: take a flat boundary and put its curvature into the gap (docs/case-format.md)";
+      "keeps the polygon: give the gap of the true shape along the obstacle's normal, or take a flat "
+      "boundary with its curvature in the gap (choosing.md of the "
+      "guide)";
   return finding;
 }
 
@@ -85,6 +89,13 @@ Finding gap_finding(const ContactBoundaryFacts& contact, double size)
     finding.text = fmt::format("contact \"{}\" starts with gaps from {:.4g} at {} to {:.4g} at {}",
                                contact.name, contact.smallest_gap, describe(contact.smallest_gap_at),
                                contact.largest_gap, describe(contact.largest_gap_at));
+  if (contact.largest_gap > beyond * size)
+  {
+    finding.severity = Severity::warning;
+    finding.advice =
+        fmt::format("up to {:.3g} times the size of the body: look at the gap's formula and unit",
+                    contact.largest_gap / size);
+  }
   if (contact.smallest_gap <= far * size) return finding;
   finding.severity = Severity::warning;
   finding.advice = fmt::format(

@@ -19,15 +19,18 @@ namespace tribound
 /// Base64 of RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::span<const unsigned char> bytes);
 
-/// value = offset + step q, q of `bits` bits (at most 32): off by at most (max - min) / 2^(bits + 1).
-[[nodiscard]] std::string pack_linear(std::span<const double> values, int bits);
+/// value = offset + step q, q of `bits` bits (at most 31): off by at most (max - min) / 2^(bits + 1).
+/// `stride`, here and below: each q is stored as its difference from the one so many places before.
+[[nodiscard]] std::string pack_linear(std::span<const double> values, int bits, std::size_t stride = 1);
 
 /// value = 10^(offset + step (q - 1)), and 0 for q = 0, of values >= 0 that span decades: those more than
 /// `decades` below the largest become 0.
 [[nodiscard]] std::string pack_logarithmic(std::span<const double> values, int bits, double decades);
 
-/// Integers >= 0, each stored as its difference from the one `stride` places before: numbers of the vertices
-/// of neighbouring cells are close to each other.
+/// Integers from 0 to 2^31 - 1: numbers of the vertices of neighbouring cells are close to each other.
 [[nodiscard]] std::string pack_integers(std::span<const Index> values, std::size_t stride = 1);
+
+/// Text, compressed: its bytes in UTF-8.
+[[nodiscard]] std::string pack_text(std::string_view text);
 
 }  // namespace tribound

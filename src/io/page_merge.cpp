@@ -103,7 +103,7 @@ void merge_details(Surface& surface, int dim, std::size_t max_triangles)
 
   for (Index& vertex : surface.faces) vertex = first[vertex];
   keep(surface.faces, kept, 3);
-  keep(surface.von_mises, kept, 3);
+  for (std::vector<double>& component : surface.stress) keep(component, kept, component.size() / kept.size());
   keep(surface.cells, kept, 1);
   SurfaceContact& contact = surface.contact;
   for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})

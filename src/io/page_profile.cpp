@@ -24,6 +24,7 @@ void add_point(ContactProfile& profile, const ContactState<2>& state, const Poin
   profile.arc.push_back(arc);
   profile.points.insert(profile.points.end(), state.point.begin(), state.point.end());
   profile.displacement.insert(profile.displacement.end(), u.begin(), u.end());
+  profile.normal.insert(profile.normal.end(), state.normal.begin(), state.normal.end());
   profile.pressure.push_back(state.pressure);
   profile.friction.push_back(state.traction.dot(tangent));
   profile.limit.push_back(state.limit);

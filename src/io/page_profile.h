@@ -22,6 +22,7 @@ struct ContactProfile
   std::vector<double> arc;           ///< length along the boundary
   std::vector<double> points;        ///< x, y of point after point, undeformed
   std::vector<double> displacement;  ///< its components
+  std::vector<double> normal;        ///< components of n
   std::vector<double> pressure;
   std::vector<double> friction;  ///< T.t, t = n turned by +90 degrees
   std::vector<double> limit;     ///< what |T.t| may reach

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "io/vtu.h"
@@ -122,6 +124,7 @@ class SurfaceSampler
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
+    surface_.stress.resize(stress_entries<dim>.size());
     at_nodes_ = form.space().basis().tabulate(space_.basis().node_points());
     values_.resize(at_nodes_.n_points);
     for (int local = 0; local < (dim == 2 ? 1 : dim + 1); ++local)
@@ -131,7 +134,6 @@ class SurfaceSampler
   void add(const Face& face)
   {
     const FaceLattice& lattice = lattices_[face.local];
-    const Material& material = form_.problem().material(space_.mesh().region(face.cell));
     const CellMap<dim> map = cell_map(space_.mesh(), face.cell);
     stress_.at_nodes(face.cell, values_);
     for (const int node : lattice.nodes)
@@ -139,8 +141,9 @@ class SurfaceSampler
       Index& vertex = vertex_of_node_[space_.cell_nodes(face.cell)[node]];
       if (vertex < 0) vertex = add_vertex(face.cell, node, map);
       surface_.faces.push_back(vertex);
-      surface_.von_mises.push_back(
-          von_mises(symmetric_part<dim>(values_[node], out_of_plane_ratio(material))));
+      const std::array<double, 6> sigma = symmetric_part<dim>(values_[node], 0.0);
+      for (std::size_t i = 0; i < surface_.stress.size(); ++i)
+        surface_.stress[i].push_back(sigma[stress_entries<dim>[i]]);
     }
     surface_.cells.push_back(face.cell);
   }
@@ -167,6 +170,21 @@ class SurfaceSampler
   std::vector<Index> vertex_of_node_;
   Surface surface_;
 };
+
+/// Replaces the values at the lattice points by their mean on each face.
+void average_stress(Surface& surface)
+{
+  const std::size_t n = surface.n_face_points();
+  for (std::vector<double>& component : surface.stress)
+  {
+    for (std::size_t face = 0; face < surface.n_faces(); ++face)
+    {
+      const auto first = component.begin() + static_cast<std::ptrdiff_t>(face * n);
+      component[face] = std::reduce(first, first + static_cast<std::ptrdiff_t>(n)) / static_cast<double>(n);
+    }
+    component.resize(surface.n_faces());
+  }
+}
 
 SurfaceContact sample_contact(const NitscheForm<3>& form, std::span<const double> u, int k)
 {
@@ -218,6 +236,7 @@ Surface sample_surface(const NitscheForm<dim>& form, std::span<const double> u, 
   for (const Face& face : faces) sampler.add(face);
   Surface surface = std::move(sampler).take();
   if constexpr (dim == 3) surface.contact = sample_contact(form, u, k);
+  if (surface.n_triangles() > limits.stresses) average_stress(surface);
   if (surface.n_triangles() > limits.triangles) merge_details(surface, dim, limits.triangles);
   return surface;
 }

@@ -3,6 +3,7 @@
 /// @file page_surface.h
 /// The body as triangles for the report page: the cells in 2D, the boundary facets in 3D.
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@ struct PageLimits
 {
   std::size_t subdivided = 24'000;   ///< triangles up to which faces are subdivided, to show degree p
   std::size_t triangles = 240'000;   ///< triangles of a level; beyond, cells are merged
+  std::size_t stresses = 60'000;     ///< triangles up to which stresses are those of points, not of faces
   std::size_t all_levels = 360'000;  ///< triangles of all levels together; beyond, levels are left out
 };
 
@@ -44,14 +46,22 @@ struct Surface
   std::vector<double> displacement;  ///< dim components per vertex
   std::vector<Index> faces;          ///< vertices of the lattice, face by face
   std::vector<Index> cells;          ///< per face: its cell
-  std::vector<double> von_mises;     ///< of sigma_h at every lattice point of every face, where it may jump
-  double merged_below = 0.0;         ///< length below which details are merged; 0: nothing is
-  SurfaceContact contact;            ///< 3D: of the first faces, which are those of Gamma_C
+  /// sigma_h, component by component (xx, yy, xy; in 3D xx, yy, zz, xy, yz, xz): at every lattice point of
+  /// every face, where it may jump, or one value per face.
+  std::vector<std::vector<double>> stress;
+  double merged_below = 0.0;  ///< length below which details are merged; 0: nothing is
+  SurfaceContact contact;     ///< 3D: of the first faces, which are those of Gamma_C
 
   [[nodiscard]] std::size_t n_face_points() const { return (subdivision + 1) * (subdivision + 2) / 2; }
   [[nodiscard]] std::size_t n_faces() const { return cells.size(); }
   [[nodiscard]] std::size_t n_triangles() const { return n_faces() * subdivision * subdivision; }
 };
+
+/// Entries of symmetric_part() that a page has of a stress.
+template <int dim>
+inline constexpr std::array<int, 6> stress_entries = {0, 1, 2, 3, 4, 5};
+template <>
+inline constexpr std::array<int, 3> stress_entries<2> = {0, 1, 3};
 
 /// The surface of the body on one level.
 template <int dim>

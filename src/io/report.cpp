@@ -6,6 +6,7 @@
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "io/facts_json.h"
+#include "io/page_template.h"
 
 namespace tribound
 {
@@ -226,7 +227,8 @@ std::string convergence_csv(const RunRecord& run)
 {
   const bool regularised = std::ranges::any_of(run.levels, is_regularised);
   CsvTable table(
-      "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,total_sharp,relative,energy,"
+      "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,relative,"
+      "energy,"
       "contact_normal,contact_tangential,t_solve,t_certify,t_level" +
       (regularised ? regularisation_columns() + ",delta_updates" : std::string{}));
   for (const LevelRecord& level : run.levels)
@@ -258,7 +260,7 @@ std::string convergence_csv(const RunRecord& run)
 std::string newton_csv(const RunRecord& run)
 {
   const bool regularised = std::ranges::any_of(run.levels, is_regularised);
-  CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,accepted" +
+  CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,accepted" +
                  (regularised ? regularisation_columns() : std::string{}));
   for (const LevelRecord& level : run.levels)
     for (const CertifiedStep& record : level.newton)
@@ -276,14 +278,31 @@ std::string newton_csv(const RunRecord& run)
   return table.text();
 }
 
+std::string effective_file_name(const Config& config)
+{
+  const std::filesystem::path file = config.output.directory / "case.toml";
+  std::error_code none;
+  if (!std::filesystem::equivalent(file, config.file, none)) return "case.toml";
+  return read_text(file) == config.effective.text ? "case.toml" : "case_effective.toml";
+}
+
 std::string certificate_json(const RunRecord& run)
 {
-  Json object{{"schema", certificate_schema},    {"program", program_json(run.build)},
-              {"title", run.facts.title},        {"file", run.facts.file},
-              {"status", to_string(run.status)}, {"reason", text_or_null(run.reason)},
-              {"d", run.facts.dimension},        {"p", run.facts.degree},
-              {"friction", run.facts.friction},  {"gamma0", run.facts.gamma0}};
+  Json object{{"schema", certificate_schema},
+              {"program", program_json(run.build)},
+              {"title", run.facts.title},
+              {"file", run.facts.file},
+              {"case", effective_case_json(run)},
+              {"status", to_string(run.status)},
+              {"reason", text_or_null(run.reason)},
+              {"d", run.facts.dimension},
+              {"p", run.facts.degree},
+              {"friction", run.facts.friction},
+              {"gamma0", run.facts.gamma0}};
   if (!run.levels.empty()) add_results(object, run.levels.back());
+  object["balance"] = nullptr;
+  if (!run.levels.empty() && run.levels.back().balance)
+    object["balance"] = balance_json(*run.levels.back().balance);
   object["tolerance"] = run.tolerance;
   object["covered"] = run.statements.covered;
   object["law"] = run.statements.law;
@@ -302,6 +321,7 @@ std::string certificate_json(const RunRecord& run)
 
 void write_report(const std::filesystem::path& directory, const RunRecord& run)
 {
+  if (!run.effective.text.empty()) write_file(directory / run.case_file, run.effective.text);
   write_file(directory / "convergence.csv", convergence_csv(run));
   write_file(directory / "newton.csv", newton_csv(run));
   write_file(directory / "certificate.json", certificate_json(run));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adapt/level.h"
+#include "certify/balance.h"
 #include "certify/certificate.h"
 #include "contact/nitsche.h"
 #include "io/facts.h"
@@ -81,6 +82,7 @@ struct LevelRecord
   SolutionFigures figures;
   std::optional<Bound> bound;
   std::optional<IdentityDefects> identities;
+  std::optional<Balance> balance;  ///< where there is a bound
   LevelTimes times;
 };
 
@@ -116,6 +118,8 @@ struct RunRecord
   double tolerance = 0.0;  ///< of bound / ||sigma(u_h)||
   Statements statements;
   std::vector<RunWarning> warnings;                   ///< about the last level
+  EffectiveCase effective;                            ///< empty where the run is a part of something larger
+  std::string case_file = "case.toml";                ///< where it is written in the output directory
   std::vector<std::pair<std::string, double>> times;  ///< s per stage of the whole run
 };
 
@@ -125,11 +129,15 @@ struct RunRecord
 /// A row per Newton step of every level.
 [[nodiscard]] std::string newton_csv(const RunRecord& run);
 
+/// case.toml; case_effective.toml where the former is the file that was read and holds something else:
+/// nothing of the user's is ever replaced.
+[[nodiscard]] std::string effective_file_name(const Config& config);
+
 /// The certificate, JSON with the fields of docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
 
-/// Writes convergence.csv, newton.csv and certificate.json, the last one last. Throws InputError when a file
-/// cannot be written.
+/// Writes the effective case, convergence.csv, newton.csv and certificate.json, the last one last. Throws
+/// InputError when a file cannot be written.
 void write_report(const std::filesystem::path& directory, const RunRecord& run);
 
 }  // namespace tribound

@@ -31,6 +31,10 @@ template <int dim>
 [[nodiscard]] PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
                                    const PageLimits& limits = {});
 
+/// The inside of a body in 3D, as JSON; "null" in 2D, and beyond max_volume_cells.
+template <int dim>
+[[nodiscard]] std::string page_volume(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
+
 /// Leaves out levels between the first and the last, the largest first, until all have at most
 /// limits.all_levels triangles together.
 void drop_levels(std::vector<PageLevel>& levels, const PageLimits& limits);
@@ -67,6 +71,7 @@ class ReportPage
  private:
   PageTemplate template_;
   std::vector<PageLevel> levels_;
+  std::string volume_ = "null";  ///< of the last level
 };
 
 }  // namespace tribound

@@ -84,7 +84,9 @@ void add_pressure(const ContactOutcome& outcome, std::vector<RunWarning>& warnin
        fmt::format(
            "the contact pressure reaches {:.3g}, {:.2g} times its mean, where facets meet at an angle "
            "(up to {:.2g} degrees): a peak of the polygon, not of the curve behind it, that grows with "
-           "refinement; take a flat boundary and put its curvature into the gap",
+           "refinement; give the gap of the true shape along the obstacle's normal, such as "
+           "\"1-sqrt(1-x^2)\" in the place of \"y\" for an arc on a floor, or take a flat boundary with "
+           "the curvature in the gap",
            outcome.kink_pressure, ratio, outcome.kink),
        ratio, location(outcome.boundary, outcome.kink_at)});
 }

@@ -30,4 +30,16 @@ std::filesystem::path find_shared_file(const std::string& name)
   return {};
 }
 
+std::filesystem::path guide_directory()
+{
+  for (const std::filesystem::path& folder :
+       {program_directory() / ".." / TRIBOUND_RELATIVE_DOC / "docs", std::filesystem::path(TRIBOUND_GUIDE)})
+  {
+    std::error_code error;
+    std::filesystem::path directory = folder.lexically_normal();
+    if (std::filesystem::is_regular_file(directory / "case-format.md", error)) return directory;
+  }
+  return std::filesystem::path(TRIBOUND_DOC) / "docs";
+}
+
 }  // namespace tribound

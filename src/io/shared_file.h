@@ -14,4 +14,8 @@ namespace tribound
 /// none of them.
 [[nodiscard]] std::filesystem::path find_shared_file(const std::string& name);
 
+/// The folder of the guide, found in the same way: in the documentation of the installation, or in the
+/// sources.
+[[nodiscard]] std::filesystem::path guide_directory();
+
 }  // namespace tribound

@@ -239,7 +239,8 @@ std::string study_csv(const Study& study)
   const auto regularised = [](const StudyVariant& variant)
   { return std::ranges::any_of(variant.levels, is_regularised, &StudiedLevel::record); };
   CsvTable table(
-      "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,total_sharp,relative,"
+      "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
+      "relative,"
       "energy_error,stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,"
       "t_certify,t_level" +
       (std::ranges::any_of(study.variants, regularised) ? regularisation_columns() + ",delta_updates"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -88,6 +89,19 @@ struct Level
                             });
   }
 
+  [[nodiscard]] VtuArray principal(const TensorField<dim>& stress) const
+  {
+    return vtu_array<float>("principal_stresses", 3, n_points(),
+                            [this, &stress](const auto& put)
+                            {
+                              this->for_each_tensor(stress,
+                                                    [&put](const std::array<double, 6>& sigma)
+                                                    {
+                                                      for (const double s : principal_stresses(sigma)) put(s);
+                                                    });
+                            });
+  }
+
   [[nodiscard]] VtuArray equivalent(const TensorField<dim>& stress) const
   {
     return vtu_array<float>("von_mises", 1, n_points(),
@@ -147,6 +161,17 @@ double von_mises(const std::array<double, 6>& sigma)
   return std::sqrt(0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz));
 }
 
+std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma)
+{
+  const auto& [xx, yy, zz, xy, yz, xz] = sigma;
+  Eigen::Matrix3d matrix;
+  matrix << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(matrix, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d& values = solver.eigenvalues();
+  return {values[2], values[1], values[0]};
+}
+
 template <int dim>
 TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
                               std::span<const double> u)
@@ -199,7 +224,8 @@ void write_level_vtu(const std::filesystem::path& path, int level, const Problem
   grid.n_points = data.n_points();
   grid.points = {data.coordinates()};
   grid.cells = disjoint_cells(grid.n_cells, data.order.size(), vtk_lagrange_type<dim>);
-  grid.point_data = {data.displacement(), data.tensor(stress), data.equivalent(stress)};
+  grid.point_data = {data.displacement(), data.tensor(stress), data.principal(stress),
+                     data.equivalent(stress)};
   for (const TensorField<dim>& field : tensors) grid.point_data.push_back(data.tensor(field));
   grid.cell_data = {data.region()};
   for (const CellField& field : cell_fields)

@@ -58,11 +58,14 @@ template <int dim>
 /// Von Mises stress (3/2 dev sigma : dev sigma)^{1/2} of the symmetric tensor (xx, yy, zz, xy, yz, xz).
 [[nodiscard]] double von_mises(const std::array<double, 6>& sigma);
 
+/// Its eigenvalues, the largest first; tension positive.
+[[nodiscard]] std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma);
+
 /// Writes the cells of degree p with their own points each: points and `displacement` (3 components, z = 0 in
-/// 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz) and `von_mises` in
-/// single precision; cell data `region` and `cell_fields`. In 2D zz of every tensor follows from
-/// out_of_plane_ratio(). Needs memory for one cell beside its arguments.
-/// Throws InputError when the file cannot be written.
+/// 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz), `principal_stresses`
+/// and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz of every tensor
+/// follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws InputError when
+/// the file cannot be written.
 template <int dim>
 void write_level_vtu(const std::filesystem::path& path, int level, const Problem<dim>& problem,
                      const LagrangeSpace<dim>& space, std::span<const double> u,

@@ -1,9 +1,13 @@
 #include "mesh/gmsh_session.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmsh.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +41,10 @@ void attempt(const std::filesystem::path& file, const std::string& what, const s
   {
     step();
   }
+  catch (const std::bad_alloc&)
+  {
+    throw;
+  }
   catch (...)  // a std::string up to Gmsh 4.8, a std::runtime_error later; the log holds the text in any case
   {
     failed = true;
@@ -63,6 +71,28 @@ bool has_cells(int dim)
   return !types.empty();
 }
 
+/// Coordinates beyond this have squares and volumes outside the range of a double.
+constexpr double largest_coordinate = 1e60;
+
+/// Gmsh does not end where a point of the geometry is not finite, or absurdly far away.
+void check_points(const std::filesystem::path& file)
+{
+  gmsh::vectorpair points;
+  gmsh::model::getEntities(points, 0);
+  for (const auto& [dim, tag] : points)
+  {
+    std::vector<double> x;
+    gmsh::model::getValue(dim, tag, {}, x);
+    if (std::ranges::all_of(x, [](double xi) { return std::abs(xi) <= largest_coordinate; })) continue;
+    const bool finite = std::ranges::all_of(x, [](double xi) { return std::isfinite(xi); });
+    throw InputError(
+        {.file = file.string()},
+        fmt::format("point {} of the geometry is at ({}), {}", tag, fmt::join(x, ", "),
+                    finite ? fmt::format("beyond {:g}", largest_coordinate) : "which are not finite numbers"),
+        "mend its coordinates");
+  }
+}
+
 }  // namespace
 
 GmshSession::GmshSession(const std::filesystem::path& file)
@@ -70,16 +100,22 @@ GmshSession::GmshSession(const std::filesystem::path& file)
   gmsh::initialize(0, nullptr, false);
   try
   {
-    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::option::setNumber("General.Terminal", 1);    // signs of progress for the process that waits
+    gmsh::option::setNumber("General.NumThreads", 1);  // a copied process has no team of threads
     gmsh::logger::start();
     attempt(file, "read the file", "is it complete? gmsh itself shows more: gmsh " + file.filename().string(),
             [&] { gmsh::open(file.string()); });
     if (file.extension() != ".geo") return;
     const int dim = gmsh::model::getDimension();
+    check_points(file);
     if (dim >= 2 && !has_cells(dim))
+    {
+      // Errors go to the log instead of being thrown, within a team of threads where nobody catches them.
+      gmsh::option::setNumber("General.AbortOnError", 0);
       attempt(file, "mesh the geometry",
               fmt::format("gmsh itself shows more: gmsh -{} {}", dim, file.filename().string()),
               [&] { gmsh::model::mesh::generate(dim); });
+    }
   }
   catch (...)
   {
@@ -102,7 +138,10 @@ void check_mesh_file(const std::filesystem::path& file, const Where& where)
   if (!std::filesystem::exists(file, error)) fail("does not exist", "the path is relative to the case file");
   const std::string suffix = file.extension().string();
   if (suffix != ".msh" && suffix != ".geo")
-    fail("is neither a .msh nor a .geo", "Gmsh converts other formats: gmsh -save -o mesh.msh file");
+    fail("is neither a .msh nor a .geo",
+         "gmsh -save -o mesh.msh file converts .unv with its groups (.vtk, .bdf and .mesh lose their names); "
+         "a "
+         ".step or .iges is read by a .geo: Merge \"part.step\";");
   if (std::filesystem::is_directory(file, error)) fail("is a directory", "name the .msh or .geo file in it");
   if (std::filesystem::is_empty(file, error)) fail("is empty", "save the mesh again with Gmsh");
   std::ifstream stream(file, std::ios::binary);

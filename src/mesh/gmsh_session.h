@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file gmsh_session.h
-/// A Gmsh model loaded from a file, silently; the only place where Gmsh is started and stopped.
+/// A Gmsh model loaded from a file; the only place where Gmsh is started and stopped.
 
 #include <filesystem>
 
@@ -10,8 +10,7 @@
 namespace tribound
 {
 
-/// Gmsh holds one global state per process: one session at a time, and none while the caller of the library
-/// has started Gmsh on his own.
+/// Gmsh holds one global state per process: one session at a time. Its messages go to stdout and stderr.
 class GmshSession
 {
  public:

@@ -15,6 +15,7 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
   check_facets(data, topology);
   check_conformity(data, topology);
+  if (data.bisection_types.empty()) check_overlap(data, topology);  // bisection keeps the domain
   boundary_ = find_boundary(data, topology);
   check_vertices(data, topology);
 

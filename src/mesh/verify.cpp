@@ -16,6 +16,10 @@ namespace
 /// A cell with det J below this multiple of h_T^dim has no usable reference map.
 constexpr double smallest_shape = 1e-12;
 
+/// Coordinates and cells beyond these have volumes outside the range of a double.
+constexpr double largest_coordinate = 1e60;
+constexpr double smallest_diameter = 1e-60;
+
 template <int dim>
 bool same_vertices(Cell<dim> a, Cell<dim> b)
 {
@@ -145,6 +149,11 @@ void check_shapes(const MeshData<dim>& data)
   {
     const auto points = points_of<dim>(data.vertices, data.cells[c]);
     const double h = diameter(points);
+    if (h < smallest_diameter || h > largest_coordinate)
+      throw InputError(data.source,
+                       fmt::format("{} has the diameter {:.3g}, whose powers are not in the range of numbers",
+                                   describe_cell(data, static_cast<Index>(c)), h),
+                       "take other units of length");
     const double det = determinant(points);
     const double scale = dim == 2 ? h * h : h * h * h;
     if (det > smallest_shape * scale) continue;

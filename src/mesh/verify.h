@@ -30,6 +30,11 @@ void check_facets(const MeshData<dim>& data, const Topology<dim>& topology);
 template <int dim>
 void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology);
 
+/// No two cells overlap: the boundary does not cross itself, and no part of it lies inside other cells.
+/// O(n log n) in the facets of the boundary.
+template <int dim>
+void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology);
+
 /// The facets with one cell, in the order of their numbers, with the tags of data.facets. Every tagged facet
 /// must be one of them, in one group only.
 template <int dim>

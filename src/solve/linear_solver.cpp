@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/norm.h"
 #include "solve/petsc_detail.h"
@@ -11,6 +12,7 @@ namespace tribound
 {
 
 using detail::check;
+using detail::set_default_option;
 using detail::VecHandle;
 using detail::wrap;
 
@@ -63,14 +65,6 @@ bool iterate(KSP ksp, std::span<const double> b, StopRule& rule, std::span<doubl
   return reason > 0;
 }
 
-/// Sets an option of PETSc unless the user has set it.
-void set_default_option(const char* name, const char* value)
-{
-  PetscBool is_set = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, nullptr, name, &is_set), "setting solver options");
-  if (!is_set) check(PetscOptionsSetValue(nullptr, name, value), "setting solver options");
-}
-
 /// GMRES iterations that cost about as much as the factorisation in `ksp`. A model of counts, not of clocks,
 /// so that a run can be repeated to the last bit.
 int iterations_worth_a_factorisation(KSP ksp)
@@ -99,6 +93,22 @@ int iterations_worth_a_factorisation(KSP ksp)
   const double factorisation = per_flop * factor_flops + per_entry * n_entries;
   const double solve = per_entry_solve * n_entries + per_row_solve * n;
   return std::clamp(static_cast<int>(factorisation / solve), 3, 60);
+}
+
+/// Multigrid crashes on a matrix that has become 0, or no numbers, by under- or overflow.
+void check_magnitude(const SparseMatrix& a)
+{
+  double largest = 0;
+  bool finite = true;
+  for (const double entry : a.diagonal())
+  {
+    largest = std::max(largest, std::abs(entry));
+    finite = finite && std::isfinite(entry);
+  }
+  if (!finite || largest < std::numeric_limits<double>::min())
+    throw SolveError(
+        "the matrix leaves the range of numbers: look at the magnitude of material.E, of the mesh and of "
+        "nitsche.gamma0");
 }
 
 }  // namespace
@@ -160,14 +170,7 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
   check(PCFactorSetUpMatSolverType(pc), "creating a solver");
   Mat factors = nullptr;
   check(PCFactorGetMatrix(pc, &factors), "creating a solver");
-  check(MatMumpsSetIcntl(factors, 6, 0), "creating a solver");  // the diagonal is good: no column permutation
-  check(MatMumpsSetIcntl(factors, 14, 40), "creating a solver");  // room for pivoting, percent
-  // In 2D approximate minimum fill takes a quarter of the time of PORD, the ordering that MUMPS chooses, and
-  // the factorisation 25 % less to 15 % more (p = 1, 2, 4, 100k to 900k degrees of freedom); in 3D 30 % more.
-  // PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option.
-  if (dim_ != 2) return;
-  check(MatSetOptionsPrefix(factors, "tribound_2d_"), "creating a solver");
-  set_default_option("-tribound_2d_mat_mumps_icntl_7", "2");
+  detail::configure_mumps(factors, dim_);
 }
 
 void LinearSolver::configure_multigrid(const SparseMatrix& a)
@@ -199,6 +202,7 @@ void LinearSolver::configure_multigrid(const SparseMatrix& a)
 /// Makes a new preconditioner. Setting the operators again tells the KSP that its set-up is out of date.
 void LinearSolver::prepare(const SparseMatrix& a)
 {
+  check_magnitude(a);
   check(KSPSetOperators(ksp_.get(), a.handle(), a.handle()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
   check(KSPSetUp(ksp_.get()), "factorising");

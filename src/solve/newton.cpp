@@ -53,7 +53,9 @@ class Newton
   [[nodiscard]] std::vector<double> residual(std::span<const Point<dim>> traction,
                                              std::span<const double> ku) const;
   [[nodiscard]] double round_off() const;
-  [[nodiscard]] bool converged() const;
+  [[nodiscard]] bool in_balance() const { return residual_norm_ <= smallest_residual(); }
+  [[nodiscard]] double smallest_residual() const { return std::max(config_.tolerance * scale_, round_off()); }
+  [[nodiscard]] bool traction_settled() const;
   [[nodiscard]] double relative_residual() const
   {
     return scale_ > 0 ? residual_norm_ / scale_ : residual_norm_;
@@ -147,10 +149,21 @@ double Newton<dim>::round_off() const
   return 10 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
 }
 
+/// Whether t^k = T(u^k) as far as it matters: forces at the contact points, with a margin for their number,
+/// so that where degrees of freedom feel them all the residual decides.
 template <int dim>
-bool Newton<dim>::converged() const
+bool Newton<dim>::traction_settled() const
 {
-  return residual_norm_ <= std::max(config_.tolerance * scale_, round_off());
+  constexpr double margin = 100;
+  const std::vector<Point<dim>> t = form_.traction(u_, delta_);
+  double sum = 0;
+  for (std::size_t i = 0; i < t.size(); ++i)
+  {
+    const double measure = form_.contact_facets()[i / form_.n_facet_points()].geometry.measure * (dim - 1);
+    const double weight = measure * form_.facet_rule().weights[i % form_.n_facet_points()];
+    sum += (weight * (t[i] - traction_[i])).squaredNorm();
+  }
+  return std::sqrt(sum) <= margin * smallest_residual();
 }
 
 template <int dim>
@@ -173,7 +186,7 @@ double Newton<dim>::search(std::span<const double> direction, bool full_step)
     double norm = std::numeric_limits<double>::infinity();
     std::vector<double> u, ku, residual;
   } best;
-  const double good_enough = std::max(config_.tolerance * scale_, round_off());
+  const double good_enough = smallest_residual();
   double alpha = 1;
   for (int halvings = 0; halvings <= max_halvings; ++halvings, alpha /= 2)
   {
@@ -244,16 +257,22 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 {
   NewtonResult<dim> result;
   initialise(start);
+  const bool nothing_moves = start.empty() && residual_norm_ == 0;
   int without_progress = 0;
   for (int k = 1; k <= config_.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
   {
     const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && start.empty();
     const double before = residual_norm_;
-    NewtonStep report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
+    NewtonStep report{.step = k, .delta = delta_, .method = linear_solver_.method()};
+    if (!nothing_moves)
+      report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
     report.seconds = seconds_since(begin);
     result.steps.push_back(report);
-    const NewtonAdvice advice = observer ? observer({report, u_, traction_, converged()}) : false;
+    without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
+    const bool converged =
+        in_balance() && (k == config_.max_steps || without_progress > 0 || traction_settled());
+    const NewtonAdvice advice = observer ? observer({report, u_, traction_, converged}) : false;
     if (advice.delta)
     {
       regularise(*advice.delta);
@@ -261,8 +280,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
       continue;
     }
 
-    without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
-    if (converged())
+    if (converged)
       result.status = NewtonStatus::converged;
     else if (advice.good_enough)
       result.status = NewtonStatus::accepted;

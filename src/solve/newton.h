@@ -54,7 +54,7 @@ struct NewtonIterate
   const NewtonStep& step;
   std::span<const double> u;             ///< u^k
   std::span<const Point<dim>> traction;  ///< t^k
-  bool converged;                        ///< whether the residual is below the tolerance
+  bool converged;                        ///< the residual is below the tolerance, and t^k is T(u^k)
 };
 
 /// What an observer says about an iterate.

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file petsc.h
-/// PETSc behind values and RAII. Only this folder's petsc and linear_solver files touch Mat, Vec and KSP.
+/// PETSc behind values and RAII. Only the .cpp files of this folder touch Mat, Vec and KSP.
 
 #include <memory>
 #include <span>

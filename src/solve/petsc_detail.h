@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file petsc_detail.h
-/// What petsc.cpp and linear_solver.cpp share; includes PETSc's own headers.
+/// What the files of this folder that use PETSc share; includes PETSc's own headers.
 
 #include <petscksp.h>
 
@@ -26,5 +26,10 @@ using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 [[nodiscard]] VecHandle wrap(std::span<double> values);
 /// The same for reading: PETSc has no vectors of const.
 [[nodiscard]] VecHandle wrap(std::span<const double> values);
+
+/// Sets an option of PETSc unless the user has set it.
+void set_default_option(const char* name, const char* value);
+/// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
+void configure_mumps(Mat factors, int dim);
 
 }  // namespace tribound::detail

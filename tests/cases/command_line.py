@@ -99,11 +99,13 @@ def expected_completions(program):
         "tribound init --directory ": ["folder"],
         "tribound verify --refinements ": list("12345"),
         "tribound run --set ": [],
+        "tribound sweep --jobs ": list("1248"),
     }
     for command in commands(program):
         expected[f"tribound {command} --"] = [o for o in options(program, command) if o.startswith("--")]
-    for command in ["check", "run", "verify", "study"]:
+    for command in ["check", "run", "sweep", "verify", "study"]:
         expected[f"tribound {command} ca"] = ["case.toml"]
+    for command in ["check", "run", "verify", "study"]:
         expected[f"tribound {command} --quiet folder/"] = ["folder/inner.toml"]
     return expected
 

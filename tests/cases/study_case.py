@@ -18,7 +18,7 @@ TIME_LIMIT = 600  # seconds
 HERE = Path(__file__).resolve().parent
 VARIANTS = ["adaptive", "adaptive_converged", "uniform", "uniform_converged"]
 COLUMNS = (
-    "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,total_sharp,relative,energy_error,"
+    "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,relative,energy_error,"
     "stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,t_certify,t_level"
 )
 ADAPTIVE = ["newton.stopping=adaptive", "newton.tolerance=1e-10", "adapt.theta=0.6", "adapt.max_levels=12", "study.figures=false"]
@@ -85,7 +85,11 @@ def check_levels(study):
 def check_files(directory, study):
     """Whole files, the page where pages are written, and the true error of every cell in those of ParaView."""
     assert (directory / "report.html").exists() == (directory / "adaptive" / "report.html").exists(), "report.html"
-    leftovers = [file for file in directory.rglob("*") if file.is_file() and file.suffix not in (".csv", ".json", ".vtu", ".pvd", ".html")]
+    leftovers = [
+        file
+        for file in directory.rglob("*")
+        if file.is_file() and file.suffix not in (".csv", ".json", ".vtu", ".pvd", ".html", ".toml")
+    ]
     assert not leftovers, f"left behind: {leftovers}"
     for name in VARIANTS:
         files = sorted((directory / name).glob("level_*.vtu"))

@@ -27,7 +27,7 @@ def literals(folders):
     """All string literals of the sources, neighbours joined, as one text."""
     texts = []
     for folder in folders:
-        for file in sorted(folder.rglob("*.cpp")):
+        for file in sorted([*folder.rglob("*.cpp"), *folder.rglob("*.h")]):
             code = re.sub(r"^\s*//.*$", "", file.read_text(), flags=re.M)
             code = re.sub(r'"\s*\n\s*"', "", code)
             texts += [re.sub(r"\\(.)", r"\1", text) for text in re.findall(r'"((?:[^"\\\n]|\\.)*)"', code)]

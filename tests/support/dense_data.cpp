@@ -37,6 +37,8 @@ DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u
   const CellMap<dim> map = cell_map(mesh, c);
   std::vector<double> values(n);
   std::vector<Point<dim>> gradients(n);
+  cell.f.resize(rule.size());
+  form.data().body_force(c, cell.f);
   for (int q = 0; q < rule.size(); ++q)
   {
     const Point<dim> x = map(rule.points[q]);
@@ -45,7 +47,6 @@ DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u
     cell.sigma.push_back(
         sigma<dim>(form.problem().material(mesh.region(c)),
                    gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose)));
-    cell.f.push_back(form.problem().body_force(mesh.region(c), x));
     orthonormal_gradients<dim>(p, cell.reference(x), values, gradients);
     cell.phi.push_back(cell.basis(p, x));
     auto& dphi = cell.dphi.emplace_back();
@@ -115,15 +116,17 @@ std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form, std::spa
   }
   const std::vector<Point<dim>> T = form.traction(u);
   int contact = 0;
-  for (const BoundaryFacet& boundary : mesh.boundary())
+  std::vector<Point<dim>> load(form.n_facet_points());
+  for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
+    const BoundaryFacet& boundary = mesh.boundary()[number];
+    form.data().traction(number, load);
     DenseFacet<dim>& facet = facets[topology.cell_facets[boundary.cell][boundary.local]];
     facet.condition = &form.problem().boundary(boundary.tag);
     for (std::size_t q = 0; q < facet.points.size(); ++q)
     {
       const std::size_t i = contact * facet.points.size() + q;
-      facet.traction.push_back(
-          facet.condition->contact ? T[i] : facet.condition->load(facet.points[q].x, facet.normal));
+      facet.traction.push_back(facet.condition->contact ? T[i] : load[q]);
       const bool running = facet.condition->contact && mutation != Mutation::t_replaced_by_T;
       const Point<dim> lin = running ? Point<dim>(t[i] - T[i]) : Point<dim>(Point<dim>::Zero());
       facet.data.push_back({facet.points[q], {facet.traction[q], lin}});

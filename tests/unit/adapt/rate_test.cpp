@@ -27,17 +27,17 @@ TEST(Rate, OfAPower)
   EXPECT_NEAR(*fitted_rate(points), -0.75, 1e-14);
 }
 
-/// The last half: levels 2 to 4 of five, 2 and 3 of four.
+/// The last half: levels 2 to 4 of five, 3 to 5 of six.
 TEST(Rate, FittedOverTheLastHalf)
 {
-  for (const std::size_t n : {4, 5})
+  for (const std::size_t n : {5, 6})
   {
-    std::vector<RatePoint> points = power(-0.5, {10, 20, 40, 80, 160});
+    std::vector<RatePoint> points = power(-0.5, {10, 20, 40, 80, 160, 320});
     points.resize(n);
     points[0].value = 1000;
     points[1].value = 1e-3;
     EXPECT_NEAR(*fitted_rate(points), -0.5, 1e-14);
-    points[2].value *= 2;
+    points[n - 3].value *= 2;
     EXPECT_GT(std::abs(*fitted_rate(points) + 0.5), 0.1);
   }
 }
@@ -68,7 +68,7 @@ TEST(Rate, BetweenTwoPointsAPowerLaw)
 TEST(Rate, UnknownWhereThereIsNone)
 {
   EXPECT_FALSE(fitted_rate({}));
-  EXPECT_FALSE(fitted_rate(std::vector<RatePoint>{{10, 1}}));
+  EXPECT_FALSE(fitted_rate(std::vector<RatePoint>{{10, 1}, {20, 0.5}})) << "any two points are on a line";
   EXPECT_FALSE(rate_between({10, 1}, {10, 0.5}));
   EXPECT_FALSE(rate_between({10, 1}, {20, 0}));
 }

@@ -14,7 +14,9 @@ namespace tribound
 namespace
 {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::string mesh = "mesh.file = 'a.msh'\n";
 const std::string material = "material = {E = 1, nu = 0.3}\n";
@@ -161,6 +163,12 @@ std::vector<BadCase> values()
        "case.toml:4:7: output.vtu: ", "must be true or false, found the integer 1", "without quotes"},
       {"Report", head + "[output]\nreport = \"page.html\"\n",
        "case.toml:4:10: output.report: ", "must be true or false", "without quotes"},
+      {"NoCharacter", head + "[output]\ndirectory = \"a\\u0000\"\n",
+       "case.toml:4:13: output.directory: ", "holds the character \\u0000", "letters"},
+      {"YoungAbsurd", mesh + "[material]\nE = 5e-324\nnu = 0\n",
+       "case.toml:3:5: material.E: ", "must lie in [1e-60, 1e+60], found 5e-324", "units"},
+      {"LoadAbsurd", head + "[boundary.a]\ntraction = [0, 1e300]\n",
+       "case.toml:4:16: boundary.a.traction[1]: ", "is beyond all physics, 1e+300", "units"},
       {"NoDirectory", head + "[output]\ndirectory = ''\n", "case.toml:4:13: output.directory: ", "is empty",
        "\"out\""},
   };
@@ -239,6 +247,28 @@ std::vector<BadCase> combinations()
 std::string name_of(const testing::TestParamInfo<BadCase>& info)
 {
   return info.param.name;
+}
+
+/// toml++ recurses on both.
+TEST(DeepDocument, IsRefusedBeforeItIsParsed)
+{
+  std::string key = "a";
+  for (int i = 1; i < 20000; ++i) key += i == 15000 ? "\n= 1\n[b" : ".a";
+  const std::vector<std::string> texts = {"x = 1\n" + key + " = 1\n",
+                                          "x = 1\ny = " + std::string(100000, '['),
+                                          "x = 1\ny = " + std::string(100000, '{')};
+  for (const std::string& text : texts) try
+    {
+      (void)parse_config(text, "case.toml");
+      FAIL() << "accepted";
+    }
+    catch (const InputError& error)
+    {
+      EXPECT_THAT(error.what(), AllOf(StartsWith("case.toml:2:"), HasSubstr("nested more than 20 deep")));
+    }
+  const std::string harmless =
+      "title = \"[[[[[[[[[[[[[[[[[[[[[[ \\\" .......................\" # {{{{{{{{{{{{{{{{{{{{{{{\n";
+  EXPECT_EQ(parse_config(harmless + head, "case.toml").title.size(), 48u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Syntax, BadCaseFile, testing::ValuesIn(syntax()), name_of);

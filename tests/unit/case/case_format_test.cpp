@@ -275,6 +275,9 @@ std::map<std::string, std::function<std::string(const Config&, const Row&)>> def
        [](const Config& c, const Row&) { return "`\"" + c.output.directory.string() + "\"`"; }},
       {"output.vtu", [=](const Config& c, const Row&) { return truth(c.output.vtu); }},
       {"output.report", [=](const Config& c, const Row&) { return truth(c.output.report); }},
+      {"output.mesh", [=](const Config& c, const Row&) { return truth(c.output.mesh); }},
+      {"output.moment_about", [](const Config& c, const Row&)
+       { return c.output.moment_about.empty() ? "centroid of the body" : "given"; }},
   };
 }
 

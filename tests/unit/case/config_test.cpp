@@ -207,7 +207,7 @@ TEST(Config, HasTheDefaultsOfTheHeader)
   EXPECT_EQ(config.certify.contact_rule, ContactRule::resolved);
   EXPECT_EQ(config.solver.method, LinearMethod::automatic);
   EXPECT_EQ(config.solver.package, DirectPackage::automatic);
-  EXPECT_EQ(config.output.directory, "out");
+  EXPECT_EQ(config.output.directory, "out/case");
   EXPECT_TRUE(config.output.vtu);
   EXPECT_TRUE(config.output.report);
   EXPECT_TRUE(std::holds_alternative<Frictionless>(config.boundaries[0].contact->friction));

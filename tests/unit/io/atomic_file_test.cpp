@@ -9,8 +9,6 @@
 #include <iterator>
 #include <string>
 
-#include "base/error.h"
-
 namespace tribound
 {
 namespace
@@ -89,7 +87,7 @@ TEST_F(AtomicFileTest, NamesTheFileAndTheReasonOfAFailure)
     AtomicFile file(path);
     FAIL() << "opened a file in a directory that does not exist";
   }
-  catch (const InputError& error)
+  catch (const WriteError& error)
   {
     EXPECT_THAT(error.what(), AllOf(HasSubstr(path.string()), HasSubstr("No such file or directory"),
                                     HasSubstr("output.directory")));
@@ -132,7 +130,7 @@ TEST_F(AtomicFileTest, LeavesNothingBehindWhenTheDiskIsFull)
       for (int i = 0; i < 4; ++i) file.write(mebibyte);
       file.commit();
     }
-    catch (const InputError& error)
+    catch (const WriteError& error)
     {
       message = error.what();
     }
@@ -145,44 +143,15 @@ TEST_F(AtomicFileTest, ReportsAnErrorThatOnlyFlushingShows)
 {
   const fs::path path = directory / "small.txt";
   const FileSizeLimit limit(10);
-  EXPECT_THROW(write_file(path, std::string(100, 'x')), InputError);
+  EXPECT_THROW(write_file(path, std::string(100, 'x')), WriteError);
   EXPECT_EQ(n_files(), 0);
 }
 
 TEST_F(AtomicFileTest, DoesNotReplaceADirectory)
 {
   fs::create_directories(directory / "taken" / "inside");
-  EXPECT_THROW(write_file(directory / "taken", "text"), InputError);
+  EXPECT_THROW(write_file(directory / "taken", "text"), WriteError);
   EXPECT_EQ(n_files(), 1);
-}
-
-TEST_F(AtomicFileTest, OutputDirectoryIsCreatedAndLeftEmpty)
-{
-  const fs::path out = directory / "a" / "b";
-  prepare_output_directory(out);
-  EXPECT_TRUE(fs::is_empty(out));
-  EXPECT_NO_THROW(prepare_output_directory(out));
-}
-
-TEST_F(AtomicFileTest, OutputDirectoryThatCannotBe)
-{
-  const fs::path file = directory / "file";
-  write_file(file, "text");
-  const auto message = [](const fs::path& path) -> std::string
-  {
-    try
-    {
-      prepare_output_directory(path);
-    }
-    catch (const InputError& error)
-    {
-      return error.what();
-    }
-    return {};
-  };
-  EXPECT_THAT(message(file), AllOf(HasSubstr("output.directory"), HasSubstr("not a directory")));
-  EXPECT_THAT(message(file / "out"), AllOf(HasSubstr("output.directory"), HasSubstr("Not a directory")));
-  EXPECT_THAT(message("/proc/tribound"), HasSubstr("/proc/tribound"));
 }
 
 }  // namespace

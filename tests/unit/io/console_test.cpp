@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/balance_text.h"
+
 namespace tribound
 {
 namespace
@@ -99,7 +101,7 @@ TEST(Console, Level)
   level.bound = Bound{{}, 0.5, 0.25};
   level.times.level = 1.25;
   EXPECT_EQ(level_text(level),
-            "level 3            1234 cells       5678 dofs  newton  2  bound 12.5 %     1.25 s\n");
+            "level 3           1234 cells      5678 dofs  newton  2  bound 12.5 %    1.25 s\n");
 }
 
 TEST(Console, SummaryOfAFailedRun)
@@ -153,6 +155,32 @@ TEST(Console, SummaryJudgesSliding)
               "sliding       base: sliding factor H/N = 0.375, mu_F = 0.75: factor of safety mu_F N/H = 2\n"),
           HasSubstr("sliding       pad: sliding factor H/N = 0, mu_F = 0.5: no sliding force\n"),
           Not(HasSubstr("rail: sliding"))));
+}
+
+TEST(Console, BalanceShowsRoundingAsZero)
+{
+  const Balance plane = {{1, 0.5},
+                         {{BalanceKind::load, "box", "body force", {1e-15, -3}, {{1.5}}},
+                          {BalanceKind::reaction, "left", "displacement", {1.25, 0}, {{-1.5}}},
+                          {BalanceKind::contact, "bottom", "contact", {-1.25, 3}, {{0}}},
+                          {BalanceKind::sum, "", "", {0, -4e-16}, {{2e-16}}}}};
+  EXPECT_EQ(balance_text(plane),
+            "balance                                      force x      force y       moment\n"
+            "              load      box, body force            0           -3          1.5\n"
+            "              reaction  left                    1.25            0         -1.5\n"
+            "              contact   bottom                 -1.25            3            0\n"
+            "              sum                                  0            0            0\n"
+            "              on the body; moments about (1, 0.5)\n");
+}
+
+TEST(Console, BalanceOfDegreeOneLacksMoments)
+{
+  const Balance space = {{0, 0, 0},
+                         {{BalanceKind::reaction, "left", "displacement", {1, 2, 3}, {}},
+                          {BalanceKind::sum, "", "", {0, 0, 0}, {}}}};
+  EXPECT_THAT(balance_text(space), AllOf(HasSubstr("moment x     moment y     moment z\n"),
+                                         HasSubstr("3            -            -            -\n"),
+                                         HasSubstr("need degree 2 or more")));
 }
 
 TEST(Console, InfoLeavesOutWhatIsUnknown)

@@ -124,6 +124,60 @@ TEST(ContactCsv, NumbersReadBackExactly)
   EXPECT_EQ(written, computed);
 }
 
+/// Sums over the rows are the integrals of the program.
+template <int dim>
+void expect_integrals(const BoxCase<dim>& box, const std::vector<double>& u, const std::string& boundary)
+{
+  int tag = 0;
+  while (box.problem.boundary(tag).name != boundary) ++tag;
+  const Table table(contact_csv(box.form, u, 3));
+  double measure = 0;
+  double normal = 0;
+  double force = 0;
+  for (std::size_t row = 0; row < table.size(); ++row)
+  {
+    EXPECT_EQ(table.text(row, "level"), "3");
+    if (table.text(row, "boundary") != boundary) continue;
+    measure += table(row, "weight");
+    normal -= table(row, "weight") * table(row, "pressure");
+    force += table(row, "weight") * table(row, "traction_x");
+  }
+  const auto resultants = contact_resultants<dim>(box.form, box.form.traction(u), tag);
+  EXPECT_NEAR(measure, dim == 2 ? 2 : 1, 1e-14);
+  EXPECT_NEAR(normal, resultants.normal, 1e-14 * std::abs(resultants.normal));
+  EXPECT_NEAR(force, resultants.force[0], 1e-13 * resultants.force.norm());
+}
+
+TEST(ContactCsv, WeightsIntegrate)
+{
+  const BoxCase<2> plane(two_contacts);
+  expect_integrals<2>(plane,
+                      plane.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); }),
+                      "bottom");
+  const BoxCase<3> space(R"(
+degree = 1
+mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [2, 2, 2] } }
+material = { E = 1.0, nu = 0.3 }
+boundary.top.displacement = [0, 0, 0]
+boundary.back.contact = { friction = "coulomb", coefficient = 0.5 }
+)");
+  expect_integrals<3>(
+      space, space.interpolate([](const Point<3>& x) { return Point<3>(0.1 * x[1], 0, -0.1 * x[0]); }),
+      "back");
+}
+
+TEST(ContactCsv, RoundingOfCoordinatesIsZero)
+{
+  const BoxCase<2> box(two_contacts, [](MeshData<2>& data) { data.vertices[1][1] = 5.55e-17; });
+  const Table table(contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0)));
+  for (std::size_t row = 0; row < table.size(); ++row)
+    if (table.text(row, "boundary") == "bottom")
+    {
+      EXPECT_EQ(table.text(row, "y"), "0");
+      EXPECT_EQ(table.text(row, "nx"), "0");
+    }
+}
+
 TEST(ContactChains, OnePieceAroundACorner)
 {
   // The top is joined to the right side: the chain starts at the upper left corner and ends below.
@@ -212,7 +266,7 @@ contact = { friction = "coulomb", coefficient = 0.5, gap = 0 }
   const std::string csv = contact_csv(box.form, u);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
-            "slip_y,slip_z");
+            "slip_y,slip_z,weight,level");
   const Table table(csv);
   ASSERT_EQ(table.size(), 8u * box.form.n_facet_points());
   for (std::size_t row = 0; row < table.size(); ++row)

@@ -47,7 +47,7 @@ TEST_F(Figures, TheScriptGetsTheDirectory)
 TEST_F(Figures, WhatGoesWrongIsTold)
 {
   EXPECT_EQ(run_figure_script(script("exit 3"), directory_), "ended with exit code 3");
-  EXPECT_EQ(run_figure_script(script("kill -9 $$"), directory_), "was ended by signal 9");
+  EXPECT_EQ(run_figure_script(script("kill -9 $$"), directory_), "was ended by signal 9 (Killed)");
   EXPECT_THAT(run_figure_script(directory_ / "missing", directory_),
               ::testing::HasSubstr("cannot be started"));
 }

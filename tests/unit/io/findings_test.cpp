@@ -91,6 +91,17 @@ TEST(Findings, Corners)
   EXPECT_THAT(pushed.where, ElementsAre(2, 0));
 }
 
+TEST(Findings, GapLargerThanTheBody)
+{
+  Diagnosis diagnosis = healthy();
+  diagnosis.contacts[0].smallest_gap = 0;
+  diagnosis.contacts[0].largest_gap = diagnosis.loads.size;
+  EXPECT_EQ(finding(diagnosis, "gap").severity, Severity::ok);
+  diagnosis.contacts[0].largest_gap = 15 * diagnosis.loads.size;
+  EXPECT_EQ(finding(diagnosis, "gap").severity, Severity::warning);
+  EXPECT_THAT(finding(diagnosis, "gap").advice, HasSubstr("up to 15 times the size of the body"));
+}
+
 TEST(Findings, ContactSurface)
 {
   Diagnosis diagnosis = healthy();

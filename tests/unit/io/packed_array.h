@@ -42,28 +42,37 @@ inline std::vector<double> unpack(const nlohmann::json& packed)
   uLongf size = bytes.size();
   EXPECT_EQ(uncompress(bytes.data(), &size, compressed.data(), compressed.size()), Z_OK);
   EXPECT_EQ(size, count * width);
-  std::vector<double> values;
+  const std::size_t stride = packed["stride"];
+  std::vector<double> codes;
   for (std::size_t i = 0; i < count; ++i)
   {
     double code = 0;
     for (std::size_t byte = 0; byte < width; ++byte)
       code += std::ldexp(bytes[byte * count + i], static_cast<int>(8 * byte));
-    if (packed.contains("stride"))
-    {
-      const std::size_t stride = packed["stride"];
-      const double difference = std::fmod(code, 2) == 0 ? code / 2 : -(code + 1) / 2;
-      values.push_back(difference + (i < stride ? 0 : values[i - stride]));
-      continue;
-    }
-    const double offset = packed["offset"];
-    const double step = packed["step"];
-    const bool logarithmic = packed.value("log", false);
+    const double difference = std::fmod(code, 2) == 0 ? code / 2 : -(code + 1) / 2;
+    codes.push_back(difference + (i < stride ? 0 : codes[i - stride]));
+  }
+  if (!packed.contains("step")) return codes;
+  const double offset = packed["offset"];
+  const double step = packed["step"];
+  const bool logarithmic = packed.value("log", false);
+  std::vector<double> values;
+  for (const double code : codes)
     if (logarithmic)
       values.push_back(code == 0 ? 0 : std::pow(10, offset + step * (code - 1)));
     else
       values.push_back(offset + step * code);
-  }
   return values;
+}
+
+/// The text of pack_text().
+inline std::string unpack_text(const nlohmann::json& packed)
+{
+  const std::vector<unsigned char> compressed = from_base64(packed["text"].get<std::string>());
+  std::vector<unsigned char> bytes(1 << 20);
+  uLongf size = bytes.size();
+  EXPECT_EQ(uncompress(bytes.data(), &size, compressed.data(), compressed.size()), Z_OK);
+  return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
 }  // namespace tribound::test

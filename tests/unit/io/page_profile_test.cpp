@@ -26,6 +26,8 @@ TEST(PageProfile, ValuesAlongTheFloor)
     EXPECT_NEAR(profile.points[2 * i], profile.arc[i], 1e-14);
     EXPECT_NEAR(profile.points[2 * i + 1], 0.0, 1e-14);
     EXPECT_NEAR(profile.displacement[2 * i], 0.1 * profile.arc[i], 1e-14);
+    EXPECT_NEAR(profile.normal[2 * i], 0.0, 1e-14);
+    EXPECT_NEAR(profile.normal[2 * i + 1], -1.0, 1e-14);
     EXPECT_NEAR(profile.pressure[i], -constant_stress<2>()[1], 1e-12);
     EXPECT_NEAR(profile.friction[i], 0.0, 1e-12);
     EXPECT_NEAR(profile.gap[i], 0.0, 1e-14);

@@ -40,8 +40,10 @@ template <int dim>
 void expect_exact_values(const Surface& surface)
 {
   const auto [xx, yy, zz] = constant_stress<dim>();
-  const double mises = von_mises({xx, yy, zz, 0, 0, 0});
-  for (const double value : surface.von_mises) EXPECT_NEAR(value, mises, 1e-10);
+  const std::array<double, 6> sigma = {xx, yy, zz, 0, 0, 0};
+  ASSERT_EQ(surface.stress.size(), dim == 2 ? 3u : 6u);
+  for (std::size_t i = 0; i < surface.stress.size(); ++i)
+    for (const double value : surface.stress[i]) EXPECT_NEAR(value, sigma[stress_entries<dim>[i]], 1e-10);
   for (std::size_t v = 0; v < surface.points.size() / dim; ++v)
   {
     const Point<dim> u = constant_stress_displacement<dim>(Point<dim>(surface.points.data() + dim * v));
@@ -59,7 +61,7 @@ TEST(PageSurface, CellsIn2D)
     EXPECT_EQ(surface.subdivision, degree);
     EXPECT_EQ(surface.n_faces(), 18u);
     EXPECT_EQ(surface.points.size() / 2, (3u * degree + 1) * (3 * degree + 1));
-    EXPECT_EQ(surface.von_mises.size(), 18 * surface.n_face_points());
+    EXPECT_EQ(surface.stress[0].size(), 18 * surface.n_face_points());
     double area = 0;
     for (std::size_t face = 0; face < surface.n_faces(); ++face)
     {
@@ -124,6 +126,19 @@ TEST(PageSurface, LargeMeshesAreNotSubdivided)
   EXPECT_EQ(sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4 - 1}).subdivision, 1);
 }
 
+TEST(PageSurface, LargeMeshesHaveOneStressPerFace)
+{
+  const BoxCase<2> box(constant_stress_case<2>(1, 40));
+  const CertifiedLevel<2> level = constant_stress_level(box);
+  for (const std::size_t limit : {100'000u, 1000u})
+  {
+    const Surface surface = sample_surface<2>(box.form, level.u, level.stress,
+                                              {.subdivided = 0, .triangles = limit, .stresses = 3000});
+    EXPECT_EQ(surface.stress[0].size(), surface.n_faces());
+    expect_exact_values<2>(surface);
+  }
+}
+
 TEST(PageSurface, DetailsOfVeryLargeMeshesAreMerged)
 {
   const BoxCase<2> box(constant_stress_case<2>(1, 40));
@@ -136,7 +151,7 @@ TEST(PageSurface, DetailsOfVeryLargeMeshesAreMerged)
   EXPECT_GT(surface.merged_below, 0.01);
   EXPECT_LT(surface.merged_below, 0.2);
   EXPECT_EQ(surface.faces.size(), 3 * surface.n_faces());
-  EXPECT_EQ(surface.von_mises.size(), 3 * surface.n_faces());
+  EXPECT_EQ(surface.stress[0].size(), 3 * surface.n_faces());
   for (const Index v : surface.faces) EXPECT_LT(v, static_cast<Index>(surface.points.size() / 2));
   expect_exact_values<2>(surface);
   double area = 0;

@@ -104,6 +104,19 @@ def interpolate(array, nodes, weights):
     return [sum(w * array.GetComponent(i, a) for i, w in zip(nodes, weights)) for a in range(n)]
 
 
+def check_principal(values, s, name):
+    """They fall, and have the invariants of the stress."""
+    xx, yy, zz, xy, yz, xz = s
+    a, b, c = values
+    size = max(abs(x) for x in s)
+    check(a >= b >= c, f"{name}: principal stresses {values} do not fall")
+    check_close([a + b + c], [xx + yy + zz], 2e-6, f"{name}: trace")
+    second = xx * yy + yy * zz + zz * xx - xy**2 - yz**2 - xz**2
+    check(abs(a * b + b * c + c * a - second) <= 2e-6 * max(1.0, size) ** 2, f"{name}: second invariant of {s}")
+    third = xx * (yy * zz - yz**2) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+    check(abs(a * b * c - third) <= 4e-6 * max(1.0, size) ** 3, f"{name}: determinant of {s}")
+
+
 def check_level(path, dimension, degree, n_cells, rng):
     grid = read(path)
     name = path.name
@@ -119,6 +132,7 @@ def check_level(path, dimension, degree, n_cells, rng):
         check_close(
             [point.GetArray("von_mises").GetValue(i)], [von_mises(stress(gradient))], 2e-6, f"{name}: von_mises"
         )
+        check_principal(point.GetArray("principal_stresses").GetTuple(i), stress(gradient), name)
     for c, x, nodes, weights in random_points(grid, dimension, rng):
         u, gradient = displacement(dimension, degree, x)
         where = f"{name}, cell {c} at {x}"

@@ -91,18 +91,26 @@ TEST_F(ReportPageFile, FieldsOfALevel)
   ReportPage page(template_);
   page.add(0, box.form, constant_stress_level(box));
   std::ofstream(directory_ / "newton.csv") << "";
+  std::ofstream(directory_ / "contact.csv") << "boundary,facet\n";
   page.write(directory_, {});
   const json read = data();
-  EXPECT_EQ(read["files"], json::array({"newton.csv"}));
+  EXPECT_EQ(read["files"], json::array({"newton.csv", "contact.csv"}));
+  EXPECT_TRUE(read["volume"].is_null());
+  EXPECT_EQ(unpack_text(read["tables"]["contact.csv"]), "boundary,facet\n");
+  EXPECT_THAT(unpack_text(read["tables"]["convergence.csv"]), HasSubstr("level,cells,dofs"));
   ASSERT_EQ(read["fields"].size(), 1u);
   const json& level = read["fields"][0];
   EXPECT_EQ(level["dimension"], 2);
   EXPECT_EQ(level["cells"], 18);
   EXPECT_EQ(unpack(level["points"]).size(), 2u * 49);
   EXPECT_EQ(unpack(level["faces"]).size(), 18u * 6);
-  EXPECT_EQ(unpack(level["von_mises"]).size(), 18u * 6);
+  ASSERT_EQ(level["stress"].size(), 3u);
+  EXPECT_EQ(unpack(level["stress"][0]).size(), 18u * 6);
+  for (const double shear : unpack(level["stress"][2])) EXPECT_EQ(shear, 0.0);  // round-off beside the others
+  EXPECT_NEAR(level["out_of_plane"][0].get<double>(), 0.25, 1e-15);
   EXPECT_EQ(unpack(level["eta"]["tot"]).size(), 18u);
   EXPECT_EQ(level["profiles"][0]["boundary"], "bottom");
+  for (const double gap : unpack(level["profiles"][0]["gap"])) EXPECT_EQ(gap, 0.0);
   EXPECT_FALSE(level.contains("contact"));
   EXPECT_FALSE(level.contains("region"));
 }
@@ -114,6 +122,36 @@ TEST_F(ReportPageFile, ContactIn3D)
   EXPECT_EQ(level["level"], 3);
   EXPECT_EQ(unpack(level["contact"]["pressure"]).size(), 8u * 3);
   EXPECT_FALSE(level.contains("profiles"));
+}
+
+TEST_F(ReportPageFile, TablesThatAreTooLargeAreLeftOut)
+{
+  const BoxCase<2> box(constant_stress_case<2>(1, 2));
+  ReportPage page(template_);
+  page.add(0, box.form, constant_stress_level(box));
+  std::string text;
+  for (std::uint32_t i = 0, digits = 1; i < 100'000; ++i, digits *= 2654435761U)
+    text += std::to_string(digits) + "\n";
+  std::ofstream(directory_ / "contact.csv") << text;
+  page.write(directory_, {});
+  EXPECT_TRUE(data()["tables"]["contact.csv"].is_null());
+}
+
+TEST_F(ReportPageFile, TheInsideOfABodyIn3D)
+{
+  const BoxCase<3> box(constant_stress_case<3>(2, 2));
+  const json volume = json::parse(page_volume(box.form, constant_stress_level(box)));
+  EXPECT_EQ(unpack(volume["points"]).size(), 3u * 27);
+  EXPECT_EQ(unpack(volume["cells"]).size(), 4u * 48);
+  const std::vector<double> points = unpack(volume["points"]);
+  const std::vector<double> u = unpack(volume["displacement"]);
+  for (std::size_t v = 0; v < 27; ++v)
+  {
+    const Point<3> exact = constant_stress_displacement<3>(Point<3>(points.data() + 3 * v));
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(u[3 * v + c], exact[c], 1e-4);
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const double value : unpack(volume["stress"][i])) EXPECT_NEAR(value, constant_stress<3>()[i], 1e-9);
 }
 
 TEST_F(ReportPageFile, NothingIsWrittenWithoutATemplate)

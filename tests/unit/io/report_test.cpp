@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -57,30 +59,30 @@ TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
 {
   EXPECT_THAT(lines(convergence_csv(uncertified_run())),
               ::testing::ElementsAre(
-                  "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,total_sharp,"
+                  "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
                   "relative,energy,contact_normal,contact_tangential,t_solve,t_certify,t_level",
-                  "0,16,24,2,,,,,,,,,,,,0.1,-2,0.25,1.5,,2"));
+                  "0,16,24,2,,,,,,,,,,,,,0.1,-2,0.25,1.5,,2"));
 }
 
 TEST(Report, ConvergenceOfACertifiedRun)
 {
   EXPECT_EQ(lines(convergence_csv(certified_run()))[1],
-            "0,16,24,2,1,2,3,4,5,6,7,8,20,10,20,0.1,-2,0.25,1.5,0.25,2");
+            "0,16,24,2,1,2,3,4,5,6,7,8,0,20,10,20,0.1,-2,0.25,1.5,0.25,2");
 }
 
 TEST(Report, NewtonTable)
 {
   EXPECT_THAT(lines(newton_csv(certified_run())),
               ::testing::ElementsAre(
-                  "level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,total,accepted",
-                  "0,1,0.5,1,,,,,,,,,,0", "0,2,1e-12,0.5,1,2,3,4,5,6,7,8,20,1"));
+                  "level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,accepted",
+                  "0,1,0.5,1,,,,,,,,,,,0", "0,2,1e-12,0.5,1,2,3,4,5,6,7,8,0,20,1"));
 }
 
 TEST(Report, AStepWithoutABoundShowsItsLinearisationError)
 {
   RunRecord run = certified_run();
   run.levels[0].newton[0].linearisation = BoundComponents{.lin1 = 3, .lin2n = 2, .lin2t = 1};
-  EXPECT_EQ(lines(newton_csv(run))[1], "0,1,0.5,1,,,,3,,,2,1,,0");
+  EXPECT_EQ(lines(newton_csv(run))[1], "0,1,0.5,1,,,,3,,,2,1,,,0");
 }
 
 TEST(Report, TimesOfEveryStage)
@@ -132,6 +134,59 @@ TEST(Report, CertificateOfARegularisedRun)
   const json plain = json::parse(certificate_json(certified_run()));
   EXPECT_FALSE(plain.contains("regularisation"));
   EXPECT_FALSE(plain["components"].contains("reg1"));
+}
+
+Balance small_balance()
+{
+  return {{1, 0.5},
+          {{BalanceKind::load, "box", "body force", {0, -3}, {{1.5}}},
+           {BalanceKind::reaction, "left", "displacement", {0, 3}, {}},
+           {BalanceKind::sum, "", "", {0, 0}, {}}}};
+}
+
+TEST(Report, CertificateHasTheBalance)
+{
+  RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(certificate_json(run)).at("balance").is_null());
+  run.levels[0].balance = small_balance();
+  const json balance = json::parse(certificate_json(run))["balance"];
+  EXPECT_EQ(balance["about"], json({1, 0.5}));
+  EXPECT_EQ(balance["rows"][0], json({{"kind", "load"},
+                                      {"name", "box"},
+                                      {"source", "body force"},
+                                      {"force", {0, -3}},
+                                      {"moment", {1.5}}}));
+  EXPECT_TRUE(balance["rows"][1]["moment"].is_null());
+  EXPECT_EQ(balance["rows"][2]["kind"], "sum");
+  EXPECT_THAT(balance["note"].get<std::string>(), ::testing::HasSubstr("degree 2 or more"));
+}
+
+TEST(Report, CertificateNamesTheEffectiveCase)
+{
+  RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(certificate_json(run)).at("case").is_null());
+  run.effective = {"abc", {"degree=2"}};
+  EXPECT_EQ(json::parse(certificate_json(run))["case"],
+            json({{"file", "case.toml"},
+                  {"sha256", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+                  {"overrides", {"degree=2"}}}));
+}
+
+/// A case file that stands in the output directory is not replaced by something else.
+TEST(Report, EffectiveCaseDoesNotReplaceTheCaseOfTheUser)
+{
+  const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "effective_case";
+  std::filesystem::create_directories(directory);
+  Config config;
+  config.output.directory = directory;
+  config.effective.text = "degree = 1\n";
+  config.file = "elsewhere.toml";
+  EXPECT_EQ(effective_file_name(config), "case.toml");
+  config.file = directory / "case.toml";
+  std::ofstream(config.file) << "degree = 1 # with a comment\n";
+  EXPECT_EQ(effective_file_name(config), "case_effective.toml");
+  std::ofstream(config.file) << "degree = 1\n";
+  EXPECT_EQ(effective_file_name(config), "case.toml");
 }
 
 TEST(Report, CertificateOfAnUncertifiedRun)

@@ -1,5 +1,6 @@
 #include "io/vtu.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -26,6 +27,19 @@ TEST(Vtu, VonMises)
   EXPECT_DOUBLE_EQ(von_mises({-3.0, 0.0, 0.0, 0.0, 0.0, 0.0}), 3.0);
   EXPECT_DOUBLE_EQ(von_mises({2.0, 2.0, 2.0, 0.0, 0.0, 0.0}), 0.0);
   EXPECT_DOUBLE_EQ(von_mises({0.0, 0.0, 0.0, 0.0, 2.0, 0.0}), 2.0 * std::sqrt(3.0));
+}
+
+TEST(Vtu, PrincipalStresses)
+{
+  using ::testing::DoubleNear;
+  using ::testing::ElementsAre;
+  EXPECT_THAT(principal_stresses({-3.0, 1.0, 2.0, 0.0, 0.0, 0.0}),
+              ElementsAre(DoubleNear(2, 1e-14), DoubleNear(1, 1e-14), DoubleNear(-3, 1e-14)));
+  EXPECT_THAT(principal_stresses({0.0, 0.0, 0.0, 0.0, 2.0, 0.0}),
+              ElementsAre(DoubleNear(2, 1e-14), DoubleNear(0, 1e-14), DoubleNear(-2, 1e-14)));
+  // 4, 1, 1 in a basis that is turned about (1, 1, 1).
+  EXPECT_THAT(principal_stresses({2.0, 2.0, 2.0, 1.0, 1.0, 1.0}),
+              ElementsAre(DoubleNear(4, 1e-7), DoubleNear(1, 1e-7), DoubleNear(1, 1e-7)));
 }
 
 TEST(VtuFile, RefusesAnArrayOfWrongLength)

@@ -163,6 +163,24 @@ INSTANTIATE_TEST_SUITE_P(
          "0 0\n0 1 0\n"
          "$EndNodes\n$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n",
          {"physical group \"foot\" has no edges"}},
+        {"NumberBeyond32Bits",  // Gmsh crashes
+         "block.msh",
+         msh(square, {"2 2 1 1 1 2 3", "2 2 1 1 1 3 4"}).replace(114, 1, "2147483648"),
+         {"block.msh: Gmsh cannot read the file: it was ended by signal", "numbered", "Mesh.Renumber"}},
+        {"CrossingCurves",  // Gmsh ends the process
+         "block.geo",
+         "Point(1)={0,0,0,.3};Point(2)={1,1,0,.3};Point(3)={1,0,0,.3};Point(4)={0,1,0,.3};\n"
+         "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,1};\n"
+         "Curve Loop(1)={1,2,3,4};Plane Surface(1)={1};\n",
+         {"Gmsh cannot mesh the geometry: Unable to recover the edge", "gmsh -2 block.geo"}},
+        {"PointAtInfinity",  // Gmsh does not end
+         "block.geo",
+         rectangle_geo + "Point(5) = {1e400, 0, 0, 1};\n",
+         {"block.geo: point 5 of the geometry is at (inf, 0, 0), which are not finite numbers"}},
+        {"PointBeyondAllLengths",  // Gmsh does not end
+         "block.geo",
+         rectangle_geo + "Point(5) = {-36, -1e308, 0, 1};\n",
+         {"block.geo: point 5 of the geometry is at (-36, -1e+308, 0), beyond 1e+60"}},
         {"NoNewline",
          "block.geo",
          rectangle_geo + "Physical Surface(\"steel\") = {1};",
@@ -177,6 +195,23 @@ TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
         (void)read_gmsh({"nowhere/block.msh", {.file = "case.toml", .key = "mesh.file", .line = 3}});
       },
       {"case.toml:3: mesh.file: mesh file \"nowhere/block.msh\" does not exist", "relative to"});
+}
+
+/// A loop of 10^9 turns, in which Gmsh says nothing.
+TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
+{
+  const Directory directory;
+  const MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
+  expect_input_error([&] { (void)read_gmsh(source, nullptr, 0.3); },
+                     {"loop.geo: Gmsh shows no progress for 0.3 s and was ended", "gmsh -2"});
+}
+
+TEST(Gmsh, CanBeInterrupted)
+{
+  const Directory directory;
+  const MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW((void)read_gmsh(source, &stop), SolveError);
 }
 
 TEST(Gmsh, ADirectoryIsNotAFile)

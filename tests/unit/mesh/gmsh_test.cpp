@@ -190,6 +190,26 @@ TEST(Gmsh, ReadingTwiceGivesTheSame)
   EXPECT_TRUE(std::ranges::equal(first.vertices(), second.vertices()));
 }
 
+/// The process that meshes is a copy without the threads of this one; and what the program has loaded into
+/// Gmsh itself stays.
+TEST(Gmsh, ReadsBesideThreadsAndAnotherModel)
+{
+  const Directory directory;
+  const MeshFile source = directory.write("plane.geo", plane_geo);
+  int n_threads = 0;
+#pragma omp parallel num_threads(3) reduction(+ : n_threads)
+  n_threads += 1;
+  EXPECT_GE(n_threads, 1);
+  gmsh::initialize(0, nullptr, false);
+  gmsh::model::add("mine");
+  const auto mesh = std::get<Mesh<2>>(read_gmsh(source));
+  EXPECT_NEAR(volume(mesh), 3.0, 1e-14);
+  std::string name;
+  gmsh::model::getCurrent(name);
+  EXPECT_EQ(name, "mine");
+  gmsh::finalize();
+}
+
 }  // namespace
 
 }  // namespace tribound

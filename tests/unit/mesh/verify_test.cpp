@@ -65,6 +65,27 @@ TEST_P(PlaneFlaw, IsFound)
 INSTANTIATE_TEST_SUITE_P(
     Verify, PlaneFlaw,
     testing::ValuesIn(std::vector<Flaw<2>>{
+        {"BodyAcross",
+         [](Plane& m) {
+           add_cell<2>(m, {{-1, 0.7}, {3, 0.7}, {3, 0.8}}, {9, 10, 11});
+         },
+         {"the mesh overlaps itself: edge ", "of its boundary cross at (", "bodies must not intersect"}},
+        {"BodyInside",
+         [](Plane& m) {
+           add_cell<2>(m, {{0.2, 0.3}, {0.3, 0.3}, {0.2, 0.4}}, {9, 10, 11});
+         },
+         {"the mesh overlaps itself: edge ", "(0.3, 0.3)", "lies inside other cells"}},
+        {"BodyAroundAll",
+         [](Plane& m) {
+           add_cell<2>(m, {{-9, -8}, {9, -8}, {0, 9}}, {9, 10, 11});
+         },
+         {"the mesh overlaps itself: edge ", "lies inside other cells"}},
+        {"FarTooSmall",
+         [](Plane& m)
+         {
+           for (Point<2>& x : m.vertices) x *= 1e-100;
+         },
+         {"triangle 0", "has the diameter 1.41e-100, whose powers are not in the range of numbers"}},
         {"NoCells", [](Plane& m) { m.cells.clear(), m.regions.clear(); }, {"has no cells"}},
         {"NotFinite", [](Plane& m) { m.vertices[4][1] = nan; }, {"vertex 4", "(1, nan)", "not finite"}},
         {"VertexOutOfRange",
@@ -188,6 +209,17 @@ INSTANTIATE_TEST_SUITE_P(
            add_cell<3>(m, {{0.5, 0.5, 1}}, {0, 1, 4, 27});
          },
          {"overlap", "face (0, 0, 0), (1, 0, 0), (1, 1, 0)"}},
+        {"BodyAcross",  // no vertex in another cell
+         [](Solid& m) {
+           add_cell<3>(m, {{-1, 0.7, 0.6}, {3, 0.7, 0.6}, {3, 0.8, 0.6}, {3, 0.7, 0.7}}, {27, 28, 29, 30});
+         },
+         {"the mesh overlaps itself: face ", "of its boundary cross at (2, 0.", "bodies must not intersect"}},
+        {"BodyInside",
+         [](Solid& m) {
+           add_cell<3>(m, {{0.2, 0.3, 0.4}, {0.3, 0.3, 0.4}, {0.2, 0.4, 0.4}, {0.2, 0.3, 0.5}},
+                       {27, 28, 29, 30});
+         },
+         {"the mesh overlaps itself: face ", "(0.3, 0.3, 0.4)", "lies inside other cells"}},
         {"HangingVertexOnAFace",
          [](Solid& m) {
            add_cell<3>(m, {{2.0, 0.5, 0.25}, {3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {27, 28, 29, 30});

@@ -228,6 +228,27 @@ TEST(Newton, NoLoadNoDisplacement)
   EXPECT_EQ(norm(result.u), 0);
 }
 
+/// The corner points of the contact facet are held: no free degree of freedom feels the contact traction, and
+/// the first step, closed and sticking, leaves no residual. The contact is open all the same.
+TEST(Newton, ConvergedMeansThatTheTractionIsThatOfTheSolution)
+{
+  MeshData<2> data{.vertices = {{0, 0}, {1, 0}, {0.5, 1}, {0.5, 0.4}},
+                   .cells = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
+                   .regions = {0, 0, 0},
+                   .facets = {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}},
+                   .region_names = {"body"},
+                   .boundary_names = {"bottom", "sides"},
+                   .source = {}};
+  const DiscreteCase<2> c(
+      "degree = 1\nmaterial = { E = 1, nu = 0.3 }\nboundary.sides.displacement = [\"0.01*x\", 0]\n"
+      "boundary.bottom.contact = { friction = \"none\", gap = 0.1 }",
+      data);
+  const NewtonResult<2> result = c.solve();
+  ASSERT_EQ(result.status, NewtonStatus::converged) << result.message;
+  EXPECT_EQ(result.steps.size(), 2u);
+  for (const Point<2>& t : result.traction) EXPECT_LE(t.norm(), 1e-12);
+}
+
 }  // namespace
 
 }  // namespace tribound::test

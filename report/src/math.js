@@ -1,0 +1,65 @@
+// Formulas: those in the texts of the program, which are plain ASCII, and those of the bound, as MathML.
+
+import { element } from "./dom.js";
+
+const row = (...children) => element("math:mrow", {}, ...children);
+const i = (name, upright = false) => element("math:mi", upright ? { mathvariant: "normal" } : {}, name);
+const o = (sign, attributes = {}) => element("math:mo", attributes, sign);
+const n = (value) => element("math:mn", {}, String(value));
+const sub = (base, index) => element("math:msub", {}, base, index);
+const sup = (base, exponent) => element("math:msup", {}, base, exponent);
+const bracket = (open, inner, close) => row(o(open, { fence: "true", stretchy: "false" }), ...inner, o(close, { fence: "true", stretchy: "false" }));
+const norm = (...inner) => bracket("\u2016", inner, "\u2016");
+const sigma = () => i("\u03c3");
+const residual = () => bracket("\u27e8", [i("R"), bracket("(", [sub(i("u"), i("h"))], ")"), o(","), i("v")], "\u27e9");
+const gradientNorm = () => sup(norm(i("\u2207", true), i("v")), n(2));
+const facetNorm = () => element("math:msubsup", {}, norm(i("v")), i("F"), n(2));
+const sumOver = (index) => sub(o("\u2211", { movablelimits: "false" }), i(index));
+
+/** What the texts contain, the longest first, and how it is set. */
+const fragments = [
+  ["||grad v||^2", () => [gradientNorm()]],
+  ["||v||_F^2 / h_F", () => [facetNorm(), o("/"), sub(i("h"), i("F"))]],
+  ["||sigma(u_h)||", () => [norm(sigma(), bracket("(", [sub(i("u"), i("h"))], ")"))]],
+  ["||sigma_h||", () => [norm(sub(sigma(), i("h")))]],
+  ["||sigma||", () => [norm(sigma())]],
+  ["<R(u_h), v>", () => [residual()]],
+  ["sigma(u_h)", () => [sigma(), bracket("(", [sub(i("u"), i("h"))], ")")]],
+  ["sum_F", () => [sumOver("F")]],
+  ["sigma_h", () => [sub(sigma(), i("h"))]],
+  ["gamma_0", () => [sub(i("\u03b3"), n(0))]],
+  ["mu_F", () => [sub(i("\u03bc"), i("F"))]],
+  ["u_h", () => [sub(i("u"), i("h"))]],
+  ["h_F", () => [sub(i("h"), i("F"))]],
+  ["H^1", () => [sup(i("H"), n(1))]],
+  ["L^(3/2)", () => [sup(i("L", true), row(n(3), o("/"), n(2)))]],
+];
+const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+const pattern = new RegExp(`(${fragments.map(([text]) => escaped(text)).join("|")})(?![\\w])`);
+
+/** A text of the program as children of an element, with its formulas set; as alternative text they stay as they are. */
+export function typeset(text) {
+  const setting = Object.fromEntries(fragments);
+  return text.split(pattern).filter(Boolean).map((part) => (setting[part] ? element("math:math", { alttext: part }, ...setting[part]()) : part));
+}
+
+const eta = (name) => sub(i("\u03b7"), element("math:mtext", {}, name));
+const total = () => sub(i("\u03b7"), element("math:mtext", {}, "tot"));
+const squared = (names) => sup(bracket("(", names.flatMap((name, k) => (k === 0 ? [eta(name)] : [o("+"), eta(name)])), ")"), n(2));
+const display = (...children) => element("math:math", { display: "block" }, ...children);
+
+/** The bound from its components, each a sum over the cells T; `components`: those there are. */
+export function boundFormula(components) {
+  const groups = [["osc", "str", "neu", "lin1", "reg1"], ["cnt", "lin2n", "reg2n"], ["frc", "lin2t", "reg2t"]]
+    .map((names) => names.filter((name) => components[name] !== undefined)).filter(({ length }) => length > 0);
+  const sum = groups.flatMap((names, k) => (k === 0 ? [squared(names)] : [o("+"), squared(names)]));
+  return display(sup(total(), n(2)), o("="), sumOver("T"), bracket("[", sum, "]"));
+}
+
+/** What is guaranteed. */
+export function guaranteeFormula() {
+  const v = row(i("v"), o("\u2208"), sup(i("H"), n(1)));
+  const root = element("math:msqrt", {}, gradientNorm(), o("+"), sumOver("F"), facetNorm(), o("/"), sub(i("h"), i("F")));
+  return display(element("math:munder", {}, o("max", { movablelimits: "false" }), v),
+    element("math:mfrac", {}, residual(), root), o("\u2264"), total());
+}

@@ -1,0 +1,46 @@
+#pragma once
+
+/// @file apart.h
+/// Work in a process of its own, which may crash, hang or use up memory without harm to this one.
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+namespace tribound
+{
+
+struct ApartLimits
+{
+  double silence = 300;                     ///< s without a word of output or a byte of the result
+  double memory = 0;                        ///< bytes beyond what this process has; 0: no limit
+  const std::atomic<bool>* stop = nullptr;  ///< once true, the work is given up
+};
+
+enum class ApartEnd
+{
+  complete,
+  crashed,
+  silent,  ///< ended by ApartLimits::silence
+  stopped  ///< ended by ApartLimits::stop
+};
+
+struct ApartOutcome
+{
+  ApartEnd end = ApartEnd::crashed;
+  std::string result{};  ///< what `work` has returned, if complete
+  std::string output{};  ///< the last of what it has printed
+  int status = 0;        ///< as of waitpid()
+};
+
+/// Runs `work` in a copy of this process (fork), and hands over what it returns; its output on stdout and
+/// stderr is kept, not shown. `work` must not throw, nor use threads or OpenMP teams that this process has
+/// started. The copy is gone when this returns, and ends with this process should that be killed. Throws
+/// SolveError where the system has no process to give.
+[[nodiscard]] ApartOutcome run_apart(const std::function<std::string()>& work,
+                                     const ApartLimits& limits = {});
+
+/// "was ended by signal 11 (Segmentation fault)", "ended with exit code 1"; empty for success.
+[[nodiscard]] std::string describe_end(int status);
+
+}  // namespace tribound

@@ -1,0 +1,77 @@
+#include "case/formula_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tribound
+{
+namespace
+{
+
+int sign_of(double value)
+{
+  return value < 0.0 ? negative : value > 0.0 ? positive : zero;
+}
+
+}  // namespace
+
+int signs_in(const Enclosure& a)
+{
+  return (a.lower < 0.0 ? negative : 0) | (a.contains(0.0) ? zero : 0) | (a.upper > 0.0 ? positive : 0);
+}
+
+Region::Region(std::span<const double> vertices, int dim, bool open)
+    : vertices_(vertices), dim_(dim), n_vertices_(static_cast<int>(vertices.size()) / dim), open_(open)
+{
+  for (int i = 0; i < n_vertices_; ++i)
+    for (int k = 0; k < dim_; ++k) centre_[k] += vertices_[i * dim_ + k] / n_vertices_;
+}
+
+Region::Range Region::range_of(const AffineForm& form) const
+{
+  Range range = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0.0};
+  for (int i = 0; i < n_vertices_; ++i)
+  {
+    const auto x = vertices_.subspan(i * dim_, dim_);
+    const double value = form.value(x);
+    range.lower = std::min(range.lower, value);
+    range.upper = std::max(range.upper, value);
+    range.scale = std::max(range.scale, form.scale(x));
+  }
+  return range;
+}
+
+IntervalSeries Region::series(const AffineForm& form, int n_known) const
+{
+  const bool is_literal = form.is_number() && form.n_operations == 1;
+  if (is_literal) return constant_series(exactly(form.c[3]), n_known);
+  const Range range = range_of(form);
+  const double e = form.rounding(range.scale);
+  const double at_centre = form.value(centre());
+  IntervalSeries result = constant_series({range.lower - e, range.upper + e}, n_known);
+  if (result.n_known < 2 || form.is_number()) return result;
+  result.c[1] = {range.lower - at_centre - 2 * e, range.upper - at_centre + 2 * e};
+  result.length = 2;
+  return result;
+}
+
+int Region::signs(const AffineForm& form) const
+{
+  constexpr double relative_rounding = 1e-12;
+  if (form.is_constant()) return sign_of(form.c[3]);
+  const Range range = range_of(form);
+  if (!std::isfinite(range.scale)) return any_sign;
+  if (!open_)
+  {
+    const double e = form.rounding(range.scale);
+    return signs_in({range.lower - e, range.upper + e});
+  }
+  const double tolerance = relative_rounding * range.scale;
+  const bool never_below = range.lower >= -tolerance;
+  const bool never_above = range.upper <= tolerance;
+  if (never_below && never_above) return sign_of(form.value(centre()));
+  return never_below ? positive : never_above ? negative : any_sign;
+}
+
+}  // namespace tribound

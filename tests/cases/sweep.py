@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Sweeps a case through the program: grids, tables, exit codes, going on after an interruption.
+
+    sweep.py PROGRAM DIRECTORY
+"""
+
+import csv
+import hashlib
+import json
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+CASE = """\
+degree = 1
+[mesh]
+box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }
+[material]
+E = 1
+nu = 0.3
+[boundary.left]
+displacement = [0, "free"]
+[boundary.top]
+traction = [0.01, -0.1]
+[boundary.bottom]
+contact = { friction = "coulomb", coefficient = 0.5 }
+[adapt]
+tolerance = 0.3
+[output]
+vtu = false
+report = false
+"""
+COEFFICIENT = "boundary.bottom.contact.coefficient"
+
+
+def tribound(program, directory, *arguments, code=0):
+    result = subprocess.run([program, "sweep", *arguments], cwd=directory, capture_output=True, text=True, timeout=300)
+    assert result.returncode == code, f"{arguments}: exit code {result.returncode}, expected {code}\n{result.stdout}{result.stderr}"
+    return result.stdout + result.stderr
+
+
+def rows(directory):
+    return list(csv.DictReader((directory / "sweep.csv").open()))
+
+
+def check_grid(program, directory):
+    tribound(program, directory, "case.toml", "degree=[1, 2]", f"{COEFFICIENT}=0.3:0.5:3", "--jobs", "2")
+    sweep = directory / "out/case/sweep"
+    table = rows(sweep)
+    assert [(row["degree"], row[COEFFICIENT]) for row in table] == [(p, mu) for p in "12" for mu in ("0.3", "0.4", "0.5")]
+    assert [row["run"] for row in table] == [f"{i:04}" for i in range(1, 7)]
+    for row, record in zip(table, json.loads((sweep / "sweep.json").read_text())["runs"], strict=True):
+        certificate = json.loads((sweep / row["run"] / "certificate.json").read_text())
+        assert row["status"] == "certified" == certificate["status"] and record["exit_code"] == 0
+        assert certificate["p"] == int(row["degree"])
+        assert record["sha256"] == hashlib.sha256((sweep / row["run"] / "case.toml").read_bytes()).hexdigest()
+        for name in ("relative", "bound", "cells", "dofs"):
+            assert float(row[name]) == certificate[name] == record[name], name
+        bottom = certificate["contact"]["boundaries"]["bottom"]
+        assert float(row["contact_normal"]) == bottom["normal"]
+        assert float(row["sliding_factor.bottom"]) == bottom["sliding"]["sliding_factor"]
+        # By statics, top: (0.02, -0.2); the roller and the floor take the push together.
+        reaction = next(part for part in certificate["balance"]["rows"] if part["kind"] == "reaction")
+        assert float(row["reaction_x.left"]) == reaction["force"][0] and float(row["reaction_y.left"]) == 0
+        points = list(csv.DictReader((sweep / row["run"] / "contact.csv").open()))
+        assert float(row["largest_pressure"]) == max(float(point["pressure"]) for point in points)
+        assert abs(float(row["opened"]) - sum(float(p["weight"]) for p in points if p["status"] == "0")) < 1e-12
+        assert "certified" in (sweep / row["run"] / "log.txt").read_text()
+
+
+def check_exit_codes(program, directory):
+    tribound(program, directory, "case.toml", "adapt.tolerance=[0.5, 1e-9]", "--set", "adapt.max_levels=1", code=3)
+    assert [row["status"] for row in rows(directory / "out/case/sweep")] == ["certified", "budget"]
+    tribound(program, directory, "case.toml", "newton.max_steps=[1, 50]", "--set", "newton.stopping=tolerance", code=2)
+    assert [row["status"] for row in rows(directory / "out/case/sweep")] == ["failed", "certified"]
+    # A boundary that does not exist shows only with the mesh; a key that does not exist at once.
+    tribound(program, directory, "case.toml", "boundary.lid.traction=[[0, 0], [0, 1]]", code=1)
+    assert [row["status"] for row in rows(directory / "out/case/sweep")] == ["bad input", "bad input"]
+    shutil.rmtree(directory / "out")
+    for arguments in (["case.toml", "degre=[1, 2]"], ["case.toml", "degree=[1, 9]"], ["case.toml"], ["case.toml", "degree"]):
+        assert "hint:" in tribound(program, directory, *arguments, code=1)
+    assert not (directory / "out").exists()
+
+
+def check_table(program, directory):
+    (directory / "runs.csv").write_text('degree,boundary.top.traction\n1,"[0, -0.1]"\n2,"[0, ""-0.1*x""]"\n')
+    tribound(program, directory, "case.toml", "--table", "runs.csv", "--set", "output.directory=by table")
+    table = rows(directory / "by table/sweep")
+    assert [row["boundary.top.traction"] for row in table] == ["[0, -0.1]", '[0, "-0.1*x"]']
+    assert [abs(float(row["contact_normal"]) + force) < 1e-6 for row, force in zip(table, (0.2, 0.2))] == [True, True]
+
+
+def check_resume(program, directory):
+    """Interrupted in the second of three runs, then taken up again."""
+    tolerances = "adapt.tolerance=[0.5, 0.0005, 0.4]"
+    sweep = directory / "out/case/sweep"
+    with subprocess.Popen([program, "sweep", "case.toml", tolerances], cwd=directory, stdout=subprocess.PIPE, text=True) as process:
+        end = time.monotonic() + 120
+        while not (sweep / "0002/certificate.json").exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=120)
+    assert process.returncode == 3, process.returncode
+    assert [row["status"] for row in rows(sweep)] == ["certified", "budget", "not run"]
+    assert "interrupted" in rows(sweep)[1]["reason"]
+
+    before = (sweep / "0001/certificate.json").stat().st_mtime_ns
+    tribound(program, directory, "case.toml", "adapt.tolerance=[0.5, 0.45, 0.4]", "--resume")
+    assert [row["status"] for row in rows(sweep)] == ["certified"] * 3
+    assert (sweep / "0001/certificate.json").stat().st_mtime_ns == before, "what is complete is kept"
+    said = tribound(program, directory, "case.toml", "adapt.tolerance=[0.5, 0.45, 0.4]", "--resume", "--set", "degree=2")
+    assert "kept" not in said, "another case is solved again"
+
+
+def main():
+    program, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    (directory / "case.toml").write_text(CASE)
+    for check in (check_grid, check_exit_codes, check_table, check_resume):
+        shutil.rmtree(directory / "out", ignore_errors=True)
+        check(program, directory)
+    print("sweeps are as they should be")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,177 @@
+"""A case file as the judge understands it: docs/case-format.md. Meshes are known by the places of their groups alone."""
+
+import re
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from formulas import formula
+
+NUMBER = r"[-+]?[\d.]+(?:[eE][-+]?\d+)?"
+
+
+@dataclass
+class Material:
+    """sigma = lam tr(eps) I + 2 mu eps; plane stress: lam is the reduced one."""
+
+    E: float
+    lam: float
+    mu: float
+
+
+@dataclass
+class Condition:
+    """What holds on a named boundary."""
+
+    displacement: list  # per component a Formula or None
+    traction: list  # Formulas
+    pressure: object  # Formula
+    contact: dict | None = None  # friction, gap, threshold, coefficient
+
+
+@dataclass
+class Case:
+    file: Path
+    table: dict
+    dimension: int
+    sides: dict  # boundary -> simplices x (dimension) x dimension
+    areas: dict = field(default_factory=dict)  # region -> measure, where known
+
+    @property
+    def degree(self):
+        return self.table.get("degree", 1)
+
+    @property
+    def gamma0(self):
+        default = 10.0 if self.degree <= 3 else 48.0
+        return float(self.table.get("nitsche", {}).get("gamma0", default))
+
+    def get(self, dotted, default):
+        value = self.table
+        for key in dotted.split("."):
+            if not isinstance(value, dict) or key not in value:
+                return default
+            value = value[key]
+        return value
+
+    def material(self, region):
+        common = self.table["material"]
+        own = common[region] if isinstance(common.get(region), dict) else common
+        plane = own.get("plane", common.get("plane", "strain"))
+        E, nu = float(own["E"]), float(own["nu"])
+        lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+        return Material(E, 2 * lam * mu / (lam + 2 * mu) if plane == "stress" else lam, mu)
+
+    def body_force(self, region):
+        common = self.table.get("load", {})
+        own = common[region] if isinstance(common.get(region), dict) else common
+        return [formula(f) for f in own.get("body", [0] * self.dimension)]
+
+    def condition(self, name):
+        own = self.table.get("boundary", {}).get(name, {})
+        fixed = own.get("displacement", ["free"] * self.dimension)
+        contact = own.get("contact")
+        if contact is not None:
+            contact = {
+                "friction": contact.get("friction", "none"),
+                "gap": formula(contact.get("gap", 0)),
+                "threshold": formula(contact.get("threshold", 0)),
+                "coefficient": float(contact.get("coefficient", 0)),
+            }
+        return Condition(
+            [None if f == "free" else formula(f) for f in fixed],
+            [formula(f) for f in own.get("traction", [0] * self.dimension)],
+            formula(own.get("pressure", 0)),
+            contact,
+        )
+
+
+def read_case(file):
+    file = Path(file)
+    table = tomllib.loads(file.read_text())
+    mesh = table["mesh"]
+    if "box" in mesh:
+        return Case(file, table, len(mesh["box"]["lower"]), *box(mesh["box"]))
+    path = file.parent / mesh["file"]
+    sides, areas = (geo if path.suffix == ".geo" else msh)(path.read_text())
+    return Case(file, table, next(iter(sides.values())).shape[2], sides, areas)
+
+
+def box(table):
+    lower, upper = np.array(table["lower"], float), np.array(table["upper"], float)
+    names = ["left", "right", "bottom", "top", "back", "front"]
+    sides = {}
+    for axis in range(len(lower)):
+        for end, at in enumerate((lower, upper)):
+            others = [a for a in range(len(lower)) if a != axis]
+            corners = np.tile(at, (2 ** len(others), 1))
+            for k, corner in enumerate(corners):
+                for bit, a in enumerate(others):
+                    corner[a] = (lower, upper)[k >> bit & 1][a]
+            triangles = [[0, 1]] if len(others) == 1 else [[0, 1, 2], [3, 1, 2]]
+            sides[names[2 * axis + end]] = corners[np.array(triangles)]
+    return sides, {"box": float(np.prod(upper - lower))}
+
+
+def numbers(text):
+    return [abs(int(word)) for word in re.findall(r"-?\d+", text)]
+
+
+def geo(text):
+    """Points, straight lines, loops, plane surfaces and their physical groups, with literal numbers."""
+    points = {
+        int(tag): [float(x), float(y)]
+        for tag, x, y in re.findall(rf"Point\((\d+)\) = {{({NUMBER}), ({NUMBER}), ", text)
+    }
+    lines = {int(tag): (int(a), int(b)) for tag, a, b in re.findall(r"\nLine\((\d+)\) = {(\d+), (\d+)}", text)}
+    loops = {int(t): [int(w) for w in re.findall(r"-?\d+", b)] for t, b in re.findall(r"Curve Loop\((\d+)\) = {([^}]*)}", text)}
+    surfaces = {int(t): numbers(b) for t, b in re.findall(r"Plane Surface\((\d+)\) = {([^}]*)}", text)}
+    sides = {
+        name: np.array([[points[a], points[b]] for a, b in (lines[tag] for tag in numbers(tags))])
+        for name, tags in re.findall(r'Physical Curve\("([^"]*)"\) = {([^}]*)}', text)
+    }
+
+    def area(loop):
+        corners = np.array([points[lines[abs(tag)][0 if tag > 0 else 1]] for tag in loops[loop]])
+        x, y = corners.T
+        return 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+    areas = {
+        name: float(sum(area(loop) for tag in numbers(tags) for loop in surfaces[tag]))
+        for name, tags in re.findall(r'Physical Surface\("([^"]*)"\) = {([^}]*)}', text)
+    }
+    return sides, areas
+
+
+def msh(text):
+    """Version 2.2, ASCII."""
+    lines = iter(text.splitlines())
+    names, nodes, elements = {}, {}, []
+    for line in lines:
+        if line == "$PhysicalNames":
+            for _ in range(int(next(lines))):
+                dimension, tag, name = next(lines).split(maxsplit=2)
+                names[int(dimension), int(tag)] = name.strip('"')
+        elif line == "$Nodes":
+            for _ in range(int(next(lines))):
+                tag, *x = next(lines).split()
+                nodes[int(tag)] = [float(value) for value in x]
+        elif line == "$Elements":
+            elements = [[int(word) for word in next(lines).split()] for _ in range(int(next(lines)))]
+    dimension = max(d for d, _ in names)
+    kind = {1: 1, 2: 2, 3: 4}  # dimension -> line, triangle, tetrahedron
+
+    def simplices(wanted, tag):
+        rows = [e[3 + e[2] :] for e in elements if e[1] == kind[wanted] and e[3] == tag]
+        return np.array([[nodes[v][:dimension] for v in row] for row in rows])
+
+    sides = {name: simplices(d, tag) for (d, tag), name in names.items() if d == dimension - 1}
+    areas = {}
+    for (d, tag), name in names.items():
+        if d == dimension:
+            corners = simplices(d, tag)
+            edges = corners[:, 1:] - corners[:, :1]
+            areas[name] = float(np.abs(np.linalg.det(edges)).sum() / (2 if d == 2 else 6))
+    return sides, areas

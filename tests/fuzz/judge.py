@@ -1,0 +1,147 @@
+"""Judges a run from the files it has left and from the case, with nothing of the program: every finding is a sentence.
+
+VIOLATION: the residual of the displacement in the file is larger than the bound that is claimed for it.
+INCONSISTENT: files, exit code or numbers contradict each other, the case, or the documentation.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from case_data import read_case
+from judge_contact import judge_contact
+from judge_solution import judge_cells, judge_displacement, judge_mesh, judge_residual
+from level import Inconsistent, Level
+from residual import Residual
+from results import Unreadable, read_results
+from verdict import Verdict, near
+
+STATUS_OF_EXIT = {0: ["certified"], 2: ["failed", "not certified"], 3: ["budget"]}
+COMPONENTS = ["osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t", "quad"]
+
+
+def judge(case_file, directory, exit_code, killed=False):
+    """The Verdict on the results in the directory; those of a killed run may hold more than the certificate claims."""
+    verdict = Verdict()
+    if not Path(directory).is_dir():
+        verdict.check(False, f"exit code {exit_code} without results")
+        return verdict
+    try:
+        results = read_results(directory)
+        judge_files(verdict, read_case(case_file), results, exit_code, killed)
+    except Unreadable as error:
+        verdict.findings.append(f"INCONSISTENT: unreadable: {error}")
+    except Inconsistent as error:
+        verdict.findings.append(f"INCONSISTENT: {error}")
+    except (KeyError, TypeError, IndexError, np.linalg.LinAlgError) as error:
+        verdict.findings.append(f"INCONSISTENT: something expected is missing or malformed: {error!r}")
+    return verdict
+
+
+def judge_files(verdict, case, results, exit_code, killed):
+    if killed:
+        keep_what_is_claimed(results)
+    else:
+        left = [f.name for f in results.directory.iterdir() if f.name.endswith(".part")]
+        verdict.check(not left, f"left over: {left}")
+    certificate = results.certificate
+    if certificate is None:
+        verdict.check(False, f"exit code {exit_code} without certificate.json")
+        return
+    status = certificate["status"]
+    verdict.check(status in STATUS_OF_EXIT.get(exit_code, []), f"exit code {exit_code} with status {status!r}")
+    verdict.check((certificate["reason"] is None) == (status == "certified"), f"reason {certificate['reason']!r}")
+    verdict.check(
+        (certificate["d"], certificate["p"]) == (case.dimension, case.degree), "dimension or degree is not the case's"
+    )
+    verdict.check(near(certificate["gamma0"], case.gamma0), "gamma0 is not the case's")
+    verdict.check(near(certificate["tolerance"], case.get("adapt.tolerance", 0.01)), "tolerance is not the case's")
+    judge_arithmetic(verdict, certificate)
+    judge_tables(verdict, results)
+    if status in ("certified", "budget"):
+        judge_levels(verdict, case, results)
+    else:
+        verdict.check(certificate.get("bound") is None, f"a bound with status {status!r}")
+
+
+def keep_what_is_claimed(results):
+    """Of the tables and fields, only what belongs to the levels of the certificate: it is written last."""
+    n = len(results.certificate["levels"])
+    results.convergence = [row for row in results.convergence or [] if row["level"] < n]
+    results.newton = [row for row in results.newton or [] if row["level"] < n]
+    results.levels = results.levels[:n]
+
+
+def judge_arithmetic(verdict, certificate):
+    """The verdict and what follows from the numbers themselves."""
+    status, bound, sigma = certificate["status"], certificate.get("bound"), certificate.get("sigma_norm")
+    if status not in ("certified", "budget"):
+        return
+    verdict.check(bound is not None and np.isfinite(bound) and bound >= 0, f"bound {bound!r} with status {status!r}")
+    verdict.check(sigma is not None and np.isfinite(sigma), f"sigma_norm {sigma!r}")
+    certified = bound <= certificate["tolerance"] * sigma * (1 + 1e-14)
+    rounding = bound == 0 or near(bound, certificate["tolerance"] * sigma, 1e-12)
+    consistent = certified == (status == "certified") or rounding or sigma == 0
+    verdict.check(consistent, f"bound {bound}, sigma_norm {sigma}: {status!r}")
+    if certificate["relative"] is not None and sigma > 0:
+        verdict.check(near(certificate["relative"], bound / sigma), "relative is not bound / sigma_norm")
+    # Stresses of degree 1 are symmetric up to a term of the size of the error: nothing is asked of them.
+    defects = [x for name, x in certificate["identities"].items() if name != "symmetry" or certificate["p"] > 1]
+    limit = certificate["constants"]["identity_limit"]
+    verdict.check(all(x is not None and 0 <= x <= limit for x in defects), f"identities {certificate['identities']}")
+    verdict.check(bound <= certificate["bound_plain"] * (1 + 1e-12), "bound above bound_plain")
+    for name, x in certificate["components"].items():
+        verdict.check(x is not None and x >= 0, f"component {name} is {x}")
+    verdict.check(certificate["energy"] >= 0, f"energy {certificate['energy']}")
+
+
+def judge_tables(verdict, results):
+    """convergence.csv and newton.csv against certificate.json and each other."""
+    certificate, levels = results.certificate, results.certificate["levels"]
+    convergence, newton = results.convergence, results.newton
+    if convergence is None or newton is None:
+        verdict.check(False, "a table is missing")
+        return
+    complete = [level for level in levels if level["dofs"] is not None]
+    verdict.check(len(convergence) == len(complete), f"{len(convergence)} rows in convergence.csv, {len(levels)} levels")
+    for row, level in zip(convergence, complete):
+        for name in ("level", "cells", "dofs", "relative", "energy"):
+            verdict.check(near(row[name], level[name]), f"level {level['level']}: {name} {row[name]} and {level[name]}")
+        for name, here in (("total_sharp", "bound"), ("total", "bound_plain")):
+            verdict.check(near(row[name], level[here]), f"level {level['level']}: {name} {row[name]} and {level[here]}")
+        steps = [step for step in newton if step["level"] == row["level"]]
+        verdict.check(row["newton_steps"] == len(steps), f"level {level['level']}: {len(steps)} rows in newton.csv")
+        verdict.check([s["step"] for s in steps] == list(range(1, len(steps) + 1)), "Newton steps are not numbered")
+        accepted = [step for step in steps if step["accepted"] == 1]
+        if row["total_sharp"] is not None:
+            verdict.check(accepted == steps[-1:], f"level {level['level']}: {len(accepted)} accepted steps")
+            for name in [*COMPONENTS, "total"]:
+                verdict.check(near(row[name], steps[-1][name]), f"level {level['level']}: {name} of the accepted step")
+    verdict.check(
+        sorted({s["level"] for s in newton}) == sorted({r["level"] for r in convergence} | {s["level"] for s in newton}),
+        "a level without Newton steps",
+    )
+    if certificate["status"] in ("certified", "budget"):
+        last = convergence[-1]
+        for name, here in (("total_sharp", "bound"), ("relative", "relative"), ("energy", "energy"), ("dofs", "dofs")):
+            verdict.check(near(last[name], certificate[here]), f"{here} is not that of the last level")
+
+
+def judge_levels(verdict, case, results):
+    """Every level of which there is a bound and a displacement."""
+    certificate = results.certificate
+    names = [region["name"] for region in certificate["mesh"]["regions"]]
+    bounds = [level for level in certificate["levels"] if level["bound"] is not None]
+    if not results.levels:
+        verdict.check(case.get("output.vtu", True) is False, "no level_NNN.vtu")
+        return
+    verdict.check(len(results.levels) == len(bounds), f"{len(results.levels)} VTU files, {len(bounds)} levels with a bound")
+    for number, entry in enumerate(bounds):
+        level = Level(results.level(number), case)
+        residual = Residual(level, case, names)
+        judge_cells(verdict, level, entry, number)
+        judge_displacement(verdict, case, residual, entry, number)
+        judge_residual(verdict, case, residual, entry, number)
+        if number + 1 == len(bounds):
+            judge_contact(verdict, residual, results)
+            judge_mesh(verdict, case, residual)

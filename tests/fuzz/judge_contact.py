@@ -1,0 +1,126 @@
+"""Judges contact.csv and the resultants of the last level."""
+
+import numpy as np
+
+from residual import dot
+from simplices import bernstein, lattice
+from verdict import near
+
+SHARE = 10.0  # of the distance of gap and threshold from polynomials: what they may differ by in contact.csv
+SAMPLES = {2: 64, 3: 12}  # per edge of a facet
+
+
+def judge_contact(verdict, residual, results):
+    """contact.csv and the resultants against u of the last level."""
+    entry = results.certificate["contact"]
+    if not residual.contact:
+        verdict.check(entry is None, "contact in the certificate, none in the case")
+        return
+    for name in residual.contact:
+        own = entry["boundaries"][name]
+        facets = residual.boundary[name]
+        rows = [row for row in results.contact if row["boundary"] == name]
+        judge_points(verdict, residual, name, rows)
+        if (weights := point_weights(residual, rows)) is not None:
+            error = sum(representation_errors(residual, name)[1:])
+            judge_resultants(verdict, name, facets, rows, weights, own, error)
+    total = np.sum([b["force"] for b in entry["boundaries"].values()], axis=0)
+    size = sum(abs(b["normal"]) + b["abs_tangential"] for b in entry["boundaries"].values())
+    verdict.check(np.allclose(total, entry["force"], 1e-9, 1e-9 * size), "contact: the forces do not add up")
+
+
+def judge_points(verdict, residual, name, rows):
+    """Every row of contact.csv on the boundary."""
+    level, facets = residual.level, residual.boundary[name]
+    d = level.dimension
+    axes = "xyz"[:d]
+    column = lambda keys: np.array([[row[key] for key in keys] for row in rows])
+    places, normals = column(axes), column(["n" + a for a in axes])
+    from_first = places[:, None, :] - level.vertices[level.cells[facets.cells, 0]]
+    points = np.einsum("pfj,fvj->pfv", from_first, level.gradients[facets.cells])
+    points[:, :, 0] += 1
+    outside = np.maximum(-points.min(axis=2), np.abs(points[:, np.arange(len(facets)), facets.opposite]))
+    owners = outside.argmin(axis=1)
+    rowwise = np.arange(len(rows))
+    verdict.check(outside[rowwise, owners].max() < 1e-8, f"contact.csv: a point is not on {name}")
+    verdict.check(len(np.unique(owners)) == len(facets), f"contact.csv: a facet of {name} has no rows")
+    verdict.check(np.abs(normals - facets.normals[owners]).max() < 1e-8, "contact.csv: a normal")
+    state = residual.contact_state(name, owners, points[rowwise, owners])
+    gamma = residual.penalties(name)[owners]
+    # Where nothing happens, u is rounding of nothing.
+    length = np.abs(level.nodal).max() + np.abs(state["gap"]).max() + 1e-13 * level.size
+    stress = residual.materials.max() * length / facets.sizes.min() + (gamma * length).max()
+    gap_error, error, limit_error = representation_errors(residual, name)
+    for key, keys, allowed in (
+        ("pressure", ["pressure"], 1e-9 * stress + error),
+        ("limit", ["limit"], 1e-9 * stress + limit_error),
+        ("traction", ["traction_" + a for a in axes], 1e-9 * stress + error + limit_error),
+        ("gap", ["gap"], 1e-9 * length + gap_error),
+        ("slip", ["slip_" + a for a in axes], 1e-9 * length),
+    ):
+        difference = np.abs(column(keys) - state[key].reshape(len(rows), -1)).max()
+        verdict.check(difference <= allowed, f"contact.csv: {key} of {name} differs by {difference:.3g}, allowed {allowed:.3g}")
+    status = column(["status"]).ravel()
+    clear = 1e-9 * stress + error
+    verdict.check((status[state["normal"] > clear] != 1).all(), "contact.csv: sticks where it is open")
+    verdict.check((status[state["normal"] < -clear] != 0).all(), "contact.csv: open under pressure")
+
+
+def representation_errors(residual, name):
+    """What polynomials in the place of gap and threshold may change: of the gap, of the pressure, of the limit."""
+    contact = residual.conditions[name].contact
+    gap_error = SHARE * distance_from_polynomials(residual, name, contact["gap"])
+    error = residual.penalties(name).max() * gap_error * (1 + contact["coefficient"])
+    return gap_error, error, error + SHARE * distance_from_polynomials(residual, name, contact["threshold"])
+
+
+def distance_from_polynomials(residual, name, formula):
+    """The largest distance of a formula from P^(p+1) on a facet: what the program may put in its place."""
+    if formula.is_constant:
+        return 0.0
+    level, facets = residual.level, residual.boundary[name]
+    d, p = level.dimension, level.degree
+    points = lattice(d, SAMPLES[d]) / SAMPLES[d]
+    owners = np.repeat(np.arange(len(facets)), len(points))
+    places = level.places(facets.cells[owners], facets.in_cell(owners, np.tile(points, (len(facets), 1))))
+    values = formula(places).reshape(len(facets), -1).T
+    table = bernstein(points, p + 1)
+    return float(np.abs(values - table @ np.linalg.lstsq(table, values, rcond=None)[0]).max())
+
+
+def point_weights(residual, rows):
+    """Of the rows of contact.csv: as it gives them, or in 2D those of Gauss's rule on each facet."""
+    if "weight" in rows[0]:
+        return np.array([row["weight"] for row in rows])
+    if residual.level.dimension != 2:
+        return None
+    numbers = np.array([row["facet"] for row in rows])
+    arc = np.array([row["arc"] for row in rows])
+    weights = np.empty(len(rows))
+    for number in np.unique(numbers):
+        here = np.flatnonzero(numbers == number)
+        x, w = np.polynomial.legendre.leggauss(len(here))
+        weights[here] = w * np.ptp(arc[here]) / (x[-1] - x[0])
+    return weights
+
+
+def judge_resultants(verdict, name, facets, rows, weights, entry, error):
+    """The resultants of the certificate as sums over the rows of contact.csv."""
+    axes = [key[-1] for key in rows[0] if key.startswith("traction_")]
+    traction = np.array([[row["traction_" + a] for a in axes] for row in rows])
+    normals = np.array([[row["n" + a] for a in axes] for row in rows])
+    along = dot(traction, normals)
+    tangential = traction - along[:, None] * normals
+    area = weights.sum()
+    verdict.check(near(area, facets.measures.sum(), 1e-8), f"contact.csv: the weights of {name} add up to {area}")
+    tolerance = weights @ (1e-8 * np.linalg.norm(traction, axis=1) + error)
+    found = {
+        "normal": weights @ along,
+        "abs_tangential": weights @ np.linalg.norm(tangential, axis=1),
+        "tangential": weights @ (tangential[:, 1] * normals[:, 0] - tangential[:, 0] * normals[:, 1])
+        if len(axes) == 2
+        else np.linalg.norm(weights @ tangential),
+    }
+    for key, x in found.items():
+        verdict.check(near(x, entry[key], 0, tolerance), f"contact {name}: {key} {entry[key]}, found {x}")
+    verdict.check(np.abs(weights @ traction - entry["force"]).max() <= tolerance, f"contact {name}: force {entry['force']}")

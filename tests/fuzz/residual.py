@@ -1,0 +1,226 @@
+"""The residual of a computed displacement and its dual norm from below, assembled anew from the data of the case.
+
+    <R(u), v> = L(v) - a(u, v) + (T(u), v)_C,  ||v||^2 = ||grad v||^2 + sum_F ||v||_F^2 / h_F,  v = 0 where u is prescribed
+
+The supremum is looked for in continuous P^q on the mesh. Data are integrated on parts of cells and facets, cut where
+formulas and the contact law have kinks.
+"""
+
+from functools import cache
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import splu
+
+from simplices import bernstein, bernstein_gradients, bisected, composite, cut, lattice, rule
+
+FACET_DEGREE, CELL_DEGREE = 11, 9  # to which the rules on the parts are exact
+
+
+class Residual:
+    """`fineness`: how often cells (and, thrice as often, facets) are halved in every direction for formulas."""
+
+    def __init__(self, level, case, names, fineness=1):
+        self.level, self.case, self.fineness = level, case, fineness
+        self.region_names = names
+        self.boundary = level.boundary(case)
+        materials = [case.material(name) for name in names]
+        self.materials = np.array([[m.lam, m.mu] for m in materials])[level.regions]
+        self.conditions = {name: case.condition(name) for name in self.boundary}
+        self.contact = [name for name, c in self.conditions.items() if c.contact and len(self.boundary[name])]
+
+    # data on parts of facets and cells
+
+    def facet_rule(self, facets, formulas, more_cuts=()):
+        """Owner, barycentric point in the cell, weight of the points of a rule on all facets."""
+        d = self.level.dimension
+        smooth = all(f.is_constant for f in formulas) and not more_cuts
+        parts = bisected(d - 1, 0 if smooth else (3 if d == 2 else 1) * self.fineness)
+        owners, parts = spread(len(facets), parts)
+        places = lambda o, b: self.level.places(facets.cells[o], facets.in_cell(o, b))
+        for f in formulas:
+            for kink in f.kinks:
+                owners, parts = cut(owners, parts, lambda o, b: value(kink, places(o, b)))
+        for function in more_cuts:
+            owners, parts = cut(owners, parts, lambda o, b: function(o, facets.in_cell(o, b)))
+        owners, points, weights = composite(owners, parts, FACET_DEGREE)
+        return owners, facets.in_cell(owners, points), weights * facets.measures[owners]
+
+    def load(self, q):
+        """<R, B> for the functions of each cell: cells x functions x components."""
+        result = self.body_load(q) - self.internal_forces(q)
+        for name, facets in self.boundary.items():
+            if len(facets):
+                self.add(result, q, facets, *self.boundary_load(name))
+        return result
+
+    def boundary_load(self, name):
+        """Points and tractions of a boundary: g_N, or T(u)."""
+        if name in self.contact:
+            owners, points, weights = self.contact_rule(name)
+            return owners, points, weights, self.contact_state(name, owners, points)["traction"]
+        facets, condition = self.boundary[name], self.conditions[name]
+        owners, points, weights = self.facet_rule(facets, [*condition.traction, condition.pressure])
+        places = self.level.places(facets.cells[owners], points)
+        traction = np.stack([f(places) for f in condition.traction], axis=1)
+        return owners, points, weights, traction - condition.pressure(places)[:, None] * facets.normals[owners]
+
+    def add(self, result, q, facets, owners, points, weights, traction):
+        values = bernstein(points, q) * weights[:, None]
+        np.add.at(result, facets.cells[owners], values[:, :, None] * traction[:, None, :])
+
+    def body_load(self, q):
+        level = self.level
+        n_functions = len(lattice(level.dimension + 1, q))
+        result = np.zeros((len(level.cells), n_functions, level.dimension))
+        for number, name in enumerate(self.region_names):
+            cells = np.flatnonzero(level.regions == number)
+            force = self.case.body_force(name)
+            if all(f.is_constant for f in force):
+                constant = np.array([f(np.zeros((1, level.dimension)))[0] for f in force])
+                result[cells] = (level.volumes[cells] / n_functions)[:, None, None] * constant
+                continue
+            owners, parts = spread(len(cells), bisected(level.dimension, self.fineness))
+            for f in force:
+                for kink in f.kinks:
+                    owners, parts = cut(owners, parts, lambda o, b: value(kink, level.places(cells[o], b)))
+            owners, points, weights = composite(owners, parts, CELL_DEGREE)
+            owners = cells[owners]
+            places = level.places(owners, points)
+            densities = np.stack([f(places) for f in force], axis=1) * (weights * level.volumes[owners])[:, None]
+            np.add.at(result, owners, bernstein(points, q)[:, :, None] * densities[:, None, :])
+        return result
+
+    def internal_forces(self, q):
+        """(sigma(u), grad B)."""
+        level = self.level
+        points, weights = rule(level.dimension, level.degree + q)
+        n, m = len(level.cells), len(weights)
+        stress = level.stress(np.repeat(np.arange(n), m), np.tile(points, (n, 1)), self.materials)
+        stress = stress.reshape(n, m, level.dimension, level.dimension)
+        by_lambda = np.einsum("cqij,cvj->cqvi", stress, level.gradients) * level.volumes[:, None, None, None]
+        table = bernstein_gradients(points, q) * weights[:, None, None]
+        return np.einsum("qav,cqvi->cai", table, by_lambda, optimize=True)
+
+    # the contact law
+
+    def contact_rule(self, name):
+        """Cut where T(u) has kinks: P^n = 0 and |P^t| = S."""
+        contact = self.conditions[name].contact
+        cuts = [lambda o, b: self.contact_state(name, o, b)["normal"]]
+        if contact["friction"] != "none":
+            cuts.append(lambda o, b: self.contact_state(name, o, b)["excess"])
+        return self.facet_rule(self.boundary[name], [contact["gap"], contact["threshold"]], cuts)
+
+    def penalties(self, name):
+        """gamma of each facet: gamma_0 min(lambda + 2 mu, 11 mu) / h_F."""
+        facets = self.boundary[name]
+        lam, mu = self.materials[facets.cells].T
+        return self.case.gamma0 * np.minimum(lam + 2 * mu, 11 * mu) / facets.sizes
+
+    def contact_state(self, name, owners, points):
+        """P, T and what contact.csv holds, at barycentric points of the cells of the facets."""
+        facets, contact = self.boundary[name], self.conditions[name].contact
+        cells, n = facets.cells[owners], facets.normals[owners]
+        places = self.level.places(cells, points)
+        u = self.level.displacement(cells, points)
+        gap = contact["gap"](places) - dot(u, n)
+        gamma = self.penalties(name)[owners]
+        on_facet = np.einsum("pij,pj->pi", self.level.stress(cells, points, self.materials), n)
+        normal = dot(on_facet, n) + gamma * gap
+        slip = u - dot(u, n)[:, None] * n
+        tangential = on_facet - dot(on_facet, n)[:, None] * n - gamma[:, None] * slip
+        pressure = np.maximum(-normal, 0)
+        limit = {
+            "none": np.zeros(len(n)),
+            "tresca": contact["threshold"](places),
+            "coulomb": contact["coefficient"] * pressure,
+        }[contact["friction"]]
+        length = np.linalg.norm(tangential, axis=1)
+        shrunk = np.minimum(1, limit / np.maximum(length, 1e-300))
+        traction = shrunk[:, None] * tangential - pressure[:, None] * n
+        return {
+            "normal": normal,
+            "excess": length - limit,
+            "pressure": pressure,
+            "limit": limit,
+            "traction": traction,
+            "gap": gap,
+            "slip": slip,
+        }
+
+    # the dual norm
+
+    def dual_norm(self, q):
+        level = self.level
+        numbers = level.node_keys(q)
+        n = numbers.max() + 1
+        load = np.zeros((n, level.dimension))
+        np.add.at(load, numbers, self.load(q))
+        matrix = self.matrix(q, numbers, n)
+        squared = 0.0
+        solvers = {}
+        for component in range(level.dimension):
+            free = np.flatnonzero(~self.fixed(component, q, numbers, n))
+            if len(free) == 0:
+                continue
+            if (key := free.tobytes()) not in solvers:
+                solvers[key] = splu(matrix[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
+            z = solvers[key].solve(load[free, component])
+            squared += load[free, component] @ z
+        return np.sqrt(max(squared, 0.0))
+
+    def matrix(self, q, numbers, n):
+        level = self.level
+        metric = np.einsum("cvi,cwi->cvw", level.gradients, level.gradients) * level.volumes[:, None, None]
+        size = numbers.shape[1]
+        blocks = metric.reshape(len(metric), -1) @ stiffness_table(level.dimension, q).reshape(-1, size * size)
+        rows = [np.repeat(numbers, size, axis=1).ravel()]
+        columns = [np.tile(numbers, (1, size)).ravel()]
+        entries = [blocks.ravel()]
+        points, weights = rule(level.dimension - 1, 2 * q)
+        for name in self.contact:
+            facets = self.boundary[name]
+            owners = np.repeat(np.arange(len(facets)), len(weights))
+            values = bernstein(facets.in_cell(owners, np.tile(points, (len(facets), 1))), q)
+            values = values.reshape(len(facets), len(weights), size)
+            scale = (facets.measures / facets.sizes)[:, None] * weights
+            entries.append(np.einsum("fq,fqa,fqb->fab", scale, values, values, optimize=True).ravel())
+            rows.append(np.repeat(numbers[facets.cells], size, axis=1).ravel())
+            columns.append(np.tile(numbers[facets.cells], (1, size)).ravel())
+        triplets = np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))
+        return coo_matrix(triplets, (n, n)).tocsr()
+
+    def fixed(self, component, q, numbers, n):
+        """Nodes of P^q where Gamma_D fixes the component."""
+        exponents = lattice(self.level.dimension + 1, q)
+        result = np.zeros(n, bool)
+        for name, facets in self.boundary.items():
+            if self.conditions[name].displacement[component] is None:
+                continue
+            for cell, opposite in zip(facets.cells, facets.opposite):
+                result[numbers[cell, exponents[:, opposite] == 0]] = True
+        return result
+
+
+@cache
+def stiffness_table(dimension, q):
+    """Means of d_v B_a d_w B_b over the cell: v, w, a, b."""
+    points, weights = rule(dimension, 2 * q - 2)
+    table = bernstein_gradients(points, q)
+    return np.einsum("q,qav,qbw->vwab", weights, table, table, optimize=True)
+
+
+def spread(n, parts):
+    """The same parts for n owners."""
+    return np.repeat(np.arange(n), len(parts)), np.tile(parts, (n, 1, 1))
+
+
+def value(function, places):
+    """Of a function of the columns of the places."""
+    with np.errstate(all="ignore"):
+        return np.broadcast_to(np.asarray(function(places.T), dtype=float), (len(places),))
+
+
+def dot(a, b):
+    return np.einsum("pi,pi->p", a, b)

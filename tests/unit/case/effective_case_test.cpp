@@ -1,0 +1,122 @@
+// The case with every --set, as TOML that is read again to the same values.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "case/config.h"
+#include "case/node.h"
+
+namespace tribound
+{
+namespace
+{
+
+bool same(const Node& a, const Node& b);
+
+bool same(const Node::Array& a, const Node::Array& b)
+{
+  return std::ranges::equal(a, b, [](const Node& x, const Node& y) { return same(x, y); });
+}
+
+/// Whatever the order of the keys.
+bool same(const Node::Table& a, const Node::Table& b)
+{
+  return a.size() == b.size() && std::ranges::all_of(a,
+                                                     [&](const Entry& x)
+                                                     {
+                                                       const Entry* y = find(b, x.name);
+                                                       return y != nullptr && same(x.node, y->node);
+                                                     });
+}
+
+/// 1e5 may come back as 100000.
+double number(const Node& node)
+{
+  const auto* integer = std::get_if<std::int64_t>(&node.value);
+  return integer ? static_cast<double>(*integer) : std::get<double>(node.value);
+}
+
+bool same(const Node& a, const Node& b)
+{
+  if (std::holds_alternative<double>(a.value)) return number(a) == number(b);
+  return a.value.index() == b.value.index() &&
+         std::visit(
+             [&](const auto& value)
+             {
+               using Value = std::decay_t<decltype(value)>;
+               const Value& other = std::get<Value>(b.value);
+               if constexpr (std::is_same_v<Value, Node::Table> || std::is_same_v<Value, Node::Array>)
+                 return same(value, other);
+               else if constexpr (std::is_same_v<Value, Node::DateOrTime>)
+                 return true;
+               else
+                 return value == other;
+             },
+             a.value);
+}
+
+constexpr auto awkward = R"toml(
+degree = 2
+"a key \" with \\ quotes" = "a\u0000b\n\t\"c\" \\ ü"
+[numbers]
+e = [1e5, -0.1, 1e300, 5e-324, 3, 1_000, 0x10, 0.1]
+[empty]
+[deep.down."two words".inline]
+x = { y = { z = [true, [], [{ a = 1 }, {}]] } }
+)toml";
+
+TEST(EffectiveCase, TomlIsReadAgain)
+{
+  const Node document = parse_toml(awkward, "case");
+  const std::string text = to_toml(document);
+  EXPECT_TRUE(same(document, parse_toml(text, "again"))) << text;
+  EXPECT_EQ(to_toml(parse_toml(text, "again")), text);
+}
+
+constexpr auto box = R"toml(
+[material]
+E = 210e9
+nu = 0.3
+[mesh]
+box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }
+[boundary.top]
+traction = [0, "-1/3 * x"]
+)toml";
+
+TEST(EffectiveCase, HoldsWhatWasSetAndWhereResultsGo)
+{
+  const std::vector<std::string> overrides = {"degree=3", "material.E=1"};
+  const Config config = parse_config(box, "block.toml", overrides);
+  EXPECT_EQ(config.effective.text,
+            "degree = 3\n\n[material]\nE = 1\nnu = 0.3\n\n[mesh.box]\nlower = [0, 0]\nupper = [2, 1]\n"
+            "cells = [4, 2]\n\n[boundary.top]\ntraction = [0, \"-1/3 * x\"]\n\n[output]\n"
+            "directory = \"out/block\"\n");
+  EXPECT_THAT(config.effective.overrides, testing::ElementsAre("degree=3", "material.E=1"));
+}
+
+/// Read in its place, the effective case is the same, and so is its own effective case.
+TEST(EffectiveCase, PathsAreValidFromTheOutputDirectory)
+{
+  constexpr auto with_mesh = "mesh.file = \"meshes/a.msh\"\nmaterial = { E = 1, nu = 0 }\n";
+  for (const std::string directory : {"out/run", "/tmp/somewhere/else"})
+  {
+    const std::vector<std::string> overrides = {"output.directory=" + directory};
+    const Config config = parse_config(with_mesh, "cases/block.toml", overrides);
+    const Config again = parse_config(config.effective.text, directory + "/case.toml");
+    const auto path = [](const Config& c)
+    { return std::filesystem::absolute(std::get<MeshFile>(c.mesh).path).lexically_normal(); };
+    EXPECT_EQ(path(again), std::filesystem::absolute("cases/meshes/a.msh"));
+    EXPECT_EQ(again.output.directory, directory);
+    EXPECT_EQ(again.effective.text, config.effective.text);
+  }
+}
+
+}  // namespace
+}  // namespace tribound

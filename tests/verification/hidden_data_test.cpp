@@ -1,0 +1,282 @@
+/// @file hidden_data_test.cpp
+/// The bound is above the dual norm of the residual for data that a rule of fixed order does not see: strips,
+/// steps, spikes and oscillations narrower than the distance of its points. The dual norm is computed with
+/// loads that share nothing with those of the program: functions of C++, integrated by brute force.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <random>
+
+#include "certify/equilibrate.h"
+#include "certify/estimate.h"
+#include "certify/true_error.h"
+#include "support/discrete_case.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using Function = std::function<double(double)>;
+
+/// A function of one coordinate, as formula and as function, with the places where it jumps or kinks.
+struct Profile
+{
+  std::string formula;
+  Function value;
+  std::vector<double> breaks;
+};
+
+class Random
+{
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double between(double a, double b) { return a + (b - a) * std::ldexp(static_cast<double>(engine_()), -32); }
+  /// Of any size between a and b.
+  double size(double a, double b) { return std::exp(between(std::log(a), std::log(b))); }
+  int of(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// In `variable`, which runs from 0 to `length`, of values between 0 and `top`.
+Profile random_profile(Random& random, char variable, double length, double top, double narrowest)
+{
+  const double v = random.between(0.1, 1) * top;
+  const double a = random.between(0, length);
+  const int kind = random.of(6);
+  const bool cut = kind == 0 || kind == 3;  // by the integration by brute force
+  const double w = random.size(cut ? narrowest : std::max(narrowest, 5e-3), 0.4);
+  const double b = a + w;
+  switch (kind)
+  {
+    case 0:
+      return {fmt::format("{0} > {1:.17g} && {0} < {2:.17g} ? {3:.17g} : 0", variable, a, b, v),
+              [=](double x) { return x > a && x < b ? v : 0; },
+              {a, b}};
+    case 1:
+      return {fmt::format("{3:.17g}*exp(-(({0}-{1:.17g})/{2:.17g})^2)", variable, a, w, v),
+              [=](double x) { return v * std::exp(-std::pow((x - a) / w, 2)); },
+              {a}};
+    case 2:
+      return {fmt::format("{2:.17g}*sin({0}/{1:.17g})^2", variable, w, v),
+              [=](double x) { return v * std::pow(std::sin(x / w), 2); },
+              {}};
+    case 3:
+      return {fmt::format("{3:.17g}*max(0, 1-abs({0}-{1:.17g})/{2:.17g})", variable, a, w, v),
+              [=](double x) { return v * std::max(0.0, 1 - std::abs(x - a) / w); },
+              {a - w, a, a + w}};
+    case 4:
+      return {fmt::format("{2:.17g}*(1+sign({0}-{1:.17g}))/2", variable, a, v),
+              [=](double x) { return x > a ? v : 0; },
+              {a}};
+    default:
+      return {fmt::format("{2:.17g}*abs(rint({0}/{1:.17g})-{0}/{1:.17g})", variable, w, v),
+              [=](double x) { return v * std::abs(std::nearbyint(x / w) - x / w); },
+              {}};
+  }
+}
+
+/// Loads by brute force in the space of the dual norm: f_y on the body, g_y on the top, both of x.
+class BruteForce
+{
+ public:
+  explicit BruteForce(const LagrangeSpace<2>& space) : space_(space) {}
+
+  /// Every cell is cut into 4^5 parts.
+  void add_body(const Function& f, std::vector<double>& load) const
+  {
+    constexpr int cuts = 32;
+    constexpr double h = 1.0 / cuts;
+    std::vector<Point<2>> points;
+    for (int i = 0; i < cuts; ++i)
+      for (int j = 0; i + j < cuts; ++j)
+      {
+        points.push_back({(i + 1.0 / 3) * h, (j + 1.0 / 3) * h});
+        if (i + j < cuts - 1) points.push_back({(i + 2.0 / 3) * h, (j + 2.0 / 3) * h});
+      }
+    const Tabulation<2> table = space_.basis().tabulate(points);
+    for (Index c = 0; c < space_.mesh().n_cells(); ++c)
+    {
+      const CellMap<2> map = cell_map(space_.mesh(), c);
+      for (std::size_t q = 0; q < points.size(); ++q)
+      {
+        const double weighted = map.det * h * h / 2 * f(map(points[q])[0]);
+        const auto phi = table.values_at(static_cast<int>(q));
+        for (std::size_t i = 0; i < phi.size(); ++i)
+          load[2 * space_.cell_nodes(c)[i] + 1] += weighted * phi[i];
+      }
+    }
+  }
+
+  /// Facets of boundary `tag`, cut at the breaks and into 32 parts.
+  void add_traction(int tag, const Profile& g, std::vector<double>& load) const
+  {
+    const Quadrature<1> rule = quadrature<1>(2 * space_.degree() + 4);
+    for (const BoundaryFacet& facet : space_.mesh().boundary())
+    {
+      if (facet.tag != tag) continue;
+      const CellMap<2> map = cell_map(space_.mesh(), facet.cell);
+      const auto at = [&](double s) { return map(facet_to_cell<2>(facet.local, Point<1>(s))); };
+      const double measure = facet_geometry(space_.mesh(), facet.cell, facet.local).measure;
+      std::vector<double> ends;
+      for (int i = 0; i <= 32; ++i) ends.push_back(i / 32.0);
+      for (const double b : g.breaks)
+      {
+        const double s = (b - at(0)[0]) / (at(1)[0] - at(0)[0]);
+        if (s > 0 && s < 1) ends.push_back(s);
+      }
+      std::ranges::sort(ends);
+      std::vector<Point<2>> points;
+      std::vector<double> weighted;
+      for (std::size_t k = 0; k + 1 < ends.size(); ++k)
+        for (int q = 0; q < rule.size(); ++q)
+        {
+          const double s = ends[k] + (ends[k + 1] - ends[k]) * rule.points[q][0];
+          points.push_back(facet_to_cell<2>(facet.local, Point<1>(s)));
+          weighted.push_back((ends[k + 1] - ends[k]) * rule.weights[q] * measure * g.value(at(s)[0]));
+        }
+      const Tabulation<2> table = space_.basis().tabulate(points);
+      for (std::size_t q = 0; q < points.size(); ++q)
+      {
+        const auto phi = table.values_at(static_cast<int>(q));
+        for (std::size_t i = 0; i < phi.size(); ++i)
+          load[2 * space_.cell_nodes(facet.cell)[i] + 1] += weighted[q] * phi[i];
+      }
+    }
+  }
+
+ private:
+  const LagrangeSpace<2>& space_;
+};
+
+/// A block, held at the left, loaded in its body and from above, on a floor; one of the data is hard to see.
+struct RandomCase
+{
+  std::string toml;
+  int degree;
+  Profile body;      ///< f_y
+  Profile traction;  ///< g_y on the top
+};
+
+RandomCase random_case(Random& random)
+{
+  const Profile zero{"0", [](double) { return 0.0; }, {}};
+  RandomCase c{{}, 1 + random.of(3), zero, zero};
+  std::string gap = "0";
+  std::string friction;
+  const int hard = random.of(4);
+  if (hard == 0) c.body = random_profile(random, 'x', 2, -1, 0.03);
+  if (hard == 1 || hard > 2) c.traction = random_profile(random, 'x', 2, -1, 1e-4);
+  if (hard == 2)
+  {
+    c.traction = {"-0.1", [](double) { return -0.1; }, {}};
+    gap = random_profile(random, 'x', 2, 0.1, 0.02).formula;
+  }
+  const int law = random.of(3);
+  if (law == 1)
+    friction = fmt::format(", friction = \"tresca\", threshold = \"{}\"",
+                           hard == 3 ? random_profile(random, 'x', 2, 0.3, 0.02).formula : "0.03");
+  if (law == 2) friction = fmt::format(", friction = \"coulomb\", coefficient = {}", random.between(0, 0.6));
+  c.toml = fmt::format(
+      "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = [0, \"{}\"]\n"
+      "boundary.left.displacement = [0, 0]\nboundary.top.traction = [0, \"{}\"]\n"
+      "boundary.bottom.contact = {{ gap = \"{}\"{} }}\nnewton.max_steps = {}\n",
+      c.degree, c.body.formula, c.traction.formula, gap, friction, 1 + random.of(4));
+  return c;
+}
+
+/// Bound and dual norm of what Newton's method has after a few steps.
+double random_effectivity(Random& random, const std::string& seed)
+{
+  const RandomCase c = random_case(random);
+  const int nx = 2 + random.of(3);
+  const DiscreteCase<2> problem(c.toml, box<2>({0, 0}, {2, 1}, {nx, 1 + random.of(2)}));
+  const NewtonResult<2> newton = problem.solve();
+  const Estimate eta =
+      estimate<2>(problem.form, newton.u, equilibrate<2>(problem.form, newton.u, newton.traction));
+
+  DualNorm<2> dual_norm(problem.form, {.refinements = 1, .degree = c.degree + 1});
+  const LagrangeSpace<2>& space = dual_norm.space();
+  std::vector<double> exact(space.n_dofs(), 0.0);
+  const BruteForce brute(space);
+  if (c.body.formula != "0") brute.add_body(c.body.value, exact);
+  const auto names = problem.mesh.boundary_names();
+  const int top = static_cast<int>(std::ranges::find(names, "top") - names.begin());
+  if (c.traction.formula != "0") brute.add_traction(top, c.traction, exact);
+  const double below = dual_norm.of(dual_norm.residual(newton.u, exact));
+  const std::optional<double> found =
+      effectivity(eta.total_sharp, below, stress_norms(problem.problem, problem.space, newton.u).sigma);
+  if (!found) return 1;  // no load reaches the body
+  EXPECT_GE(*found, 1) << seed << "\n" << c.toml;
+  return *found;
+}
+
+TEST(HiddenData, TheBoundIsAboveTheDualNormIn500RandomCases)
+{
+  constexpr int n_cases = 500;
+  std::vector<double> found;
+  for (int i = 0; i < n_cases; ++i)
+  {
+    Random random(static_cast<unsigned>(i));
+    found.push_back(random_effectivity(random, fmt::format("case {}", i)));
+  }
+  std::ranges::sort(found);
+  std::cout << fmt::format("effectivities: smallest {:.4f}, median {:.4f}, largest {:.4f}\n", found.front(),
+                           found[n_cases / 2], found.back());
+  EXPECT_LE(found[n_cases / 2], 4);  // most of it are early iterates on coarse, stretched cells
+}
+
+/// In 3D: jumps along planes in all of the data, on cells that are far larger than what they enclose.
+TEST(HiddenData, TheBoundIsAboveTheDualNormIn3D)
+{
+  for (unsigned seed = 0; seed < 12; ++seed)
+  {
+    Random random(seed);
+    const auto plane = [&]
+    {
+      return fmt::format("{:.3g}*x + {:.3g}*y + {:.3g}*z < {:.3g}", random.between(0, 1),
+                         random.between(0, 1), random.between(0, 1), random.between(0.3, 1.2));
+    };
+    const double a = random.between(0, 0.9);
+    const std::string toml = fmt::format(
+        "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = [0, \"{} ? -0.2 : 0\", 0]\n"
+        "boundary.left.displacement = [0, 0, 0]\n"
+        "boundary.top.pressure = \"x > {:.3g} && x < {:.3g} ? 1 : 0\"\n"
+        "boundary.bottom.contact = {{ friction = \"tresca\", threshold = \"{} ? 0.05 : 0.01\" }}\n",
+        1 + seed % 2, plane(), a, a + random.size(1e-3, 0.2), plane());
+    const DiscreteCase<3> c(toml, box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 1}));
+    const NewtonResult<3> newton = c.solve();
+    const Estimate eta = estimate<3>(c.form, newton.u, equilibrate<3>(c.form, newton.u, newton.traction));
+    EXPECT_LE(eta.global.quad, 1e-12) << toml;  // planes are cut exactly
+    DualNorm<3> dual_norm(c.form, {.refinements = 1, .degree = 3});
+    EXPECT_GE(eta.total_sharp, dual_norm(newton.u)) << toml;
+  }
+}
+
+/// Strips between the points of the rule were not seen at all: stress 0, bound 0.
+TEST(HiddenData, ANarrowStripIsSeen)
+{
+  const DiscreteCase<2> c(
+      "degree = 2\nmaterial = { E = 1.0, nu = 0.3 }\nboundary.left.displacement = [0, 0]\n"
+      "boundary.top.traction = [0, \"x > 0.26 && x < 0.32 ? -1 : 0\"]\n"
+      "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }\n",
+      box<2>({0, 0}, {2, 1}, {4, 2}));
+  double force = 0;
+  for (std::size_t i = 1; i < c.form.load().size(); i += 2) force += c.form.load()[i];
+  EXPECT_NEAR(force, -0.06, 1e-15);
+  EXPECT_EQ(c.form.data().effort().formulas, 4U);
+  EXPECT_EQ(c.form.data().effort().subdivided, 1U);
+  EXPECT_EQ(c.form.data().effort().parts, 3U);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
