@@ -1,5 +1,7 @@
 #include "run_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <exception>
@@ -186,15 +188,20 @@ void RunReport<dim>::write_record() const
 }
 
 template <int dim>
-void RunReport<dim>::add_times(const LevelTimes& times)
+void RunReport<dim>::add_up_times()
 {
-  const std::array of_level = {times.solve,
-                               times.certify.value_or(0),
-                               times.refinement.bisect,
-                               times.refinement.discretise,
-                               times.refinement.transfer,
-                               times.output};
-  for (std::size_t i = 0; i < of_level.size(); ++i) record_.times[i + 1].second += of_level[i];
+  for (std::size_t i = 1; i < record_.times.size(); ++i) record_.times[i].second = 0;
+  for (const LevelRecord& level : record_.levels)
+  {
+    const LevelTimes& times = level.times;
+    const std::array of_level = {times.solve,
+                                 times.certify.value_or(0),
+                                 times.refinement.bisect,
+                                 times.refinement.discretise,
+                                 times.refinement.transfer,
+                                 times.output};
+    for (std::size_t i = 0; i < of_level.size(); ++i) record_.times[i + 1].second += of_level[i];
+  }
 }
 
 template <int dim>
@@ -202,18 +209,39 @@ void RunReport<dim>::update_statements(const LevelView<dim>& view)
 {
   if (view.level.steps.empty()) return;
   record_.statements = statements(view.discrete.form, contact_rule_, view.level.friedrichs);
-  record_.statements.assumptions.emplace_back("linear_solver", describe_solver(view.level.steps));
+  if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))
+    record_.statements.assumptions.emplace_back(
+        "stress",
+        fmt::format("zero as far as can be known: here norms of stresses up to {:.3g} are nothing but "
+                    "rounding, and so is the bound",
+                    view.level.norms.round_off));
+  record_.statements.assumptions.emplace_back(
+      "linear_solver",
+      describe_solver(view.level.steps) +
+          (view.level.tightened ? ", beyond solver.tolerance on the last mesh, where it was too loose" : ""));
+}
+
+template <int dim>
+LevelTimes RunReport<dim>::take_back(int number)
+{
+  if (record_.levels.empty() || record_.levels.back().level != number) return {};
+  const LevelTimes times = record_.levels.back().times;
+  record_.levels.pop_back();
+  return times;
 }
 
 template <int dim>
 void RunReport<dim>::add(const LevelView<dim>& view)
 {
   const NitscheForm<dim>& form = view.discrete.form;
+  const LevelTimes before = take_back(view.number);
+  const bool again = before.level > 0;
   LevelRecord& level = record_.levels.emplace_back();
   level.level = view.number;
   level.cells = view.discrete.mesh.n_cells();
   level.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
   level.newton = view.level.steps;
+  level.finishing_steps = view.level.finishing_steps;
   level.delta_updates = view.level.delta_updates;
   level.figures = solution_figures(form, view.level);
   level.times.solve = view.level.solve_seconds;
@@ -235,21 +263,21 @@ void RunReport<dim>::add(const LevelView<dim>& view)
   }
   else  // what violates an identity is no bound, and is not shown as one
     for (CertifiedStep& step : level.newton) step.bound = {}, step.linearisation = {};
-  level.times.output = seconds_since(before_output);
+  level.times.output = before.output + seconds_since(before_output);
   level.times.refinement = view.level.refinement;
   level.times.solve_cpu = view.level.solve_cpu;
   level.times.certify_cpu = view.level.certify_cpu;
-  level.times.level = view.seconds + level.times.output;
+  level.times.level = before.level + view.seconds + level.times.output - before.output;
   const double cpu_now = cpu_seconds();
-  level.times.level_cpu = cpu_now - std::exchange(cpu_before_, cpu_now);
-  add_times(level.times);
+  level.times.level_cpu = before.level_cpu + cpu_now - std::exchange(cpu_before_, cpu_now);
+  add_up_times();
   update_statements(view);
   record_.status = view.verdict.status;
   record_.reason = view.verdict.reason;
   record_.warnings = view.level.solved() ? run_warnings(level, contact_outcomes<dim>(form, view.level.u))
                                          : std::vector<RunWarning>{};
   if (!failure) failure = failure_of([&] { write_record(); });
-  if (printed_ != Printed::verdict) print_level(level);
+  if (printed_ != Printed::verdict && !again) print_level(level);
   if (failure) std::rethrow_exception(failure);
 }
 

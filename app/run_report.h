@@ -54,8 +54,9 @@ class RunReport
   RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
             Clock::time_point begin, Printed printed = Printed::everything);
 
-  /// After every level: fields, tables and a certificate that holds should the program be killed. Throws
-  /// WriteError, the level being printed.
+  /// After every level, and once more for the last one if Newton's method has converged on it later: fields,
+  /// tables and a certificate that holds should the program be killed. Throws WriteError, the level being
+  /// printed.
   void add(const LevelView<dim>& view);
   /// The last word.
   [[nodiscard]] ExitCode close(const Verdict& verdict);
@@ -66,7 +67,9 @@ class RunReport
 
  private:
   void write_fields(const LevelView<dim>& view) const;
-  void add_times(const LevelTimes& times);
+  /// Removes the record of the level, if it is the last, and returns its times.
+  LevelTimes take_back(int number);
+  void add_up_times();  ///< of the levels, into those of the run
   /// What the certificate says about the level: its data, and how its systems were solved.
   void update_statements(const LevelView<dim>& view);
 

@@ -66,6 +66,7 @@ Config variant_config(const Config& config, const std::string& name)
   else if (config.newton.stopping == Stopping::tolerance)
     variant.newton.stopping = Stopping::adaptive;
   if (name.starts_with("uniform")) variant.adapt.marking = Marking::uniform;
+  variant.newton.finish = false;  // stopping criteria are what is compared
   variant.output.directory /= name;
   variant.effective = {};  // that of the study stands beside its tables
   variant.output.vtu = config.output.vtu && !converged;
@@ -82,6 +83,7 @@ Config reference_config(const Config& config, double required)
   reference.newton.stopping = Stopping::adaptive;
   reference.newton.gamma_lin = 0.1 * config.newton.gamma_lin;
   reference.newton.damping = true;
+  reference.newton.finish = false;
   reference.adapt.tolerance = required;
   reference.adapt.max_levels = std::numeric_limits<int>::max();
   reference.adapt.max_cells.reset();

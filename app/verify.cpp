@@ -89,7 +89,7 @@ VerifiedIterate verified_iterate(const NitscheForm<dim>& form, const NewtonItera
   iterate.bound = eta.total_sharp;
   iterate.bound_plain = eta.total;
   iterate.dual_norm = dual_norm(newton.u);
-  iterate.sigma_norm = stress_norms<dim>(form.problem(), form.space(), newton.u).sigma;
+  iterate.norms = stress_norms<dim>(form.problem(), form.space(), newton.u);
   iterate.identities = check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
   return iterate;
 }
@@ -140,9 +140,11 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
     if (!regularisation) return false;
     return regularisation->advise(form, iterate, eta.global, iterate.converged);
   };
+  SolverConfig solver = config.solver;
+  solver.tolerance = 0;  // as far as rounding lets it be: the identities are not what is to fail
   const NewtonResult<dim> newton =
       stages.time("iterates", "solving, with bound and dual norm of every iterate",
-                  [&] { return solve<dim>(form, {}, config.newton, config.solver, observer); });
+                  [&] { return solve<dim>(form, {}, config.newton, solver, observer); });
   result.converged = newton.status == NewtonStatus::converged;
 
   result.richer_degree = solution_space(config, refinements).degree;

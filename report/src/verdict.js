@@ -15,7 +15,7 @@ function sentence({ status, relative, tolerance, reason }) {
   const guaranteed = `The error, measured by the dual norm of the residual, is guaranteed to be at most ${percent(relative)} of the norm of the stress`;
   switch (status) {
     case "certified":
-      return `${guaranteed}; ${percent(tolerance)} was asked for.`;
+      return relative === null ? "The stress is zero up to rounding, and so is the bound of its error." : `${guaranteed}; ${percent(tolerance)} was asked for.`;
     case "budget":
       return `${guaranteed}; ${percent(tolerance)} was asked for. ${reason[0].toUpperCase()}${reason.slice(1)}.`;
     case "not certified":
@@ -65,7 +65,7 @@ function figures(run, contact) {
   if (run.cells === undefined) return null;
   const force = run.d === 2 ? "S L" : "S L\u00b2";
   return [
-    run.bound === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
+    run.relative === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
     ...(isSolved(run) ? [
       safetyFigure(run),
       contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", `S, ${placeText(contact.place)}`) : null,

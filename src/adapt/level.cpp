@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <numbers>
 #include <utility>
 
 #include "base/clock.h"
+#include "base/error.h"
 #include "certify/equilibrate.h"
 #include "contact/elasticity.h"
 
@@ -103,7 +106,144 @@ class Certifier
   Estimator<dim> estimator_;
 };
 
+/// Solutions with T_delta in the place of T, which has no kinks, for smaller and smaller delta: near
+/// incompressibility Newton's method may go round in circles between contact states, and finds its way from
+/// there. Nothing where it fails here, too.
+template <int dim>
+std::optional<std::vector<double>> regularised_start(const NitscheForm<dim>& form,
+                                                     std::span<const double> start, const Config& config,
+                                                     const std::function<void(const NewtonStep&)>& record)
+{
+  // In units of the mean contact traction of the first step.
+  constexpr double first = 10;
+  constexpr double last = 1e-3;
+  constexpr double factor = 0.25;
+  NewtonConfig newton = config.newton;
+  newton.tolerance = std::max(newton.tolerance, 1e-4);
+  double scale = 0;
+  double delta = 0;
+  const NewtonObserver<dim> shrink = [&](const NewtonIterate<dim>& iterate)
+  {
+    record(iterate.step);
+    NewtonAdvice advice = false;
+    if (delta == 0)
+    {
+      scale = mean_contact_traction<dim>(form, iterate.traction);
+      delta = first * scale;
+      if (delta > 0) advice.delta = delta;
+    }
+    else if (iterate.converged)
+    {
+      delta *= factor;
+      if (delta > last * scale)
+        advice.delta = delta;
+      else
+        advice.good_enough = true;
+    }
+    return advice;
+  };
+  NewtonResult<dim> result = solve<dim>(form, start, newton, config.solver, shrink);
+  if (result.status == NewtonStatus::diverged || delta == 0) return std::nullopt;
+  return std::move(result.u);
+}
+
+/// Newton's method, and where it fails, once more from regularised_start(), whose steps go to `record`.
+/// Should that fail as well, it is the first attempt that is told of.
+template <int dim>
+NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<const double> start,
+                                     const Config& config, const NewtonObserver<dim>& observer, double delta,
+                                     const std::function<void(const NewtonStep&)>& record)
+{
+  const auto attempt = [&](std::span<const double> u)
+  { return solve<dim>(form, u, config.newton, config.solver, observer, delta); };
+  NewtonResult<dim> first;
+  std::exception_ptr failure;
+  try
+  {
+    first = attempt(start);
+  }
+  catch (const SolveError&)
+  {
+    failure = std::current_exception();
+  }
+  const bool worth_it = config.newton.damping && !config.regularisation && form.problem().has_contact();
+  if (worth_it && (failure || !first.message.empty())) try
+    {
+      if (const auto better = regularised_start(form, start, config, record))
+        if (NewtonResult<dim> second = attempt(*better); second.message.empty()) return second;
+    }
+    catch (const SolveError&)
+    {
+    }
+  if (failure) std::rethrow_exception(failure);
+  return first;
+}
+
+/// The stress, the bound and the identities of the last step, whose iterate is kept.
+template <int dim>
+void keep_last(const NitscheForm<dim>& form, Certifier<dim>& certifier, CertifiedLevel<dim>& level)
+{
+  CertifiedStep& last = level.steps.back();
+  if (!last.bound) certifier.complete(level.u, level.traction, last, level);
+  last.accepted = true;
+  level.identities = check_identities<dim>(form, level.traction, level.stress);
+}
+
+/// The level with its systems solved as far as rounding lets them be, where this mends the identities.
+template <int dim>
+void tighten(const NitscheForm<dim>& form, const Config& config, const StepObserver& observer,
+             CertifiedLevel<dim>& level)
+{
+  Config tight = config;
+  tight.solver.tolerance = 0;
+  if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
+    level = std::move(*better);
+  level.finishing_steps = 0;
+  level.tightened = true;
+}
+
 }  // namespace
+
+template <int dim>
+bool bound_holds(const CertifiedLevel<dim>& level, int degree)
+{
+  if (!level.solved()) return false;
+  const Verdict verdict = judge(level.estimate, level.identities, degree, level.norms, 0);
+  return verdict.status != RunStatus::not_certified;
+}
+
+template <int dim>
+std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
+                                            const Config& config, const StepObserver& observer)
+{
+  CertifiedLevel<dim> result = level;
+  const int before = static_cast<int>(level.steps.size());
+  const NewtonObserver<dim> record = [&](const NewtonIterate<dim>& iterate)
+  {
+    CertifiedStep& step = result.steps.emplace_back(CertifiedStep{iterate.step, {}});
+    step.step.step += before;
+    if (observer) observer(step);
+    return false;
+  };
+  NewtonResult<dim> newton;
+  {
+    const Charge charge(result.solve_seconds, result.solve_cpu);
+    newton = solve<dim>(form, level.u, config.newton, config.solver, record, level.delta);
+  }
+  if (newton.status != NewtonStatus::converged) return std::nullopt;
+  for (CertifiedStep& step : result.steps) step.accepted = false;
+  result.finishing_steps += static_cast<int>(result.steps.size()) - before;
+  result.converged = true;
+  result.u = std::move(newton.u);
+  result.traction = std::move(newton.traction);
+  {
+    const Charge charge(result.certify_seconds, result.certify_cpu);
+    Certifier<dim> certifier(form, config, {}, level.friedrichs);
+    keep_last(form, certifier, result);
+  }
+  if (!bound_holds(result, config.degree)) return std::nullopt;
+  return result;
+}
 
 template <int dim>
 CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<const double> start,
@@ -118,9 +258,15 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
   std::optional<DeltaUpdates> regularisation;
   if (config.regularisation) regularisation = DeltaUpdates{*config.regularisation, delta};
 
+  const auto record = [&](const NewtonStep& step)
+  {
+    level.steps.push_back({step, {}});
+    level.steps.back().step.step = static_cast<int>(level.steps.size());
+  };
   const auto certify = [&](const NewtonIterate<dim>& iterate)
   {
-    CertifiedStep& step = level.steps.emplace_back(CertifiedStep{iterate.step, {}});
+    record(iterate.step);
+    CertifiedStep& step = level.steps.back();
     NewtonAdvice advice = false;
     if (std::isfinite(iterate.step.residual))
     {
@@ -138,7 +284,12 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
   NewtonResult<dim> newton;
   {
     const Charge charge(wall, cpu);
-    newton = solve<dim>(form, start, config.newton, config.solver, certify, delta);
+    newton = solve_persistently<dim>(form, start, config, certify, delta,
+                                     [&](const NewtonStep& step)
+                                     {
+                                       record(step);
+                                       if (observer) observer(level.steps.back());
+                                     });
   }
   level.solve_seconds = wall - level.certify_seconds;
   level.solve_cpu = cpu - level.certify_cpu;
@@ -148,17 +299,19 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
     level.delta_updates = regularisation->n_updates;
   }
   level.failure = std::move(newton.message);
+  level.converged = newton.status == NewtonStatus::converged;
   level.u = std::move(newton.u);
-  if (level.solved())
+  level.traction = std::move(newton.traction);
+  if (!level.solved())
+  {
+    level.norms = stress_norms(form.problem(), form.space(), level.u);
+    return level;
+  }
   {
     const Charge charge(level.certify_seconds, level.certify_cpu);
-    CertifiedStep& last = level.steps.back();
-    if (!last.bound) certifier->complete(level.u, newton.traction, last, level);
-    last.accepted = true;
-    level.identities = check_identities<dim>(form, newton.traction, level.stress);
+    keep_last(form, *certifier, level);
   }
-  else
-    level.norms = stress_norms(form.problem(), form.space(), level.u);
+  if (!bound_holds(level, config.degree)) tighten(form, config, observer, level);
   return level;
 }
 
@@ -168,5 +321,11 @@ template CertifiedLevel<2> solve_and_certify(const NitscheForm<2>&, std::span<co
 template CertifiedLevel<3> solve_and_certify(const NitscheForm<3>&, std::span<const double>, const Config&,
                                              const StepObserver&, double, const std::optional<double>&,
                                              const std::optional<FriedrichsConstant>&);
+template std::optional<CertifiedLevel<2>> converge(const NitscheForm<2>&, const CertifiedLevel<2>&,
+                                                   const Config&, const StepObserver&);
+template std::optional<CertifiedLevel<3>> converge(const NitscheForm<3>&, const CertifiedLevel<3>&,
+                                                   const Config&, const StepObserver&);
+template bool bound_holds(const CertifiedLevel<2>&, int);
+template bool bound_holds(const CertifiedLevel<3>&, int);
 
 }  // namespace tribound

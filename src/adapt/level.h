@@ -12,6 +12,7 @@
 
 #include "adapt/regularisation.h"
 #include "case/config.h"
+#include "certify/certificate.h"
 #include "certify/checks.h"
 #include "certify/estimate.h"
 #include "certify/stress.h"
@@ -66,7 +67,11 @@ struct CertifiedLevel
 {
   std::string failure;  ///< why there is no solution; empty when there is
   std::vector<double> u;
+  std::vector<Point<dim>> traction;  ///< t^k at the contact points, in equilibrium with the loads
   std::vector<CertifiedStep> steps;
+  int finishing_steps = 0;           ///< the last of them, which converge() has added
+  bool converged = false;            ///< to newton.tolerance, not only as far as the bound needs
+  bool tightened = false;            ///< whether its systems were solved anew, see solve_and_certify()
   double delta = 0;                  ///< of the regularised variant, for the next mesh
   std::optional<int> delta_updates;  ///< how often delta was shrunk; absent in the plain method
   Stress<dim> stress;
@@ -108,6 +113,12 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 ///
 /// `friedrichs`: of a mesh of which this is a refinement, if it is known.
 ///
+/// Where Newton's method fails it is started once more, from solutions with T_delta in the place of T and
+/// delta going to 0; `steps` has the steps of all attempts.
+///
+/// Where the identities of the iterate that is kept are violated, the linear systems may have been solved too
+/// loosely: Newton's method goes on with new factors, solving them as far as rounding lets it.
+///
 /// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>
 [[nodiscard]] CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form,
@@ -115,5 +126,18 @@ template <int dim>
                                                     const StepObserver& observer = {}, double delta = 0,
                                                     const std::optional<double>& expected = {},
                                                     const std::optional<FriedrichsConstant>& friedrichs = {});
+
+/// The same level with Newton's method gone on until newton.tolerance, whatever the stopping criterion, delta
+/// as it is, and with the bound of its last iterate. Nothing where it does not get there, be it that an
+/// identity is violated; throws as solve_and_certify() does. Of `level` neither stress nor estimate is used.
+template <int dim>
+[[nodiscard]] std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form,
+                                                          const CertifiedLevel<dim>& level,
+                                                          const Config& config,
+                                                          const StepObserver& observer = {});
+
+/// Whether there is a solution and judge() may call its bound a bound.
+template <int dim>
+[[nodiscard]] bool bound_holds(const CertifiedLevel<dim>& level, int degree);
 
 }  // namespace tribound

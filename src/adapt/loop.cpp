@@ -49,16 +49,24 @@ class Loop
     current_ = std::move(first);
     for (number_ = 0;; ++number_)
     {
-      const std::optional<CertifiedLevel<dim>> level = solve();
+      std::optional<CertifiedLevel<dim>> level = solve();
       if (!level) return ended_;
       Verdict verdict = judge_level(*level);
       if (number_ > 0 && !holds(verdict)) return certificate_of_the_level_before(verdict.reason);
-      observer_.level({number_, *current_, *level, verdict, seconds_since(level_begin_), current_});
-      level_begin_ = Clock::now();
-      last_ = verdict;
-      if (verdict.status != RunStatus::budget) return verdict;
-      if (const auto limit = limit_reached(); !limit.empty()) return used_up(limit);
-      if (const auto limit = go_on_to_finer_mesh(*level); !limit.empty()) return used_up(limit);
+      last_ = std::move(verdict);
+      std::string limit = limit_reached();
+      const bool is_last = last_.status != RunStatus::budget || !limit.empty();
+      if (is_last) finish(*level);
+      tell(*level);
+      if (!is_last)
+      {
+        limit = go_on_to_finer_mesh(*level);
+        if (!limit.empty() && finish(*level)) tell(*level);
+      }
+      if (last_.status != RunStatus::budget || !limit.empty()) return used_up(limit);
+      level->stress = {};
+      level->estimate = {};
+      before_ = std::move(*level);
     }
   }
 
@@ -67,15 +75,26 @@ class Loop
   {
     return verdict.status == RunStatus::certified || verdict.status == RunStatus::budget;
   }
+  /// The verdict on the last level; where it is `budget`, the limit that ended the run.
   [[nodiscard]] Verdict used_up(const std::string& limit) const
   {
+    if (last_.status != RunStatus::budget) return last_;
     return {RunStatus::budget, last_.reason + "; " + limit};
   }
-  [[nodiscard]] Verdict certificate_of_the_level_before(const std::string& problem) const
-  {
-    return used_up(fmt::format("this is level {}, level {} failed: {}", number_ - 1, number_, problem));
-  }
+  /// The certificate of the level before, its last word on it, too.
+  [[nodiscard]] Verdict certificate_of_the_level_before(const std::string& problem);
 
+  void tell(const CertifiedLevel<dim>& level)
+  {
+    observer_.level({number_, *current_, level, last_, seconds_since(level_begin_), current_});
+    level_begin_ = Clock::now();
+  }
+  /// Lets Newton's method converge on the last level, as far as it does so without harm; whether it has
+  /// changed anything.
+  bool finish(CertifiedLevel<dim>& level);
+
+  /// Passes the steps on, and ends Newton's method when the user wants it to end and it may.
+  [[nodiscard]] StepObserver watch(bool interruptible) const;
   /// Nothing if the level did not end; ended_ says why.
   std::optional<CertifiedLevel<dim>> solve();
   [[nodiscard]] Verdict judge_level(const CertifiedLevel<dim>& level) const;
@@ -111,6 +130,8 @@ class Loop
   RefinementSeconds refinement_;
   std::optional<FriedrichsConstant> friedrichs_;  ///< of the mesh on which it was first needed
   std::optional<double> expected_;  ///< osc + str + neu + cnt + frc on the current mesh, guessed
+  CertifiedLevel<dim> before_;      ///< the level before, without stress and estimate
+  std::shared_ptr<const Discretisation<dim>> discrete_before_;
   Verdict last_{RunStatus::failed, {}};
   Verdict ended_{RunStatus::failed, {}};
 };
@@ -118,15 +139,10 @@ class Loop
 template <int dim>
 std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
 {
-  const auto watch = [&](const CertifiedStep& step)
-  {
-    if (observer_.step) observer_.step(step);
-    if (stop_ && number_ > 0) throw Interrupted{};
-  };
   try
   {
-    CertifiedLevel<dim> level =
-        solve_and_certify<dim>(current_->form, start_, config_, watch, delta_, expected_, friedrichs_);
+    CertifiedLevel<dim> level = solve_and_certify<dim>(current_->form, start_, config_, watch(number_ > 0),
+                                                       delta_, expected_, friedrichs_);
     friedrichs_ = level.friedrichs;
     level.refinement = refinement_;
     return level;
@@ -152,7 +168,64 @@ template <int dim>
 Verdict Loop<dim>::judge_level(const CertifiedLevel<dim>& level) const
 {
   if (!level.solved()) return {RunStatus::failed, level.failure};
-  return judge(level.estimate, level.identities, config_.degree, level.norms.sigma, config_.adapt.tolerance);
+  Verdict verdict =
+      judge(level.estimate, level.identities, config_.degree, level.norms, config_.adapt.tolerance);
+  if (level.tightened && !holds(verdict))
+    verdict.reason +=
+        "; solving the systems anew as far as rounding lets them be, with solver.tolerance = 0, did not mend "
+        "it: are materials of very different stiffness, nu near 0.5 or very flat cells involved?";
+  return verdict;
+}
+
+template <int dim>
+StepObserver Loop<dim>::watch(bool interruptible) const
+{
+  return [this, interruptible](const CertifiedStep& step)
+  {
+    if (observer_.step) observer_.step(step);
+    if (stop_ && interruptible) throw Interrupted{};
+  };
+}
+
+template <int dim>
+bool Loop<dim>::finish(CertifiedLevel<dim>& level)
+{
+  if (!config_.newton.finish || level.converged || !holds(last_) || stop_) return false;
+  const auto attempt = [&]() -> std::optional<CertifiedLevel<dim>>
+  {
+    try
+    {
+      return converge<dim>(current_->form, level, config_, watch(true));
+    }
+    catch (const Interrupted&)
+    {
+    }
+    catch (const SolveError&)
+    {
+    }
+    catch (const std::bad_alloc&)
+    {
+    }
+    return std::nullopt;
+  };
+  std::optional<CertifiedLevel<dim>> converged = attempt();
+  if (!converged) return false;
+  Verdict verdict = judge_level(*converged);
+  if (last_.status == RunStatus::certified && verdict.status != RunStatus::certified) return false;
+  level = std::move(*converged);
+  last_ = std::move(verdict);
+  return true;
+}
+
+template <int dim>
+Verdict Loop<dim>::certificate_of_the_level_before(const std::string& problem)
+{
+  const std::string limit =
+      fmt::format("this is level {}, level {} failed: {}", number_ - 1, number_, problem);
+  --number_;
+  current_ = std::move(discrete_before_);
+  if (finish(before_)) tell(before_);
+  return used_up(limit);
 }
 
 template <int dim>
@@ -191,7 +264,7 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
   expected_ = level.estimate.global.discretisation() * std::pow(growth, -1.0 * config_.degree / dim);
   start_ = nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
   refinement_.transfer = lap();
-  current_ = std::move(next);
+  discrete_before_ = std::exchange(current_, std::move(next));
   return {};
 }
 

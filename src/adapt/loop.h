@@ -32,6 +32,7 @@ template <int dim>
 struct LoopObserver
 {
   StepObserver step;
+  /// Of the last level a second time, if Newton's method has converged on it after the first.
   std::function<void(const LevelView<dim>&)> level;
 };
 
@@ -50,6 +51,10 @@ struct MemoryLimit
 
 /// Adapts the mesh from that of `first`, Newton starting from the solution carried to each new mesh, until
 /// bound <= adapt.tolerance * ||sigma(u_h)|| or a limit of [adapt] is reached, or `stop` becomes true.
+///
+/// On the last level Newton's method goes on to newton.tolerance (newton.finish), which changes the
+/// displacement by less than its bound, but contact forces visibly; where it fails or the run is interrupted
+/// the level stays as it is.
 ///
 /// The verdict is that of the last level of which the observer was told. Should a later level fail, or
 /// violate an identity or run out of memory, the one before it keeps its certificate: the verdict is then

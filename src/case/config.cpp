@@ -85,7 +85,7 @@ NitscheConfig read_nitsche(const Node& node)
 
 NewtonConfig read_newton(const Node& node)
 {
-  const TableReader table(node, {"stopping", "gamma_lin", "tolerance", "max_steps", "damping"});
+  const TableReader table(node, {"stopping", "gamma_lin", "tolerance", "max_steps", "damping", "finish"});
   NewtonConfig newton;
   table.read("stopping", newton.stopping, one_of<Stopping>({"adaptive", "adaptive_local", "tolerance"}));
   table.read("gamma_lin", newton.gamma_lin,
@@ -94,6 +94,7 @@ NewtonConfig read_newton(const Node& node)
              number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
   table.read("max_steps", newton.max_steps, integer_from(1, "a number of steps, such as 50"));
   table.read("damping", newton.damping, to_bool);
+  table.read("finish", newton.finish, to_bool);
   return newton;
 }
 

@@ -119,6 +119,7 @@ struct NewtonConfig
   double tolerance = 1e-10;  ///< relative residual
   int max_steps = 50;
   bool damping = true;  ///< false: always full steps (for comparisons; may cycle)
+  bool finish = true;   ///< converge to `tolerance` on the last level, whatever `stopping`
 };
 
 /// The regularised variant, method section 7.

@@ -30,22 +30,32 @@ const char* to_string(RunStatus status)
   return "uncertified";
 }
 
-Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree, double sigma_norm,
+bool is_round_off(const Bound& bound, const StressNorms& norms)
+{
+  return bound.total_sharp <= norms.round_off && norms.sigma <= norms.round_off;
+}
+
+std::string identity_violation(double defect)
+{
+  if (defect <= identity_limit) return {};
+  return fmt::format(
+      "an identity of the equilibrated stress is violated: {:.2e} of ||sigma_h||, the limit "
+      "is {:g}; what was computed is no bound",
+      defect, identity_limit);
+}
+
+Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree, const StressNorms& norms,
               double tolerance)
 {
-  const double defect = identities.largest(degree);
-  if (!(defect <= identity_limit))
-    return {
-        RunStatus::not_certified,
-        fmt::format("an identity of the equilibrated stress is violated: {:.2e} of ||sigma_h||, the limit "
-                    "is {:g}; what was computed is no bound",
-                    defect, identity_limit)};
-  if (!std::isfinite(bound.total_sharp) || !std::isfinite(sigma_norm))
+  if (!std::isfinite(bound.total_sharp) || !std::isfinite(norms.sigma))
     return {RunStatus::not_certified, "the bound is not a finite number"};
-  if (bound.total_sharp <= tolerance * sigma_norm) return {RunStatus::certified, {}};
+  if (is_round_off(bound, norms)) return {RunStatus::certified, {}};
+  if (std::string violation = identity_violation(identities.largest(degree)); !violation.empty())
+    return {RunStatus::not_certified, std::move(violation)};
+  if (bound.total_sharp <= tolerance * norms.sigma) return {RunStatus::certified, {}};
   return {RunStatus::budget, fmt::format("the bound holds, but it is {:.3g} % of ||sigma(u_h)||, above "
                                          "adapt.tolerance = {:g} %",
-                                         100 * bound.total_sharp / sigma_norm, 100 * tolerance)};
+                                         100 * bound.total_sharp / norms.sigma, 100 * tolerance)};
 }
 
 namespace

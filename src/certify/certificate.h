@@ -11,6 +11,7 @@
 
 #include "certify/checks.h"
 #include "certify/estimate.h"
+#include "contact/elasticity.h"
 
 namespace tribound
 {
@@ -36,10 +37,18 @@ struct Verdict
   std::string reason;
 };
 
-/// Certified if the identities hold to identity_limit and bound.total_sharp <= tolerance * sigma_norm;
-/// numbers that are not finite are never certified.
+/// Whether sigma(u) and the bound of its error are nothing but rounding: the exact stress is zero as far as
+/// can be known, and what the identities say relative to it means nothing.
+[[nodiscard]] bool is_round_off(const Bound& bound, const StressNorms& norms);
+
+/// Certified if the stress is nothing but rounding, or the identities hold to identity_limit and
+/// bound.total_sharp <= tolerance * ||sigma(u)||; numbers that are not finite are never certified.
 [[nodiscard]] Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
-                            double sigma_norm, double tolerance);
+                            const StressNorms& norms, double tolerance);
+
+/// Why what was computed is no bound: an identity is violated by more than identity_limit; empty when all
+/// hold. `defect`: IdentityDefects::largest.
+[[nodiscard]] std::string identity_violation(double defect);
 
 /// The words of a certificate.
 struct Statements

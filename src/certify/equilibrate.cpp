@@ -82,13 +82,14 @@ void Equilibration<dim, p>::prepare_stress()
   if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
 }
 
-/// Calls work(i) for every stretch i, each in its own thread; throws what one of them threw.
+/// Calls work(i) for every stretch i, each in its own thread. Of the exceptions thrown, that of the first
+/// stretch is thrown on: what a message names must not depend on which thread was faster.
 template <int dim, int p>
 template <class Work>
 void Equilibration<dim, p>::in_parallel(Work work)
 {
   const int n_threads = stretches_.size();
-  std::exception_ptr failure;
+  std::vector<std::exception_ptr> failures(n_threads);
 #pragma omp parallel for num_threads(n_threads) schedule(static, 1)
   for (int i = 0; i < n_threads; ++i) try
     {
@@ -96,10 +97,10 @@ void Equilibration<dim, p>::in_parallel(Work work)
     }
     catch (...)
     {
-#pragma omp critical
-      failure = std::current_exception();
+      failures[i] = std::current_exception();
     }
-  if (failure) std::rethrow_exception(failure);
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
 }
 
 template <int dim, int p>

@@ -19,10 +19,10 @@ double count_dofs(const Mesh<dim>& mesh, const RicherSpace& space)
          (n.vertices + (p - 1) * n.edges + in_facets + polynomial_dimension(dim, p - dim - 1) * n.cells);
 }
 
-std::optional<double> effectivity(double bound, double dual_norm, double sigma_norm)
+std::optional<double> effectivity(double bound, double dual_norm, const StressNorms& norms)
 {
   constexpr double resolution = 1e-10;
-  if (std::max(bound, dual_norm) <= resolution * sigma_norm) return std::nullopt;
+  if (std::max(bound, dual_norm) <= std::max(resolution * norms.sigma, norms.round_off)) return std::nullopt;
   return bound / dual_norm;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "case/config.h"
+#include "contact/elasticity.h"
 #include "contact/nitsche.h"
 #include "mesh/refine.h"
 #include "solve/linear_solver.h"
@@ -91,9 +92,9 @@ class DualNorm
   std::vector<Operator> operators_;
 };
 
-/// bound / dual_norm, which the theorem says is at least 1; nothing where both are below 1e-10 ||sigma(u)||,
-/// the size of the round-off to which the identities behind the bound hold.
-[[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm, double sigma_norm);
+/// bound / dual_norm, which the theorem says is at least 1; nothing where both are below norms.round_off or
+/// 1e-10 ||sigma(u)||, the size of the round-off to which the identities behind the bound hold.
+[[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm, const StressNorms& norms);
 
 /// The distance of a discrete solution from a much richer one.
 struct SolutionError

@@ -81,8 +81,14 @@ template <int dim>
 /// What the displacement u stores in the body.
 struct StressNorms
 {
-  double energy;  ///< a(u, u), not halved
-  double sigma;   ///< ||sigma(u)||
+  double energy = 0;  ///< a(u, u), not halved
+  double sigma = 0;   ///< ||sigma(u)||
+  /// Where sigma(u) is nothing but rounding, so that the exact stress is zero as far as can be known, how
+  /// large rounding may be: a multiple of the unit round-off times the norm of (2 mu + dim lambda) sum_i
+  /// |u_i| |grad phi_i|, whose terms cancel in sigma(u) when u is a rigid motion. Else 0; so under loads,
+  /// which need a stress, and where rounding might hide a stress that matters: more than 1e-5 of what a
+  /// strain of max |u| over the size of the body means in the softest material.
+  double round_off = 0;
 };
 
 template <int dim>

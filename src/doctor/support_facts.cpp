@@ -76,12 +76,65 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
   for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.fixes(c);
 }
 
+/// Per boundary number the mean normal of a contact boundary whose facets are within 10 degrees of it.
+template <int dim>
+std::vector<std::optional<Point<dim>>> normals_of_planes(const NitscheForm<dim>& form)
+{
+  constexpr double cos_limit = 0.985;
+  std::vector<Point<dim>> sum(form.problem().boundaries().size(), Point<dim>::Zero());
+  for (const ContactFacet<dim>& facet : form.contact_facets())
+    sum[facet.facet.tag] += facet.geometry.measure * facet.geometry.normal;
+  std::vector<std::optional<Point<dim>>> normals(sum.size());
+  for (std::size_t tag = 0; tag < sum.size(); ++tag)
+    if (sum[tag].norm() > 0) normals[tag] = sum[tag].normalized();
+  for (const ContactFacet<dim>& facet : form.contact_facets())
+    if (auto& normal = normals[facet.facet.tag]; normal && facet.geometry.normal.dot(*normal) < cos_limit)
+      normal.reset();
+  return normals;
+}
+
 }  // namespace
 
 bool OverconstrainedCorner::contradicts() const
 {
   constexpr double round_off = 1e-12;
   return normal - gap > round_off * (std::abs(normal) + gap);
+}
+
+template <int dim>
+std::vector<bool> slides_as_a_whole(const NitscheForm<dim>& form)
+{
+  constexpr double negligible = 1e-6;  // motions have size 1
+  const Mesh<dim>& mesh = form.space().mesh();
+  const std::vector<std::optional<Point<dim>>> plane = normals_of_planes(form);
+  std::vector<bool> slides(plane.size(), false);
+  for (const Body<dim>& body : find_bodies(form.space()))
+  {
+    const BodySupport<dim> support(form.problem(), mesh, body);
+    Eigen::MatrixXd gram = support.dirichlet_gram();
+    const auto for_each_contact_vertex = [&](const auto& visit)
+    {
+      for (const BoundaryFacet& facet : body.facets)
+        if (form.problem().boundary(facet.tag).contact)
+          for (const Index v : facet_vertices(mesh.cell(facet.cell), facet.local))
+            visit(facet, body.modes.at(mesh.vertex(v)));
+    };
+    for_each_contact_vertex(
+        [&](const BoundaryFacet& facet, const auto& modes)
+        {
+          const Point<dim> n =
+              plane[facet.tag].value_or(facet_geometry(mesh, facet.cell, facet.local).normal);
+          const auto z_n = n.transpose() * modes;
+          gram += z_n.transpose() * z_n;
+        });
+    const MotionBasis motions = null_space(gram, gram.trace());
+    for_each_contact_vertex(
+        [&](const BoundaryFacet& facet, const auto& modes) {
+          slides[facet.tag] =
+              slides[facet.tag] || (plane[facet.tag] && (modes * motions).norm() > negligible);
+        });
+  }
+  return slides;
 }
 
 template <int dim>
@@ -136,6 +189,8 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<dim
   return result;
 }
 
+template std::vector<bool> slides_as_a_whole(const NitscheForm<2>&);
+template std::vector<bool> slides_as_a_whole(const NitscheForm<3>&);
 template std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<2>&);
 template std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<3>&);
 template std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<2>&);

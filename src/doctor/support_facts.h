@@ -27,6 +27,13 @@ struct ContactHeldMotion
 template <int dim>
 [[nodiscard]] std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<dim>& form);
 
+/// Per boundary number, whether a body would slide along it as a whole without its friction: the facets of
+/// the boundary are within 10 degrees of a plane, and a rigid motion along the plane is stopped neither by
+/// displacement conditions nor by closed contact without friction. There, and only there, resultants tell how
+/// far sliding is.
+template <int dim>
+[[nodiscard]] std::vector<bool> slides_as_a_whole(const NitscheForm<dim>& form);
+
 /// Vertices where a contact boundary meets a boundary that fixes the normal displacement.
 struct OverconstrainedCorner
 {

@@ -149,11 +149,12 @@ std::string newton_text(const NewtonStep& step, std::optional<double> relative_b
 
 std::string level_text(const LevelRecord& level)
 {
-  const std::string bound =
-      relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level)) : std::string("none");
+  const std::string bound = relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level))
+                            : level.bound         ? std::string("rounding")
+                                                  : std::string("none");
   return line(fmt::format("level {}", level.level),
               fmt::format("{:>8} cells  {:>8} dofs  newton {:>2}  bound {:<8}  {:.2f} s", level.cells,
-                          level.dofs, level.newton.size(), bound, level.times.level));
+                          level.dofs, newton_steps(level), bound, level.times.level));
 }
 
 std::string certificate_text(const RunRecord& run)
@@ -161,9 +162,12 @@ std::string certificate_text(const RunRecord& run)
   if (run.levels.empty() || !run.levels.back().bound) return {};
   const LevelRecord& level = run.levels.back();
   const Bound& bound = *level.bound;
+  const std::optional<double> relative = relative_bound(level);
   std::string text =
-      line("bound", fmt::format("{:.6g}, that is {:.4g} % of ||sigma(u_h)|| (plain sums: {:.6g})",
-                                bound.total_sharp, 100 * relative_bound(level).value_or(0), bound.total));
+      line("bound", fmt::format("{:.6g}, {} (plain sums: {:.6g})", bound.total_sharp,
+                                relative ? fmt::format("that is {:.4g} % of ||sigma(u_h)||", 100 * *relative)
+                                         : std::string("rounding, as the stress is"),
+                                bound.total));
   text += component_lines(bound.global, level.delta_updates.has_value());
   if (level.identities)
     text += line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
@@ -207,8 +211,10 @@ std::string verdict_text(const RunRecord& run, const std::string& directory)
 {
   std::string reason = run.reason;
   if (run.status == RunStatus::certified)
-    reason =
-        fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||", 100 * run.tolerance);
+    reason = run.levels.empty() || relative_bound(run.levels.back())
+                 ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
+                               100 * run.tolerance)
+                 : std::string("the stress is zero up to rounding, and so is the bound of its error");
   return line("status", to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
          line_if_any("results", directory);
 }

@@ -1,8 +1,11 @@
 #include "io/report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "doctor/support_facts.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "io/facts_json.h"
@@ -65,7 +68,8 @@ Json json(const std::optional<IdentityDefects>& identities)
 
 Json json(const Resultants& resultants)
 {
-  return {{"normal", resultants.normal},
+  return {{"resolution", resultants.resolution},
+          {"normal", resultants.normal},
           {"tangential", resultants.tangential},
           {"abs_tangential", resultants.abs_tangential},
           {"force", resultants.force}};
@@ -124,6 +128,7 @@ Json json(const LevelRecord& level)
 {
   Json object{{"level", level.level}};
   add_results(object, level);
+  object["finishing_steps"] = level.finishing_steps;
   object["newton"] = Json::array();
   for (const CertifiedStep& record : level.newton)
     object["newton"].push_back(json(record, is_regularised(level)));
@@ -156,32 +161,55 @@ Json json(const std::vector<std::pair<std::string, Value>>& named)
   return object;
 }
 
+/// The resultants of T(u) and of t^k on the boundary group `tag`, or on all of Gamma_C for tag < 0.
 template <int dim>
-Resultants resultants(const std::string& boundary, const ContactResultants<dim>& r)
+Resultants resultants(const NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
+                      std::span<const Point<dim>> running, int tag = -1)
 {
-  return {boundary, {r.force.begin(), r.force.end()}, r.normal, r.tangential, r.abs_tangential, {}};
-}
-
-/// Of the boundary group `tag`, with the friction coefficient if there is one.
-template <int dim>
-Resultants boundary_resultants(const NitscheForm<dim>& form, std::span<const Point<dim>> t, int tag)
-{
-  const BoundaryCondition<dim>& boundary = form.problem().boundary(tag);
-  Resultants result = resultants(boundary.name, contact_resultants(form, t, tag));
-  if (const auto* coulomb = std::get_if<Coulomb>(&boundary.contact->friction))
-    result.coefficient = coulomb->coefficient;
+  constexpr double round_off = 1e-12;  // of sums over many points
+  const ContactResultants<dim> r = contact_resultants(form, of_u, tag);
+  const ContactResultants<dim> in_equilibrium = contact_resultants(form, running, tag);
+  Resultants result;
+  result.resolution = (r.force - in_equilibrium.force).norm() + std::abs(r.normal - in_equilibrium.normal) +
+                      std::abs(r.tangential - in_equilibrium.tangential) +
+                      round_off * (std::abs(r.normal) + r.abs_tangential);
+  const auto known = [&](double value) { return known_digits(value, result.resolution); };
+  for (const double component : r.force) result.force.push_back(known(component));
+  result.normal = known(r.normal);
+  result.tangential = known(r.tangential);
+  result.abs_tangential = known(r.abs_tangential);
   return result;
 }
 
 }  // namespace
 
+double known_digits(double value, double resolution)
+{
+  constexpr int all_digits = 16;
+  if (std::abs(value) <= resolution) return 0;
+  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(resolution));
+  if (!(digits < all_digits)) return value;
+  return std::stod(fmt::format("{:.{}e}", value, static_cast<int>(digits)));
+}
+
 std::optional<Sliding> sliding(const Resultants& resultants)
 {
   const double N = -resultants.normal;
   const double H = std::abs(resultants.tangential);
-  if (!resultants.coefficient || N <= 0) return std::nullopt;
+  const double resolution = resultants.resolution;
+  if (!resultants.coefficient || N <= resolution) return std::nullopt;
   const double mu_F = *resultants.coefficient;
-  return Sliding{mu_F, H / N, H > 1e-10 * N ? std::optional(mu_F * N / H) : std::nullopt};
+  const double ratio = H / N;
+  constexpr double round_off = 1e-10;
+  Sliding result{mu_F, known_digits(ratio, (1 + ratio) * resolution / N), {}};
+  if (H > std::max(resolution, round_off * N))
+    result.safety_factor = known_digits(mu_F / ratio, mu_F / ratio * (1 + 1 / ratio) * resolution / N);
+  return result;
+}
+
+int newton_steps(const LevelRecord& level)
+{
+  return static_cast<int>(level.newton.size()) - level.finishing_steps;
 }
 
 bool is_regularised(const LevelRecord& level)
@@ -211,15 +239,28 @@ template <int dim>
 SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
 {
   SolutionFigures figures;
-  figures.energy = level.norms.energy;
-  figures.sigma_norm = level.norms.sigma;
+  figures.round_off = level.norms.round_off;
+  if (!level.solved() || !is_round_off(level.estimate, level.norms))
+  {
+    figures.energy = level.norms.energy;
+    figures.sigma_norm = level.norms.sigma;
+  }
   for (std::size_t node = 0; node < level.u.size(); node += dim)
     figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
   const std::vector<Point<dim>> t = form.traction(level.u);
-  figures.contact = resultants("", contact_resultants<dim>(form, t));
+  figures.contact = resultants<dim>(form, t, level.traction);
   const auto boundaries = form.problem().boundaries();
+  const std::vector<bool> slides = slides_as_a_whole(form);
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (boundaries[tag].contact) figures.boundary_contact.push_back(boundary_resultants<dim>(form, t, tag));
+  {
+    if (!boundaries[tag].contact) continue;
+    Resultants part = resultants<dim>(form, t, level.traction, tag);
+    part.boundary = boundaries[tag].name;
+    const auto* coulomb = std::get_if<Coulomb>(&boundaries[tag].contact->friction);
+    if (coulomb && slides[tag] && bound_holds(level, form.space().degree()))
+      part.coefficient = coulomb->coefficient;
+    figures.boundary_contact.push_back(std::move(part));
+  }
   return figures;
 }
 
@@ -236,7 +277,7 @@ std::string convergence_csv(const RunRecord& run)
     table.add(level.level);
     table.add(level.cells);
     table.add(level.dofs);
-    table.add(static_cast<long>(level.newton.size()));
+    table.add(newton_steps(level));
     add_components(table, component_names, level.bound);
     table.add(member(level.bound, &Bound::total));
     table.add(member(level.bound, &Bound::total_sharp));

@@ -28,12 +28,19 @@ struct Resultants
   std::vector<double> force;  ///< integral of T, acts on the body
   double normal = 0.0;        ///< integral of T^n, negative in compression
   double tangential = 0.0;    ///< 2D: integral of T.t with t = n turned by +90 degrees; 3D: |integral of T^t|
-  double abs_tangential = 0.0;          ///< integral of |T^t|
-  std::optional<double> coefficient{};  ///< mu_F where the friction is Coulomb's
+  double abs_tangential = 0.0;  ///< integral of |T^t|
+  /// mu_F of Coulomb's friction where it alone keeps a body from sliding along a boundary that is nearly
+  /// plane (slides_as_a_whole).
+  std::optional<double> coefficient{};
+  double resolution = 0.0;  ///< forces are known to this much: the distance of T(u^k) from t^k
 };
 
+/// The value rounded to the decimal place of its resolution; 0 where it is not larger. Numbers that are not
+/// finite stay.
+[[nodiscard]] double known_digits(double value, double resolution);
+
 /// How far a boundary with Coulomb friction is from sliding as a whole, as dams and walls are judged:
-/// N = -(integral of T^n), H = |tangential resultant|. Meant for boundaries that are close to plane.
+/// N = -(integral of T^n), H = |tangential resultant|.
 struct Sliding
 {
   double coefficient = 0.0;             ///< mu_F
@@ -41,7 +48,8 @@ struct Sliding
   std::optional<double> safety_factor;  ///< mu_F N / H; nothing where no force makes it slide
 };
 
-/// Nothing without Coulomb friction or without a normal force. A force H below 1e-10 N counts as none.
+/// Nothing without Resultants::coefficient or without a normal force. A force H below the resolution, or
+/// 1e-10 N, counts as none; the numbers have the digits that it leaves them.
 [[nodiscard]] std::optional<Sliding> sliding(const Resultants& resultants);
 
 /// The figures by which a discrete solution is compared with others.
@@ -52,9 +60,13 @@ struct SolutionFigures
   double max_displacement = 0.0;  ///< largest |u| at a node
   Resultants contact;
   std::vector<Resultants> boundary_contact;  ///< of every boundary group with contact
+  double round_off = 0.0;                    ///< a stress below is nothing but rounding
 };
 
-/// The figures of the solution on a level, with the contact traction T(u).
+/// The figures of the solution on a level, with the contact traction T(u). Forces have only the digits that
+/// are known of the discrete solution: t^k is in equilibrium with the loads, T(u^k) obeys the laws of
+/// contact, and what they differ by Newton's method has still to find. A stress that is nothing but rounding
+/// is 0.
 template <int dim>
 [[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form,
                                                const CertifiedLevel<dim>& level);
@@ -78,6 +90,7 @@ struct LevelRecord
   long cells = 0;
   long dofs = 0;  ///< free ones
   std::vector<CertifiedStep> newton;
+  int finishing_steps = 0;           ///< the last of them, with which Newton's method has converged fully
   std::optional<int> delta_updates;  ///< of the regularised variant; absent in the plain method
   SolutionFigures figures;
   std::optional<Bound> bound;
@@ -88,6 +101,9 @@ struct LevelRecord
 
 /// Whether it is one of the regularised variant, method section 7.
 [[nodiscard]] bool is_regularised(const LevelRecord& level);
+
+/// Newton steps until the stopping criterion held, without those that finish the last level.
+[[nodiscard]] int newton_steps(const LevelRecord& level);
 
 /// delta of T_delta in the last Newton step.
 [[nodiscard]] std::optional<double> last_delta(const LevelRecord& level);

@@ -243,6 +243,7 @@ template <int dim>
 void ReportPage::add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
+  if (!levels_.empty() && levels_.back().number == number) levels_.pop_back();
   levels_.push_back(page_level(number, form, level));
   volume_ = page_volume(form, level);
   drop_levels(levels_, {});

@@ -61,6 +61,7 @@ class ReportPage
   /// `page_template`: what report/ builds; where there is none nothing is collected or written.
   explicit ReportPage(const std::filesystem::path& page_template);
 
+  /// In the place of the level with this number, if it is the last.
   template <int dim>
   void add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
 

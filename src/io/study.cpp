@@ -65,7 +65,7 @@ std::vector<Column> columns(const StudyVariant& variant, std::size_t number)
   std::vector<Column> row = {{"level", level.record.level, true},
                              {"cells", static_cast<double>(level.record.cells), true},
                              {"dofs", static_cast<double>(level.record.dofs), true},
-                             {"newton_steps", static_cast<double>(level.record.newton.size()), true}};
+                             {"newton_steps", static_cast<double>(newton_steps(level.record)), true}};
   const std::optional<Bound>& bound = level.record.bound;
   for (const auto& [name, member] : component_names)
     row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
@@ -146,7 +146,7 @@ Json newton_json(const Study& study)
     {
       const StudyVariant* variant = find_variant(study, name);
       row[name] = variant != nullptr && level < variant->levels.size()
-                      ? Json(variant->levels[level].record.newton.size())
+                      ? Json(newton_steps(variant->levels[level].record))
                       : Json(nullptr);
     }
     table.push_back(row);
@@ -168,20 +168,27 @@ Json differences(const Study& study)
   return object;
 }
 
+StressNorms norms_of(const LevelRecord& record)
+{
+  return {.energy = record.figures.energy,
+          .sigma = record.figures.sigma_norm,
+          .round_off = record.figures.round_off};
+}
+
 }  // namespace
 
 std::optional<double> StudiedLevel::effectivity() const
 {
   const auto bound = bound_of(*this);
   if (!bound || !dual_norm) return std::nullopt;
-  return tribound::effectivity(*bound, *dual_norm, record.figures.sigma_norm);
+  return tribound::effectivity(*bound, *dual_norm, norms_of(record));
 }
 
 std::optional<double> StudiedLevel::stress_effectivity() const
 {
   const auto bound = bound_of(*this);
   if (!bound || !error) return std::nullopt;
-  return tribound::effectivity(*bound, error->stress, record.figures.sigma_norm);
+  return tribound::effectivity(*bound, error->stress, norms_of(record));
 }
 
 const StudyVariant* find_variant(const Study& study, std::string_view name)

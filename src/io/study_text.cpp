@@ -26,7 +26,7 @@ std::string level_line(const StudyVariant& variant, std::size_t i)
   const auto relative = relative_bound(level.record);
   const auto error = level.error ? std::optional(level.error->energy) : std::nullopt;
   return fmt::format("{:>5}  {:>8}  {:>8}  {:>6}  {:>9}  {:>6}  {:>10}  {:>6}  {:>11}  {:>14}\n",
-                     level.record.level, level.record.cells, level.record.dofs, level.record.newton.size(),
+                     level.record.level, level.record.cells, level.record.dofs, newton_steps(level.record),
                      number("{:.4g} %", relative ? std::optional(100 * *relative) : relative),
                      number("{:.2f}", rates.bound), number("{:.4e}", error), number("{:.2f}", rates.error),
                      number("{:.3f}", level.effectivity()), number("{:.3f}", level.stress_effectivity()));
@@ -58,7 +58,7 @@ std::string newton_table(const Study& study)
     text += fmt::format("{:>5}", level);
     for (const StudyVariant& variant : study.variants)
       text += level < variant.levels.size()
-                  ? fmt::format("  {:>18}", variant.levels[level].record.newton.size())
+                  ? fmt::format("  {:>18}", newton_steps(variant.levels[level].record))
                   : fmt::format("  {:>18}", "-");
     text += "\n";
   }

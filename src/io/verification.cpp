@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "certify/certificate.h"
 #include "io/atomic_file.h"
 #include "io/json.h"
 #include "io/text.h"
@@ -33,7 +34,7 @@ std::string iterate_line(const VerifiedIterate& iterate)
 std::string richer_text(const Verification& v)
 {
   if (!v.richer) return line("richer", "not computed, because Newton's method did not converge");
-  const double sigma_norm = v.iterates.back().sigma_norm;
+  const double sigma_norm = v.iterates.back().norms.sigma;
   const std::string where =
       fmt::format("degree {} on {} cells, {} free degrees of freedom, {} Newton steps", v.richer_degree,
                   v.richer->cells, v.richer->dofs, v.richer->newton_steps);
@@ -64,11 +65,16 @@ std::string status_text(const Verification& v)
 
 Json json(const VerifiedIterate& iterate)
 {
-  return {{"step", iterate.step.step},        {"residual", iterate.step.residual},
-          {"damping", iterate.step.damping},  {"delta", iterate.step.delta},
-          {"bound", iterate.bound},           {"bound_plain", iterate.bound_plain},
-          {"dual_norm", iterate.dual_norm},   {"effectivity", number_or_null(iterate.effectivity())},
-          {"sigma_norm", iterate.sigma_norm}, {"identities", iterate.identities}};
+  return {{"step", iterate.step.step},
+          {"residual", iterate.step.residual},
+          {"damping", iterate.step.damping},
+          {"delta", iterate.step.delta},
+          {"bound", iterate.bound},
+          {"bound_plain", iterate.bound_plain},
+          {"dual_norm", iterate.dual_norm},
+          {"effectivity", number_or_null(iterate.effectivity())},
+          {"sigma_norm", iterate.norms.sigma},
+          {"identities", iterate.identities}};
 }
 
 Json json(const std::optional<RicherSolution>& solution, int degree)
@@ -87,16 +93,22 @@ Json json(const std::optional<RicherSolution>& solution, int degree)
 
 }  // namespace
 
+std::string VerifiedIterate::refusal() const
+{
+  if (std::max(bound, norms.sigma) <= norms.round_off) return {};
+  return identity_violation(identities);
+}
+
 std::string violation(const Verification& verification)
 {
   for (const VerifiedIterate& iterate : verification.iterates)
-    if (const auto e = iterate.effectivity(); e && *e < 1)
+    if (const auto e = iterate.effectivity(); e && *e < 1 && iterate.refusal().empty())
       return fmt::format(
           "the guarantee is violated: after Newton step {} the bound {:.9g} is below the dual norm of the "
           "residual, "
           "which is at least {:.9g} (effectivity {:.6f})",
           iterate.step.step, iterate.bound, iterate.dual_norm, *e);
-  return {};
+  return verification.iterates.back().refusal();
 }
 
 std::string verification_text(const Verification& v, const std::string& directory)
@@ -109,10 +121,22 @@ std::string verification_text(const Verification& v, const std::string& director
                   "bound", "dual norm", "effectivity", "identities");
   for (const VerifiedIterate& iterate : v.iterates) text += iterate_line(iterate);
   const VerifiedIterate& last = v.iterates.back();
-  text += line("||sigma||", fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}", last.sigma_norm,
-                                        last.bound / last.sigma_norm));
+  text += line("||sigma||", fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}", last.norms.sigma,
+                                        last.bound / last.norms.sigma));
   return text + richer_text(v) + line("status", status_text(v)) + line("results", directory);
 }
+
+namespace
+{
+
+const char* guarantee(const Verification& v)
+{
+  const std::string problem = violation(v);
+  if (problem.empty()) return "holds";
+  return problem == v.iterates.back().refusal() ? "not certified" : "violated";
+}
+
+}  // namespace
 
 std::string verification_json(const Verification& v)
 {
@@ -126,13 +150,13 @@ std::string verification_json(const Verification& v)
               {"gamma0", v.facts.gamma0},
               {"cells", v.mesh.cells},
               {"dofs", v.mesh.free_dofs},
-              {"guarantee", violation(v).empty() ? "holds" : "violated"},
+              {"guarantee", guarantee(v)},
               {"converged", v.converged},
               {"bound", last.bound},
               {"bound_plain", last.bound_plain},
               {"dual_norm", last.dual_norm},
               {"effectivity", number_or_null(last.effectivity())},
-              {"sigma_norm", last.sigma_norm},
+              {"sigma_norm", last.norms.sigma},
               {"refinements", v.refinements},
               {"dual_space",
                {{"degree", v.dual_space.degree}, {"cells", v.dual_space.cells}, {"dofs", v.dual_space.dofs}}},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "certify/true_error.h"
+#include "contact/elasticity.h"
 #include "io/facts.h"
 #include "solve/newton.h"
 
@@ -24,13 +25,15 @@ struct VerifiedIterate
   double bound = 0;        ///< the certificate's bound (total_sharp)
   double bound_plain = 0;  ///< with plain sums, as in the paper
   double dual_norm = 0;
-  double sigma_norm = 0;  ///< ||sigma(u^k)||
+  StressNorms norms;      ///< of u^k
   double identities = 0;  ///< the largest defect, relative to the stress
 
   [[nodiscard]] std::optional<double> effectivity() const
   {
-    return tribound::effectivity(bound, dual_norm, sigma_norm);
+    return tribound::effectivity(bound, dual_norm, norms);
   }
+  /// Whether an identity is violated and not by rounding alone, so that `bound` need not be one.
+  [[nodiscard]] std::string refusal() const;
 };
 
 /// A space in which the truth was looked for.
@@ -54,7 +57,8 @@ struct Verification
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
 };
 
-/// What is wrong when an effectivity is below 1, naming the iterate; empty when the guarantee holds.
+/// What is wrong when an effectivity is below 1 although the identities hold, naming the iterate; then when
+/// they do not hold for the last one, which `tribound run` would not certify; empty when the guarantee holds.
 [[nodiscard]] std::string violation(const Verification& verification);
 
 /// The table of the iterates, the errors and where the file is.

@@ -113,7 +113,7 @@ def judge_resultants(verdict, name, facets, rows, weights, entry, error):
     tangential = traction - along[:, None] * normals
     area = weights.sum()
     verdict.check(near(area, facets.measures.sum(), 1e-8), f"contact.csv: the weights of {name} add up to {area}")
-    tolerance = weights @ (1e-8 * np.linalg.norm(traction, axis=1) + error)
+    tolerance = weights @ (1e-8 * np.linalg.norm(traction, axis=1) + error) + entry["resolution"]
     found = {
         "normal": weights @ along,
         "abs_tangential": weights @ np.linalg.norm(tangential, axis=1),

@@ -39,6 +39,7 @@ boundary.back.displacement = ["free", "free", 0]
 boundary.top.traction = [0, -0.1, 0]
 boundary.right.traction = [0, 0.05, 0]
 boundary.bottom.contact = {{ friction = "tresca", threshold = 0.03 }}
+newton.finish = false
 adapt = {{ theta = {}, tolerance = 1e-9, max_levels = 60, max_dofs = {} }}
 )",
                                                  p, theta, max_dofs));

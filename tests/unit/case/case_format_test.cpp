@@ -231,6 +231,7 @@ std::map<std::string, std::function<std::string(const Config&, const Row&)>> def
       {"newton.gamma_lin", [](const Config& c, const Row&) { return fmt::format("{}", c.newton.gamma_lin); }},
       {"newton.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.newton.tolerance); }},
       {"newton.max_steps", [](const Config& c, const Row&) { return std::to_string(c.newton.max_steps); }},
+      {"newton.finish", [=](const Config& c, const Row&) { return truth(c.newton.finish); }},
       {"newton.damping", [=](const Config& c, const Row&) { return truth(c.newton.damping); }},
       {"regularisation.delta",
        [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->delta); }},

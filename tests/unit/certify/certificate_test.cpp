@@ -28,16 +28,21 @@ Bound bound_of(double total)
   return bound;
 }
 
+StressNorms norms_of(double sigma, double round_off = 0)
+{
+  return {.energy = sigma * sigma, .sigma = sigma, .round_off = round_off};
+}
+
 TEST(Judge, CertifiesAtTheTolerance)
 {
-  const Verdict verdict = judge(bound_of(0.02), {}, 2, 2.0, 0.01);
+  const Verdict verdict = judge(bound_of(0.02), {}, 2, norms_of(2.0), 0.01);
   EXPECT_EQ(verdict.status, RunStatus::certified);
   EXPECT_EQ(verdict.reason, "");
 }
 
 TEST(Judge, AboveTheToleranceTheBoundStillHolds)
 {
-  const Verdict verdict = judge(bound_of(0.021), {}, 2, 2.0, 0.01);
+  const Verdict verdict = judge(bound_of(0.021), {}, 2, norms_of(2.0), 0.01);
   EXPECT_EQ(verdict.status, RunStatus::budget);
   EXPECT_THAT(verdict.reason, HasSubstr("1.05 %"));
 }
@@ -50,25 +55,36 @@ TEST(Judge, AViolatedIdentityIsNeverCertified)
     {
       IdentityDefects defects;
       defects.*member = defect;
-      EXPECT_EQ(judge(bound_of(0), defects, 2, 1, 0.01).status, RunStatus::not_certified);
+      EXPECT_EQ(judge(bound_of(0), defects, 2, norms_of(1), 0.01).status, RunStatus::not_certified);
     }
 }
 
 TEST(Judge, SymmetryIsNoIdentityOfDegreeOne)
 {
-  EXPECT_EQ(judge(bound_of(0), {0, 0, 0, 0, 1}, 1, 1, 0.01).status, RunStatus::certified);
+  EXPECT_EQ(judge(bound_of(0), {0, 0, 0, 0, 1}, 1, norms_of(1), 0.01).status, RunStatus::certified);
 }
 
 TEST(Judge, NumbersThatAreNotFiniteAreNeverCertified)
 {
-  EXPECT_EQ(judge(bound_of(nan), {}, 1, 1, 0.01).status, RunStatus::not_certified);
-  EXPECT_EQ(judge(bound_of(1), {}, 1, nan, 0.01).status, RunStatus::not_certified);
+  EXPECT_EQ(judge(bound_of(nan), {}, 1, norms_of(1), 0.01).status, RunStatus::not_certified);
+  EXPECT_EQ(judge(bound_of(1), {}, 1, norms_of(nan), 0.01).status, RunStatus::not_certified);
 }
 
 TEST(Judge, ABodyWithoutStressIsCertifiedByABoundOfZeroOnly)
 {
-  EXPECT_EQ(judge(bound_of(0), {}, 1, 0, 0.01).status, RunStatus::certified);
-  EXPECT_EQ(judge(bound_of(1e-3), {}, 1, 0, 0.01).status, RunStatus::budget);
+  EXPECT_EQ(judge(bound_of(0), {}, 1, norms_of(0), 0.01).status, RunStatus::certified);
+  EXPECT_EQ(judge(bound_of(1e-3), {}, 1, norms_of(0), 0.01).status, RunStatus::budget);
+}
+
+TEST(Judge, WhatIsNothingButRoundingIsComparedWithRounding)
+{
+  IdentityDefects defects;
+  defects.divergence = 1.05;
+  EXPECT_EQ(judge(bound_of(1e-15), defects, 2, norms_of(2e-15, 1e-13), 0.01).status, RunStatus::certified);
+  EXPECT_EQ(judge(bound_of(1e-15), defects, 2, norms_of(2e-13, 1e-13), 0.01).status,
+            RunStatus::not_certified);
+  EXPECT_EQ(judge(bound_of(2e-13), defects, 2, norms_of(1e-15, 1e-13), 0.01).status,
+            RunStatus::not_certified);
 }
 
 std::string block(const std::string& left, const std::string& contact)

@@ -172,10 +172,11 @@ TYPED_TEST(TrueError, DofsAreCountedWithoutRefining)
 
 TEST(Effectivity, IsTheQuotientAboveRoundOff)
 {
-  EXPECT_EQ(effectivity(3, 2, 1), 1.5);
-  EXPECT_EQ(effectivity(1, 2, 1), 0.5);
-  EXPECT_EQ(effectivity(1e-12, 1e-3, 1), 1e-9);
-  EXPECT_FALSE(effectivity(1e-12, 3e-12, 1).has_value());
+  EXPECT_EQ(effectivity(3, 2, {.sigma = 1}), 1.5);
+  EXPECT_EQ(effectivity(1, 2, {.sigma = 1}), 0.5);
+  EXPECT_EQ(effectivity(1e-12, 1e-3, {.sigma = 1}), 1e-9);
+  EXPECT_FALSE(effectivity(1e-12, 3e-12, {.sigma = 1}).has_value());
+  EXPECT_FALSE(effectivity(1e-12, 3e-12, {.sigma = 1e-12, .round_off = 1e-11}).has_value());
 }
 
 /// u = (0.3 x y, 0.2 x^2 - 0.1 y^2) in equilibrium with its loads, all of the boundary prescribed: the

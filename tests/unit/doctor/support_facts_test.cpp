@@ -47,6 +47,47 @@ TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
   EXPECT_EQ(motions[0].remedy->component, 1);
 }
 
+/// Numbers of the boundaries along which a body would slide as a whole.
+template <int dim>
+std::vector<std::string> sliding_boundaries(const DiscreteCase<dim>& c)
+{
+  const std::vector<bool> slides = slides_as_a_whole(c.form);
+  std::vector<std::string> names;
+  for (std::size_t tag = 0; tag < slides.size(); ++tag)
+    if (slides[tag]) names.push_back(c.problem.boundaries()[tag].name);
+  return names;
+}
+
+const std::string friction = "contact = { friction = \"coulomb\", coefficient = 0.3 }\n";
+
+TEST(SupportFacts, SlidingIsJudgedWhereFrictionAloneHoldsTheBody)
+{
+  EXPECT_THAT(sliding_boundaries(block("boundary.bottom." + friction)), ElementsAre("bottom"));
+  EXPECT_THAT(
+      sliding_boundaries(block("boundary.bottom." + friction + "boundary.left.displacement = [\"free\", 0]")),
+      ElementsAre("bottom"));
+  // A plane of symmetry, or a frictionless wall, takes the force that would make it slide.
+  EXPECT_THAT(
+      sliding_boundaries(block("boundary.bottom." + friction + "boundary.left.displacement = [0, \"free\"]")),
+      IsEmpty());
+  EXPECT_THAT(sliding_boundaries(block("boundary.bottom." + friction + "boundary.left.contact = {}")),
+              IsEmpty());
+}
+
+TEST(SupportFacts, SlidingIsJudgedOnPlaneBoundariesOnly)
+{
+  const auto arch = [](double height)
+  {
+    return mapped<2>(box<2>({0, 0}, {2, 1}, {4, 2}),
+                     [=](const Point<2>& x) -> Point<2> {
+                       return {x[0], x[1] + height * x[0] * (2 - x[0])};
+                     });
+  };
+  const std::string toml = material + "boundary.bottom." + friction;
+  EXPECT_THAT(sliding_boundaries(DiscreteCase<2>(toml, arch(0.05))), ElementsAre("bottom"));
+  EXPECT_THAT(sliding_boundaries(DiscreteCase<2>(toml, arch(0.3))), IsEmpty());
+}
+
 TEST(SupportFacts, LooseBlockIsHeldByPressureAndFriction)
 {
   const auto c = block("boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }");

@@ -248,6 +248,22 @@ TEST(Report, SlidingWithoutAForce)
   EXPECT_FALSE(sliding(contact).has_value());
 }
 
+TEST(Report, ForcesHaveTheDigitsThatAreKnown)
+{
+  EXPECT_EQ(known_digits(1234.5678, 0.01), 1234.57);
+  EXPECT_EQ(known_digits(-1234.5678, 3), -1235);
+  EXPECT_EQ(known_digits(2.5e-7, 1e-6), 0.0);
+  EXPECT_EQ(known_digits(1 / 3.0, 0), 1 / 3.0);
+  EXPECT_EQ(known_digits(0, 0), 0.0);
+  EXPECT_TRUE(std::isnan(known_digits(std::nan(""), 1)));
+
+  const Resultants dam{"base", {}, -1000, 600, 600, 0.75, 1};
+  EXPECT_EQ(sliding(dam)->sliding_factor, 0.6);
+  EXPECT_EQ(sliding(dam)->safety_factor, 1.25);
+  const Resultants without_water{"base", {}, -1000, 0.8, 0.8, 0.75, 1};
+  EXPECT_FALSE(sliding(without_water)->safety_factor.has_value());
+}
+
 TEST(Report, CertificateWithoutALevelHasNoFigures)
 {
   RunRecord run;

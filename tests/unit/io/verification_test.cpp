@@ -22,8 +22,8 @@ Verification example()
   v.mesh.free_dofs = 24;
   v.refinements = 2;
   v.dual_space = {3, 256, 2450};
-  v.iterates = {{{1, 0.25, 1.0, 1, true, 0.1}, 0.375, 0.5, 0.25, 1.0, 1e-15},
-                {{2, 1e-12, 1.0, 1, true, 0.1}, 0.05, 0.06, 0.04, 1.0, 2e-15}};
+  v.iterates = {{{1, 0.25, 1.0, 1, true, 0.1}, 0.375, 0.5, 0.25, {1.0, 1.0, 0.0}, 1e-15},
+                {{2, 1e-12, 1.0, 1, true, 0.1}, 0.05, 0.06, 0.04, {1.0, 1.0, 0.0}, 2e-15}};
   v.converged = true;
   v.richer_degree = 2;
   v.richer = RicherSolution{256, 1100, 4, {}, SolutionError{0.02, 0.025}};
@@ -56,6 +56,16 @@ TEST(Verification, AnEffectivityBelowOneViolatesTheGuarantee)
   EXPECT_THAT(verification_text(v, ""),
               AllOf(HasSubstr("status        the guarantee is violated"), Not(HasSubstr("the bound holds"))));
   EXPECT_EQ(nlohmann::json::parse(verification_json(v))["guarantee"], "violated");
+}
+
+TEST(Verification, WhatRunWouldRefuseIsRefused)
+{
+  Verification v = example();
+  v.iterates[1].identities = 1.1e-8;
+  EXPECT_THAT(violation(v), HasSubstr("an identity of the equilibrated stress is violated"));
+  EXPECT_EQ(nlohmann::json::parse(verification_json(v))["guarantee"], "not certified");
+  v.iterates[1].norms.round_off = 1.5;  // of a stress of norm 1: everything is rounding
+  EXPECT_EQ(violation(v), "");
 }
 
 TEST(Verification, RoundOffHasNoEffectivity)
