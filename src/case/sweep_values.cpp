@@ -19,11 +19,20 @@ namespace
 constexpr auto hint = "key=0.1:0.8:8 (first, last, how many), key=[1, 2] or key=value";
 constexpr int max_runs = 100'000;
 
+double end_of_range(const std::string& text, const Where& where)
+{
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || end == text.c_str())
+    throw InputError(where, fmt::format("\"{}\" is not a number", text), hint);
+  return value;
+}
+
 /// "0.1:0.8:8" as eight numbers; steps of decimal fractions come out as decimal fractions.
 std::vector<std::string> range(const std::smatch& match, const Where& where)
 {
-  const double first = std::strtod(match[1].str().c_str(), nullptr);
-  const double last = std::strtod(match[2].str().c_str(), nullptr);
+  const double first = end_of_range(match[1], where);
+  const double last = end_of_range(match[2], where);
   const double n = std::strtod(match[3].str().c_str(), nullptr);
   if (n < 2 || n > max_runs || !std::isfinite(first) || !std::isfinite(last))
     throw InputError(

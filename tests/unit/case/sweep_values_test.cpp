@@ -65,6 +65,9 @@ TEST(SweepValues, MistakesAreNamed)
   EXPECT_THAT(message([] { return grid({"a="}); }), HasSubstr("there is no value"));
   EXPECT_THAT(message([] { return grid({"a=[]"}); }), HasSubstr("there is no value"));
   EXPECT_THAT(message([] { return grid({"a=1:2:1"}); }), HasSubstr("cannot make 1 values from 1 to 2"));
+  EXPECT_THAT(message([] { return grid({"E=0.1.5:0.8:8"}); }), HasSubstr("\"0.1.5\" is not a number"));
+  EXPECT_THAT(message([] { return grid({"E=1:1e:3"}); }), HasSubstr("\"1e\" is not a number"));
+  EXPECT_THAT(message([] { return grid({"E=.:1:3"}); }), HasSubstr("\".\" is not a number"));
   EXPECT_THAT(message([] { return grid({"a=[x, 2*x]"}); }), HasSubstr("stand in quotes"));
   EXPECT_THAT(message([] { return grid({"a=1", "a=2"}); }), HasSubstr("\"a\" is swept twice"));
   EXPECT_THAT(message([] { return grid({"a=0:1:1000", "b=0:1:1000"}); }), HasSubstr("more than 100000 runs"));
