@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "embedded_files.h"
 #include "io/atomic_file.h"
+#include "io/text.h"
 
 namespace tribound
 {
@@ -76,10 +77,10 @@ void init(const std::string& name, const std::filesystem::path& directory)
   for (const EmbeddedFile& file : files)
   {
     write(directory / file.name, file.text);
-    fmt::print("{}\n", (directory / file.name).string());
+    print((directory / file.name).string() + "\n");
   }
   const std::string case_file = (directory / (name + ".toml")).string();
-  fmt::print("next: tribound check {0}; tribound run {0}\n", case_file);
+  print(fmt::format("next: tribound check {0}; tribound run {0}\n", case_file));
 }
 
 }  // namespace tribound

@@ -121,13 +121,6 @@ std::string component_lines(const BoundComponents& components, bool regularised)
   return text;
 }
 
-/// A reader that has gone, such as `head`, is no reason to end a run.
-void print(const std::string& text)
-{
-  (void)std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
-}
-
 }  // namespace
 
 std::string header_text(const CaseFacts& facts, const MeshFacts& mesh)

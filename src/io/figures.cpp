@@ -12,6 +12,7 @@
 
 #include "base/apart.h"
 #include "io/shared_file.h"
+#include "io/text.h"
 
 extern char** environ;
 
@@ -47,11 +48,9 @@ void draw_figures(const std::filesystem::path& directory)
   const auto script = find_figure_script();
   const std::string problem = script ? run_figure_script(*script, directory)
                                      : std::string("the script study_figures is not installed");
-  if (problem.empty())
-    fmt::print(stdout, "{:<14}{}\n", "figures", (directory / "figures").string());
-  else
-    fmt::print(stdout, "{:<14}not drawn: {}{}\n", "figures", script ? script->string() + " " : "", problem);
-  std::fflush(stdout);
+  print(line("figures", problem.empty()
+                            ? (directory / "figures").string()
+                            : fmt::format("not drawn: {}{}", script ? script->string() + " " : "", problem)));
 }
 
 }  // namespace tribound

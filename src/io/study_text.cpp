@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "io/study.h"
 #include "io/text.h"
@@ -137,14 +136,12 @@ std::string study_text(const Study& study, const std::string& directory)
 
 void print_study(const Study& study, const std::string& directory)
 {
-  fmt::print(stdout, "{}", study_text(study, directory));
-  std::fflush(stdout);
+  print(study_text(study, directory));
 }
 
 void print_stage(const std::string& name, const std::string& text)
 {
-  fmt::print(stdout, "{}", line(name, text));
-  std::fflush(stdout);
+  print(line(name, text));
 }
 
 }  // namespace tribound

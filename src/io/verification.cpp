@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "certify/certificate.h"
@@ -175,8 +174,7 @@ void write_verification(const std::filesystem::path& directory, const Verificati
 
 void print_verification(const Verification& verification, const std::string& directory)
 {
-  fmt::print(stdout, "{}", verification_text(verification, directory));
-  std::fflush(stdout);
+  print(verification_text(verification, directory));
 }
 
 }  // namespace tribound
