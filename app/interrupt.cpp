@@ -39,6 +39,7 @@ void report_crash(int)
 void prepare_signals()
 {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGCHLD, SIG_DFL);  // ignored, as by the shell's trap '' CHLD, children could not be waited for
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal, report_crash);
 }
 

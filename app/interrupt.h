@@ -8,8 +8,9 @@
 namespace tribound
 {
 
-/// To be called first of all: writing to a pipe that nobody reads is no reason to end, and a crash, be it of
-/// a library, ends the program with a message and exit code 2.
+/// To be called first of all: writing to a pipe that nobody reads is no reason to end, children can be waited
+/// for whatever the parent ignores, and a crash, be it of a library, ends the program with a message and exit
+/// code 2.
 void prepare_signals();
 
 /// From now on SIGINT and SIGTERM set the flag that is returned: the run then ends with the certificate of
