@@ -11,12 +11,12 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <thread>
+#include <variant>
 
 #include "base/sha256.h"
 #include "case/config.h"
@@ -24,6 +24,7 @@
 #include "interrupt.h"
 #include "io/atomic_file.h"
 #include "io/output_directory.h"
+#include "io/page_template.h"
 #include "io/sweep.h"
 #include "io/text.h"
 
@@ -69,10 +70,33 @@ pid_t start(std::vector<std::string> arguments, const std::filesystem::path& log
   return child;
 }
 
+/// Reads a mesh file of many runs once. What the file itself reads, such as the .step of a .geo, is not seen.
+class MeshHashes
+{
+ public:
+  /// Empty without a file, or where it cannot be read, which its run will say.
+  const std::string& operator()(const MeshSource& source)
+  {
+    const auto* file = std::get_if<MeshFile>(&source);
+    const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
+    if (is_new && file != nullptr)
+      if (const std::string content = read_text(file->path); !content.empty())
+        entry->second = sha256(content);
+    return entry->second;
+  }
+
+ private:
+  std::map<std::filesystem::path, std::string> known_;
+};
+
 class Sweep
 {
  public:
   Sweep(const SweepOptions& options, const SweepTable& table);
+  /// Ends the runs that an exception would leave alone.
+  ~Sweep();
+  Sweep(const Sweep&) = delete;
+  Sweep& operator=(const Sweep&) = delete;
   ExitCode run();
 
  private:
@@ -81,8 +105,7 @@ class Sweep
   void start_next();
   /// Takes note of a run that has ended.
   void finish(pid_t child, int status);
-  void interrupt();
-  void print(const std::string& text) const;
+  void end_all() const;
   [[nodiscard]] ExitCode exit_code() const;
 
   const SweepOptions& options_;
@@ -98,14 +121,23 @@ Sweep::Sweep(const SweepOptions& options, const SweepTable& table) : options_(op
   const Config config = read_config(options.case_file, options.overrides);
   directory_ = config.output.directory / "sweep";
   record_ = {config.title, options.case_file, table.keys, {}};
+  MeshHashes mesh_hash;
   for (const auto& values : table.rows)
   {
     SweepRun& run = record_.runs.emplace_back();
     run.name = fmt::format("{:04}", record_.runs.size());
     run.values = values;
     run.status = "not run";
-    run.sha256 = sha256(read_config(options.case_file, overrides(run)).effective.text);
+    const Config its_config = read_config(options.case_file, overrides(run));
+    run.sha256 = sha256(its_config.effective.text);
+    run.mesh_sha256 = mesh_hash(its_config.mesh);
   }
+}
+
+Sweep::~Sweep()
+{
+  end_all();
+  for (const auto& [child, run] : running_) ::waitpid(child, nullptr, 0);
 }
 
 std::vector<std::string> Sweep::overrides(const SweepRun& run) const
@@ -123,6 +155,7 @@ void Sweep::start_next()
   if (run.exit_code) return;  // of an earlier sweep
   const std::filesystem::path directory = directory_ / run.name;
   std::filesystem::create_directories(directory);
+  remove_results(directory, {"certificate.json", "contact.csv"});  // a run that ends early would leave them
   std::vector<std::string> arguments = {"tribound", "run", options_.case_file, "--quiet"};
   for (const std::string& assignment : overrides(run))
   {
@@ -138,21 +171,19 @@ void Sweep::finish(pid_t child, int status)
   running_.erase(child);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   read_results(directory_ / run.name, run);
+  if (interrupted_ && run.exit_code != 1 && run.figures.empty())  // ended before its first level
+  {
+    run.exit_code.reset();
+    run.status = "not run";
+    run.reason.clear();
+  }
   write_sweep(directory_, record_);
   print(sweep_line(record_, run));
 }
 
-void Sweep::interrupt()
+void Sweep::end_all() const
 {
-  interrupted_ = true;
-  next_ = record_.runs.size();
   for (const auto& [child, run] : running_) ::kill(child, SIGTERM);
-}
-
-void Sweep::print(const std::string& text) const
-{
-  fmt::print(stdout, "{}", text);
-  std::fflush(stdout);
 }
 
 ExitCode Sweep::exit_code() const
@@ -182,7 +213,12 @@ ExitCode Sweep::run()
   write_sweep(directory_, record_);
   while (next_ < record_.runs.size() || !running_.empty())
   {
-    if (stop && !interrupted_) interrupt();
+    if (stop && !interrupted_)
+    {
+      interrupted_ = true;
+      next_ = record_.runs.size();
+      end_all();
+    }
     if (next_ < record_.runs.size() && static_cast<int>(running_.size()) < options_.jobs)
     {
       start_next();

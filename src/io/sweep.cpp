@@ -89,9 +89,27 @@ void add_reactions(const Json& certificate, Figures& figures)
                              row["force"][i].get<double>());
 }
 
+/// The certificate of a run; null where there is none of this case.
+Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
+{
+  Json certificate = read_json(directory / "certificate.json");
+  const Json effective = certificate.is_object() ? certificate.value("case", Json(nullptr)) : Json(nullptr);
+  const bool its_own = effective.is_object() && text(effective, "sha256") == run.sha256;
+  return its_own ? certificate : Json(nullptr);
+}
+
+/// Whether a run that ended with this exit code has left the certificate at its end. After a crash or on a
+/// full disk it is that of an earlier level.
+bool is_final(const Json& certificate, int exit_code)
+{
+  if (!certificate.is_object()) return false;
+  const std::string status = text(certificate, "status");
+  if (exit_code == 2) return status == "failed" || status == "not certified";
+  return (exit_code == 0 && status == "certified") || (exit_code == 3 && status == "budget");
+}
+
 std::string status_without_certificate(const SweepRun& run)
 {
-  if (!run.exit_code) return "not run";
   if (run.exit_code == 1) return "bad input";
   return *run.exit_code > 128 ? "crashed" : "failed";
 }
@@ -119,14 +137,14 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
 {
   run.figures.clear();
   run.reason.clear();
-  const Json certificate = read_json(directory / "certificate.json");
-  const bool its_own = certificate.is_object() && certificate.contains("case") &&
-                       certificate["case"].is_object() && text(certificate["case"], "sha256") == run.sha256;
-  run.status = its_own && run.exit_code && *run.exit_code != 1 && *run.exit_code <= 128
-                   ? text(certificate, "status")
-                   : status_without_certificate(run);
-  if (run.status == "crashed") run.reason = fmt::format("ended by signal {}", *run.exit_code - 128);
-  if (!its_own || run.status == "crashed" || run.status == "not run") return;
+  const Json certificate = certificate_of(directory, run);
+  if (!is_final(certificate, run.exit_code.value()))
+  {
+    run.status = status_without_certificate(run);
+    if (run.status == "crashed") run.reason = fmt::format("ended by signal {}", *run.exit_code - 128);
+    return;
+  }
+  run.status = text(certificate, "status");
   run.reason = text(certificate, "reason");
   for (const char* name : {"relative", "bound", "cells", "dofs"})
     run.figures.emplace_back(name, number(certificate, name));
@@ -152,13 +170,13 @@ std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
     const std::string name = text(old, "run");
     const auto run = std::ranges::find(sweep.runs, name, &SweepRun::name);
     const std::optional<double> code = number(old, "exit_code");
-    const Json certificate = read_json(directory / name / "certificate.json");
-    const bool same = run != sweep.runs.end() && code && *code != 1 && *code <= 128 &&
-                      text(old, "sha256") == run->sha256 && certificate.is_object() &&
-                      certificate.contains("case") && certificate["case"].is_object() &&
-                      text(certificate["case"], "sha256") == run->sha256;
-    if (same && text(certificate, "reason").find("interrupted") == std::string::npos)
-      complete[name] = static_cast<int>(*code);
+    if (run == sweep.runs.end() || !code || text(old, "sha256") != run->sha256 ||
+        text(old, "mesh_sha256") != run->mesh_sha256)
+      continue;
+    const Json certificate = certificate_of(directory / name, *run);
+    const bool complete_before = is_final(certificate, static_cast<int>(*code)) &&
+                                 text(certificate, "reason").find("interrupted") == std::string::npos;
+    if (complete_before) complete[name] = static_cast<int>(*code);
   }
   return complete;
 }
@@ -192,6 +210,7 @@ std::string sweep_json(const SweepRecord& sweep)
     Json row{{"run", run.name}, {"values", Json::object()}};
     for (std::size_t i = 0; i < sweep.keys.size(); ++i) row["values"][sweep.keys[i]] = run.values[i];
     row["sha256"] = run.sha256;
+    row["mesh_sha256"] = text_or_null(run.mesh_sha256);
     row["exit_code"] = run.exit_code ? Json(*run.exit_code) : Json(nullptr);
     row["status"] = run.status;
     row["reason"] = text_or_null(run.reason);

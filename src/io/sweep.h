@@ -20,8 +20,9 @@ struct SweepRun
   std::string name;                 ///< of its directory: "0001"
   std::vector<std::string> values;  ///< a value per key
   std::string sha256;               ///< of its effective case
+  std::string mesh_sha256;          ///< of its mesh file; empty without one
   std::optional<int> exit_code;     ///< absent while it has not ended; 128 + n for signal n
-  std::string status;               ///< of its certificate; "not run", "bad input" and "crashed" without one
+  std::string status;               ///< of its certificate; else "not run", "bad input", "failed", "crashed"
   std::string reason;
   /// In the order in which they were found: relative, bound, cells, dofs, ...; see docs/output.md.
   std::vector<std::pair<std::string, std::optional<double>>> figures;
@@ -36,11 +37,11 @@ struct SweepRecord
 };
 
 /// Status, reason and figures of a run that has ended, from certificate.json and contact.csv in its
-/// directory.
+/// directory; figures only where the certificate is that of its end.
 void read_results(const std::filesystem::path& directory, SweepRun& run);
 
-/// Whether a run of an earlier sweep in this directory, as its sweep.json has it, is complete and solved the
-/// same effective case; then its exit code.
+/// The runs of an earlier sweep in this directory, as its sweep.json has them, that are complete and solved
+/// the same effective case on the same mesh file; with their exit codes.
 [[nodiscard]] std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
                                                        const SweepRecord& sweep);
 
@@ -48,7 +49,7 @@ void read_results(const std::filesystem::path& directory, SweepRun& run);
 [[nodiscard]] std::string sweep_csv(const SweepRecord& sweep);
 [[nodiscard]] std::string sweep_json(const SweepRecord& sweep);
 
-/// Writes sweep.csv and sweep.json. Throws InputError when a file cannot be written.
+/// Writes sweep.csv and sweep.json. Throws WriteError when a file cannot be written.
 void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep);
 
 /// A line on a run that has ended.

@@ -7,6 +7,7 @@
 import csv
 import hashlib
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -116,12 +117,108 @@ def check_resume(program, directory):
     assert "kept" not in said, "another case is solved again"
 
 
+MESH = """\
+Point(1) = {0, 0, 0};
+Point(2) = {2, 0, 0};
+Point(3) = {2, 1, 0};
+Point(4) = {0, 1, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Curve("bottom") = {1};
+Physical Curve("right") = {2};
+Physical Curve("top") = {3};
+Physical Curve("left") = {4};
+Physical Surface("box") = {1};
+Mesh.MeshSizeMax = 0.6;
+"""
+
+
+def case_with_mesh_file(directory):
+    lines = ['file = "box.geo"' if line.startswith("box =") else line for line in CASE.splitlines()]
+    text = "\n".join(lines) + '\n[boundary.right]\ntraction = [0, 0]\n'
+    (directory / "mesh.toml").write_text(text)
+
+
+def check_mesh_file(program, directory):
+    """An earlier result counts for nothing where the mesh has changed, or has gone."""
+    case_with_mesh_file(directory)
+    arguments = ["mesh.toml", "degree=[1]", "--resume"]
+    sweep = directory / "out/mesh/sweep"
+    (directory / "box.geo").write_text(MESH)
+    tribound(program, directory, *arguments)
+    cells = rows(sweep)[0]["cells"]
+    assert "kept" in tribound(program, directory, *arguments)
+    (directory / "box.geo").write_text(MESH.replace("0.6", "0.1"))
+    assert "kept" not in tribound(program, directory, *arguments) and rows(sweep)[0]["cells"] != cells
+    (directory / "box.geo").unlink()
+    assert "bound" not in tribound(program, directory, *arguments, code=1)
+    assert rows(sweep)[0]["status"] == "bad input" and not (sweep / "0001/certificate.json").exists()
+
+
+def check_interrupted_before_the_first_level(program, directory):
+    case_with_mesh_file(directory)
+    (directory / "box.geo").write_text("For i In {1:1000000000}\nEndFor\n")  # Gmsh counts
+    with subprocess.Popen([program, "sweep", "mesh.toml", "degree=[1]"], cwd=directory, stdout=subprocess.PIPE) as process:
+        log = directory / "out/mesh/sweep/0001/log.txt"
+        while not log.exists():
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=120)
+    assert process.returncode == 3 and rows(log.parents[1])[0]["status"] == "not run", process.returncode
+
+
+def check_surroundings(program, directory):
+    """Nobody reads the output; the parent ignores the end of children; the second run cannot begin."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    titles = [f'title=["{"a" * 5000}", "b"]']
+    result = subprocess.run([program, "sweep", "case.toml", *titles], cwd=directory, stdout=writing, stderr=subprocess.PIPE)
+    os.close(writing)
+    assert result.returncode == 0 and not result.stderr, result.stderr
+
+    ignore = lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    result = subprocess.run([program, "sweep", "case.toml", "degree=1"], cwd=directory, preexec_fn=ignore, stdout=subprocess.DEVNULL, timeout=60)
+    assert result.returncode == 0, result.returncode
+
+    sweep = directory / "out/case/sweep"
+    shutil.rmtree(sweep / "0002")
+    (sweep / "0002").write_text("a file")
+    tribound(program, directory, "case.toml", "degree=[1, 2]", "--set", "mesh.box.cells=[300, 150]", "--jobs", "2", code=2)
+    assert not (sweep / "0001/.tribound.lock").exists() and not running_in(sweep / "0001"), "the first run goes on alone"
+
+
+def running_in(directory):
+    """Whether a process has a file open there."""
+    for opened in Path("/proc").glob("[0-9]*/fd/*"):
+        try:
+            if opened.readlink().parent == directory:
+                return True
+        except OSError:
+            continue  # has ended, or is not ours
+    return False
+
+
+CHECKS = (
+    check_grid,
+    check_exit_codes,
+    check_table,
+    check_resume,
+    check_mesh_file,
+    check_interrupted_before_the_first_level,
+    check_surroundings,
+)
+
+
 def main():
-    program, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    program, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
     (directory / "case.toml").write_text(CASE)
-    for check in (check_grid, check_exit_codes, check_table, check_resume):
+    for check in CHECKS:
         shutil.rmtree(directory / "out", ignore_errors=True)
         check(program, directory)
     print("sweeps are as they should be")
