@@ -40,8 +40,6 @@ function caseText(effective) {
     element("pre", { tabindex: 0 }, text), sha256 ? element("p", { class: "note" }, `SHA-256 ${sha256}`) : null);
 }
 
-const kindsOfRows = { load: "load", reaction: "reaction", contact: "contact", sum: "sum" };
-
 /** Loads, reactions and contact forces with their sum, which vanishes in equilibrium. */
 function balanceTable(balance, d) {
   if (!balance?.rows?.length) return null;
@@ -49,24 +47,25 @@ function balanceTable(balance, d) {
   const moments = d === 2 ? "S L\u00b2" : "S L\u00b3";
   const scale = (key) => balance.rows.flatMap((row) => row[key] ?? []).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
   const [largestForce, largestMoment] = [scale("force"), scale("moment")];
-  const cells = (values, n, largest) => (values ? withoutNoise([values].flat(), largest).map((value) => number(value, 6)) : Array(n).fill(""));
+  const cells = (values, n, largest) => (values ? withoutNoise([values].flat(), largest).map((value) => number(value, 6)) : Array(n).fill("\u2013"));
   const axes = ["x", "y", "z"].slice(0, d);
   const nMoments = d === 2 ? 1 : 3;
   const rows = balance.rows.map(({ kind, name, source, force, moment }) => {
-    const cellsOfRow = [kindsOfRows[kind] ?? kind, name ?? "", source ?? "", ...cells(force, d, largestForce), ...cells(moment, nMoments, largestMoment)];
+    const cellsOfRow = [kind, name ?? "", source ?? "", ...cells(force, d, largestForce), ...cells(moment, nMoments, largestMoment)];
     cellsOfRow.class = kind === "sum" ? "accepted group" : null;
     return cellsOfRow;
   });
   const about = balance.about ? `, moments about (${balance.about.map((x) => number(x, 4)).join(", ")})` : "";
   return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, `Forces on the body${about}; in equilibrium the sum is zero.`),
     table(["", "where", "by", ...axes.map((axis) => `#force ${axis} [${forces}]`),
-      ...(d === 2 ? [`#moment [${moments}]`] : axes.map((axis) => `#moment ${axis} [${moments}]`))], rows, { class: "balance" })];
+      ...(d === 2 ? [`#moment [${moments}]`] : axes.map((axis) => `#moment ${axis} [${moments}]`))], rows, { class: "balance" }),
+    balance.note ? element("p", { class: "note" }, balance.note) : null];
 }
 
 export function caseSection(data) {
   const run = data.certificate;
   const measure = run.d === 2 ? ["area [L\u00b2]", "length [L]"] : ["volume [L\u00b3]", "area [L\u00b2]"];
-  return section("case", "Case", "The case", null, caseText(data.case ?? run.case),
+  return section("case", "Case", "The case", null, caseText(data.case),
     table(["region", "#cells", `#${measure[0]}`, "material"],
       run.mesh.regions.map((region) => [region.name, count(region.cells), number(region.measure), region.material])),
     table(["boundary", "#facets", `#${measure[1]}`, "what holds there"],
@@ -74,7 +73,7 @@ export function caseSection(data) {
     element("p", { class: "note" }, `Cells and facets are those of the first mesh: ${count(run.mesh.vertices)} vertices, cells from `
       + `${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)} L. Units are those of the case: L a length, S a stress `
       + `(force per area)${run.d === 2 ? "; forces are per unit of depth" : ""}.`),
-    balanceTable(data.balance ?? run.balance, run.d));
+    balanceTable(run.balance, run.d));
 }
 
 function levelTable(run) {
@@ -103,7 +102,9 @@ export function levelsSection({ certificate: run, machine }) {
 
 const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level",
   "newton.csv": "a row per Newton step", "contact.csv": "the contact boundary, point by point",
-  "series.pvd": "all levels, for ParaView", "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
+  "series.pvd": "all levels, for ParaView", "adapted.msh": "the last mesh, for Gmsh",
+  "case.toml": "the case as it was solved", "case_effective.toml": "the case as it was solved",
+  "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
   "../report.html": "the study that this run belongs to" };
 
 /** Tables that the page holds: it may be read where the files are not. */

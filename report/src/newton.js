@@ -11,7 +11,7 @@ function newtonRows(text) {
 
 // A step in 3D whose linearisation part alone is too large has no other components: the bound was not completed.
 const linearisation = (row) => (row.lin1 === null ? null : row.lin1 + row.lin2n + row.lin2t);
-const others = (row) => (row.osc === null ? null : row.osc + row.str + row.neu + row.cnt + row.frc + (row.reg1 ?? 0) + (row.reg2n ?? 0) + (row.reg2t ?? 0));
+const others = (row) => (row.osc === null ? null : row.osc + row.str + row.neu + row.cnt + row.frc + row.quad + (row.reg1 ?? 0) + (row.reg2n ?? 0) + (row.reg2t ?? 0));
 
 function stepCells(level, step, row, isFirst) {
   const sum = row?.lin1 === undefined ? null : linearisation(row);

@@ -25,11 +25,9 @@ function sentence({ status, relative, tolerance, reason }) {
   }
 }
 
-/** A warning or a note of the program, with its place and what may be done. */
-function warningItem({ severity, where, text, hint, advice }) {
-  const said = hint ?? advice;
-  return element("li", {}, severity && severity !== "warning" ? `${severity}: ` : null, where ? element("strong", {}, `${where}: `) : null,
-    typeset(text), said ? element("p", { class: "hint" }, typeset(said)) : null);
+/** A warning of the program, with its place. */
+function warningItem({ where, text }) {
+  return element("li", {}, where ? element("strong", {}, `${where}: `) : null, typeset(text));
 }
 
 /** What deserves a look before the result is used; beside the verdict, on paper too. */

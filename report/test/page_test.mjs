@@ -143,10 +143,12 @@ async function checkGivenCertificate(browser, directory) {
   const [, text] = page.match(/id="run-data">(.*?)<\/script>/s);
   const data = JSON.parse(text);
   Object.assign(data.certificate, {
-    warnings: [{ code: "a", severity: "warning", where: "boundary \"bottom\"", text: "of ||sigma(u_h)||", hint: "raise gamma_0", value: 1 }],
-    balance: { about: [0, 0.5], rows: [{ kind: "load", name: "top", source: "traction", force: [1e-15, -0.2], moment: [-0.2] },
+    warnings: [{ code: "a", where: "boundary \"bottom\"", text: "of ||sigma(u_h)||, raise gamma_0", value: 1 }],
+    balance: { about: [0, 0.5], note: "why there is no moment", rows: [{ kind: "load", name: "top", source: "traction", force: [1e-15, -0.2], moment: [-0.2] },
       { kind: "reaction", name: "left", source: "displacement", force: [0, 0.2], moment: null },
       { kind: "sum", name: "", source: "", force: [2e-16, 1e-15], moment: [1e-16] }] } });
+  data.certificate.components.quad = 1;
+  data.newton = withColumn(data.newton, "quad", 1e6); // then the linearisation is nothing beside the rest
   data.case = { file: "case.toml", sha256: "0123", overrides: ["degree=3"], text: "[load]\nbody = [0, \"-x\"]" };
   const changed = `${directory}/given.html`;
   writeFileSync(changed, page.replace(text, () => JSON.stringify(data).replaceAll("<", "\\u003c")));
@@ -154,12 +156,23 @@ async function checkGivenCertificate(browser, directory) {
   assert.match(await given.page.locator(".warnings").innerText(), /1 warning.*boundary "bottom": of .*raise/s);
   assert.equal(await given.page.locator(".warnings math").count(), 2);
   const shown = await given.page.locator("#case").textContent();
-  for (const words of ["degree=3", "body = [0, \"-x\"]", "SHA-256 0123", "moments about (0, 0.5)"]) assert(shown.includes(words), words);
+  for (const words of ["degree=3", "body = [0, \"-x\"]", "SHA-256 0123", "moments about (0, 0.5)", "why there is no moment"]) assert(shown.includes(words), words);
   const rows = await given.page.locator(".balance tbody tr").evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
-  assert.deepEqual(rows, [["load", "top", "traction", "0", "\u22120.2", "\u22120.2"], ["reaction", "left", "displacement", "0", "0.2", ""],
+  assert.deepEqual(rows, [["load", "top", "traction", "0", "\u22120.2", "\u22120.2"], ["reaction", "left", "displacement", "0", "0.2", "\u2013"],
     ["sum", "", "", "0", "0", "0"]]);
+  assert.match(await given.page.locator("#bound .lead").textContent(), /loads jump along curves, quad/);
+  assert.equal(await given.page.locator("#bound math[display=block]").evaluate((formula) => formula.textContent.endsWith("+\u03b7quad")), true);
+  const ofTheRest = await given.page.locator("#newton tbody tr td:nth-child(7)").allTextContents();
+  for (const text of ofTheRest) assert.match(text, /^0\s|\u00d710\u207b/);
   assert.deepEqual(given.complaints, []);
   await given.page.close();
+}
+
+/** Comma-separated values with one number in all rows of a column. */
+function withColumn(text, name, value) {
+  const [head, ...rows] = text.trim().split("\n").map((line) => line.split(","));
+  const column = head.indexOf(name);
+  return [head, ...rows.map((row) => row.map((cell, k) => (k === column ? String(value) : cell)))].map((row) => row.join(",")).join("\n");
 }
 
 /** Without WebGL the page draws the picture itself. */
