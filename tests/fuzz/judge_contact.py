@@ -21,9 +21,8 @@ def judge_contact(verdict, residual, results):
         facets = residual.boundary[name]
         rows = [row for row in results.contact if row["boundary"] == name]
         judge_points(verdict, residual, name, rows)
-        if (weights := point_weights(residual, rows)) is not None:
-            error = sum(representation_errors(residual, name)[1:])
-            judge_resultants(verdict, name, facets, rows, weights, own, error)
+        error = sum(representation_errors(residual, name)[1:])
+        judge_resultants(verdict, name, facets, rows, own, error)
     total = np.sum([b["force"] for b in entry["boundaries"].values()], axis=0)
     size = sum(abs(b["normal"]) + b["abs_tangential"] for b in entry["boundaries"].values())
     verdict.check(np.allclose(total, entry["force"], 1e-9, 1e-9 * size), "contact: the forces do not add up")
@@ -88,24 +87,9 @@ def distance_from_polynomials(residual, name, formula):
     return float(np.abs(values - table @ np.linalg.lstsq(table, values, rcond=None)[0]).max())
 
 
-def point_weights(residual, rows):
-    """Of the rows of contact.csv: as it gives them, or in 2D those of Gauss's rule on each facet."""
-    if "weight" in rows[0]:
-        return np.array([row["weight"] for row in rows])
-    if residual.level.dimension != 2:
-        return None
-    numbers = np.array([row["facet"] for row in rows])
-    arc = np.array([row["arc"] for row in rows])
-    weights = np.empty(len(rows))
-    for number in np.unique(numbers):
-        here = np.flatnonzero(numbers == number)
-        x, w = np.polynomial.legendre.leggauss(len(here))
-        weights[here] = w * np.ptp(arc[here]) / (x[-1] - x[0])
-    return weights
-
-
-def judge_resultants(verdict, name, facets, rows, weights, entry, error):
+def judge_resultants(verdict, name, facets, rows, entry, error):
     """The resultants of the certificate as sums over the rows of contact.csv."""
+    weights = np.array([row["weight"] for row in rows])
     axes = [key[-1] for key in rows[0] if key.startswith("traction_")]
     traction = np.array([[row["traction_" + a] for a in axes] for row in rows])
     normals = np.array([[row["n" + a] for a in axes] for row in rows])

@@ -34,7 +34,7 @@ def judge_cells(verdict, level, entry, number):
     verdict.check(near(plain, entry["bound_plain"]), f"level {number}: the cells do not add up to bound_plain")
 
 
-def judge_displacement(verdict, case, residual, entry, number):
+def judge_displacement(verdict, residual, entry, number):
     """Continuity, prescribed values, unknowns, norm, energy and largest displacement."""
     level = residual.level
     p, d = level.degree, level.dimension

@@ -20,6 +20,8 @@ DUMP = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 
+CRASHED = "tribound: crashed"  # what its own handler of signals says, with exit code 2
+
 
 @dataclass
 class Run:
@@ -71,6 +73,8 @@ def misbehaviour(result, limit=TIME_LIMIT):
         return [f"HANG: not ended after {limit} s of CPU, or {PATIENCE * limit} s"]
     if result.code not in (0, 1, 2, 3):
         return [f"CRASH: exit code {result.code}: {tail(result.err)}"]
+    if CRASHED in result.err:
+        return [f"CRASH: {tail(result.err)}"]
     if match := DUMP.search(result.err):
         return [f"DUMP: stderr holds {match.group()!r}: {tail(result.err)}"]
     if result.code == 1:

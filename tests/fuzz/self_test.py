@@ -129,8 +129,16 @@ DECEITS = {
 }
 
 
+def crash_is_found(directory):
+    """A program that ends as app/interrupt.cpp lets it."""
+    fake = directory / "crashing"
+    fake.write_text("#!/bin/sh\necho 'tribound: crashed, which it should not do' >&2\nexit 2\n")
+    fake.chmod(0o755)
+    return program.misbehaviour(program.run(fake, ["run", "case.toml"], directory))[:1]
+
+
 def main():
-    executable, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    executable, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
     case = directory / "case.toml"
@@ -142,6 +150,8 @@ def main():
         failures.append(f"{true.n_bounds} bounds judged, effectivities {true.effectivities}")
     if not judge(case, directory / "out", 2).findings:
         failures.append("a wrong exit code is not found")
+    if not any(text.startswith("CRASH") for text in crash_is_found(directory)):
+        failures.append("a crash is not found")
     for name, (deceive, expected) in DECEITS.items():
         wrong = directory / name.replace(" ", "_")
         shutil.copytree(directory / "out", wrong)
@@ -149,7 +159,7 @@ def main():
         findings = judge(case, wrong, result.code).findings
         if not any(re.search(expected, text) for text in findings):
             failures.append(f"{name}: found {findings}")
-    print(*failures, f"{len(DECEITS) + 2 - len(failures)} of {len(DECEITS) + 2} as expected", sep="\n")
+    print(*failures, f"{len(DECEITS) + 3 - len(failures)} of {len(DECEITS) + 3} as expected", sep="\n")
     return 1 if failures else 0
 
 
