@@ -20,16 +20,17 @@ constexpr double slowest_rate = -0.05;
 /// Two digits: it is a guess.
 std::string count_in_words(double n)
 {
-  if (n >= 1e6) return count_in_words(n / 1e6) + " million";
+  if (!(n < 1e9)) return "more than 10^9";
+  const bool millions = n >= 995'000;  // which rounds to one
+  if (millions) n /= 1e6;
   const double unit = std::pow(10, std::floor(std::log10(n)) - 1);
-  return fmt::format("{:g}", std::round(n / unit) * unit);
+  return fmt::format("{:g}{}", std::round(n / unit) * unit, millions ? " million" : "");
 }
 
 }  // namespace
 
 std::string forecast_text(const RunRecord& run, long max_dofs)
 {
-  if (run.levels.size() < fewest_levels) return {};
   std::vector<RatePoint> points;
   for (const LevelRecord& level : run.levels)
     if (const auto relative = relative_bound(level))
@@ -39,9 +40,8 @@ std::string forecast_text(const RunRecord& run, long max_dofs)
   if (!rate) return {};
   if (*rate > slowest_rate) return "  the bound hardly decreases";
   const double needed = points.back().dofs * std::pow(run.tolerance / points.back().value, 1 / *rate);
-  const double limit = static_cast<double>(max_dofs);
   return fmt::format("  at this rate {:g} % needs {} unknowns{}", 100 * run.tolerance, count_in_words(needed),
-                     needed > limit ? fmt::format(", more than adapt.max_dofs = {}", max_dofs) : "");
+                     needed > static_cast<double>(max_dofs) ? ", above adapt.max_dofs" : "");
 }
 
 }  // namespace tribound

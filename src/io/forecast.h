@@ -11,7 +11,7 @@ namespace tribound
 {
 
 /// "at this rate 1 % needs 1.2 million unknowns": the rate is fitted to the last half of the levels. Empty
-/// for a run that has ended or has less than three levels.
+/// where the tolerance is reached, or less than three levels have a bound.
 [[nodiscard]] std::string forecast_text(const RunRecord& run, long max_dofs);
 
 }  // namespace tribound

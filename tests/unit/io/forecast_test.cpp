@@ -30,11 +30,23 @@ TEST(Forecast, FollowsTheRate)
   // 0.5 (N/100)^{-1} = 0.01 for N = 5000, with rate -1/2 for 250 000, with -1/4 for 625 million
   EXPECT_EQ(forecast_text(with_rate(-1, 3), 100'000), "  at this rate 1 % needs 5000 unknowns");
   EXPECT_EQ(forecast_text(with_rate(-0.5, 5), 100'000),
-            "  at this rate 1 % needs 250000 unknowns, more than adapt.max_dofs = 100000");
+            "  at this rate 1 % needs 250000 unknowns, above adapt.max_dofs");
   // 625 rounds either way.
   EXPECT_THAT(forecast_text(with_rate(-0.25, 3), 2'000'000'000),
               ::testing::AnyOf("  at this rate 1 % needs 620 million unknowns",
                                "  at this rate 1 % needs 630 million unknowns"));
+}
+
+TEST(Forecast, LargeNumbersStayShort)
+{
+  // 0.5 (N/100)^{-0.1} = 0.01 for N = 100 * 50^10
+  EXPECT_EQ(forecast_text(with_rate(-0.1, 3), 100'000),
+            "  at this rate 1 % needs more than 10^9 unknowns, above adapt.max_dofs");
+  EXPECT_THAT(forecast_text(with_rate(-0.0501, 3), 100'000), ::testing::HasSubstr("more than 10^9"));
+  // (N/100)^{-1} = 0.01 / 0.5 at tolerance 50 / 999 600
+  RunRecord run = with_rate(-1, 3);
+  run.tolerance = 50.0 / 999'600;
+  EXPECT_THAT(forecast_text(run, 100'000), ::testing::HasSubstr("needs 1 million unknowns"));
 }
 
 TEST(Forecast, SaysNothingTooEarlyOrAtTheEnd)
