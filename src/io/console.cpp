@@ -131,13 +131,13 @@ std::string header_text(const CaseFacts& facts, const MeshFacts& mesh)
 
 std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound)
 {
-  const std::string solver = step.linear_iterations == 0
-                                 ? std::string("direct")
-                                 : count(step.linear_iterations, "iteration", "iterations");
-  const std::string bound = relative_bound ? fmt::format("bound {:<9.3e}  ", *relative_bound) : std::string{};
-  return fmt::format("  step {:>2}  residual {:.3e}  {}damping {:<8.4g}  {}{}, {:.2f} s\n", step.step,
-                     step.residual, bound, step.damping, solver, step.factorised ? " + factorisation" : "",
-                     step.seconds);
+  const std::string bound = relative_bound ? fmt::format("bound {:.2e}  ", *relative_bound) : std::string{};
+  const std::string damping =
+      step.damping < 1 ? fmt::format("damping {:.1g}  ", step.damping) : std::string{};
+  const std::string iterations = fmt::format("GMRES {}", step.linear_iterations);
+  const std::string direct = step.factorised ? "factorised" : "direct";
+  return fmt::format("  step {:>2}  residual {:.1e}  {}{}{}, {:.1f} s\n", step.step, step.residual, bound,
+                     damping, step.linear_iterations == 0 ? direct : iterations, step.seconds);
 }
 
 std::string level_text(const LevelRecord& level)

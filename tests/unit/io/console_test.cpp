@@ -46,15 +46,16 @@ TEST(Console, CheckNamesRegionsAndBoundaries)
 
 TEST(Console, NewtonStep)
 {
-  EXPECT_EQ(newton_text({3, 1.25e-5, 0.5, 0, true, 0.125}),
-            "  step  3  residual 1.250e-05  damping 0.5       direct + factorisation, 0.12 s\n");
-  EXPECT_THAT(newton_text({1, 1.0, 1.0, 1, false, 0.0}), HasSubstr("1 iteration,"));
+  EXPECT_EQ(newton_text({3, 1.3e-5, 1.0, 0, false, 0.125}), "  step  3  residual 1.3e-05  direct, 0.1 s\n");
+  EXPECT_EQ(newton_text({3, 1.3e-5, 1.0, 0, true, 0.125}, 0.025),
+            "  step  3  residual 1.3e-05  bound 2.50e-02  factorised, 0.1 s\n");
+  EXPECT_THAT(newton_text({1, 1.0, 0.5, 7, true, 0.0}), HasSubstr("  damping 0.5  GMRES 7, "));
 }
 
-TEST(Console, NewtonStepWithItsBound)
+TEST(Console, NewtonStepsFitATerminal)
 {
-  EXPECT_EQ(newton_text({3, 1.25e-5, 1.0, 0, false, 0.125}, 0.025),
-            "  step  3  residual 1.250e-05  bound 2.500e-02  damping 1         direct, 0.12 s\n");
+  const NewtonStep longest = {50, 1.25e-5, 1.0 / 1024, 0, true, 999.94};
+  EXPECT_LE(newton_text(longest, 1.25e-5).size(), 80u + 1);  // with the newline
 }
 
 TEST(Console, CertificateGivesEveryComponentAndItsShare)
