@@ -151,7 +151,8 @@ class StudyCommand
   void measure(std::size_t variant, std::size_t number);
   /// Adds them to the report page of the variant.
   void show_errors(const StudyVariant& variant) const;
-  FinishedRun<dim> adapt_and_report(const Config& config, Keep keep);
+  /// `own_limit`: how the reason ends for a limit that is not of the case.
+  FinishedRun<dim> adapt_and_report(const Config& config, Keep keep, const std::string& own_limit = {});
   [[nodiscard]] double smallest_relative_bound() const;
   [[nodiscard]] ExitCode exit_code() const;
   /// What is complete so far.
@@ -171,7 +172,8 @@ class StudyCommand
 
 /// As `tribound run` does it, from the mesh of the case.
 template <int dim>
-FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep keep)
+FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep keep,
+                                                     const std::string& own_limit)
 {
   FinishedRun<dim> finished;
   // Bisected nowhere, the mesh is copied.
@@ -188,6 +190,8 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep 
   try
   {
     finished.verdict = adapt<dim>(problem_, config, std::move(first), observer, stop_);
+    if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
+      finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
     (void)report.close(finished.verdict);
   }
   catch (const SolveError& error)
@@ -204,24 +208,22 @@ void StudyCommand<dim>::solve_variant(const std::string& name)
 {
   Config variant = variant_config(config_, name);
   print_stage("variant", name);
-  std::string end_of_comparison;  // for a limit that is not of the case
+  std::string own_limit;
   if (variant.adapt.marking == Marking::uniform && !study_.variants[0].levels.empty())
   {
     // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times larger.
     const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
     if (std::lround(size) < variant.adapt.max_dofs)
-      end_of_comparison = fmt::format("adapt.max_dofs = {}", std::lround(size));
+      own_limit = fmt::format("adapt.max_dofs = {}", std::lround(size));
     variant.adapt.max_dofs = std::min(variant.adapt.max_dofs, std::lround(size));
   }
   const Clock::time_point begin = Clock::now();
-  FinishedRun<dim> finished = adapt_and_report(variant, Keep::all);
+  FinishedRun<dim> finished = adapt_and_report(variant, Keep::all, own_limit);
   study_.times.emplace_back(name, seconds_since(begin));
   StudyVariant& result = study_.variants.emplace_back();
   result.name = name;
   result.status = finished.verdict.status;
   result.reason = finished.verdict.reason;
-  if (!end_of_comparison.empty() && result.reason.ends_with(end_of_comparison))
-    result.reason = "as large as the last adaptive mesh, there the comparison ends";
   for (LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
   levels_.push_back(std::move(finished.levels));
   write();

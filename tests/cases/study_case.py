@@ -99,6 +99,13 @@ def check_files(directory, study):
             assert b'"energy_error"' in head and b'"stress_error"' in head and b'"eta_tot"' in head, file
 
 
+def check_words(directory, study):
+    """A variant's own certificate and page give the reason that the study gives."""
+    for name in VARIANTS:
+        certificate = json.loads((directory / name / "certificate.json").read_text())
+        assert certificate["reason"] == study["variants"][name]["reason"], f"{name}: {certificate['reason']}"
+
+
 def run(program, name, case, overrides, exit_code, directory):
     result = subprocess.run([program, *arguments(case, overrides, directory)], capture_output=True, text=True, timeout=TIME_LIMIT)
     assert result.returncode == exit_code, f"exit code {result.returncode}\n{result.stdout}{result.stderr}"
@@ -106,6 +113,7 @@ def run(program, name, case, overrides, exit_code, directory):
     check_tables(directory, study, VARIANTS)
     check_levels(study)
     check_files(directory, study)
+    check_words(directory, study)
     reference = study["reference"]
     assert reference["fine_enough"] == (name != "coarse_reference"), "reference"
     assert reference["fine_enough"] == (reference["relative"] <= reference["required"]), "reference"
