@@ -12,6 +12,7 @@
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <variant>
 #include <vector>
 
 #include "base/error.h"
@@ -173,6 +174,16 @@ void try_output_directory(const std::filesystem::path& path)
   const std::vector<std::filesystem::path> missing = missing_directories(path);
   create_and_try(path);
   remove_all_of(missing);
+}
+
+void require_mesh_elsewhere(const Config& config)
+{
+  const auto* mesh = std::get_if<MeshFile>(&config.mesh);
+  std::error_code none;
+  if (mesh != nullptr &&
+      std::filesystem::equivalent(mesh->path, config.output.directory / "adapted.msh", none))
+    throw InputError(mesh->where, "is the adapted.msh that this run would remove from output.directory",
+                     "choose another output.directory, or copy the mesh");
 }
 
 void remove_results(const std::filesystem::path& directory, std::initializer_list<std::string_view> names)

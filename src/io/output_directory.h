@@ -7,6 +7,8 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "case/config.h"
+
 namespace tribound
 {
 
@@ -30,6 +32,9 @@ class OutputDirectory
 /// Throws the InputError that OutputDirectory would for a directory that cannot be written to; leaves
 /// everything as it was.
 void try_output_directory(const std::filesystem::path& path);
+
+/// Throws InputError where the mesh of the case is adapted.msh in output.directory, which a run removes.
+void require_mesh_elsewhere(const Config& config);
 
 /// Removes the named files of an earlier run, in this order; those that do not exist are no error. Throws
 /// InputError when one cannot be removed.

@@ -146,7 +146,7 @@ struct RunRecord
 [[nodiscard]] std::string newton_csv(const RunRecord& run);
 
 /// case.toml; case_effective.toml where the former is the file that was read and holds something else:
-/// nothing of the user's is ever replaced.
+/// it is not replaced.
 [[nodiscard]] std::string effective_file_name(const Config& config);
 
 /// The certificate, JSON with the fields of docs/output.md; unknown numbers are null.

@@ -187,6 +187,17 @@ def check_tries_the_output_directory(directory):
     expect(code == 0 and not (directory / "a").exists(), code, errors)
 
 
+def a_mesh_that_the_run_would_remove(directory):
+    run(directory, "run", "case.toml")
+    case = CASE.replace("box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }", 'file = "out/adapted.msh"')
+    (directory / "again.toml").write_text(case)
+    for command in ("run", "check"):
+        code, _, errors = run(directory, command, "again.toml")
+        expect(code == 1 and "mesh.file: is the adapted.msh" in errors and (directory / "out/adapted.msh").exists(), code, errors)
+    code, _, errors = run(directory, "run", "again.toml", "--set", "output.directory=elsewhere", "--set", "adapt.max_levels=0")
+    expect(code == 3, code, errors)
+
+
 def quiet(directory):
     code, output, _ = run(directory, "run", "case.toml", "--quiet")
     expect(code == 3 and "status" in output and "results" in output and "level" not in output.split("status")[0], output)
@@ -215,6 +226,7 @@ TESTS = (
     several_processes,
     a_page_that_cannot_be_written,
     check_tries_the_output_directory,
+    a_mesh_that_the_run_would_remove,
     quiet,
     lines_fit_a_terminal,
 )
