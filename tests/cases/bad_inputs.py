@@ -10,13 +10,13 @@ before, and the message on stderr must be the expected one to the letter.
 import argparse
 import difflib
 import fnmatch
-import os
-import subprocess
 import sys
 import tempfile
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+import runner
 
 TIME_LIMIT = 60  # seconds, of one row
 WORKERS = 2
@@ -88,20 +88,13 @@ def contents(directory):
 
 
 def run(program, row, directory):
-    """Runs the program in the directory. A limit of the file size stands in for a full disk; MPI does without files."""
+    """Runs the program in the directory. A limit of the file size stands in for a full disk."""
     arguments = row.get("arguments", ["run", "case.toml"])
     for assignment in row.get("set", []):
         arguments = [*arguments, "--set", assignment]
     limit = ["prlimit", f"--fsize={row['file_size']}"] if "file_size" in row else []
-    return subprocess.run(
-        [*limit, program, *arguments],
-        cwd=directory,
-        capture_output=True,
-        text=True,
-        timeout=TIME_LIMIT,
-        restore_signals=False,  # Python ignores SIGXFSZ: writing too much fails instead of ending the program
-        env=os.environ | {"OMPI_MCA_ess_singleton_isolated": "1"},
-    )
+    # Python ignores SIGXFSZ: writing too much then fails instead of ending the program.
+    return runner.run(*limit, program, *arguments, cwd=directory, timeout=TIME_LIMIT, restore_signals=False)
 
 
 def differences(program, row, table, directory):

@@ -8,15 +8,16 @@ import csv
 import hashlib
 import json
 import shutil
-import subprocess
 import sys
 from pathlib import Path
+
+from runner import run
 
 HERE = Path(__file__).resolve().parent
 
 
 def tribound(program, *arguments, cwd):
-    result = subprocess.run([program, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300)
+    result = run(program, *arguments, cwd=cwd)
     assert result.returncode == 0, f"{arguments}: exit code {result.returncode}\n{result.stdout}{result.stderr}"
 
 

@@ -15,9 +15,11 @@ import tempfile
 import time
 from pathlib import Path
 
+import runner
+
 PROGRAM = str(Path(sys.argv[1]).resolve())
 # With several threads OpenBLAS takes more memory than little_address_space leaves before the program begins.
-ENVIRONMENT = os.environ | {"OMPI_MCA_ess_singleton_isolated": "1", "OPENBLAS_NUM_THREADS": "1"}
+ENVIRONMENT = runner.ENVIRONMENT | {"OPENBLAS_NUM_THREADS": "1"}
 TIME_LIMIT = 120  # seconds, of one run
 
 CASE = """
@@ -49,9 +51,8 @@ def start(directory, *arguments, **options):
 
 
 def run(directory, *arguments, **options):
-    process = start(directory, *arguments, **options)
-    output, errors = process.communicate(timeout=TIME_LIMIT)
-    return process.returncode, output, errors
+    result = runner.run(PROGRAM, *arguments, cwd=directory, **({"env": ENVIRONMENT, "timeout": TIME_LIMIT} | options))
+    return result.returncode, result.stdout, result.stderr
 
 
 def wait_for(condition):

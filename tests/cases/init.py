@@ -6,15 +6,16 @@
 
 import json
 import shutil
-import subprocess
 import sys
 from pathlib import Path
+
+from runner import run
 
 CASES = {"block": ["block.toml"], "hertz": ["hertz.geo", "hertz.toml"], "dam": ["dam.geo", "dam.toml"]}
 
 
 def tribound(program, directory, *arguments):
-    return subprocess.run([program, *arguments], cwd=directory, capture_output=True, text=True, timeout=300)
+    return run(program, *arguments, cwd=directory)
 
 
 def names(directory):

@@ -26,11 +26,10 @@ A value that is not a number must be equal. A tolerance for numbers around zero:
 import csv
 import json
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
-TIME_LIMIT = 600  # seconds
+import runner
 
 
 def lookup(document, dotted_name):
@@ -91,9 +90,7 @@ def run(program, expected, run_data, directory):
     for override in run_data.get("set", []):
         arguments = [*arguments, "--set", override]
     arguments = [*arguments, *run_data.get("options", [])]
-    result = subprocess.run(
-        [program, *arguments], cwd=expected["folder"], capture_output=True, text=True, timeout=TIME_LIMIT
-    )
+    result = runner.run(program, *arguments, cwd=expected["folder"])
     printed = result.stdout + result.stderr
 
     code = run_data.get("exit", 0)
@@ -101,7 +98,7 @@ def run(program, expected, run_data, directory):
         yield f"exit code {result.returncode}, expected {code}\n{printed}"
         return
     for text in run_data.get("output", []):
-        if " ".join(text.split()) not in " ".join(printed.split()):  # lines are wrapped
+        if runner.words(text) not in runner.words(printed):  # lines are wrapped
             yield f"does not print {text!r} but\n{printed}"
     if not run_data.get("files", True) and directory.exists():
         yield f"has written {[file.name for file in directory.iterdir()]}"

@@ -15,6 +15,8 @@ import sys
 import time
 from pathlib import Path
 
+from runner import run
+
 CASE = """\
 degree = 1
 [mesh]
@@ -38,7 +40,7 @@ COEFFICIENT = "boundary.bottom.contact.coefficient"
 
 
 def tribound(program, directory, *arguments, code=0):
-    result = subprocess.run([program, "sweep", *arguments], cwd=directory, capture_output=True, text=True, timeout=300)
+    result = run(program, "sweep", *arguments, cwd=directory)
     assert result.returncode == code, f"{arguments}: exit code {result.returncode}, expected {code}\n{result.stdout}{result.stderr}"
     return result.stdout + result.stderr
 
@@ -176,12 +178,12 @@ def check_surroundings(program, directory):
     reading, writing = os.pipe()
     os.close(reading)
     titles = [f'title=["{"a" * 5000}", "b"]']
-    result = subprocess.run([program, "sweep", "case.toml", *titles], cwd=directory, stdout=writing, stderr=subprocess.PIPE)
+    result = run(program, "sweep", "case.toml", *titles, cwd=directory, stdout=writing)
     os.close(writing)
     assert result.returncode == 0 and not result.stderr, result.stderr
 
     ignore = lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN)
-    result = subprocess.run([program, "sweep", "case.toml", "degree=1"], cwd=directory, preexec_fn=ignore, stdout=subprocess.DEVNULL, timeout=60)
+    result = run(program, "sweep", "case.toml", "degree=1", cwd=directory, preexec_fn=ignore, timeout=60)
     assert result.returncode == 0, result.returncode
 
     sweep = directory / "out/case/sweep"

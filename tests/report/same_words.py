@@ -15,6 +15,9 @@ import sys
 from html.parser import HTMLParser
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cases"))
+from runner import run, words  # noqa: E402
+
 TIME_LIMIT = 120  # seconds
 BROWSERS = [os.environ.get("CHROMIUM"), "chromium", "chromium-browser", "google-chrome"]
 BROWSER_OPTIONS = [
@@ -90,11 +93,6 @@ class Page(HTMLParser):
             self.warnings[-1] += text
 
 
-def words(text):
-    """The text with single spaces, whatever lines it was broken into."""
-    return " ".join(text.split())
-
-
 def dump(browser, page, profile):
     result = subprocess.run(
         [browser, *BROWSER_OPTIONS, f"--user-data-dir={profile}", "--dump-dom", page.as_uri()],
@@ -143,7 +141,7 @@ def differences(status, codes, certificate, printed, page):
 def main():
     program, cases, results = sys.argv[1], *map(Path, sys.argv[2:])
     browser = next((found for name in BROWSERS if name and (found := shutil.which(name))), None)
-    info = subprocess.run([program, "info"], capture_output=True, text=True).stdout
+    info = run(program, "info").stdout
     if browser is None or "report page   /" not in info:
         print("skipped:", "there is no chromium (Debian: chromium)" if browser is None else "the report page is not built")
         return 77
@@ -152,12 +150,10 @@ def main():
         directory = results.resolve() / name
         shutil.rmtree(directory, ignore_errors=True)
         options = [part for override in [*overrides, f'output.directory="{directory}"'] for part in ("--set", override)]
-        run = subprocess.run(
-            [program, "run", str(cases / "t2d.toml"), *options], capture_output=True, text=True, timeout=TIME_LIMIT
-        )
+        result = run(program, "run", str(cases / "t2d.toml"), *options)
         certificate = json.loads((directory / "certificate.json").read_text())
         page = dump(browser, directory / "report.html", results.resolve() / "profile")
-        problems = list(differences(status, codes, certificate, run.stdout, page))
+        problems = list(differences(status, codes, certificate, result.stdout, page))
         print(f"{name}: {'the same' if not problems else 'DIFFERENT'}")
         for problem in problems:
             print(f"  {problem}")

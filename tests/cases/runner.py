@@ -1,0 +1,20 @@
+"""The program as the tests of whole cases start it."""
+
+import os
+import subprocess
+
+TIME_LIMIT = 600  # seconds, of one run on a busy machine
+ENVIRONMENT = os.environ | {"OMPI_MCA_ess_singleton_isolated": "1"}  # MPI does without files
+
+
+def run(program, *arguments, **options):
+    """The program that has ended, with what it has said; `options`: of subprocess.run, in place of these."""
+    defaults = {"capture_output": True, "text": True, "timeout": TIME_LIMIT, "env": ENVIRONMENT}
+    if "stdout" in options or "stderr" in options:
+        defaults |= {"capture_output": False, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    return subprocess.run([program, *arguments], **(defaults | options))
+
+
+def words(text):
+    """The text with single spaces, whatever lines it was broken into."""
+    return " ".join(text.split())
