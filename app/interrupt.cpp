@@ -34,13 +34,29 @@ void report_crash(int)
   ::_exit(static_cast<int>(ExitCode::failed));
 }
 
+/// The handler has a stack of its own: one that has overflowed is of no use.
+void catch_crashes()
+{
+  static std::array<char, 1 << 16> memory;
+  stack_t stack{};
+  stack.ss_sp = memory.data();
+  stack.ss_size = memory.size();
+  ::sigaltstack(&stack, nullptr);
+  struct sigaction action
+  {
+  };
+  action.sa_handler = report_crash;
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) ::sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 void prepare_signals()
 {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGCHLD, SIG_DFL);  // ignored, as by the shell's trap '' CHLD, children could not be waited for
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal, report_crash);
+  catch_crashes();
 }
 
 const std::atomic<bool>& stop_on_signals()
