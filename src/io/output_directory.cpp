@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -126,13 +127,23 @@ bool is_current(int file, const std::filesystem::path& path)
                    "wait for its end, or choose another output.directory");
 }
 
+/// The lock of another user cannot be written to, but locked.
+int open_lock(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
+{
+  int file = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0 && errno == EACCES) file = ::open(lock_file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file >= 0) return file;
+  const int error = errno;
+  throw InputError(place(directory), fmt::format("cannot lock this directory: {}", std::strerror(error)),
+                   hint_for_writing(error));
+}
+
 /// Locks the file and writes into it who has done so; -1 where the file system has no locks.
 int lock(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
 {
   for (;;)
   {
-    const int file = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0) return -1;
+    const int file = open_lock(directory, lock_file);
     if (::flock(file, LOCK_EX | LOCK_NB) != 0)
     {
       const int reason = errno;

@@ -55,6 +55,12 @@ TEST_F(OutputDirectoryTest, IsCreatedAndLeftEmpty)
   EXPECT_EQ(message(out), "");
 }
 
+TEST_F(OutputDirectoryTest, WithoutALockIsNotTaken)
+{
+  fs::create_directories(directory / ".tribound.lock");
+  EXPECT_THAT(message(directory), HasSubstr("cannot lock this directory: Is a directory"));
+}
+
 TEST_F(OutputDirectoryTest, ThatCannotBe)
 {
   const fs::path file = directory / "file";
