@@ -116,7 +116,7 @@ ExitCode sweep_command(const Arguments& arguments)
 {
   if (arguments.swept.empty() == arguments.table.empty())
     throw InputError({}, "tribound sweep takes either keys with values or a table",
-                     "tribound sweep case.toml degree=[1, 2], or --table runs.csv");
+                     "tribound sweep case.toml 'degree=[1, 2]', or --table runs.csv");
   const SweepTable table = arguments.table.empty()
                                ? sweep_grid(arguments.swept)
                                : sweep_rows(read_input_file(arguments.table), arguments.table);
@@ -137,7 +137,7 @@ constexpr const char* help_footer = R"(Examples:
   tribound check block.toml                   examine it: supports, units, mesh, expected cost
   tribound run block.toml                     solve it, write out/block
   tribound run block.toml --set degree=3 --set boundary.bottom.contact.coefficient=0.5
-  tribound sweep block.toml degree=[1,2] boundary.bottom.contact.coefficient=0.1:0.8:8 --jobs 2
+  tribound sweep block.toml 'degree=[1,2]' boundary.bottom.contact.coefficient=0.1:0.8:8 --jobs 2
   tribound COMMAND --help                     the options of a command
 
 Exit codes:

@@ -15,12 +15,12 @@ enum class ExitCode
 {
   success = 0,        ///< certified: the identities hold, the tolerance is reached
   bad_input = 1,      ///< InputError
-  failed = 2,         ///< no convergence, singular matrix, identity violated
+  failed = 2,         ///< no convergence, singular matrix, identity violated, a result not written
   budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
 };
 
-/// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError and
-/// SolveError.
+/// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError,
+/// SolveError and WriteError.
 template <int dim>
 [[nodiscard]] ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress);
 

@@ -32,9 +32,9 @@ struct ChainLink
 /// sum of weight times a column is its integral over the boundary as the program takes it. Coordinates and
 /// components of normals that are rounding are 0.
 template <int dim>
-[[nodiscard]] std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level = 0);
+[[nodiscard]] std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level);
 
-/// Writes contact_csv() to `path`. Throws InputError when the file cannot be written.
+/// Writes contact_csv() to `path`. Throws WriteError when the file cannot be written.
 template <int dim>
 void write_contact_csv(const std::filesystem::path& path, const NitscheForm<dim>& form,
                        std::span<const double> u, int level);

@@ -27,7 +27,7 @@ class PageTemplate
   [[nodiscard]] bool empty() const { return head_.empty(); }
 
   /// Writes the page with the JSON, given in pieces, in a script element with this id. Does nothing where
-  /// the template is empty. Throws InputError when the file cannot be written.
+  /// the template is empty. Throws WriteError when the file cannot be written.
   void write(const std::filesystem::path& page, std::string_view id,
              std::span<const std::string_view> json) const;
 

@@ -153,7 +153,7 @@ struct RunRecord
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
 
 /// Writes the effective case, convergence.csv, newton.csv and certificate.json, the last one last. Throws
-/// InputError when a file cannot be written.
+/// WriteError when a file cannot be written.
 void write_report(const std::filesystem::path& directory, const RunRecord& run);
 
 }  // namespace tribound

@@ -50,7 +50,7 @@ struct TrueErrors
   std::optional<double> dual_norm;     ///< of the residual, from below
 };
 
-/// Adds the true errors to a page that is written; does nothing where there is none. Throws InputError when
+/// Adds the true errors to a page that is written; does nothing where there is none. Throws WriteError when
 /// it cannot be written.
 void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors);
 
@@ -65,7 +65,7 @@ class ReportPage
   template <int dim>
   void add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
 
-  /// Writes report.html into the directory, with links to those results that are there. Throws InputError
+  /// Writes report.html into the directory, with links to those results that are there. Throws WriteError
   /// when the file cannot be written.
   void write(const std::filesystem::path& directory, const RunRecord& run) const;
 

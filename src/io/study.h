@@ -98,7 +98,7 @@ struct Rates
 /// The same with the reference, the rates and the comparisons; unknown numbers are null.
 [[nodiscard]] std::string study_json(const Study& study);
 
-/// Writes study.csv and study.json. Throws InputError when they cannot be written.
+/// Writes study.csv and study.json. Throws WriteError when they cannot be written.
 void write_study(const std::filesystem::path& directory, const Study& study);
 
 /// The tables of the variants, of Newton's steps, the rates and where the files are.

@@ -11,7 +11,7 @@ namespace tribound
 {
 
 /// Writes report.html into the directory, with links to the tables, the figures and the pages of the variants
-/// that are there. Does nothing without a template. Throws InputError when the file cannot be written.
+/// that are there. Does nothing without a template. Throws WriteError when the file cannot be written.
 void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
                       const Study& study);
 

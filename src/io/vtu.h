@@ -64,7 +64,7 @@ template <int dim>
 /// Writes the cells of degree p with their own points each: points and `displacement` (3 components, z = 0 in
 /// 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz), `principal_stresses`
 /// and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz of every tensor
-/// follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws InputError when
+/// follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws WriteError when
 /// the file cannot be written.
 template <int dim>
 void write_level_vtu(const std::filesystem::path& path, int level, const Problem<dim>& problem,
@@ -75,7 +75,7 @@ void write_level_vtu(const std::filesystem::path& path, int level, const Problem
 /// Writes the facets of Gamma_C as curves or triangles of degree p, in the order of form.contact_facets():
 /// point data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick,
 /// 2 slip), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary group).
-/// Throws InputError when the file cannot be written.
+/// Throws WriteError when the file cannot be written.
 template <int dim>
 void write_contact_vtu(const std::filesystem::path& path, int level, const NitscheForm<dim>& form,
                        std::span<const double> u);
@@ -84,7 +84,7 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const Nitsc
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
 /// Writes series.pvd, which lists level_000.vtu, level_001.vtu, ... with the level as time.
-/// Throws InputError when the file cannot be written.
+/// Throws WriteError when the file cannot be written.
 void write_series(const std::filesystem::path& directory, int n_levels);
 
 /// Removes what an earlier run left of such a series: level_NNN.vtu and contact_NNN.vtu, N a digit, at least

@@ -107,7 +107,7 @@ struct VtuGrid
   std::vector<VtuArray> cell_data;
 };
 
-/// Writes the grid array by array; needs no more memory than a block. Throws InputError when the file cannot
+/// Writes the grid array by array; needs no more memory than a block. Throws WriteError when the file cannot
 /// be written.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
