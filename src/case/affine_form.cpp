@@ -61,6 +61,13 @@ AffineForm AffineForm::variable(int index)
   return form;
 }
 
+bool AffineForm::is_shifted_variable() const
+{
+  constexpr int most_operations = 3;  // the variable, the number, their difference
+  const auto n_variables = std::count_if(c.begin(), c.end() - 1, [](double a) { return a != 0.0; });
+  return n_variables == 1 && std::abs(c[0] + c[1] + c[2]) == 1.0 && n_operations <= most_operations;
+}
+
 double AffineForm::value(std::span<const double> x) const
 {
   double sum = c[3];
@@ -90,6 +97,8 @@ AffineForm operator-(const AffineForm& a)
 
 std::optional<AffineForm> affine_result(Op op, const AffineForm& a, const AffineForm& b)
 {
+  const auto is_zero = [](const AffineForm& form) { return form.is_number() && form.size[3] == 0.0; };
+  if (is_zero(b) && (op == Op::add || op == Op::subtract)) return a;  // so that x - 1 > 0 is x > 1
   AffineForm result;
   if (op == Op::add)
     result = combine(a, b, [](double p, double q) { return p + q; });

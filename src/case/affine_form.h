@@ -25,6 +25,8 @@ struct AffineForm
   /// Whether it is the same everywhere; and whether no variable has ever been in it.
   [[nodiscard]] bool is_constant() const { return c[0] == 0.0 && c[1] == 0.0 && c[2] == 0.0; }
   [[nodiscard]] bool is_number() const { return size[0] == 0.0 && size[1] == 0.0 && size[2] == 0.0; }
+  /// Whether it is a variable compared with a number, the sign of which is computed without rounding.
+  [[nodiscard]] bool is_shifted_variable() const;
   [[nodiscard]] double value(std::span<const double> x) const;
   /// The sum of the absolute values of all terms at `x`.
   [[nodiscard]] double scale(std::span<const double> x) const;

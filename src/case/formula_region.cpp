@@ -62,15 +62,15 @@ int Region::signs(const AffineForm& form) const
   if (form.is_constant()) return sign_of(form.c[3]);
   const Range range = range_of(form);
   if (!std::isfinite(range.scale)) return any_sign;
-  if (!open_)
-  {
-    const double e = form.rounding(range.scale);
-    return signs_in({range.lower - e, range.upper + e});
-  }
+  // A facet in the plane x = a: at all its points, too, x > b is decided in the same way.
+  const bool is_exact = range.lower == range.upper && form.is_shifted_variable();
+  const double e = is_exact ? 0.0 : form.rounding(range.scale);
+  const int closed_signs = signs_in({range.lower - e, range.upper + e});
+  if (!open_) return closed_signs;
   const double tolerance = relative_rounding * range.scale;
   const bool never_below = range.lower >= -tolerance;
   const bool never_above = range.upper <= tolerance;
-  if (never_below && never_above) return sign_of(form.value(centre()));
+  if (never_below && never_above) return closed_signs;  // no inside to decide
   return never_below ? positive : never_above ? negative : any_sign;
 }
 

@@ -64,12 +64,12 @@ Loads<dim> integrate_loads(const NitscheForm<dim>& form, const Point<dim>& about
   {
     const BoundaryFacet& facet = mesh.boundary()[k];
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
     const double scale =
         facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
     form.data().traction(k, g);
     for (int q = 0; q < facet_rule.size(); ++q)
-      loads.boundaries[facet.tag].add(map(facet_to_cell<dim>(facet.local, facet_rule.points[q])) - about,
+      loads.boundaries[facet.tag].add(map(facet_rule.points[q]) - about,
                                       scale * facet_rule.weights[q] * g[q]);
   }
   return loads;
@@ -105,7 +105,7 @@ std::vector<Resultant<dim>> integrate_tractions(const NitscheForm<dim>& form, co
     for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
       for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
     table.evaluate(make_frame(mesh, facet.cell), block, sigma);
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
     const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
     for (int q = 0; q < rule.size(); ++q)
     {
@@ -114,7 +114,7 @@ std::vector<Resultant<dim>> integrate_tractions(const NitscheForm<dim>& form, co
         for (int c = 0; c < dim && (condition.contact || condition.fixes(r)); ++c)
           t[r] += sigma[(dim * r + c) * n + facet.local * rule.size() + q] * geometry.normal[c];
       const double weight = geometry.measure * (dim - 1) * rule.weights[q];
-      result[facet.tag].add(map(facet_to_cell<dim>(facet.local, rule.points[q])) - about, weight * t);
+      result[facet.tag].add(map(rule.points[q]) - about, weight * t);
     }
   }
   return result;

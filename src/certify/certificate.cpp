@@ -115,12 +115,12 @@ double dirichlet_interpolation_error(const NitscheForm<dim>& form)
   {
     const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     if (!boundary.fixes_any()) continue;
-    const CellMap<dim> map = cell_map(space.mesh(), facet.cell);
+    const FacetMap<dim> map = facet_map(space.mesh(), facet.cell, facet.local);
     for (int q = 0; q < form.n_facet_points(); ++q)
     {
       const Point<dim> interpolant = value_at<dim>(space.cell_nodes(facet.cell), form.constraints().values,
                                                    table.on_facet[facet.local].values_at(q));
-      const Point<dim> x = map(facet_to_cell<dim>(facet.local, table.points[q]));
+      const Point<dim> x = map(table.points[q]);
       for (int c = 0; c < dim; ++c)
         if (boundary.fixes(c))
           largest = std::max(largest, std::abs((*boundary.displacement[c])(x)-interpolant[c]));

@@ -269,9 +269,9 @@ void check_boundary(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
     const BoundaryFacet& facet = mesh.boundary()[number];
     const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
     std::vector<Point<dim>> x;
-    for (const Point<dim - 1>& s : rule.points) x.push_back(map(facet_to_cell<dim>(facet.local, s)));
+    for (const Point<dim - 1>& s : rule.points) x.push_back(map(s));
     if (boundary.contact)
       for (Point<dim>& at_point : traction) at_point = t[contact_point++];
     else

@@ -145,7 +145,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
 {
   const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
   const Point<dim>& n = geometry.normal;
-  const CellMap<dim> map = cell_map(form_.space().mesh(), facet.cell);
+  const FacetMap<dim> map = facet_map(form_.space().mesh(), facet.cell, facet.local);
   const Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, polynomial_dimension(dim - 1, 4)> theta;
   Integrals result;
@@ -155,7 +155,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   {
     const FacetPoint s = point_in<dim - 1>(piece, rule.points[q]);
     orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
-    const Point<dim> x = map(facet_to_cell<dim>(facet.local, s));
+    const Point<dim> x = map(s);
     Point<dim> p = gamma * gap_at<dim>(*contact, x) * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)

@@ -42,16 +42,6 @@ Quadrature<k> composite_rule(int degree, int cuts)
   return composite;
 }
 
-/// The inverse of facet_to_cell.
-template <int dim>
-Point<dim - 1> cell_to_facet(int local, const Point<dim>& xhat)
-{
-  const auto lambda = barycentric<dim>(xhat);
-  Point<dim - 1> s;
-  for (int k = 0; k < dim - 1; ++k) s[k] = lambda[k + 1 < local ? k + 1 : k + 2];
-  return s;
-}
-
 /// (d_a phi_i, d_b phi_j) on the reference cell: [i * n + j].
 template <int dim>
 std::vector<Tensor<dim>> reference_gradients(const LagrangeBasis<dim>& basis)

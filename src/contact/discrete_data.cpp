@@ -41,6 +41,13 @@ SimplexMap<dim, dim> simplex_map(const Mesh<dim>& mesh, Index cell)
   return {map.origin, map.jacobian, map.det / (dim == 2 ? 2 : 6)};
 }
 
+template <int dim>
+SimplexMap<dim - 1, dim> simplex_map(const Mesh<dim>& mesh, const BoundaryFacet& facet)
+{
+  const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+  return {map.origin, map.jacobian, facet_geometry(mesh, facet.cell, facet.local).measure};
+}
+
 /// An upper bound of |f| on a cell or facet; 0 where there is none.
 template <int k, int dim>
 double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
@@ -121,18 +128,6 @@ Datum<dim> DiscreteData<dim>::contact_datum(const BoundaryFacet& facet, double s
 }
 
 template <int dim>
-SimplexMap<dim - 1, dim> DiscreteData<dim>::facet_map(const BoundaryFacet& facet) const
-{
-  const CellMap<dim> map = cell_map(mesh_, facet.cell);
-  SimplexMap<dim - 1, dim> result;
-  result.origin = map(facet_to_cell<dim>(facet.local, Point<dim - 1>::Zero()));
-  for (int i = 0; i < dim - 1; ++i)
-    result.jacobian.col(i) = map(facet_to_cell<dim>(facet.local, Point<dim - 1>::Unit(i))) - result.origin;
-  result.measure = facet_geometry(mesh_, facet.cell, facet.local).measure;
-  return result;
-}
-
-template <int dim>
 void DiscreteData<dim>::count_formulas()
 {
   const auto count = [&](const Datum<dim>& datum) { effort_.formulas += datum.degree() > degree_ + 2; };
@@ -163,7 +158,7 @@ double DiscreteData<dim>::largest_effect() const
   for (const BoundaryFacet& facet : mesh_.boundary())
   {
     const BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
-    const SimplexMap<dim - 1, dim> map = facet_map(facet);
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
     if (!boundary.contact) traction += map.measure * std::pow(largest_value(traction_datum(facet), map), 2);
     Datum<dim> prescribed;
     for (int i = 0; i < dim; ++i)
@@ -219,7 +214,7 @@ void DiscreteData<dim>::represent_tractions(double accuracy)
   bool varies = false;
   for (const BoundaryFacet& facet : facets)
   {
-    area += facet_map(facet).measure;
+    area += simplex_map(mesh_, facet).measure;
     varies = varies || traction_datum(facet).degree() > 0;
   }
   if (!varies) return;
@@ -231,7 +226,7 @@ void DiscreteData<dim>::represent_tractions(double accuracy)
         if (problem_.boundary(facets[i].tag).contact) return;
         const Datum<dim> datum = traction_datum(facets[i]);
         if (datum.degree() == 0) return;
-        const SimplexMap<dim - 1, dim> map = facet_map(facets[i]);
+        const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
         const DatumWeights weights{std::sqrt(cell_diameter(mesh_, facets[i].cell)),
                                    size_ / std::sqrt(simplex_map(mesh_, facets[i].cell).measure)};
         keep(traction_, i,
@@ -245,7 +240,7 @@ void DiscreteData<dim>::represent_contact(double accuracy)
   const std::span<const BoundaryFacet> facets = mesh_.boundary();
   double area = 0;
   for (const BoundaryFacet& facet : facets)
-    if (problem_.boundary(facet.tag).contact) area += facet_map(facet).measure;
+    if (problem_.boundary(facet.tag).contact) area += simplex_map(mesh_, facet).measure;
   parallel_for(facets.size(),
                [&](std::size_t i)
                {
@@ -255,7 +250,7 @@ void DiscreteData<dim>::represent_contact(double accuracy)
                  const double h = facet_geometry(mesh_, facet.cell, facet.local).diameter;
                  const double stiffness = default_gamma0(degree_) * (material.lambda + 2 * material.mu) / h;
                  const Datum<dim> datum = contact_datum(facet, stiffness);
-                 const SimplexMap<dim - 1, dim> map = facet_map(facet);
+                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
                  DatumOnSimplex<dim - 1, dim> found = facet_moments_(
                      datum, map, {std::sqrt(h), 0}, accuracy * std::sqrt(map.measure / area), max_parts_);
                  for (auto& moment : found.moments) moment[0] /= stiffness;
@@ -279,7 +274,7 @@ void DiscreteData<dim>::check_signs(const BoundaryFacet& facet,
                                     const DatumOnSimplex<dim - 1, dim>& found) const
 {
   const Contact& contact = *problem_.boundary(facet.tag).contact;
-  const SimplexMap<dim - 1, dim> map = facet_map(facet);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
     {
@@ -312,7 +307,7 @@ void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values
     return;
   }
   const Datum<dim> datum = traction_datum(mesh_.boundary()[facet]);
-  const SimplexMap<dim - 1, dim> map = facet_map(mesh_.boundary()[facet]);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
   for (int q = 0; q < facet_rule().size(); ++q) values[q] = datum(map(facet_rule().points[q]));
 }
 
@@ -331,7 +326,7 @@ void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::s
     return;
   }
   const Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
-  const SimplexMap<dim - 1, dim> map = facet_map(mesh_.boundary()[facet]);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
   for (int q = 0; q < facet_rule().size(); ++q)
   {
     const Point<dim> x = map(facet_rule().points[q]);

@@ -104,7 +104,6 @@ class DiscreteData
   [[nodiscard]] Datum<dim> traction_datum(const BoundaryFacet& facet) const;
   /// g in direction 0, as the stress `stiffness` g, and s in direction 1.
   [[nodiscard]] Datum<dim> contact_datum(const BoundaryFacet& facet, double stiffness) const;
-  [[nodiscard]] SimplexMap<dim - 1, dim> facet_map(const BoundaryFacet& facet) const;
 
   void count_formulas();
   [[nodiscard]] double largest_effect() const;

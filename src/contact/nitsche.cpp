@@ -226,7 +226,8 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
 {
   const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
   const Point<dim>& n = geometry.normal;
-  const CellMap<dim> map = cell_map(space_->mesh(), facet.cell);
+  const FacetMap<dim> map = facet_map(space_->mesh(), facet.cell, facet.local);
+  const Tensor<dim> inverse = inverse_transpose(k);
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
   const Material& material = problem_->material(space_->mesh().region(facet.cell));
 
@@ -234,9 +235,9 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
   for (std::size_t q = 0; q < table.points.size(); ++q)
   {
     const Tabulation<dim>& local = table.on_facet[facet.local];
-    const Point<dim> x = map(facet_to_cell<dim>(facet.local, table.points[q]));
+    const Point<dim> x = map(table.points[q]);
     const Point<dim> value = value_at<dim>(nodes, u, local.values_at(q));
-    const Tensor<dim> gradient = gradient_at<dim>(nodes, u, local.gradients_at(q), map.inverse_transpose);
+    const Tensor<dim> gradient = gradient_at<dim>(nodes, u, local.gradients_at(q), inverse);
     const double gap = gap_at<dim>(*contact, x);
     const double threshold = threshold_if_any<dim>(contact->friction, x);
     const Point<dim> p = tribound::augmented_traction<dim>(material, gamma, gap, n, value, gradient);

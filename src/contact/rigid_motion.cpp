@@ -191,12 +191,12 @@ FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen
     const auto& contact = problem_.boundary(facet.tag).contact;
     const auto* tresca = contact ? std::get_if<Tresca>(&contact->friction) : nullptr;
     if (!tresca) continue;
-    const CellMap<dim> map = cell_map(mesh_, facet.cell);
+    const FacetMap<dim> map = facet_map(mesh_, facet.cell, facet.local);
     const FacetGeometry<dim> geometry = facet_geometry(mesh_, facet.cell, facet.local);
     const Point<dim>& n = geometry.normal;
     for (int q = 0; q < rule.size(); ++q)
     {
-      const Point<dim> x = map(facet_to_cell<dim>(facet.local, rule.points[q]));
+      const Point<dim> x = map(rule.points[q]);
       const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
       const Point<dim> z_x = at_x * z;
       const Point<dim> z_t = z_x - z_x.dot(n) * n;

@@ -57,9 +57,8 @@ class Collector
     ++facts_.facets;
     facts_.measure += facet.geometry.measure;
     mean_ += facet.geometry.measure * facet.geometry.normal;
-    const CellMap<dim> map = cell_map(form_.space().mesh(), facet.facet.cell);
-    for (const Point<dim - 1>& s : form_.facet_rule().points)
-      add_gap(*facet.contact, map(facet_to_cell<dim>(facet.facet.local, s)));
+    const FacetMap<dim> map = facet_map(form_.space().mesh(), facet.facet.cell, facet.facet.local);
+    for (const Point<dim - 1>& s : form_.facet_rule().points) add_gap(*facet.contact, map(s));
   }
 
   void add_gap(const Contact& contact, const Point<dim>& x)

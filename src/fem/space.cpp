@@ -205,13 +205,16 @@ Constraints dirichlet(const Problem<dim>& problem, const LagrangeSpace<dim>& spa
   {
     const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
     if (!boundary.fixes_any()) continue;
-    const CellMap<dim> map = cell_map(mesh, facet.cell);
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
     const std::span<const Index> nodes = space.cell_nodes(facet.cell);
     for (int i = 0; i < basis.n_nodes(); ++i)
     {
       if (basis.node(i)[facet.local] > 0) continue;  // not on the facet
+      const Point<dim> x = nodes[i] < mesh.n_vertices()
+                               ? mesh.vertex(nodes[i])  // the same from all facets
+                               : map(cell_to_facet<dim>(facet.local, basis.node_point(i)));
       for (int a = 0; a < dim; ++a)
-        if (boundary.fixes(a)) fix(boundary, a, nodes[i], map(basis.node_point(i)));
+        if (boundary.fixes(a)) fix(boundary, a, nodes[i], x);
     }
   }
   return constraints;

@@ -28,6 +28,17 @@ struct CellMap
   [[nodiscard]] Point<dim> operator()(const Point<dim>& xhat) const { return origin + jacobian * xhat; }
 };
 
+/// The map x = x_0 + J s from the reference facet onto a facet, from its own vertices: a coordinate that they
+/// share is that of every point to the last bit, wherever the vertex opposite is.
+template <int dim>
+struct FacetMap
+{
+  Point<dim> origin;                             ///< x_0
+  Eigen::Matrix<double, dim, dim - 1> jacobian;  ///< J; column j is x_{j+1} - x_0
+
+  [[nodiscard]] Point<dim> operator()(const Point<dim - 1>& s) const { return origin + jacobian * s; }
+};
+
 template <int dim>
 struct FacetGeometry
 {
@@ -100,6 +111,17 @@ template <int dim>
   return map;
 }
 
+/// Of facet `local` of `cell`, its vertices in the order of facet_to_cell().
+template <int dim>
+[[nodiscard]] FacetMap<dim> facet_map(const Mesh<dim>& mesh, Index cell, int local)
+{
+  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local));
+  FacetMap<dim> map;
+  map.origin = points[0];
+  for (int j = 0; j < dim - 1; ++j) map.jacobian.col(j) = points[j + 1] - points[0];
+  return map;
+}
+
 /// h_T: the longest edge.
 template <int dim>
 [[nodiscard]] double cell_diameter(const Mesh<dim>& mesh, Index cell)
@@ -137,6 +159,15 @@ template <int dim>
     xhat[j - 1] = s[k];
   }
   return xhat;
+}
+
+/// The inverse of facet_to_cell.
+template <int dim>
+[[nodiscard]] Point<dim - 1> cell_to_facet(int local, const Point<dim>& xhat)
+{
+  Point<dim - 1> s;
+  for (int k = 0; k < dim - 1; ++k) s[k] = xhat[k + 1 < local ? k : k + 1];
+  return s;
 }
 
 }  // namespace tribound

@@ -112,9 +112,14 @@ TEST(Enclosure, OfACellCutAlongASwitchIsSmooth)
     expect_range(enclose(text, right, 2, 1)[0], 0, 0.05);
     EXPECT_TRUE(enclose(text, right, 2, 1)[1].bounded()) << text;
   }
-  // A facet on the switch counts as its centre does.
+  // A facet on the switch: what is compared decides where it is computed without rounding.
   EXPECT_EQ(enclose("y >= 0 ? 2 : 1", {0, 0, 1, 0}, 2, 0)[0].lower, 2.0);
   EXPECT_EQ(enclose("y > 0 ? 2 : 1", {0, 0, 1, 0}, 2, 0)[0].upper, 1.0);
+  EXPECT_EQ(enclose("y - 0.1 <= 0", {0, 0.1, 1, 0.1}, 2, 0)[0].lower, 1.0);
+  EXPECT_EQ(enclose("-y < -0.1", {0, 0.1, 1, 0.1}, 2, 0)[0].upper, 0.0);
+  for (const std::string text : {"3*y > 0.3", "x + y > x + 0.1"})
+    expect_range(enclose(text, {0, 0.1, 1, 0.1}, 2, 0)[0], 0, 1);
+  expect_range(enclose("y >= 0.1 + 0.5*x", {0, 0.1, 1, 0.6}, 2, 0)[0], 0, 1);
 }
 
 TEST(Enclosure, OfWhatIsUndefinedSomewhereIsEverything)

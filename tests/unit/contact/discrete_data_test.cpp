@@ -1,0 +1,80 @@
+/// @file discrete_data_test.cpp
+/// Data that jump exactly where a boundary is.
+
+#include "contact/discrete_data.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "support/discrete_case.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// The sum of component 1 of the load.
+template <int dim>
+double vertical_load(const NitscheForm<dim>& form)
+{
+  double sum = 0;
+  for (std::size_t i = 1; i < form.load().size(); i += dim) sum += form.load()[i];
+  return sum;
+}
+
+const std::string material = "degree = 1\nmaterial = { E = 1.0, nu = 0.3 }\n";
+
+/// One formula for the whole boundary chooses the side y = 0.1: its facets are loaded fully, whatever the
+/// vertex opposite is.
+TEST(DiscreteData, ASideInThePlaneOfASwitchIsLoadedFully)
+{
+  for (unsigned seed = 0; seed < 20; ++seed)
+  {
+    const double top = 0.1 + 2.1 * (seed + 1) / 20;
+    const DiscreteCase<2> plane(material +
+                                    "boundary.left.displacement = [0, \"free\"]\n"
+                                    "boundary.top.displacement = [0, 0]\n"
+                                    "boundary.bottom.traction = [0, \"y - 0.1 <= 0 ? 1 : 0\"]\n",
+                                renumbered(box<2>({0, 0.1}, {1, top}, {4, 1}), seed));
+    EXPECT_NEAR(vertical_load(plane.form), 1, 1e-14) << top;
+    const DiscreteCase<3> space(material +
+                                    "boundary.top.displacement = [0, 0, 0]\n"
+                                    "boundary.bottom.traction = [0, \"y == 0.1 ? 1 : 0\", 0]\n",
+                                renumbered(box<3>({0, 0.1, 0}, {1, top, 1}, {2, 1, 2}), seed));
+    EXPECT_NEAR(vertical_load(space.form), 1, 1e-14) << top;
+    for (std::size_t k = 0; k < space.mesh.boundary().size(); ++k)
+      EXPECT_EQ(space.form.data().traction_remainder(k).mean, 0);
+  }
+}
+
+/// On an inclined plane the points are on either side, as rounding wants: the remainders hold both decisions.
+TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
+{
+  const auto inclined = [](const Point<2>& x) { return Point<2>(x[0], x[1] + 0.1 + 0.5 * x[0]); };
+  const DiscreteCase<2> c(material +
+                              "boundary.left.displacement = [0, 0]\n"
+                              "boundary.top.traction = [0, \"y >= 1.1 + 0.5*x ? 1 : 0\"]\n"
+                              "boundary.bottom.contact = { friction = \"tresca\", "
+                              "threshold = \"y > 0.1 + 0.5*x ? 0.3 : 0\" }\n",
+                          mapped(box<2>({0, 0}, {1, 1}, {3, 1}), inclined));
+  const double length = std::sqrt(1.25) / 3;
+  for (std::size_t k = 0; k < c.mesh.boundary().size(); ++k)
+  {
+    const std::string& name = c.problem.boundary(c.mesh.boundary()[k].tag).name;
+    if (name == "top")
+    {
+      EXPECT_GE(c.form.data().traction_remainder(k).mean, length * (1 - 1e-12));
+    }
+    if (name != "bottom") continue;
+    for (const auto& part : c.form.data().contact_parts(k)) EXPECT_GE(part.threshold, 0.15);
+    EXPECT_FALSE(c.form.data().contact_parts(k).empty());
+  }
+}
+
+}  // namespace
+
+}  // namespace tribound::test
