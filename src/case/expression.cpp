@@ -62,7 +62,13 @@ void Expression::evaluate(std::span<const double> points, int dim, std::span<dou
 
 void Expression::enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients) const
 {
-  if (formula_) return formula_->enclose(vertices, dim, coefficients);
+  enclose(vertices, dim, coefficients, Sides::inside);
+}
+
+void Expression::enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients,
+                         Sides sides) const
+{
+  if (formula_) return formula_->enclose(vertices, dim, coefficients, sides);
   for (Enclosure& coefficient : coefficients)
     coefficient = &coefficient == coefficients.data() ? Enclosure{value_, value_} : Enclosure{0.0, 0.0};
 }

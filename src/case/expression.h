@@ -16,6 +16,7 @@ namespace tribound
 struct Affine;
 struct Enclosure;
 class Formula;
+enum class Sides;
 
 /// A scalar datum: a constant, or a formula in x, y, z. Use of one object by several threads at once is safe.
 /// What it returns of a formula is described in formula.h.
@@ -50,6 +51,8 @@ class Expression
   [[nodiscard]] std::span<const Affine> switches() const;
   /// Values and derivatives over the convex hull of `vertices`: Formula::enclose.
   void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients) const;
+  void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients,
+               Sides sides) const;
   /// All values within `radius` of `x` in every coordinate.
   [[nodiscard]] Enclosure around(std::span<const double> x, double radius) const;
 

@@ -33,6 +33,14 @@ struct Affine
   double b = 0.0;
 };
 
+/// Which points of a region K count where a switch is zero, up to rounding, on its boundary.
+enum class Sides
+{
+  inside,  ///< those inside: what happens on the boundary only does not
+  closed,  ///< the boundary, too
+  around   ///< those near K, too: whatever f may be on any side
+};
+
 struct FormulaProgram;
 
 /// A scalar formula in x, y, z (grammar in docs/case-format.md; pi and e are constants). Use of one object by
@@ -74,10 +82,10 @@ class Formula
   /// those of a cell, of a facet): coefficient n holds (1/n!) d^n/dt^n f(xi + t (x - c)) at t = 0 for all xi,
   /// x in K, c the mean of the vertices; coefficient 0 holds f on K. As many as `coefficients` has, at most
   /// max_order + 1. Those of which nothing is known, as where f jumps, kinks or is undefined in K, are (-inf,
-  /// inf). Where a switch is zero on the boundary of K only (up to rounding), f counts as it is inside of K;
-  /// where it is zero on all of K, all branches that rounding may take count: only x > a is decided by
-  /// values.
-  void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients) const;
+  /// inf). Where a switch is zero on the boundary of K only (up to rounding), f counts as `sides` says; where
+  /// it is zero on all of K, all branches that rounding may take count: only x > a is decided by values.
+  void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients,
+               Sides sides = Sides::inside) const;
 
   /// Encloses the values over the box between `lower` and `upper` (2 or 3 coordinates), its boundary
   /// included.

@@ -264,10 +264,11 @@ IntervalSeries evaluate(std::span<const Node> nodes, const Region& region, int n
 
 }  // namespace
 
-void Formula::enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients) const
+void Formula::enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients,
+                      Sides sides) const
 {
   assert(coefficients.size() <= max_order + 1);
-  const Region region(vertices, dim, true);
+  const Region region(vertices, dim, sides);
   const IntervalSeries series =
       tribound::evaluate(program_->nodes, region, static_cast<int>(coefficients.size()));
   for (std::size_t n = 0; n < coefficients.size(); ++n)
@@ -281,7 +282,7 @@ Enclosure Formula::enclose_box(std::span<const double> lower, std::span<const do
   std::array<double, 8 * 3> vertices;
   for (std::size_t i = 0; i < n_vertices; ++i)
     for (std::size_t k = 0; k < dim; ++k) vertices[i * dim + k] = (i >> k) % 2 == 0 ? lower[k] : upper[k];
-  const Region region({vertices.data(), n_vertices * dim}, static_cast<int>(dim), false);
+  const Region region({vertices.data(), n_vertices * dim}, static_cast<int>(dim), Sides::closed);
   const IntervalSeries series = tribound::evaluate(program_->nodes, region, 1);
   return series.n_known > 0 ? series.c[0] : Enclosure{};
 }

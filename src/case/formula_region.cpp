@@ -21,8 +21,8 @@ int signs_in(const Enclosure& a)
   return (a.lower < 0.0 ? negative : 0) | (a.contains(0.0) ? zero : 0) | (a.upper > 0.0 ? positive : 0);
 }
 
-Region::Region(std::span<const double> vertices, int dim, bool open)
-    : vertices_(vertices), dim_(dim), n_vertices_(static_cast<int>(vertices.size()) / dim), open_(open)
+Region::Region(std::span<const double> vertices, int dim, Sides sides)
+    : vertices_(vertices), dim_(dim), n_vertices_(static_cast<int>(vertices.size()) / dim), sides_(sides)
 {
   for (int i = 0; i < n_vertices_; ++i)
     for (int k = 0; k < dim_; ++k) centre_[k] += vertices_[i * dim_ + k] / n_vertices_;
@@ -66,8 +66,9 @@ int Region::signs(const AffineForm& form) const
   const bool is_exact = range.lower == range.upper && form.is_shifted_variable();
   const double e = is_exact ? 0.0 : form.rounding(range.scale);
   const int closed_signs = signs_in({range.lower - e, range.upper + e});
-  if (!open_) return closed_signs;
+  if (sides_ == Sides::closed) return closed_signs;
   const double tolerance = relative_rounding * range.scale;
+  if (sides_ == Sides::around) return signs_in({range.lower - tolerance, range.upper + tolerance});
   const bool never_below = range.lower >= -tolerance;
   const bool never_above = range.upper <= tolerance;
   if (never_below && never_above) return closed_signs;  // no inside to decide

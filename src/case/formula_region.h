@@ -25,8 +25,7 @@ inline constexpr int any_sign = negative | zero | positive;
 class Region
 {
  public:
-  /// `open`: what happens on the boundary only (up to rounding) does not count.
-  Region(std::span<const double> vertices, int dim, bool open);
+  Region(std::span<const double> vertices, int dim, Sides sides);
 
   /// f(xi + t (x - c)) for all xi and x in the region, c its centre.
   [[nodiscard]] IntervalSeries series(const AffineForm& form, int n_known) const;
@@ -48,7 +47,7 @@ class Region
   std::span<const double> vertices_;
   int dim_;
   int n_vertices_;
-  bool open_;
+  Sides sides_;
   std::array<double, 3> centre_{};
 };
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "contact/elasticity.h"
+#include "mesh/geometry.h"
 
 namespace tribound
 {
@@ -129,26 +130,67 @@ double dirichlet_interpolation_error(const NitscheForm<dim>& form)
   return largest;
 }
 
+namespace
+{
+
+/// How far the value at a node of a facet may be from what the formula is on any side of it: more than
+/// rounding where the formula jumps there.
 template <int dim>
-double dirichlet_interpolation_bound(const NitscheForm<dim>& form)
+double jump_at_nodes(const NitscheForm<dim>& form, const BoundaryFacet& facet, int component)
+{
+  const LagrangeSpace<dim>& space = form.space();
+  const Expression& u_D = *form.problem().boundary(facet.tag).displacement[component];
+  const FacetMap<dim> map = facet_map(space.mesh(), facet.cell, facet.local);
+  double largest = 0;
+  for (int i = 0; i < space.basis().n_nodes(); ++i)
+  {
+    if (space.basis().node(i)[facet.local] > 0) continue;
+    const Point<dim> x = map(cell_to_facet<dim>(facet.local, space.basis().node_point(i)));
+    const double value = form.constraints().values[dim * space.cell_nodes(facet.cell)[i] + component];
+    std::array<Enclosure, 1> near;
+    u_D.enclose({x.data(), dim}, dim, near, Sides::around);
+    largest = std::max({largest, near[0].upper - value, value - near[0].lower});
+  }
+  return largest;
+}
+
+/// Let |u_D - P| <= delta inside of the facet and |v - P| <= delta' for the values v at the nodes, P of
+/// degree p. Then the interpolant is nowhere farther than delta + Lambda delta' from u_D. If delta is that on
+/// the closed facet, delta' = delta; otherwise delta' is larger by what v differs from the values inside.
+template <int dim>
+double interpolation_bound(const NitscheForm<dim>& form, const BoundaryFacet& facet, int component)
 {
   // Of equispaced nodes on triangles, p = 1, ..., 4, rounded up; those on segments have smaller ones.
   constexpr std::array<double, 5> lebesgue = {1, 1, 1.67, 2.28, 3.48};
   const Mesh<dim>& mesh = form.space().mesh();
   const int p = form.space().degree();
+  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(facet.cell), facet.local));
+  const auto distance = [&](Sides sides)
+  {
+    std::array<Enclosure, 6> taylor;
+    form.problem().boundary(facet.tag).displacement[component]->enclose(
+        std::span(points[0].data(), dim * points.size()), dim, std::span(taylor).first(p + 2), sides);
+    return distance_from_polynomials(taylor, p + 1);
+  };
+  const double closed = distance(Sides::closed);
+  const double inside = distance(Sides::inside);
+  if (inside == closed) return (1 + lebesgue[p]) * closed;
+  return std::min((1 + lebesgue[p]) * closed,
+                  (1 + lebesgue[p]) * inside + lebesgue[p] * jump_at_nodes(form, facet, component));
+}
+
+}  // namespace
+
+template <int dim>
+double dirichlet_interpolation_bound(const NitscheForm<dim>& form)
+{
   double largest = 0;
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const BoundaryFacet& facet : form.space().mesh().boundary())
   {
     const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
-    const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(facet.cell), facet.local));
     for (int c = 0; c < dim; ++c)
-    {
-      if (!boundary.fixes(c) || boundary.displacement[c]->degree() <= p) continue;
-      std::array<Enclosure, 6> taylor;
-      boundary.displacement[c]->enclose(std::span(points[0].data(), dim * points.size()), dim,
-                                        std::span(taylor).first(p + 2));
-      largest = std::max(largest, (1 + lebesgue[p]) * distance_from_polynomials(taylor, p + 1));
-    }
+      if (boundary.fixes(c) && boundary.displacement[c]->degree() > form.space().degree())
+        largest = std::max(largest, interpolation_bound(form, facet, c));
   }
   return largest;
 }

@@ -71,7 +71,7 @@ template <int dim>
 [[nodiscard]] double dirichlet_interpolation_error(const NitscheForm<dim>& form);
 
 /// An upper bound of it anywhere: on a facet (1 + Lambda) times an enclosed distance of u_D from P^p, Lambda
-/// the Lebesgue constant of the nodes.
+/// the Lebesgue constant of the nodes, and Lambda times what u_D may jump by at a node.
 template <int dim>
 [[nodiscard]] double dirichlet_interpolation_bound(const NitscheForm<dim>& form);
 

@@ -8,8 +8,10 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "support/discrete_case.h"
+#include "support/meshes.h"
 
 namespace tribound::test
 {
@@ -108,6 +110,41 @@ TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
   EXPECT_LE(dirichlet_interpolation_error(square.form), 1e-15);
   EXPECT_THAT(statements(square.form, ContactRule::resolved).not_covered,
               ::testing::Not(::testing::Contains(HasSubstr("interpolation"))));
+}
+
+/// The value at a node where u_D jumps is that of one side, and the interpolant on the other is a ramp.
+TEST(Statements, AJumpOfTheDisplacementAtANodeIsReported)
+{
+  for (const int degree : {1, 2, 3})
+    for (const std::string formula : {"y > 0.5 ? 0.1 : 0", "y > 0.5 ? 0.1*sin(9*y) : 0"})
+    {
+      const DiscreteCase<2> plane("degree = " + std::to_string(degree) +
+                                      "\nmaterial = { E = 1, nu = 0.3 }\n" +
+                                      "boundary.left.displacement = [\"" + formula + "\", 0]\n",
+                                  box<2>({0, 0}, {1, 1}, {2, 2}));
+      const DiscreteCase<3> space("degree = " + std::to_string(degree) +
+                                      "\nmaterial = { E = 1, nu = 0.3 }\n" +
+                                      "boundary.left.displacement = [\"" + formula + "\", 0, 0]\n",
+                                  box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1}));
+      EXPECT_GE(dirichlet_interpolation_bound(plane.form), 0.0977);
+      EXPECT_GE(dirichlet_interpolation_bound(space.form), 0.0977);
+      EXPECT_GE(dirichlet_interpolation_bound(plane.form), dirichlet_interpolation_error(plane.form));
+      EXPECT_GE(dirichlet_interpolation_bound(space.form), dirichlet_interpolation_error(space.form));
+      EXPECT_THAT(statements(plane.form, ContactRule::resolved).not_covered,
+                  ::testing::Contains(HasSubstr("interpolation")));
+    }
+}
+
+/// Kinks at nodes, and a side in the plane of a jump: in the space all the same.
+TEST(Statements, DisplacementsInTheSpaceAreSaidToBe)
+{
+  for (const std::string formula : {"max(0, y - 0.5)", "x <= 0 ? 0.1*y : 3", "y > 0.5 ? y - 0.5 : 0"})
+  {
+    const DiscreteCase<2> c(
+        "degree = 1\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = [\"" + formula + "\", 0]\n",
+        box<2>({0, 0}, {1, 1}, {2, 2}));
+    EXPECT_LE(dirichlet_interpolation_bound(c.form), 1e-13) << formula;
+  }
 }
 
 TEST(Statements, SayForWhichLaw)
