@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/error.h"
@@ -19,6 +20,10 @@ namespace
 
 /// Size of an affine function, relative to its terms, that counts as 0.
 constexpr double rounding = 1e-13;
+
+/// As many parts as a formula may need before a bound of it is seen. That is a matter of the formula and the
+/// simplex, not of how much effort all simplices together are worth.
+constexpr int most_parts = 1 << 15;
 
 /// Of a part, relative to the simplex.
 constexpr double smallest_edge = 1e-4;
@@ -171,8 +176,9 @@ void DatumMoments<k, dim>::require_bounds(const Datum<dim>& datum, const Simplex
       throw InputError(
           term.value->where(),
           fmt::format("may be unbounded near the point ({:.6g})", fmt::join(x.data(), x.data() + dim, ", ")),
-          "keep it bounded, such as 1/max(x, 1e-12) for 1/x: otherwise nothing bounds the error of its "
-          "integral");
+          "keep it bounded, such as 1/max(x, 1e-12) for 1/x; if it is, write it so that this is seen, such "
+          "as "
+          "1/((x - 0.5)^2 + 0.01) for 1/(x^2 - x + 0.26)");
   }
 }
 
@@ -191,7 +197,8 @@ void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, d
   // Smaller parts of the simplex, where roots start or poles lie, are nothing but rounding.
   const auto is_small = [](const DatumPart<k, dim>& part)
   { return fraction<k>(part.part) < std::pow(smallest_edge, k); };
-  while (static_cast<int>(parts.size()) < max_parts)
+  const auto is_unbounded = [](const DatumPart<k, dim>& part) { return !part.remainder.allFinite(); };
+  while (static_cast<int>(parts.size()) < (std::ranges::any_of(parts, is_unbounded) ? most_parts : max_parts))
   {
     double squares = 0;
     double means = 0;
@@ -259,7 +266,9 @@ double DatumMoments<k, dim>::oscillation(const Parts& parts, std::span<const Poi
   }
   if (parts.size() > 1)  // the rules on the parts are exact for products of the basis: ||f||^2 - ||Pi f||^2
   {
-    constexpr double cancellation = 1e-14;
+    // Sums of n terms, each of the squares with an error of n epsilon at most.
+    const double n_terms = static_cast<double>(parts.size()) * rule_.size();
+    const double cancellation = std::max(1e-14, std::numeric_limits<double>::epsilon() * n_terms);
     const double all = squares;
     for (int j = 0; j < n_projected_; ++j) squares -= moments[j].squaredNorm();
     squares = std::max(squares, 0.0) + cancellation * all;

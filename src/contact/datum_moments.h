@@ -89,7 +89,8 @@ class DatumMoments
   DatumMoments(int p, int projected);
 
   /// Polynomials of degree <= p + 2 are integrated by the rule as it is. Others are looked into until what
-  /// is left out costs at most `allowed`, but with no more than some `max_parts` parts. Throws InputError
+  /// is left out costs at most `allowed`, but with no more than some `max_parts` parts, unless a bound of
+  /// the formula is not seen yet. Throws InputError
   /// where a formula is not finite, and near where the enclosures find no bound of it.
   [[nodiscard]] DatumOnSimplex<k, dim> operator()(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
                                                   const DatumWeights& weights, double allowed,
