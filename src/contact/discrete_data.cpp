@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "contact/penalty.h"
 #include "contact/traction.h"
 #include "fem/polynomials.h"
 #include "mesh/geometry.h"
@@ -67,11 +68,12 @@ double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
 }  // namespace
 
 template <int dim>
-DiscreteData<dim>::DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree,
+DiscreteData<dim>::DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree, double gamma0,
                                 const DataAccuracy& accuracy)
     : problem_(problem),
       mesh_(mesh),
       degree_(degree),
+      gamma0_(gamma0),
       cell_moments_(degree, degree - 1),
       facet_moments_(degree, degree),
       size_(extent(mesh))
@@ -248,7 +250,7 @@ void DiscreteData<dim>::represent_contact(double accuracy)
                  if (!problem_.boundary(facet.tag).contact) return;
                  const Material& material = problem_.material(mesh_.region(facet.cell));
                  const double h = facet_geometry(mesh_, facet.cell, facet.local).diameter;
-                 const double stiffness = default_gamma0(degree_) * (material.lambda + 2 * material.mu) / h;
+                 const double stiffness = gamma0_ * penalty_modulus(material) / h;
                  const Datum<dim> datum = contact_datum(facet, stiffness);
                  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
                  DatumOnSimplex<dim - 1, dim> found = facet_moments_(

@@ -21,7 +21,7 @@ namespace tribound
 struct LoadRemainder
 {
   double oscillation = 0;  ///< >= ||f - Pi f||: P^{p-1} on cells, P^p on facets
-  double mean = 0;         ///< >= |integral of f - what the rule makes of it|
+  double mean = 0;  ///< >= |integral of f - what the rule makes of it|, also times affine weights of size 1
 };
 
 /// A part of a contact facet on which a rule integrates gap and threshold, up to the remainders: upper bounds
@@ -57,9 +57,10 @@ template <int dim>
 class DiscreteData
 {
  public:
-  /// Subdivides until what is left out adds no more than about `accuracy` to the bound. Throws InputError for
+  /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count with the
+  /// stress gamma g, gamma Nitsche's parameter with the given gamma0. Throws InputError for
   /// a negative gap or threshold and for data that are not finite, naming the place.
-  DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree,
+  DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree, double gamma0,
                const DataAccuracy& accuracy = {});
 
   [[nodiscard]] const Quadrature<dim>& cell_rule() const { return cell_moments_.rule(); }
@@ -117,6 +118,7 @@ class DiscreteData
   const Problem<dim>& problem_;
   const Mesh<dim>& mesh_;
   int degree_;
+  double gamma0_;
   DatumMoments<dim, dim> cell_moments_;
   DatumMoments<dim - 1, dim> facet_moments_;
   double size_;        ///< of the bounding box

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "contact/penalty.h"
 #include "contact/traction.h"
 
 namespace tribound
@@ -10,16 +11,6 @@ namespace tribound
 
 namespace
 {
-
-/// The modulus in gamma: lambda + 2 mu, but not more than at nu = 0.45. Nearly incompressible materials would
-/// otherwise have a penalty of the size of lambda against everything that deforms, and Newton's method fails
-/// (docs/choosing.md).
-double penalty_modulus(const Material& material)
-{
-  constexpr double nu = 0.45;
-  constexpr double largest = 2 + 2 * nu / (1 - 2 * nu);  // (lambda + 2 mu) / mu
-  return std::min(material.lambda + 2 * material.mu, largest * material.mu);
-}
 
 /// Column (j, b) is sigma(phi_j e_b) n - gamma phi_j e_b.
 template <int dim>
@@ -40,7 +31,7 @@ NitscheForm<dim>::NitscheForm(const Problem<dim>& problem, const LagrangeSpace<d
       space_(&space),
       gamma0_(gamma0),
       constraints_(dirichlet(problem, space)),
-      data_(problem, space.mesh(), space.degree(), accuracy),
+      data_(problem, space.mesh(), space.degree(), gamma0, accuracy),
       load_(assemble_load(data_, space)),
       facet_rule_(data_.facet_rule()),
       facet_table_(tabulate_on_facets<dim>(space.basis(), facet_rule_.points))

@@ -75,6 +75,24 @@ TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
   }
 }
 
+/// A gap is looked into as finely as its stress gamma g asks: neither more for a material that is nearly
+/// incompressible, where gamma is limited, nor less for a large gamma_0.
+TEST(DiscreteData, GapsAreResolvedForThePenaltyInUse)
+{
+  const auto parts = [](double nu, const std::string& gamma0)
+  {
+    const DiscreteCase<2> c("degree = 1\nmaterial = { E = 1.0, nu = " + std::to_string(nu) +
+                                " }\n"
+                                "boundary.top.displacement = [0, -0.1]\n"
+                                "boundary.bottom.contact = { gap = \"0.01*(1 + sin(40*x))\" }\n" +
+                                gamma0,
+                            box<2>({0, 0}, {1, 1}, {2, 2}));
+    return c.form.data().effort().parts;
+  };
+  EXPECT_GT(parts(0.3, "nitsche.gamma0 = 1e5"), 2 * parts(0.3, ""));
+  EXPECT_LE(parts(0.4999, ""), parts(0.45, ""));
+}
+
 }  // namespace
 
 }  // namespace tribound::test
