@@ -55,7 +55,7 @@ void check(const Config& config, const Mesh<dim>& mesh, bool as_json)
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   const LagrangeSpace<dim> space(mesh, config.degree);
   const NitscheForm<dim> form(problem, space, config.gamma0());
-  check_rigid_motions<dim>(problem, space, form.load());
+  check_rigid_motions<dim>(problem, space, form.data(), form.load());
   require_mesh_elsewhere(config);
   try_output_directory(config.output.directory);
   print_check(case_facts(config, dim), mesh_facts<dim>(problem, space, form.constraints()),

@@ -141,7 +141,7 @@ RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, con
 {
   const LagrangeSpace<dim>& space = first.space;
   const NitscheForm<dim>& form = first.form;
-  check_rigid_motions<dim>(problem, space, form.load());
+  check_rigid_motions<dim>(problem, space, form.data(), form.load());
   require_mesh_elsewhere(config);
   directory_.emplace(output_.directory);
   remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",

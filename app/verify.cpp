@@ -113,7 +113,7 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
   const LagrangeSpace<dim> space(mesh, config.degree);
   const NitscheForm<dim> form(problem, space, config.gamma0());
-  check_rigid_motions<dim>(problem, space, form.load());
+  check_rigid_motions<dim>(problem, space, form.data(), form.load());
   check_size(config, mesh, refinements);
   const OutputDirectory directory(config.output.directory);
   remove_results(config.output.directory, {"verify.json"});

@@ -89,9 +89,15 @@ std::vector<Body<dim>> find_bodies(const LagrangeSpace<dim>& space)
   const std::vector<int> node_label =
       spread(cell_label, space.n_nodes(), [&](Index c) { return space.cell_nodes(c); });
   for (Index i = 0; i < space.n_nodes(); ++i) bodies[node_label[i]].nodes.push_back(i);
-  for (const BoundaryFacet& facet : mesh.boundary()) bodies[cell_label[facet.cell]].facets.push_back(facet);
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    Body<dim>& body = bodies[cell_label[mesh.boundary()[k].cell]];
+    body.facets.push_back(mesh.boundary()[k]);
+    body.numbers.push_back(k);
+  }
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
+    bodies[cell_label[c]].cells.push_back(c);
     std::vector<int>& regions = bodies[cell_label[c]].regions;
     const auto place = std::ranges::lower_bound(regions, mesh.region(c));
     if (place == regions.end() || *place != mesh.region(c)) regions.insert(place, mesh.region(c));

@@ -22,6 +22,8 @@ struct Body
   std::vector<int> regions;           ///< ascending
   std::vector<Index> nodes;           ///< of the space
   std::vector<BoundaryFacet> facets;  ///< its part of the boundary
+  std::vector<std::size_t> numbers;   ///< of these facets in Mesh::boundary()
+  std::vector<Index> cells;
 };
 
 /// All bodies, by ascending number of their first cell.

@@ -133,7 +133,8 @@ template <int k, int dim>
 void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
                                    DatumPart<k, dim>& part) const
 {
-  const int order = std::min(data_quadrature_degree(p_) + 1, Formula::max_order);
+  // One less than the degree of the rule: moments against affine weights are integrated as well.
+  const int order = std::min(data_quadrature_degree(p_), Formula::max_order);
   std::array<Enclosure, Formula::max_order + 1> storage;
   const auto taylor = std::span(storage).first(order + 1);
   std::array<double, (k + 1) * dim> vertices;

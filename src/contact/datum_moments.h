@@ -58,7 +58,7 @@ struct DatumPart
 {
   Part<k> part;
   Point<dim> remainder;            ///< per component: the largest distance of f from P^{p+2}, an upper bound
-  Point<dim> mean_remainder;       ///< the same from P^{2p+5}
+  Point<dim> mean_remainder;       ///< the same from P^{2p+4}
   std::vector<Point<dim>> values;  ///< f at the points of the rule on the part
 };
 

@@ -75,6 +75,7 @@ struct FrictionWork
 {
   Eigen::VectorXd in_motions;  ///< integral of s z^t/|z^t| . y^t for each motion y of a basis
   double most = 0;             ///< integral of s |z^t|
+  double missed = 0;           ///< what the rule may miss of it because of s
 };
 
 /// One body with what holds and drives it.
@@ -82,33 +83,41 @@ template <int dim>
 class BodyCheck
 {
  public:
-  BodyCheck(const Problem<dim>& problem, const Mesh<dim>& mesh, const Body<dim>& body, std::string name)
-      : problem_(problem), mesh_(mesh), body_(body), support_(problem, mesh, body), name_(std::move(name))
+  BodyCheck(const Problem<dim>& problem, const Mesh<dim>& mesh, const DiscreteData<dim>& data,
+            const Body<dim>& body, std::string name)
+      : problem_(problem),
+        mesh_(mesh),
+        data_(data),
+        body_(body),
+        support_(problem, mesh, body),
+        name_(std::move(name))
   {
   }
 
   /// Throws InputError for a motion that nothing stops.
   void check_held() const;
   /// Throws InputError for loads that contact cannot balance; work(z) = L(z) up to `round_off`.
-  void check_balanced(const Coefficients<dim>& work, double round_off,
-                      const Quadrature<dim - 1>& facet_rule) const;
+  void check_balanced(const Coefficients<dim>& work, double round_off) const;
 
  private:
   /// The work in each motion of the contact forces, one column for each generator of their cone.
   [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, ConeFriction friction) const;
   [[nodiscard]] FrictionWork tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
                                          const Quadrature<dim - 1>& rule) const;
+  /// What the work of the loads in a motion may miss.
+  [[nodiscard]] double missed_work(const Coefficients<dim>& motion) const;
   /// A motion in which the loads do more work than Tresca friction can take up, and contact and Coulomb
   /// friction none; nothing where there is none, or it is too close to tell. See check_rigid_motions().
   [[nodiscard]] std::optional<Eigen::VectorXd> beyond_tresca(const MotionBasis& motions,
-                                                             const Eigen::VectorXd& loads, double tolerance,
-                                                             const Quadrature<dim - 1>& rule) const;
+                                                             const Eigen::VectorXd& loads,
+                                                             double tolerance) const;
   /// What to do against motions that nothing stops, with a component for each of them.
   [[nodiscard]] std::string hint(std::span<const Coefficients<dim>> free) const;
   [[noreturn]] void fail(const Coefficients<dim>& motion, const std::string& reason) const;
 
   const Problem<dim>& problem_;
   const Mesh<dim>& mesh_;
+  const DiscreteData<dim>& data_;
   const Body<dim>& body_;
   BodySupport<dim> support_;
   std::string name_;
@@ -181,32 +190,65 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFri
   return cone;
 }
 
+/// On the parts of the facets on which the rule integrates s; |z^t| is convex, the largest at a vertex.
 template <int dim>
 FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
                                          const Quadrature<dim - 1>& rule) const
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
-  for (const BoundaryFacet& facet : body_.facets)
+  const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
+  for (std::size_t k = 0; k < body_.facets.size(); ++k)
   {
+    const BoundaryFacet& facet = body_.facets[k];
     const auto& contact = problem_.boundary(facet.tag).contact;
     const auto* tresca = contact ? std::get_if<Tresca>(&contact->friction) : nullptr;
     if (!tresca) continue;
     const FacetMap<dim> map = facet_map(mesh_, facet.cell, facet.local);
     const FacetGeometry<dim> geometry = facet_geometry(mesh_, facet.cell, facet.local);
-    const Point<dim>& n = geometry.normal;
-    for (int q = 0; q < rule.size(); ++q)
+    const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
+    { return z_x - z_x.dot(geometry.normal) * geometry.normal; };
+    const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(body_.numbers[k]);
+    for (const auto& [part, gap, threshold] : parts.empty() ? std::span(&whole, 1) : parts)
     {
-      const Point<dim> x = map(rule.points[q]);
-      const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
-      const Point<dim> z_x = at_x * z;
-      const Point<dim> z_t = z_x - z_x.dot(n) * n;
-      if (z_t.norm() <= 1e-12 * z.norm()) continue;
-      const double force = geometry.measure * (dim - 1) * rule.weights[q] * threshold_at<dim>(*tresca, x);
-      result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
-      result.most += force * z_t.norm();
+      const double measure = geometry.measure * fraction<dim - 1>(part);
+      double largest = 0;
+      for (const Point<dim - 1>& s : part)
+        largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
+      result.missed += 2 * threshold * measure * largest;
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim> x = map(point_in<dim - 1>(part, rule.points[q]));
+        const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
+        const Point<dim> z_t = tangential(at_x * z);
+        if (z_t.norm() <= 1e-12 * z.norm()) continue;
+        const double force = measure * (dim - 1) * rule.weights[q] * threshold_at<dim>(*tresca, x);
+        result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
+        result.most += force * z_t.norm();
+      }
     }
   }
   return result;
+}
+
+/// The remainders of the integrals hold those against affine weights, the values of which are the largest at
+/// vertices.
+template <int dim>
+double BodyCheck<dim>::missed_work(const Coefficients<dim>& motion) const
+{
+  const auto largest = [&](const auto& vertices)
+  {
+    double size = 0;
+    for (const Index v : vertices)
+      size = std::max(size, Point<dim>(body_.modes.at(mesh_.vertex(v)) * motion).norm());
+    return size;
+  };
+  double missed = 0;
+  for (const Index c : body_.cells)
+    if (const double mean = data_.body_remainder(c).mean; mean > 0) missed += mean * largest(mesh_.cell(c));
+  for (std::size_t k = 0; k < body_.facets.size(); ++k)
+    if (const double mean = data_.traction_remainder(body_.numbers[k]).mean; mean > 0)
+      missed += mean * largest(facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
+  return std::sqrt(dim) * missed;  // by components
 }
 
 // Tresca friction can do work in a convex set Z, all other contact forces in the cone K. The loads c are
@@ -216,8 +258,8 @@ FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen
 // as c.r exceeds what Z can do.
 template <int dim>
 std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& motions,
-                                                             const Eigen::VectorXd& loads, double tolerance,
-                                                             const Quadrature<dim - 1>& rule) const
+                                                             const Eigen::VectorXd& loads,
+                                                             double tolerance) const
 {
   constexpr int max_points = 200;
   constexpr double relative = 1e-8;
@@ -233,13 +275,13 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
   {
     const Eigen::VectorXd r = remainder_outside_cone(columns, target).head(m);
     if (r.norm() <= tolerance) return {};
-    const FrictionWork friction = tresca_work(motions, r, rule);
-    const double driving = r.dot(loads);
+    const FrictionWork friction = tresca_work(motions, r, data_.facet_rule());
+    const double driving = r.dot(loads) - missed_work(motions * r);
     if (driving > (1 + relative) * friction.most + tolerance * r.norm())
     {
-      // |z^t| has kinks and s is any function: refuse only what refinement of the rule does not change.
-      const double finer = tresca_work(motions, r, on_halves(on_halves(rule))).most;
-      const double most = std::max(friction.most, finer) + std::abs(finer - friction.most);
+      // |z^t| has kinks: refuse only what refinement of the rule does not change.
+      const double finer = tresca_work(motions, r, on_halves(on_halves(data_.facet_rule()))).most;
+      const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
       return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
     }
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
@@ -261,8 +303,7 @@ void BodyCheck<dim>::fail(const Coefficients<dim>& motion, const std::string& re
 }
 
 template <int dim>
-void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_off,
-                                    const Quadrature<dim - 1>& facet_rule) const
+void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_off) const
 {
   constexpr double relative = 1e-8;
   const MotionBasis motions = support_.left_by_displacements();  // what contact alone has to stop
@@ -271,11 +312,14 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
 
   const double tolerance = relative * c.norm() + round_off;
   const Eigen::VectorXd lifted = remainder_outside_cone(contact_cone(motions, ConeFriction::unlimited), c);
-  if (lifted.norm() > tolerance) fail(motions * lifted, "contact only pushes");
+  // The work of the loads in a remainder r is |r|^2.
+  const auto is_free = [&](const Eigen::VectorXd& r)
+  { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
+  if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
 
   const Eigen::VectorXd slipped =
       remainder_outside_cone(contact_cone(motions, ConeFriction::coulomb_limit), c);
-  if (slipped.norm() > tolerance)
+  if (is_free(slipped))
   {
     // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
     const Eigen::MatrixXd pressed = support_.contact_gram(false);
@@ -286,24 +330,26 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
          "friction is too weak for the load along the contact boundary");
   }
 
-  if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance, facet_rule))
+  if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance))
+  {
+    const FrictionWork friction = tresca_work(motions, *z, data_.facet_rule());
     fail(motions * *z, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
-                                   100 * tresca_work(motions, *z, facet_rule).most / z->dot(c)));
+                                   100 * (friction.most + friction.missed) / z->dot(c)));
+  }
 }
 
 }  // namespace
 
 template <int dim>
 void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                         std::span<const double> load)
+                         const DiscreteData<dim>& data, std::span<const double> load)
 {
   constexpr double relative_round_off = 1e-11;
-  const Quadrature<dim - 1> facet_rule = quadrature<dim - 1>(data_quadrature_degree(space.degree()));
   const std::vector<Body<dim>> bodies = find_bodies(space);
   const std::vector<Point<dim>> points = space.node_points();
   for (const Body<dim>& body : bodies)
   {
-    const BodyCheck<dim> check(problem, space.mesh(), body, describe(body, problem, bodies.size() > 1));
+    const BodyCheck<dim> check(problem, space.mesh(), data, body, describe(body, problem, bodies.size() > 1));
     check.check_held();
 
     Coefficients<dim> work = Coefficients<dim>::Zero();  // L(z) for each rigid motion z
@@ -314,11 +360,13 @@ void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& 
       work += body.modes.at(points[i]).transpose() * force;
       terms += force.norm();
     }
-    check.check_balanced(work, relative_round_off * terms, facet_rule);
+    check.check_balanced(work, relative_round_off * terms);
   }
 }
 
-template void check_rigid_motions(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
-template void check_rigid_motions(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
+template void check_rigid_motions(const Problem<2>&, const LagrangeSpace<2>&, const DiscreteData<2>&,
+                                  std::span<const double>);
+template void check_rigid_motions(const Problem<3>&, const LagrangeSpace<3>&, const DiscreteData<3>&,
+                                  std::span<const double>);
 
 }  // namespace tribound

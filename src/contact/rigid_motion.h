@@ -7,6 +7,7 @@
 #include <span>
 
 #include "case/problem.h"
+#include "contact/discrete_data.h"
 #include "fem/space.h"
 
 namespace tribound
@@ -20,12 +21,12 @@ namespace tribound
 ///    rigid motion z with z^n <= 0 on frictionless and Tresca contact and z^n + mu_F |z^t| <= 0 on Coulomb
 ///    contact, where (s, .) is over Tresca contact: take z as test function. Exact up to rounding in 2D and
 ///    for constant s without friction of Coulomb; for Coulomb's law in 3D the cone of friction is replaced by
-///    an eight-sided one around it, and integrals of s |z^t| count with their quadrature error. So what is
-///    refused has no solution, but some cases without one pass.
+///    an eight-sided one around it, and integrals of loads and of s |z^t| count with their quadrature error.
+///    So what is refused has no solution, but some cases without one pass.
 /// Bodies that displacement conditions hold by themselves pass at once.
-/// `load`: L(phi_i) for every degree of freedom.
+/// `load`: L(phi_i) for every degree of freedom, up to the remainders of the data.
 template <int dim>
 void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                         std::span<const double> load);
+                         const DiscreteData<dim>& data, std::span<const double> load);
 
 }  // namespace tribound

@@ -38,7 +38,7 @@ std::string verdict(const MeshData<dim>& mesh, const std::string& toml)
   const DiscreteCase<dim> c(material + toml, mesh);
   try
   {
-    check_rigid_motions<dim>(c.problem, c.space, c.form.load());
+    check_rigid_motions<dim>(c.problem, c.space, c.form.data(), c.form.load());
   }
   catch (const InputError& error)
   {
@@ -291,6 +291,24 @@ TEST(RigidMotion, TrescaThresholdTooSmallForTheSideLoad)
                                          "only 50 % of their work in it"));
 }
 
+/// Strips of friction between the points of the rule hold as much as their width makes of them.
+TEST(RigidMotion, TrescaOnANarrowStripCounts)
+{
+  const auto pulled = [](const std::string& from, double threshold)
+  {
+    return verdict<2>(box<2>({0, 0}, {1, 1}, {1, 1}),
+                      "boundary.top.traction = [0, -1]\nboundary.right.traction = [1, 0]\n"
+                      "boundary.bottom.contact = { friction = \"tresca\", threshold = \"x > " +
+                          from + " && x < " + from + " + 0.07 ? " + std::to_string(threshold) + " : 0\" }");
+  };
+  for (const std::string from : {"0.34", "0.08", "0.6"})
+  {
+    EXPECT_EQ(pulled(from, 100), "held");
+    EXPECT_EQ(pulled(from, 1.001 / 0.07), "held");
+    EXPECT_THAT(pulled(from, 0.999 / 0.07), HasSubstr("takes up only 99.9 % of their work"));
+  }
+}
+
 TEST(RigidMotion, TrescaBelowARollerThatTakesTheNormalForces)
 {
   const auto pushed = [](const std::string& threshold)
@@ -428,7 +446,7 @@ void never_refused(int n_cases)
     std::string said = "held";
     try
     {
-      check_rigid_motions<dim>(c.problem, c.space, load);
+      check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load);
       ++tried;
     }
     catch (const InputError& error)
