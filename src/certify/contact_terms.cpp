@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "contact/traction.h"
 #include "fem/polynomials.h"
@@ -34,20 +35,31 @@ std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
   return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
 }
 
-/// The range of a function over the points it was seen at, and whether it may change sign near them.
+/// The range of a function over the points it was seen at, and whether it may change sign near them. Of a
+/// polynomial with the given Lebesgue constant Lambda: it keeps within Lambda times half the range of the
+/// middle of the range.
 class Range
 {
  public:
+  explicit Range(double lebesgue) : margin_((lebesgue - 1) / 2) {}
   void add(double value)
   {
     lower_ = std::min(lower_, value);
     upper_ = std::max(upper_, value);
   }
-  [[nodiscard]] bool may_change_sign() const { return lowest() <= 0 && upper_ + (upper_ - lower_) / 2 >= 0; }
+  [[nodiscard]] bool may_change_sign() const { return lowest() <= 0 && highest() >= 0; }
   /// With a margin for what lies between the points.
-  [[nodiscard]] double lowest() const { return lower_ - (upper_ - lower_) / 2; }
+  [[nodiscard]] double lowest() const { return lower_ - margin_ * (upper_ - lower_); }
+  /// The square of the values of the other sign that no point has seen.
+  [[nodiscard]] double hidden() const
+  {
+    if (!may_change_sign() || (lower_ <= 0 && upper_ >= 0)) return 0;
+    return std::pow(lower_ > 0 ? lowest() : highest(), 2);
+  }
+  [[nodiscard]] double highest() const { return upper_ + margin_ * (upper_ - lower_); }
 
  private:
+  double margin_;
   double lower_ = std::numeric_limits<double>::infinity();
   double upper_ = -std::numeric_limits<double>::infinity();
 };
@@ -75,12 +87,39 @@ void add_squares(std::span<const Point<dim>> traction, const ContactFacet<dim>& 
 
 }  // namespace
 
+// With theta orthonormal, q(x) = sum_i w_i (sum_j theta_j(x) theta_j(x_i)) q(x_i), because the rule is exact
+// for q theta_j. The sum of the absolute values of the weights of the q(x_i) is the largest at a vertex of
+// the simplex: for Gauss's points at both ends (Szegoe), for those in collapsed coordinates at the vertex
+// into which an edge collapses (found on a lattice, see the test).
+template <int k>
+double lebesgue_constant(const Quadrature<k>& rule, int degree)
+{
+  const int n = polynomial_dimension(k, degree);
+  std::vector<double> at_vertex(n);
+  std::vector<double> at_point(n);
+  double largest = 0;
+  for (const Point<k>& vertex : reference_simplex<k>())
+  {
+    orthonormal_values<k>(degree, vertex, at_vertex);
+    double sum = 0;
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      orthonormal_values<k>(degree, rule.points[q], at_point);
+      sum += std::abs(rule.weights[q] *
+                      std::inner_product(at_vertex.begin(), at_vertex.end(), at_point.begin(), 0.0));
+    }
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
 template <int dim>
 ContactTerms<dim>::ContactTerms(const NitscheForm<dim>& form, ContactRule rule)
     : form_(form),
       rule_(rule),
       space_table_(tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
-      n_(polynomial_dimension(dim - 1, form.space().degree()))
+      n_(polynomial_dimension(dim - 1, form.space().degree())),
+      lebesgue_(lebesgue_constant<dim - 1>(form.facet_rule(), form.space().degree() + 2))
 {
   const Quadrature<dim - 1>& points = form.facet_rule();
   for (int local = 0; local <= dim; ++local)
@@ -149,8 +188,8 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, polynomial_dimension(dim - 1, 4)> theta;
   Integrals result;
-  Range normal_range;
-  Range tangential_range;
+  Range normal_range(lebesgue_);
+  Range tangential_range(lebesgue_);
   for (int q = 0; q < rule.size(); ++q)
   {
     const FacetPoint s = point_in<dim - 1>(piece, rule.points[q]);
@@ -176,6 +215,8 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   }
   const bool frictionless = std::holds_alternative<Frictionless>(contact->friction);
   result.lowest = normal_range.lowest();
+  result.hidden =
+      fraction<dim - 1>(piece) * (normal_range.hidden() + (frictionless ? 0 : tangential_range.hidden()));
   result.may_kink = normal_range.may_change_sign() || (!frictionless && tangential_range.may_change_sign());
   return result;
 }
@@ -193,9 +234,10 @@ auto ContactTerms<dim>::settle(int k, const Fields& fields, const Piece& piece, 
     values[i] = integrate(k, fields, parts[i]);
     sum.normal += values[i].normal;
     sum.tangential += values[i].tangential;
+    sum.hidden += values[i].hidden;
   }
   const double change = std::abs(sum.normal - whole.normal) + std::abs(sum.tangential - whole.tangential);
-  if (change <= tolerance || depth == max_depth<dim>) return sum;
+  if (change + sum.hidden <= tolerance || depth == max_depth<dim>) return sum;
 
   sum = {};
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -222,7 +264,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
     const double lowest = integrals.lowest;
     if (rule_ == ContactRule::resolved && integrals.may_kink)
       integrals = settle(k, on_facet, part.part, integrals,
-                         settled<dim> * (integrals.normal + integrals.tangential), 1);
+                         settled<dim> * (integrals.normal + integrals.tangential + integrals.hidden), 1);
     integrals.lowest = lowest;
     add_part(contact, part, integrals, result);
   }
@@ -241,8 +283,9 @@ void ContactTerms<dim>::add_part(const ContactFacet<dim>& contact, const Contact
   const double scale = norm_scale(contact);
   const double missed =
       2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fraction<dim - 1>(part.part));
-  // Where the contact is open whatever the gap is between the points, the gap does not matter.
-  const bool open = integrals.lowest > 2 * contact.gamma * part.gap;
+  // Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
+  // polynomial up to gamma delta, with which it was seen at the points, too.
+  const bool open = integrals.lowest > (1 + lebesgue_) * contact.gamma * part.gap;
   const double pressure = open ? 0 : contact.gamma * part.gap;
   const auto* coulomb = std::get_if<Coulomb>(&contact.contact->friction);
   const double limit = coulomb ? coulomb->coefficient * pressure : part.threshold;
@@ -259,6 +302,8 @@ ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress
   return result;
 }
 
+template double lebesgue_constant(const Quadrature<1>&, int);
+template double lebesgue_constant(const Quadrature<2>&, int);
 template class ContactTerms<2>;
 template class ContactTerms<3>;
 

@@ -25,6 +25,12 @@ struct ContactSquares
   double reg2t = 0;  ///< h_F ||sigma_reg^t||_F^2
 };
 
+/// The largest Lambda with |q| <= Lambda max_i |q(x_i)| on the reference simplex, q a polynomial of the
+/// degree, x_i the points of a collapsed Gauss-Jacobi rule exact for products of two such polynomials. An
+/// upper bound for k = 2, where there are more points than coefficients.
+template <int k>
+[[nodiscard]] double lebesgue_constant(const Quadrature<k>& rule, int degree);
+
 /// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
 /// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
 /// again, until the value settles. ContactRule::reference takes the reference rule as it is.
@@ -55,6 +61,7 @@ class ContactTerms
     double normal = 0;      ///< of ([P^n]_- - sigma_dis^n)^2
     double tangential = 0;  ///< of |[P^t]_S - sigma_dis^t|^2
     bool may_kink = false;
+    double hidden = 0;  ///< about what a kink between the points could change
     double lowest = 0;  ///< P^n is above, up to what the gap leaves out
   };
 
@@ -74,6 +81,7 @@ class ContactTerms
   std::vector<FrameTable<dim>> stress_table_;  ///< of the stress there, per local facet
   std::vector<double> theta_;                  ///< basis on the facet there, [q * n + i]
   int n_;                                      ///< dim P^p(F)
+  double lebesgue_;  ///< of the rule for P^{p+2}, in which P^n is up to the remainder of the gap
 };
 
 }  // namespace tribound

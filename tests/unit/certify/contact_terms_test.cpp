@@ -3,9 +3,14 @@
 
 #include "certify/contact_terms.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <string>
 #include <vector>
 
 #include "fem/polynomials.h"
@@ -104,6 +109,75 @@ TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
   for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.9;
   EXPECT_EQ(sum_over_facets(c, u, ContactRule::resolved).cnt,
             sum_over_facets(c, u, ContactRule::reference).cnt);
+}
+
+/// P^n = g - u^n is a cubic above half of its range at all points of the rule, and negative near both ends.
+TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
+{
+  const Quadrature<1> rule = quadrature<1>(data_quadrature_degree(1));
+  std::vector<double> x;
+  for (const Point<1>& point : rule.points) x.push_back(point[0]);
+  std::ranges::sort(x);
+  constexpr double u_n = 0.4;  // so that the gap is none that is negative
+  std::string formula = fmt::format("{}", u_n);
+  for (int i = 0; i < 4; ++i)
+  {
+    formula += i % 2 == 0 ? " + 0.6" : " + 1.6";
+    for (int j = 0; j < 4; ++j)
+      if (j != i) formula += fmt::format("*(x - {:.17g})/({:.17g})", x[j], x[i] - x[j]);
+  }
+  const DiscreteCase<2> c(block<2>(1, "{ gap = \"" + formula + "\" }"));
+  const Expression gap(formula, Where{.key = "gap"});
+  double expected = 0;
+  constexpr int n = 100000;
+  for (int i = 0; i < n; ++i)
+    expected += std::pow(std::min(0.0, gap(Point<2>((i + 0.5) / n, 0)) - u_n), 2) / n;
+  EXPECT_GT(expected, 1e-4);
+  std::vector<double> u(c.space.n_dofs(), 0.0);
+  for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -u_n;
+  EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, expected, 1e-6 * expected);
+}
+
+/// The largest of |sum_j theta_j(x) theta_j(x_i) w_i| summed over i, on a lattice.
+template <int k>
+double largest_on_lattice(const Quadrature<k>& rule, int degree)
+{
+  constexpr int m = k == 1 ? 500 : 24;
+  const int n = polynomial_dimension(k, degree);
+  std::vector<double> theta(n);
+  std::vector<std::vector<double>> at_points;
+  for (const Point<k>& x : rule.points)
+  {
+    orthonormal_values<k>(degree, x, theta);
+    at_points.push_back(theta);
+  }
+  double largest = 0;
+  for (int i = 0; i <= m; ++i)
+    for (int j = 0; j <= (k == 1 ? 0 : m - i); ++j)
+    {
+      Point<k> x = Point<k>::Constant(static_cast<double>(j) / m);
+      x[0] = static_cast<double>(i) / m;
+      orthonormal_values<k>(degree, x, theta);
+      double sum = 0;
+      for (int q = 0; q < rule.size(); ++q)
+        sum += std::abs(rule.weights[q] *
+                        std::inner_product(theta.begin(), theta.end(), at_points[q].begin(), 0.0));
+      largest = std::max(largest, sum);
+    }
+  return largest;
+}
+
+TEST(ContactTerms, BetweenThePointsPolynomialsKeepTheLebesgueConstant)
+{
+  const std::array<double, 4> gauss = {2.855, 3.322, 3.749, 4.144};
+  for (int p = 1; p <= 4; ++p)
+  {
+    const auto segment = quadrature<1>(data_quadrature_degree(p));
+    const auto triangle = quadrature<2>(data_quadrature_degree(p));
+    EXPECT_NEAR(lebesgue_constant(segment, p + 2), gauss[p - 1], 1e-3);
+    EXPECT_NEAR(lebesgue_constant(segment, p + 2), largest_on_lattice(segment, p + 2), 1e-10);
+    EXPECT_NEAR(lebesgue_constant(triangle, p + 2), largest_on_lattice(triangle, p + 2), 1e-10);
+  }
 }
 
 }  // namespace
