@@ -280,6 +280,28 @@ bool holds_every_component(const Problem<dim>& problem, const Mesh<dim>& mesh)
                              });
 }
 
+template <int dim>
+FriedrichsConstant without_factors(const Problem<dim>& problem, const Mesh<dim>& mesh)
+{
+  const double theta = theta_of_components<dim>(
+      problem, {mesh, 1},
+      [&](const std::vector<char>& fixed, Pencil pencil)
+      { return flux_theta<dim>(problem, mesh, fixed, potential_means(std::move(pencil))); });
+  return {1 / std::sqrt(theta), theta, 0, mesh.n_cells()};
+}
+
+template <int dim>
+FriedrichsConstant with_factors(const Problem<dim>& problem, const Mesh<dim>& mesh, Index most_cells)
+{
+  const FriedrichsConstant here = constant_on<dim>(problem, {mesh, 1});
+  if (here.value * here.value <= 2 / here.theta) return here;
+  // kappa^2 H^2 > 1/theta: a finer mesh, for the proof alone. The norm keeps the h_F of the given mesh.
+  if (count_after_refinement(mesh, 1).cells > most_cells) return here;
+  const Refined<dim> refined = refine_uniformly(mesh);
+  const FriedrichsConstant finer = constant_on<dim>(problem, {refined.mesh, 2});
+  return finer.value < here.value ? finer : here;
+}
+
 }  // namespace
 
 template <int dim>
@@ -288,21 +310,15 @@ FriedrichsConstant friedrichs_constant(const Problem<dim>& problem, const Mesh<d
 {
   if (!holds_every_component(problem, mesh))
     return {std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
-  if (mesh.n_cells() > most_cells_factorised)
+  if (mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);
+  try
   {
-    const double theta = theta_of_components<dim>(
-        problem, {mesh, 1},
-        [&](const std::vector<char>& fixed, Pencil pencil)
-        { return flux_theta<dim>(problem, mesh, fixed, potential_means(std::move(pencil))); });
-    return {1 / std::sqrt(theta), theta, 0, mesh.n_cells()};
+    return with_factors(problem, mesh, most_cells_factorised);
   }
-  const FriedrichsConstant here = constant_on<dim>(problem, {mesh, 1});
-  if (here.value * here.value <= 2 / here.theta) return here;
-  // kappa^2 H^2 > 1/theta: a finer mesh, for the proof alone. The norm keeps the h_F of the given mesh.
-  if (count_after_refinement(mesh, 1).cells > most_cells_factorised) return here;
-  const Refined<dim> refined = refine_uniformly(mesh);
-  const FriedrichsConstant finer = constant_on<dim>(problem, {refined.mesh, 2});
-  return finer.value < here.value ? finer : here;
+  catch (const SolveError&)  // such as memory for the factors: there is a bound without them
+  {
+    return without_factors(problem, mesh);
+  }
 }
 
 template FriedrichsConstant friedrichs_constant(const Problem<2>&, const Mesh<2>&, Index);

@@ -31,8 +31,8 @@ inline constexpr Index most_cells_factorised_3d = 100'000;
 ///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2,
 /// on this mesh and on all its refinements, whose h_F are not larger. Infinite (and theta = 0) where a body
 /// has a component with neither Gamma_D nor Gamma_C, which check_rigid_motions() refuses as a free
-/// translation, and where no theta could be proved. Throws SolveError when the memory does not suffice for
-/// the factors.
+/// translation, and where no theta could be proved. Where the factorisation fails, as for want of memory,
+/// the proof does without factors, too.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(
     const Problem<dim>& problem, const Mesh<dim>& mesh,
