@@ -51,6 +51,7 @@ inline constexpr int library_error = 4;
 
 [[nodiscard]] inline Enclosure operator*(const Enclosure& a, const Enclosure& b)
 {
+  if (!is_finite(a) || !is_finite(b)) return {};  // inf * 0 would be lost in min and max
   const double p = a.lower * b.lower;
   const double q = a.lower * b.upper;
   const double r = a.upper * b.lower;
@@ -61,6 +62,7 @@ inline constexpr int library_error = 4;
 /// Expects that `b` does not contain 0.
 [[nodiscard]] inline Enclosure operator/(const Enclosure& a, const Enclosure& b)
 {
+  if (!is_finite(a) || !is_finite(b)) return {};
   const double p = a.lower / b.lower;
   const double q = a.lower / b.upper;
   const double r = a.upper / b.lower;

@@ -79,5 +79,14 @@ TEST(Interval, ArithmeticHoldsRounding)
   EXPECT_NEAR((straddling * straddling).upper, 9, 1e-14);
 }
 
+/// inf * 0 is nan, which comparisons lose.
+TEST(Interval, AnOverflowIsNotForgotten)
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Enclosure overflown = {1, infinity};
+  for (const Enclosure& a : {overflown * Enclosure{0, 1}, Enclosure{0, 1} * overflown, overflown / overflown})
+    EXPECT_EQ(a.upper, infinity);
+}
+
 }  // namespace
 }  // namespace tribound
