@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <regex>
+#include <system_error>
 
 #include "base/error.h"
 #include "case/node.h"
@@ -19,26 +19,47 @@ namespace
 constexpr auto hint = "key=0.1:0.8:8 (first, last, how many), key=[1, 2] or key=value";
 constexpr int max_runs = 100'000;
 
-double end_of_range(const std::string& text, const Where& where)
+std::string trimmed(std::string_view text)
 {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || end == text.c_str())
-    throw InputError(where, fmt::format("\"{}\" is not a number", text), hint);
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1));
+}
+
+/// The number that the whole text is.
+double number(const std::string& text, const Where& where)
+{
+  const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-") ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  double value = 0;
+  const auto [rest, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value))
+    throw InputError(where, fmt::format("\"{}\" is no finite number", text), hint);
   return value;
 }
 
-/// "0.1:0.8:8" as eight numbers; steps of decimal fractions come out as decimal fractions.
-std::vector<std::string> range(const std::smatch& match, const Where& where)
+/// The three parts of "0.1:0.8:8", of characters of numbers; none of another text.
+std::vector<std::string> parts_of_range(const std::string& text)
 {
-  const double first = end_of_range(match[1], where);
-  const double last = end_of_range(match[2], where);
-  const double n = std::strtod(match[3].str().c_str(), nullptr);
-  if (n < 2 || n > max_runs || !std::isfinite(first) || !std::isfinite(last))
-    throw InputError(
-        where,
-        fmt::format("cannot make {} values from {} to {}", match[3].str(), match[1].str(), match[2].str()),
-        "finite ends and at least 2 values");
+  const std::size_t first = text.find(':');
+  const std::size_t second = first == std::string::npos ? first : text.find(':', first + 1);
+  if (second == std::string::npos) return {};
+  std::vector<std::string> parts = {text.substr(0, first), text.substr(first + 1, second - first - 1),
+                                    text.substr(second + 1)};
+  for (const std::string& part : parts)
+    if (part.empty() || part.find_first_not_of("-+.eE0123456789") != std::string::npos) return {};
+  return parts;
+}
+
+/// "0.1:0.8:8" as eight numbers; steps of decimal fractions come out as decimal fractions.
+std::vector<std::string> range(std::span<const std::string> parts, const Where& where)
+{
+  const double first = number(parts[0], where);
+  const double last = number(parts[1], where);
+  const double n = number(parts[2], where);
+  if (n < 2 || n > max_runs || n != std::floor(n))
+    throw InputError(where, fmt::format("cannot make {} values from {} to {}", parts[2], parts[0], parts[1]),
+                     "finite ends and at least 2 values");
   std::vector<std::string> values;
   values.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i)
@@ -48,9 +69,7 @@ std::vector<std::string> range(const std::smatch& match, const Where& where)
 
 std::vector<std::string> values_of(const std::string& text, const Where& where)
 {
-  static const std::regex pattern(R"(\s*([-+.eE0-9]+):([-+.eE0-9]+):([0-9]+)\s*)");
-  std::smatch match;
-  if (std::regex_match(text, match, pattern)) return range(match, where);
+  if (const auto parts = parts_of_range(trimmed(text)); !parts.empty()) return range(parts, where);
   if (text.find_first_not_of(' ') == std::string::npos) throw InputError(where, "there is no value", hint);
   if (text[text.find_first_not_of(' ')] != '[') return {text};
   try
@@ -82,17 +101,16 @@ void check_keys(const std::vector<std::string>& keys, const std::string& file)
   }
 }
 
-std::string trimmed(const std::string& text)
-{
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
 }  // namespace
 
-std::vector<std::vector<std::string>> parse_csv(std::string_view text)
+std::vector<std::vector<std::string>> parse_csv(std::string_view text, const std::string& file)
 {
+  const auto fail = [&](std::size_t at, const std::string& problem)
+  {
+    const auto line = static_cast<int>(std::count(text.begin(), text.begin() + at, '\n')) + 1;
+    throw InputError({.file = file, .line = line}, problem, "\"\" stands for a quote in a quoted cell");
+  };
+  std::size_t opened = 0;
   std::vector<std::vector<std::string>> lines(1);
   std::string cell;
   bool quoted = false;
@@ -110,6 +128,8 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text)
       cell += text[i++];
     else if (c == '"' && (quoted || trimmed(cell).empty()))
     {
+      if (!quoted && was_quoted) fail(i, "a quote follows a cell that has ended");
+      if (!quoted) opened = i;
       if (!quoted) cell.clear();
       quoted = !quoted;
       was_quoted = true;
@@ -123,7 +143,10 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text)
     }
     else if (!was_quoted || quoted)
       cell += c;
+    else if (c != ' ' && c != '\t' && c != '\r')
+      fail(i, "something follows the quote that ends a cell");
   }
+  if (quoted) fail(opened, "a quote is not closed");
   if (!cell.empty() || was_quoted || !lines.back().empty()) end_cell();
   std::erase_if(lines,
                 [](const auto& line) { return line.empty() || (line.size() == 1 && line[0].empty()); });
@@ -157,7 +180,7 @@ SweepTable sweep_grid(std::span<const std::string> assignments)
 
 SweepTable sweep_rows(std::string_view csv, const std::string& file)
 {
-  std::vector<std::vector<std::string>> lines = parse_csv(csv);
+  std::vector<std::vector<std::string>> lines = parse_csv(csv, file);
   if (lines.size() < 2)
     throw InputError({.file = file}, "holds no run", "a line of keys, then a line of values for each run");
   SweepTable table;

@@ -19,8 +19,8 @@ struct SweepTable
 };
 
 /// The cells of every line of comma-separated values (RFC 4180) that is not empty; a quoted cell may hold
-/// commas, line breaks and doubled quotes.
-[[nodiscard]] std::vector<std::vector<std::string>> parse_csv(std::string_view text);
+/// commas, line breaks and doubled quotes. Throws InputError in `file` for quotes that do not match.
+[[nodiscard]] std::vector<std::vector<std::string>> parse_csv(std::string_view text, const std::string& file);
 
 /// All combinations of "key=first:last:count" (equal steps), "key=[value, ...]" and "key=value"; the first
 /// key varies slowest. Throws InputError.

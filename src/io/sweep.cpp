@@ -61,7 +61,7 @@ void add_contact_line(const std::filesystem::path& file, Figures& figures)
 {
   std::ifstream stream(file, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  const std::vector<std::vector<std::string>> rows = parse_csv(content);
+  const std::vector<std::vector<std::string>> rows = parse_csv(content, file.string());
   if (rows.empty()) return;
   const auto column = [&](const char* name) { return std::ranges::find(rows[0], name) - rows[0].begin(); };
   const std::array places = {column("pressure"), column("status"), column("weight")};
