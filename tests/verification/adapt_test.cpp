@@ -290,8 +290,8 @@ TEST(Adapt, ALaterLevelThatFailsLeavesTheCertificateOfTheOneBefore)
   const History history = adapt_t2d(1, "", stop,
                                     [&](const CertifiedStep& step)
                                     {
-                                      if (step.step.step == 1 && ++first_steps == 3)
-                                        throw SolveError("the matrix is singular");
+                                      first_steps += step.step.step == 1 ? 1 : 0;
+                                      if (first_steps == 3) throw SolveError("the matrix is singular");
                                     });
   EXPECT_EQ(history.levels.size(), 2u);
   EXPECT_EQ(history.verdict.status, RunStatus::budget);
