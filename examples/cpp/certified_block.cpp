@@ -47,7 +47,8 @@ bool certify_on_one_mesh(const Config& config, const Mesh<2>& mesh, const Proble
   const Verdict verdict = judge(eta, identities, config.degree, norms, config.adapt.tolerance);
 
   std::printf("one mesh: %zu Newton steps, bound %.4g, that is %.3g %% of ||sigma(u_h)||: %s\n",
-              newton.steps.size(), eta.total_sharp, 100 * eta.total_sharp / norms.sigma, to_string(verdict.status));
+              newton.steps.size(), eta.total_sharp, 100 * eta.total_sharp / norms.sigma,
+              to_string(verdict.status));
   return verdict.status != RunStatus::not_certified && std::abs(lift(form, newton.u) - load) < 1e-8;
 }
 

@@ -274,7 +274,7 @@ StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& 
   const auto is_loaded = [&]
   {
     const std::vector<double> load =
-        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree()), space);
+        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), 1.0), space);
     return std::ranges::any_of(load, [](double force) { return force != 0; });
   };
   if (norms.sigma <= round_off && round_off <= negligible * stress_that_matters(problem, space, u) &&
