@@ -33,7 +33,7 @@ bool certify_on_one_mesh(const Config& config, const Mesh<2>& mesh, const Proble
   // The discrete problem: a(u, v) - (T(u), v)_C = L(v) in the Lagrange elements of the degree.
   const LagrangeSpace<2> space(mesh, config.degree);
   const NitscheForm<2> form(problem, space, config.gamma0());
-  check_rigid_motions<2>(problem, space, form.load());
+  check_rigid_motions<2>(problem, space, form.data(), form.load());
 
   // Its solution u^k by Newton's method, from scratch, with the traction t^k in equilibrium with it.
   const NewtonResult<2> newton = solve(form, {}, config.newton, config.solver);
