@@ -4,7 +4,9 @@
 #include <dmumps_c.h>
 #include <mpi.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 #include "solve/petsc_detail.h"
@@ -63,10 +65,30 @@ void configure_mumps(Mat factors, int dim)
 using detail::check;
 using detail::wrap;
 
-Environment::Environment()
+namespace
+{
+
+constexpr const char* tmpdir_base = "OMPI_MCA_orte_tmpdir_base";
+
+/// A directory of its own for the files of Open MPI, unless mpirun has chosen one; empty where there is none.
+/// In the common one a process that starts may fail because another one, ending, removes it.
+std::filesystem::path make_session_directory()
+{
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv(tmpdir_base)) return {};
+  std::error_code error;
+  std::string name = (std::filesystem::temp_directory_path(error) / "tribound-XXXXXX").string();
+  if (error || ::mkdtemp(name.data()) == nullptr) return {};
+  ::setenv(tmpdir_base, name.c_str(), 1);
+  return name;
+}
+
+}  // namespace
+
+Environment::Environment() : session_directory_(make_session_directory())
 {
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
+  if (!session_directory_.empty()) ::unsetenv(tmpdir_base);  // not for children
   check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"),
         "starting");  // signals are the program's
   check(PetscInitializeNoArguments(), "starting");
@@ -77,6 +99,8 @@ Environment::~Environment()
 {
   PetscFinalize();
   MPI_Finalize();
+  std::error_code none;
+  if (!session_directory_.empty()) std::filesystem::remove_all(session_directory_, none);
 }
 
 void MatDeleter::operator()(_p_Mat* mat) const

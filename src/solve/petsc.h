@@ -3,6 +3,7 @@
 /// @file petsc.h
 /// PETSc behind values and RAII. Only the .cpp files of this folder touch Mat, Vec and KSP.
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,6 +26,9 @@ class Environment
   ~Environment();
   Environment(const Environment&) = delete;
   Environment& operator=(const Environment&) = delete;
+
+ private:
+  std::filesystem::path session_directory_;  ///< of Open MPI; empty: not ours
 };
 
 /// Names and versions of the libraries behind the linear algebra.
