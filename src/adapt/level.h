@@ -107,9 +107,9 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// The iterate that is kept always has the complete bound of its own stress; so has every other in 2D, with
 /// Stopping::tolerance and in the regularised variant. Otherwise in 3D, where the patches cost as much as
 /// some steps, sigma_lin comes first, which needs those around Gamma_C alone: an iterate whose linearisation
-/// error is not negligible beside osc + str + neu + cnt + frc of the last complete bound, or at first beside
-/// what this sum is `expected` to be if something is known of it, gets no complete bound, and Newton's method
-/// goes on.
+/// error is not negligible beside osc + str + neu + cnt + frc + quad of the last complete bound, or at first
+/// beside what this sum is `expected` to be if something is known of it, gets no complete bound, and Newton's
+/// method goes on.
 ///
 /// `friedrichs`: of a mesh of which this is a refinement, if it is known.
 ///

@@ -129,7 +129,7 @@ class Loop
   double delta_ = 0;           ///< of the regularised variant after the level before
   RefinementSeconds refinement_;
   std::optional<FriedrichsConstant> friedrichs_;  ///< of the mesh on which it was first needed
-  std::optional<double> expected_;  ///< osc + str + neu + cnt + frc on the current mesh, guessed
+  std::optional<double> expected_;  ///< BoundComponents::discretisation() on the current mesh, guessed
   CertifiedLevel<dim> before_;      ///< the level before, without stress and estimate
   std::shared_ptr<const Discretisation<dim>> discrete_before_;
   Verdict last_{RunStatus::failed, {}};

@@ -13,6 +13,16 @@
 namespace tribound
 {
 
+std::string nonnegative_hint(const Where& where)
+{
+  const std::string cut = "a formula that changes sign can be cut off: \"max(0, ...)\"";
+  if (!where.key.ends_with("gap")) return "0 or more; " + cut;
+  return "0 or more; for an interference (a press fit) mesh the body clear of the obstacle and press it on "
+         "by a "
+         "prescribed displacement; " +
+         cut;
+}
+
 Expression::Expression() = default;
 
 Expression::Expression(double value, Where where) : value_(value), where_(std::move(where)) {}

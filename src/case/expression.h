@@ -18,6 +18,9 @@ struct Enclosure;
 class Formula;
 enum class Sides;
 
+/// What would be right where the gap or the threshold found there is negative.
+[[nodiscard]] std::string nonnegative_hint(const Where& where);
+
 /// A scalar datum: a constant, or a formula in x, y, z. Use of one object by several threads at once is safe.
 /// What it returns of a formula is described in formula.h.
 class Expression

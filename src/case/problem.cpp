@@ -75,7 +75,7 @@ double nonnegative_at(const Expression& expression, const Point<dim>& x)
     throw InputError(expression.where(),
                      fmt::format("is negative, {:.9g}, at the point ({:.9g})", value,
                                  fmt::join(x.data(), x.data() + dim, ", ")),
-                     "cut it off: \"max(0, ...)\"");
+                     nonnegative_hint(expression.where()));
   return 0;
 }
 

@@ -116,7 +116,7 @@ Expression to_nonnegative_expression(const Node& node)
   Expression expression = to_expression(node);
   if (expression.is_constant() && expression(Point<2>::Zero().eval()) < 0)
     throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
-                     "0 or more; a formula that changes sign can be cut off: \"max(0, ...)\"");
+                     nonnegative_hint(node.where));
   return expression;
 }
 

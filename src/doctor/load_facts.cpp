@@ -93,6 +93,25 @@ Point<dim> traction_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
   return resultant;
 }
 
+/// Boundaries with a negative pressure, with the lowest.
+template <int dim>
+std::vector<Suction> find_suction(const NitscheForm<dim>& form)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  const auto boundaries = form.problem().boundaries();
+  std::vector<Suction> lowest(boundaries.size());
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    if (facet.tag < 0 || !boundaries[facet.tag].pressure) continue;
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    for (const Point<dim - 1>& s : form.facet_rule().points)
+      if (const double p = (*boundaries[facet.tag].pressure)(map(s)); p < lowest[facet.tag].lowest)
+        lowest[facet.tag] = {boundaries[facet.tag].name, p, place<dim>(map(s))};
+  }
+  std::erase_if(lowest, [](const Suction& suction) { return suction.lowest == 0; });
+  return lowest;
+}
+
 /// The area of the boundaries that take up the loads.
 template <int dim>
 double supporting_measure(const Problem<dim>& problem, const Mesh<dim>& mesh)
@@ -164,6 +183,7 @@ LoadFacts load_facts(const NitscheForm<dim>& form)
   if (support > 0) facts.support_stress = resultant.norm() / support;
   facts.body_stress = facts.largest_body_force * facts.size;
   facts.displacement_strain = displacement_range(form) / facts.size;
+  facts.suction = find_suction(form);
   return facts;
 }
 

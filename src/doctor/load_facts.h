@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/nitsche.h"
+#include "doctor/place.h"
 
 namespace tribound
 {
@@ -30,6 +31,14 @@ struct RegionMaterial
   bool plane_stress = false;  ///< 2D only
 };
 
+/// A boundary whose pressure is negative somewhere: it pulls.
+struct Suction
+{
+  std::string boundary;
+  double lowest = 0;  ///< pressure at the quadrature points
+  Place where;
+};
+
 /// Stresses and strains that an engineer would put on the back of an envelope.
 struct LoadFacts
 {
@@ -42,6 +51,7 @@ struct LoadFacts
   double support_stress = 0;       ///< |int f + int g_N| over the area that contact or displacements hold
   double body_stress = 0;          ///< max |f| L
   double displacement_strain = 0;  ///< range of a prescribed component / L; with contact, it includes 0
+  std::vector<Suction> suction;
 
   /// The largest of these stresses.
   [[nodiscard]] double stress() const;

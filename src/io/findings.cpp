@@ -97,6 +97,20 @@ Finding strain_finding(const LoadFacts& loads)
   return finding;
 }
 
+void add_suction(const LoadFacts& loads, Findings& findings)
+{
+  for (const Suction& suction : loads.suction)
+  {
+    Finding finding{.code = "suction", .severity = Severity::warning};
+    finding.text = fmt::format("the pressure on boundary \"{}\" is negative, {:.4g} at {}: it pulls the body",
+                               suction.boundary, suction.lowest, describe(suction.where));
+    finding.advice =
+        "pressure is positive where it pushes; water above its level is cut off: \"9810*max(0, 9-y)\"";
+    finding.numbers = {{"pressure", suction.lowest}};
+    findings.push_back(std::move(finding));
+  }
+}
+
 void add_poisson(const Diagnosis& diagnosis, Findings& findings)
 {
   for (const RegionMaterial& material : diagnosis.loads.materials)
@@ -215,6 +229,7 @@ std::vector<Finding> findings(const Diagnosis& diagnosis)
   add_supports(diagnosis, result);
   std::ranges::move(contact_findings(diagnosis), std::back_inserter(result));
   result.push_back(strain_finding(diagnosis.loads));
+  add_suction(diagnosis.loads, result);
   add_poisson(diagnosis, result);
   result.push_back(units_finding(diagnosis));
   add_mesh(diagnosis, result);

@@ -46,6 +46,17 @@ TEST(LoadFacts, LoadsInEquilibriumDoNotReachTheSupports)
   EXPECT_NEAR(loads.support_stress, 0, 1e-14);
 }
 
+TEST(LoadFacts, ANegativePressurePulls)
+{
+  const LoadFacts loads = facts(
+      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.pressure = 2\n"
+      "boundary.right.pressure = \"0.75-y\"");
+  ASSERT_EQ(loads.suction.size(), 1u);
+  EXPECT_EQ(loads.suction[0].boundary, "right");
+  EXPECT_NEAR(loads.suction[0].lowest, -0.25, 0.05);
+  EXPECT_NEAR(loads.suction[0].where.at(1), 1, 0.05);
+}
+
 TEST(LoadFacts, BodyForceOverTheLengthOfTheBody)
 {
   const LoadFacts loads =
