@@ -7,7 +7,7 @@ from simplices import bernstein, lattice
 from verdict import near
 
 SHARE = 10.0  # of the distance of gap and threshold from polynomials: what they may differ by in contact.csv
-SAMPLES = {2: 64, 3: 12}  # per edge of a facet
+SAMPLES = {2: 512, 3: 160}  # per edge of a facet: narrow strips must be seen
 
 
 def judge_contact(verdict, residual, results):
