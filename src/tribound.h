@@ -65,6 +65,7 @@
 #include "adapt/level.h"
 #include "adapt/loop.h"
 #include "adapt/mark.h"
+#include "adapt/persistent.h"
 #include "adapt/rate.h"
 #include "adapt/regularisation.h"
 

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <functional>
 #include <numbers>
 #include <utility>
 
+#include "adapt/persistent.h"
 #include "base/clock.h"
-#include "base/error.h"
 #include "certify/equilibrate.h"
 #include "contact/elasticity.h"
 
@@ -105,79 +103,6 @@ class Certifier
   Equilibrator<dim> equilibrator_;
   Estimator<dim> estimator_;
 };
-
-/// Solutions with T_delta in the place of T, which has no kinks, for smaller and smaller delta: near
-/// incompressibility Newton's method may go round in circles between contact states, and finds its way from
-/// there. Nothing where it fails here, too.
-template <int dim>
-std::optional<std::vector<double>> regularised_start(const NitscheForm<dim>& form,
-                                                     std::span<const double> start, const Config& config,
-                                                     const std::function<void(const NewtonStep&)>& record)
-{
-  // In units of the mean contact traction of the first step.
-  constexpr double first = 10;
-  constexpr double last = 1e-3;
-  constexpr double factor = 0.25;
-  NewtonConfig newton = config.newton;
-  newton.tolerance = std::max(newton.tolerance, 1e-4);
-  double scale = 0;
-  double delta = 0;
-  const NewtonObserver<dim> shrink = [&](const NewtonIterate<dim>& iterate)
-  {
-    record(iterate.step);
-    NewtonAdvice advice = false;
-    if (delta == 0)
-    {
-      scale = mean_contact_traction<dim>(form, iterate.traction);
-      delta = first * scale;
-      if (delta > 0) advice.delta = delta;
-    }
-    else if (iterate.converged)
-    {
-      delta *= factor;
-      if (delta > last * scale)
-        advice.delta = delta;
-      else
-        advice.good_enough = true;
-    }
-    return advice;
-  };
-  NewtonResult<dim> result = solve<dim>(form, start, newton, config.solver, shrink);
-  if (result.status == NewtonStatus::diverged || delta == 0) return std::nullopt;
-  return std::move(result.u);
-}
-
-/// Newton's method, and where it fails, once more from regularised_start(), whose steps go to `record`.
-/// Should that fail as well, it is the first attempt that is told of.
-template <int dim>
-NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<const double> start,
-                                     const Config& config, const NewtonObserver<dim>& observer, double delta,
-                                     const std::function<void(const NewtonStep&)>& record)
-{
-  const auto attempt = [&](std::span<const double> u)
-  { return solve<dim>(form, u, config.newton, config.solver, observer, delta); };
-  NewtonResult<dim> first;
-  std::exception_ptr failure;
-  try
-  {
-    first = attempt(start);
-  }
-  catch (const SolveError&)
-  {
-    failure = std::current_exception();
-  }
-  const bool worth_it = config.newton.damping && !config.regularisation && form.problem().has_contact();
-  if (worth_it && (failure || !first.message.empty())) try
-    {
-      if (const auto better = regularised_start(form, start, config, record))
-        if (NewtonResult<dim> second = attempt(*better); second.message.empty()) return second;
-    }
-    catch (const SolveError&)
-    {
-    }
-  if (failure) std::rethrow_exception(failure);
-  return first;
-}
 
 /// The stress, the bound and the identities of the last step, whose iterate is kept.
 template <int dim>

@@ -20,10 +20,10 @@ template <int dim>
 constexpr double settled = dim == 2 ? 1e-10 : 1e-6;
 template <int dim>
 constexpr int max_depth = dim == 2 ? 40 : 10;
-/// So deep kinks are looked for that no point has seen: Lebesgue's constant is so pessimistic on triangles
+/// So deep kinks are looked for that no point has seen. Lebesgue's constant is so pessimistic on triangles
 /// that every piece near P = 0 might have one.
 template <int dim>
-constexpr int search_depth = dim == 2 ? 6 : 2;
+constexpr int search_depth = dim == 2 ? max_depth<dim> : 2;
 
 /// The parts of a segment or triangle halved along each edge.
 std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 
@@ -106,13 +107,15 @@ constexpr std::array<std::string_view, all_component_names.size()> component_mea
 /// Component by component with its share of the sum of squares.
 std::string component_lines(const BoundComponents& components, bool regularised)
 {
+  constexpr double round_off = 1e-12;
   const std::span<const NamedComponent> names = names_of_components(regularised);
   double squares = 0;
   for (const auto& [name, member] : names) squares += components.*member * components.*member;
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
   {
-    const double value = components.*names[i].second;
+    double value = components.*names[i].second;
+    if (value <= round_off * std::sqrt(squares)) value = 0;
     if (value == 0 && !is_of_cells(names[i].second)) continue;
     const double share = squares > 0 ? 100 * value * value / squares : 0;
     text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", names[i].first, component_meaning[i],

@@ -150,6 +150,21 @@ boundary.bottom.contact = {{ friction = "coulomb", coefficient = 0.3, gap = 1 }}
       }
 }
 
+/// Carried into the tip of a wedge: contact on a ten-thousandth of a side, where the point of no rule lies.
+TEST(Finish, ANarrowContactIsNoRigidMotion)
+{
+  const Told<2> told = run<2>(R"toml(
+degree = 2
+mesh.box = { lower = [0, 0], upper = [0.958, 1.98], cells = [2, 4] }
+material = { E = 0.236, nu = 0.49 }
+boundary.left.displacement = [0, -1.948e-06]
+boundary.bottom.contact = { gap = "0.03639*abs(x/0.958-0.178)" }
+adapt = { tolerance = 0.0256, max_levels = 0 }
+)toml");
+  EXPECT_NE(told.verdict.status, RunStatus::certified);
+  EXPECT_GE(told.levels.back().estimate.total_sharp, 1.32859e-9);  // the dual norm, computed elsewhere
+}
+
 /// Rounding that hides a stress that loads or displacements need makes no certificate.
 TEST(Finish, AStressDrownedInRoundingIsNotZero)
 {
