@@ -122,11 +122,7 @@ def main():
     for number, run_data in enumerate(expected["runs"]):
         name = run_data.get("name", str(number))
         directory = Path(output).resolve() / run_data.get("after", name)
-        problems = list(run(program, expected, run_data, directory))
-        print(f"{name}: {'as expected' if not problems else 'DIFFERS'}")
-        for problem in problems:
-            print(f"  {problem}")
-        failed += bool(problems)
+        failed += runner.told(name, run(program, expected, run_data, directory), "as expected", "DIFFERS")
     return 1 if failed else 0
 
 

@@ -15,6 +15,15 @@ def run(program, *arguments, **options):
     return subprocess.run([program, *arguments], **(defaults | options))
 
 
+def told(name, problems, right, wrong):
+    """Prints what came of a run, and each of its problems; whether there are any."""
+    problems = list(problems)
+    print(f"{name}: {wrong if problems else right}")
+    for problem in problems:
+        print(f"  {problem}")
+    return bool(problems)
+
+
 def words(text):
     """The text with single spaces, whatever lines it was broken into."""
     return " ".join(text.split())

@@ -16,7 +16,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "cases"))
-from runner import run, words  # noqa: E402
+from runner import run, told, words  # noqa: E402
 
 TIME_LIMIT = 120  # seconds
 BROWSERS = [os.environ.get("CHROMIUM"), "chromium", "chromium-browser", "google-chrome"]
@@ -159,11 +159,7 @@ def main():
         result = run(program, "run", str(cases / "t2d.toml"), *options)
         certificate = json.loads((directory / "certificate.json").read_text())
         page = dump(browser, directory / "report.html", results.resolve() / "profile")
-        problems = list(differences(status, codes, certificate, result.stdout, page))
-        print(f"{name}: {'the same' if not problems else 'DIFFERENT'}")
-        for problem in problems:
-            print(f"  {problem}")
-        failed += bool(problems)
+        failed += told(name, differences(status, codes, certificate, result.stdout, page), "the same", "DIFFERENT")
     return 1 if failed else 0
 
 
