@@ -31,6 +31,7 @@
 #include "contact/projection.h"
 #include "contact/rigid_motion.h"
 #include "contact/traction.h"
+#include "fem/bernstein.h"
 #include "fem/lagrange.h"
 #include "fem/nested.h"
 #include "fem/polynomials.h"

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <utility>
 
 #include "contact/traction.h"
 #include "fem/polynomials.h"
@@ -14,16 +13,14 @@ namespace tribound
 namespace
 {
 
-/// A kinked facet has settled when halving its pieces changes the squared components by less than this part
-/// of them. A kink is a point in 2D, where many halvings cost little, and a curve in 3D.
+/// A facet with kinks has settled when halving its pieces changes the squared components by less than this
+/// part of them. A kink is a point in 2D, where many halvings cost little, and a curve in 3D.
 template <int dim>
-constexpr double settled = dim == 2 ? 1e-10 : 1e-6;
+constexpr double settled = dim == 2 ? 1e-10 : 1e-5;
 template <int dim>
 constexpr int max_depth = dim == 2 ? 40 : 10;
-/// So deep kinks are looked for that no point has seen. Lebesgue's constant is so pessimistic on triangles
-/// that every piece near P = 0 might have one.
-template <int dim>
-constexpr int search_depth = dim == 2 ? max_depth<dim> : 2;
+/// More than the data ask for: so many are left where rounding makes the kinks.
+constexpr std::size_t max_pieces = 4096;
 
 /// The parts of a segment or triangle halved along each edge.
 std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
@@ -38,35 +35,6 @@ std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
   const Point<2> c = (s[0] + s[1]) / 2;
   return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
 }
-
-/// The range of a function over the points it was seen at, and whether it may change sign near them. Of a
-/// polynomial with the given Lebesgue constant Lambda: it keeps within Lambda times half the range of the
-/// middle of the range.
-class Range
-{
- public:
-  explicit Range(double lebesgue) : margin_((lebesgue - 1) / 2) {}
-  void add(double value)
-  {
-    lower_ = std::min(lower_, value);
-    upper_ = std::max(upper_, value);
-  }
-  [[nodiscard]] bool may_change_sign() const { return lowest() <= 0 && highest() >= 0; }
-  /// With a margin for what lies between the points.
-  [[nodiscard]] double lowest() const { return lower_ - margin_ * (upper_ - lower_); }
-  /// The square of the values of the other sign that no point has seen.
-  [[nodiscard]] double hidden() const
-  {
-    if (!may_change_sign() || (lower_ <= 0 && upper_ >= 0)) return 0;
-    return std::pow(lower_ > 0 ? lowest() : highest(), 2);
-  }
-  [[nodiscard]] double highest() const { return upper_ + margin_ * (upper_ - lower_); }
-
- private:
-  double margin_;
-  double lower_ = std::numeric_limits<double>::infinity();
-  double upper_ = -std::numeric_limits<double>::infinity();
-};
 
 /// h_F |F| / |Fhat|.
 template <int dim>
@@ -91,39 +59,13 @@ void add_squares(std::span<const Point<dim>> traction, const ContactFacet<dim>& 
 
 }  // namespace
 
-// With theta orthonormal, q(x) = sum_i w_i (sum_j theta_j(x) theta_j(x_i)) q(x_i), because the rule is exact
-// for q theta_j. The sum of the absolute values of the weights of the q(x_i) is the largest at a vertex of
-// the simplex: for Gauss's points at both ends (Szegoe), for those in collapsed coordinates at the vertex
-// into which an edge collapses (found on a lattice, see the test).
-template <int k>
-double lebesgue_constant(const Quadrature<k>& rule, int degree)
-{
-  const int n = polynomial_dimension(k, degree);
-  std::vector<double> at_vertex(n);
-  std::vector<double> at_point(n);
-  double largest = 0;
-  for (const Point<k>& vertex : reference_simplex<k>())
-  {
-    orthonormal_values<k>(degree, vertex, at_vertex);
-    double sum = 0;
-    for (int q = 0; q < rule.size(); ++q)
-    {
-      orthonormal_values<k>(degree, rule.points[q], at_point);
-      sum += std::abs(rule.weights[q] *
-                      std::inner_product(at_vertex.begin(), at_vertex.end(), at_point.begin(), 0.0));
-    }
-    largest = std::max(largest, sum);
-  }
-  return largest;
-}
-
 template <int dim>
 ContactTerms<dim>::ContactTerms(const NitscheForm<dim>& form, ContactRule rule)
     : form_(form),
       rule_(rule),
       space_table_(tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
       n_(polynomial_dimension(dim - 1, form.space().degree())),
-      lebesgue_(lebesgue_constant<dim - 1>(form.facet_rule(), form.space().degree() + 2))
+      kinks_(form.facet_rule(), form.space().degree() + 2)
 {
   const Quadrature<dim - 1>& points = form.facet_rule();
   for (int local = 0; local <= dim; ++local)
@@ -191,67 +133,95 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const FacetMap<dim> map = facet_map(form_.space().mesh(), facet.cell, facet.local);
   const Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, polynomial_dimension(dim - 1, 4)> theta;
+  const FrictionLaw& law = contact->friction;
   Integrals result;
-  Range normal_range(lebesgue_);
-  Range tangential_range(lebesgue_);
+  std::vector<Point<dim>> augmented(rule.size());
+  std::vector<double> thresholds(rule.size());
+  double round_off = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
     const FacetPoint s = point_in<dim - 1>(piece, rule.points[q]);
     orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
     const Point<dim> x = map(s);
-    Point<dim> p = gamma * gap_at<dim>(*contact, x) * n;
+    const double closing = gamma * gap_at<dim>(*contact, x);
+    Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
     {
       p += theta[i] * fields.augmented[i];
       dis += theta[i] * fields.dis[i];
     }
-    const double threshold = threshold_if_any<dim>(contact->friction, x);
-    const double p_n = p.dot(n);
-    normal_range.add(p_n);
-    tangential_range.add((p - p_n * n).norm() - friction_limit(contact->friction, threshold, p_n));
+    augmented[q] = p;
+    thresholds[q] = threshold_if_any<dim>(law, x);
+    round_off = std::max(round_off, 1e-14 * (p.norm() + closing));
 
-    const Point<dim> difference = contact_traction<dim>(contact->friction, threshold, p, n) - dis;
+    const Point<dim> difference = contact_traction<dim>(law, thresholds[q], p, n) - dis;
     const double normal = difference.dot(n);
     const double weight = fraction<dim - 1>(piece) * rule.weights[q];
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
-  const bool frictionless = std::holds_alternative<Frictionless>(contact->friction);
-  result.lowest = normal_range.lowest();
-  result.hidden =
-      fraction<dim - 1>(piece) * (normal_range.hidden() + (frictionless ? 0 : tangential_range.hidden()));
-  result.may_kink = normal_range.may_change_sign() || (!frictionless && tangential_range.may_change_sign());
+  result.kinks = kinks_(law, n, augmented, thresholds, round_off);
   return result;
 }
 
-/// Halves the piece and those of its parts that may have a kink, until that changes nothing any more.
+/// The halves of a piece of the part with the given number.
 template <int dim>
-auto ContactTerms<dim>::settle(int k, const Fields& fields, const Piece& piece, const Integrals& whole,
-                               double tolerance, int depth) const -> Integrals
+auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
+                              const Integrals& whole) const -> Halved
 {
-  const auto parts = halves(piece);
-  std::array<Integrals, parts.size()> values;
+  Halved result{part, halves(piece), {}, 0};
   Integrals sum;
-  for (std::size_t i = 0; i < parts.size(); ++i)
+  for (std::size_t i = 0; i < result.pieces.size(); ++i)
   {
-    values[i] = integrate(k, fields, parts[i]);
-    sum.normal += values[i].normal;
-    sum.tangential += values[i].tangential;
-    sum.hidden += values[i].hidden;
+    result.values[i] = integrate(k, fields, result.pieces[i]);
+    sum += result.values[i];
+    result.change += fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
   }
-  const double change = std::abs(sum.normal - whole.normal) + std::abs(sum.tangential - whole.tangential);
-  const double hidden = depth < search_depth<dim> ? sum.hidden : 0;
-  if (change + hidden <= tolerance || depth == max_depth<dim>) return sum;
+  result.change += std::abs(sum.normal - whole.normal) + std::abs(sum.tangential - whole.tangential);
+  return result;
+}
 
-  sum = {};
+/// Halves the parts that may have a kink, and of these those again, until that changes nothing any more. What
+/// it did change last, where there is no end of it, is added.
+template <int dim>
+void ContactTerms<dim>::settle(int k, const Fields& fields, std::span<const ContactDatumPart<dim>> parts,
+                               std::span<Integrals> integrals) const
+{
+  std::vector<Halved> active;
   for (std::size_t i = 0; i < parts.size(); ++i)
+    if (integrals[i].kinks.possible)
+    {
+      active.push_back(halve(k, fields, i, parts[i].part, integrals[i]));
+      integrals[i] = {.kinks = integrals[i].kinks};
+    }
+  for (int depth = 1; !active.empty(); ++depth)
   {
-    if (values[i].may_kink) values[i] = settle(k, fields, parts[i], values[i], tolerance, depth + 1);
-    sum.normal += values[i].normal;
-    sum.tangential += values[i].tangential;
+    Integrals total;
+    double change = 0;
+    for (const Integrals& part : integrals) total += part;
+    for (const Halved& halved : active)
+    {
+      change += halved.change;
+      for (const Integrals& value : halved.values) total += value;
+    }
+    const double negligible = settled<dim> * (total.normal + total.tangential);
+    const bool done = change <= negligible;
+    const bool last = done || depth == max_depth<dim> || active.size() > max_pieces + parts.size();
+    std::vector<Halved> next;
+    for (const Halved& halved : active)
+    {
+      Integrals& sum = integrals[halved.part];
+      const bool enough = last || halved.change * static_cast<double>(active.size()) <= negligible;
+      for (std::size_t i = 0; i < halved.pieces.size(); ++i)
+        if (enough || !halved.values[i].kinks.possible)
+          sum += halved.values[i];
+        else
+          next.push_back(halve(k, fields, halved.part, halved.pieces[i], halved.values[i]));
+      if (last && !done) sum += {.normal = halved.change, .tangential = halved.change};
+    }
+    active = std::move(next);
   }
-  return sum;
 }
 
 template <int dim>
@@ -261,18 +231,13 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
   const Fields on_facet = fields(k, u, stress);
   const ContactFacet<dim>& contact = form_.contact_facets()[k];
   ContactSquares result = linearisation(k, stress);
-  const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
   const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
-  for (const auto& part : parts.empty() ? std::span(&whole, 1) : parts)
-  {
-    Integrals integrals = integrate(k, on_facet, part.part);
-    const double lowest = integrals.lowest;
-    if (rule_ == ContactRule::resolved && integrals.may_kink)
-      integrals = settle(k, on_facet, part.part, integrals,
-                         settled<dim> * (integrals.normal + integrals.tangential + integrals.hidden), 1);
-    integrals.lowest = lowest;
-    add_part(contact, part, integrals, result);
-  }
+  std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
+  if (parts.empty()) parts = std::span(&whole, 1);
+  std::vector<Integrals> integrals;
+  for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));
+  if (rule_ == ContactRule::resolved) settle(k, on_facet, parts, integrals);
+  for (std::size_t i = 0; i < parts.size(); ++i) add_part(contact, parts[i], integrals[i], result);
   if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
     add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
   return result;
@@ -290,7 +255,7 @@ void ContactTerms<dim>::add_part(const ContactFacet<dim>& contact, const Contact
       2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fraction<dim - 1>(part.part));
   // Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
   // polynomial up to gamma delta, with which it was seen at the points, too.
-  const bool open = integrals.lowest > (1 + lebesgue_) * contact.gamma * part.gap;
+  const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * contact.gamma * part.gap;
   const double pressure = open ? 0 : contact.gamma * part.gap;
   const auto* coulomb = std::get_if<Coulomb>(&contact.contact->friction);
   const double limit = coulomb ? coulomb->coefficient * pressure : part.threshold;
@@ -307,8 +272,6 @@ ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress
   return result;
 }
 
-template double lebesgue_constant(const Quadrature<1>&, int);
-template double lebesgue_constant(const Quadrature<2>&, int);
 template class ContactTerms<2>;
 template class ContactTerms<3>;
 

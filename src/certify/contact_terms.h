@@ -9,6 +9,7 @@
 
 #include "case/config.h"
 #include "certify/frame_table.h"
+#include "certify/kinks.h"
 #include "contact/nitsche.h"
 
 namespace tribound
@@ -24,12 +25,6 @@ struct ContactSquares
   double reg2n = 0;  ///< h_F ||sigma_reg^n||_F^2
   double reg2t = 0;  ///< h_F ||sigma_reg^t||_F^2
 };
-
-/// The largest Lambda with |q| <= Lambda max_i |q(x_i)| on the reference simplex, q a polynomial of the
-/// degree, x_i the points of a collapsed Gauss-Jacobi rule exact for products of two such polynomials. An
-/// upper bound for k = 2, where there are more points than coefficients.
-template <int k>
-[[nodiscard]] double lebesgue_constant(const Quadrature<k>& rule, int degree);
 
 /// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
 /// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
@@ -60,9 +55,23 @@ class ContactTerms
   {
     double normal = 0;      ///< of ([P^n]_- - sigma_dis^n)^2
     double tangential = 0;  ///< of |[P^t]_S - sigma_dis^t|^2
-    bool may_kink = false;
-    double hidden = 0;  ///< about what a kink between the points could change
-    double lowest = 0;  ///< P^n is above, up to what the gap leaves out
+    Kinks kinks{};          ///< up to what gap and threshold leave out
+
+    Integrals& operator+=(const Integrals& other)
+    {
+      normal += other.normal;
+      tangential += other.tangential;
+      return *this;
+    }
+  };
+
+  /// A piece halved along each edge.
+  struct Halved
+  {
+    std::size_t part;  ///< number of the part of the facet
+    std::array<Piece, 1 << (dim - 1)> pieces;
+    std::array<Integrals, 1 << (dim - 1)> values;
+    double change;  ///< of the integrals, and what no point has seen
   };
 
   /// Coefficients of sigma n on the facet from those of sigma on its cell.
@@ -72,8 +81,10 @@ class ContactTerms
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
   void add_part(const ContactFacet<dim>& contact, const ContactDatumPart<dim>& part,
                 const Integrals& integrals, ContactSquares& squares) const;
-  [[nodiscard]] Integrals settle(int k, const Fields& fields, const Piece& piece, const Integrals& whole,
-                                 double tolerance, int depth) const;
+  [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
+                             const Integrals& whole) const;
+  void settle(int k, const Fields& fields, std::span<const ContactDatumPart<dim>> parts,
+              std::span<Integrals> integrals) const;
 
   const NitscheForm<dim>& form_;
   ContactRule rule_;
@@ -81,7 +92,7 @@ class ContactTerms
   std::vector<FrameTable<dim>> stress_table_;  ///< of the stress there, per local facet
   std::vector<double> theta_;                  ///< basis on the facet there, [q * n + i]
   int n_;                                      ///< dim P^p(F)
-  double lebesgue_;  ///< of the rule for P^{p+2}, in which P^n is up to the remainder of the gap
+  KinkFinder<dim> kinks_;  ///< for P^{p+2}, in which P^n is up to the remainder of the gap
 };
 
 }  // namespace tribound

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -138,46 +138,34 @@ TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
   EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, expected, 1e-6 * expected);
 }
 
-/// The largest of |sum_j theta_j(x) theta_j(x_i) w_i| summed over i, on a lattice.
-template <int k>
-double largest_on_lattice(const Quadrature<k>& rule, int degree)
+/// P^n = g - u^n is zero but for rounding, whose kinks have no end.
+TEST(ContactTerms, TheKinksOfRoundingEnd)
 {
-  constexpr int m = k == 1 ? 500 : 24;
-  const int n = polynomial_dimension(k, degree);
-  std::vector<double> theta(n);
-  std::vector<std::vector<double>> at_points;
-  for (const Point<k>& x : rule.points)
-  {
-    orthonormal_values<k>(degree, x, theta);
-    at_points.push_back(theta);
-  }
-  double largest = 0;
-  for (int i = 0; i <= m; ++i)
-    for (int j = 0; j <= (k == 1 ? 0 : m - i); ++j)
-    {
-      Point<k> x = Point<k>::Constant(static_cast<double>(j) / m);
-      x[0] = static_cast<double>(i) / m;
-      orthonormal_values<k>(degree, x, theta);
-      double sum = 0;
-      for (int q = 0; q < rule.size(); ++q)
-        sum += std::abs(rule.weights[q] *
-                        std::inner_product(theta.begin(), theta.end(), at_points[q].begin(), 0.0));
-      largest = std::max(largest, sum);
-    }
-  return largest;
-}
-
-TEST(ContactTerms, BetweenThePointsPolynomialsKeepTheLebesgueConstant)
-{
-  const std::array<double, 4> gauss = {2.855, 3.322, 3.749, 4.144};
   for (int p = 1; p <= 4; ++p)
   {
-    const auto segment = quadrature<1>(data_quadrature_degree(p));
-    const auto triangle = quadrature<2>(data_quadrature_degree(p));
-    EXPECT_NEAR(lebesgue_constant(segment, p + 2), gauss[p - 1], 1e-3);
-    EXPECT_NEAR(lebesgue_constant(segment, p + 2), largest_on_lattice(segment, p + 2), 1e-10);
-    EXPECT_NEAR(lebesgue_constant(triangle, p + 2), largest_on_lattice(triangle, p + 2), 1e-10);
+    const DiscreteCase<2> c(block<2>(p, "{ gap = \"0.1*x + 0.2*x\" }"));
+    std::vector<double> u(c.space.n_dofs(), 0.0);
+    const std::vector<Point<2>> nodes = c.space.node_points();
+    for (std::size_t i = 0; i < nodes.size(); ++i) u[2 * i + 1] = -0.3 * nodes[i][0];
+    EXPECT_LT(sum_over_facets(c, u, ContactRule::resolved).cnt, 1e-30);
   }
+}
+
+/// P^n = g - u^n, positive at all points of the rule on the facets, negative in a small disc between them.
+TEST(ContactTerms, ASmallDiscOfContactBetweenThePointsIsSeenIn3D)
+{
+  for (const double radius : {0.05, 0.02})
+    for (const Point<2>& centre : {Point<2>(0.61, 0.29), Point<2>(0.23, 0.7)})
+    {
+      const std::string gap = fmt::format("(x - {})^2 + (z - {})^2", centre[0], centre[1]);
+      const DiscreteCase<3> c(block<3>(1, "{ gap = \"" + gap + "\" }"));
+      std::vector<double> u(c.space.n_dofs(), 0.0);
+      for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -radius * radius;
+      // gamma^2 times the integral of (r^2 - radius^2)^2 over the disc.
+      const double exact = 0.5 * std::numbers::pi * std::pow(radius, 6) / 3;
+      EXPECT_EQ(sum_over_facets(c, u, ContactRule::reference).cnt, 0.0) << "seen by the plain rule";
+      EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, exact, 1e-4 * exact);
+    }
 }
 
 }  // namespace

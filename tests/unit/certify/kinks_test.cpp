@@ -1,0 +1,134 @@
+/// @file kinks_test.cpp
+/// What is said of kinks of the contact traction against the traction on a lattice.
+
+#include "certify/kinks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "contact/traction.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// A random polynomial of degree 3 on the reference facet, small beside its value at 0 or not.
+template <int k>
+class Cubic
+{
+ public:
+  Cubic(std::mt19937& dice, double mean) : mean_(mean)
+  {
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (auto& row : a_)
+      for (double& a : row) a = number(dice);
+  }
+  double operator()(const Point<k>& s) const
+  {
+    double sum = mean_;
+    for (int i = 0; i < k; ++i) sum += s[i] * (a_[i][0] + s[k - 1 - i] * (a_[i][1] + s[i] * a_[i][2]));
+    return sum;
+  }
+
+ private:
+  double mean_;
+  std::array<std::array<double, 3>, k> a_;
+};
+
+template <int dim>
+void expect_sound(const FrictionLaw& law, std::mt19937& dice)
+{
+  constexpr int k = dim - 1;
+  std::uniform_real_distribution<double> number(-1.5, 1.5);
+  std::vector<Cubic<k>> p;
+  for (int a = 0; a < dim; ++a) p.emplace_back(dice, number(dice));
+  const Cubic<k> threshold(dice, 4);
+  const Point<dim> normal = Point<dim>::Unit(dim - 1);
+  const auto at = [&](const Point<k>& s)
+  {
+    Point<dim> value;
+    for (int a = 0; a < dim; ++a) value[a] = p[a](s);
+    return value;
+  };
+  const auto excess = [&](const Point<k>& s)
+  {
+    const Point<dim> value = at(s);
+    return value.template head<k>().norm() - friction_limit(law, threshold(s), value[dim - 1]);
+  };
+
+  const Quadrature<k> rule = quadrature<k>(6);
+  std::vector<Point<dim>> values;
+  std::vector<double> thresholds;
+  for (const Point<k>& s : rule.points)
+  {
+    values.push_back(at(s));
+    thresholds.push_back(std::holds_alternative<Tresca>(law) ? threshold(s) : 0);
+  }
+  const Kinks kinks = KinkFinder<dim>(rule, 3)(law, normal, values, thresholds, 1e-14);
+
+  constexpr int m = 60;
+  std::array<bool, 2> pressed{};
+  std::array<bool, 2> slides{};
+  double lowest = values[0][dim - 1];
+  for (int i = 0; i <= m; ++i)
+    for (int j = 0; j <= (k == 1 ? 0 : m - i); ++j)
+    {
+      Point<k> s = Point<k>::Constant(static_cast<double>(j) / m);
+      s[0] = static_cast<double>(i) / m;
+      const double p_n = at(s)[dim - 1];
+      lowest = std::min(lowest, p_n);
+      pressed[p_n < 0] = true;
+      if (p_n < 0 || std::holds_alternative<Tresca>(law)) slides[excess(s) > 0] = true;
+    }
+  EXPECT_LE(kinks.lowest, lowest + 1e-12);
+  const bool rubs = !std::holds_alternative<Frictionless>(law);
+  const bool kinked = (pressed[0] && pressed[1]) || (rubs && slides[0] && slides[1]);
+  EXPECT_TRUE(kinks.possible || !kinked);
+  const bool seen = std::ranges::any_of(values, [](const Point<dim>& v) { return v[dim - 1] < 0; });
+  if (lowest < 0 && !seen)
+  {
+    EXPECT_GE(kinks.hidden, lowest * lowest * (1 - 1e-8));
+  }
+}
+
+TEST(Kinks, NoneIsMissed)
+{
+  std::mt19937 dice(3);
+  Coulomb coulomb;
+  coulomb.coefficient = 0.6;
+  for (int trial = 0; trial < 400; ++trial)
+    for (const FrictionLaw& law : {FrictionLaw(Frictionless{}), FrictionLaw(Tresca{}), FrictionLaw(coulomb)})
+    {
+      expect_sound<2>(law, dice);
+      expect_sound<3>(law, dice);
+    }
+}
+
+/// Sharp: no kink is suspected where the traction keeps well away from one.
+TEST(Kinks, NoneIsSuspectedFarAway)
+{
+  const Quadrature<2> rule = quadrature<2>(6);
+  std::vector<Point<3>> p;
+  for (const Point<2>& s : rule.points)
+    p.emplace_back(0.1 + 0.05 * s[0], 0.05 * s[1], -1 - 0.4 * s[0] * s[1]);
+  const std::vector<double> none(p.size(), 0.0);
+  Coulomb coulomb;
+  coulomb.coefficient = 0.3;
+  const KinkFinder<3> kinks(rule, 3);
+  EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
+  coulomb.coefficient = 0.05;
+  EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
+  coulomb.coefficient = 0.12;
+  EXPECT_TRUE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
