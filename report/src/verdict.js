@@ -11,8 +11,9 @@ const verdicts = {
   failed: { title: "Failed", mark: "\u00d7" },
 };
 
-function sentence({ status, relative, tolerance, reason }) {
-  const guaranteed = `The error, measured by the dual norm of the residual, is guaranteed to be at most ${percent(relative)} of the norm of the stress`;
+function sentence({ status, relative, bound, tolerance, reason }) {
+  const share = relative === null ? `${number(bound)} of a stress that is zero` : `${percent(relative)} of the norm of the stress`;
+  const guaranteed = `The error, measured by the dual norm of the residual, is guaranteed to be at most ${share}`;
   switch (status) {
     case "certified":
       return relative === null ? "The stress is zero up to rounding, and so is the bound of its error." : `${guaranteed}; ${percent(tolerance)} was asked for.`;

@@ -7,6 +7,7 @@
 
 #include "adapt/persistent.h"
 #include "base/clock.h"
+#include "base/error.h"
 #include "certify/equilibrate.h"
 #include "contact/elasticity.h"
 
@@ -121,8 +122,14 @@ void tighten(const NitscheForm<dim>& form, const Config& config, const StepObser
 {
   Config tight = config;
   tight.solver.tolerance = 0;
-  if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
-    level = std::move(*better);
+  try
+  {
+    if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
+      level = std::move(*better);
+  }
+  catch (const SolveError&)  // the identities stay as they are, and the bound is refused
+  {
+  }
   level.finishing_steps = 0;
   level.tightened = true;
 }

@@ -40,8 +40,9 @@ template <int dim>
 /// ||z||_{C,h} <= ||R(u)||_*, with equality as W grows. h_F, and gamma in T(u), are those of the facets of
 /// the original mesh. The operator couples no components: one scalar matrix for each set of fixed nodes,
 /// factored once. a(u, v) is exact; f and g_N are integrated as in a form of degree q on the refined mesh
-/// (DiscreteData), T(u) with the rule on facets cut further, because it has kinks. Keeps a reference to the
-/// form.
+/// (DiscreteData, up to 1e-5 of their effect, and what it names in its remainders where its parts run out),
+/// T(u) with the rule on facets cut further, because it has kinks: from below up to these. Keeps a reference
+/// to the form.
 template <int dim>
 class DualNorm
 {

@@ -146,8 +146,9 @@ std::string newton_text(const NewtonStep& step, std::optional<double> relative_b
 std::string level_text(const LevelRecord& level)
 {
   const std::string bound = relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level))
-                            : level.bound         ? std::string("rounding")
-                                                  : std::string("none");
+                            : !level.bound        ? std::string("none")
+                            : is_round_off(level) ? std::string("rounding")
+                                                  : fmt::format("{:.4g}", level.bound->total_sharp);
   return line(fmt::format("level {}", level.level),
               fmt::format("{:>8} cells  {:>8} dofs  newton {:>2}  bound {:<8}  {:.2f} s", level.cells,
                           level.dofs, newton_steps(level), bound, level.times.level));
@@ -162,7 +163,8 @@ std::string certificate_text(const RunRecord& run)
   std::string text =
       line("bound", fmt::format("{:.6g}, {} (plain sums: {:.6g})", bound.total_sharp,
                                 relative ? fmt::format("that is {:.4g} % of ||sigma(u_h)||", 100 * *relative)
-                                         : std::string("rounding, as the stress is"),
+                                : is_round_off(level) ? std::string("rounding, as the stress is")
+                                                      : std::string("of a stress that is zero"),
                                 bound.total));
   text += component_lines(bound.global, level.delta_updates.has_value());
   if (level.identities)
@@ -207,7 +209,7 @@ std::string verdict_text(const RunRecord& run, const std::string& directory)
 {
   std::string reason = run.reason;
   if (run.status == RunStatus::certified)
-    reason = run.levels.empty() || relative_bound(run.levels.back())
+    reason = run.levels.empty() || !is_round_off(run.levels.back())
                  ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
                                100 * run.tolerance)
                  : std::string("the stress is zero up to rounding, and so is the bound of its error");

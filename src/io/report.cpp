@@ -235,6 +235,12 @@ std::optional<double> relative_bound(const LevelRecord& level)
   return level.bound->total_sharp / level.figures.sigma_norm;
 }
 
+bool is_round_off(const LevelRecord& level)
+{
+  return level.bound && level.figures.sigma_norm == 0.0 &&
+         level.bound->total_sharp <= level.figures.round_off;
+}
+
 template <int dim>
 SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
 {

@@ -114,6 +114,9 @@ struct LevelRecord
 /// bound / ||sigma(u_h)||, if both are there.
 [[nodiscard]] std::optional<double> relative_bound(const LevelRecord& level);
 
+/// Whether the stress is zero as far as rounding lets it be known, and so is the bound.
+[[nodiscard]] bool is_round_off(const LevelRecord& level);
+
 /// Something in a result that deserves a look, see io/run_warnings.h.
 struct RunWarning
 {

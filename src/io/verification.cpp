@@ -38,11 +38,12 @@ std::string richer_text(const Verification& v)
       fmt::format("degree {} on {} cells, {} free degrees of freedom, {} Newton steps", v.richer_degree,
                   v.richer->cells, v.richer->dofs, v.richer->newton_steps);
   if (!v.richer->error) return line("richer", where) + line("", "no solution: " + v.richer->failure);
-  const double bound = v.iterates.back().bound;
+  const double error = v.richer->error->stress;
+  std::string stress = fmt::format("{:.6g}", error);
+  if (sigma_norm > 0) stress += fmt::format(", {:.3g} of ||sigma||", error / sigma_norm);
+  if (error > 0) stress += fmt::format("; bound / error = {:.4g}", v.iterates.back().bound / error);
   return line("richer", where) + line("energy error", fmt::format("{:.6g}", v.richer->error->energy)) +
-         line("stress error",
-              fmt::format("{:.6g}, {:.3g} of ||sigma||; bound / error = {:.4g}", v.richer->error->stress,
-                          v.richer->error->stress / sigma_norm, bound / v.richer->error->stress));
+         line("stress error", stress);
 }
 
 std::string status_text(const Verification& v)
@@ -120,8 +121,10 @@ std::string verification_text(const Verification& v, const std::string& director
                   "bound", "dual norm", "effectivity", "identities");
   for (const VerifiedIterate& iterate : v.iterates) text += iterate_line(iterate);
   const VerifiedIterate& last = v.iterates.back();
-  text += line("||sigma||", fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}", last.norms.sigma,
-                                        last.bound / last.norms.sigma));
+  text +=
+      line("||sigma||", last.norms.sigma > 0 ? fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}",
+                                                           last.norms.sigma, last.bound / last.norms.sigma)
+                                             : std::string("0"));
   return text + richer_text(v) + line("status", status_text(v)) + line("results", directory);
 }
 

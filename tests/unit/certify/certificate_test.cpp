@@ -112,6 +112,14 @@ TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
               ::testing::Not(::testing::Contains(HasSubstr("interpolation"))));
 }
 
+TEST(Statements, ThePlainContactRuleIsNoBoundAtKinks)
+{
+  const DiscreteCase<2> c(block("[0, 0]", "{ friction = \"none\" }"));
+  const auto kink = ::testing::Contains(HasSubstr("kink"));
+  EXPECT_THAT(statements(c.form, ContactRule::reference).not_covered, kink);
+  EXPECT_THAT(statements(c.form, ContactRule::resolved).not_covered, ::testing::Not(kink));
+}
+
 /// The value at a node where u_D jumps is that of one side, and the interpolant on the other is a ramp.
 TEST(Statements, AJumpOfTheDisplacementAtANodeIsReported)
 {
