@@ -113,8 +113,8 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 ///
 /// `friedrichs`: of a mesh of which this is a refinement, if it is known.
 ///
-/// Where Newton's method fails it is started once more, from solutions with T_delta in the place of T and
-/// delta going to 0; `steps` has the steps of all attempts.
+/// Where Newton's method fails it is started anew (solve_persistently); `steps` has the steps of all
+/// attempts.
 ///
 /// Where the identities of the iterate that is kept are violated, the linear systems may have been solved too
 /// loosely: Newton's method goes on with new factors, solving them as far as rounding lets it.

@@ -1,6 +1,7 @@
 #include "adapt/persistent.h"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -54,6 +55,23 @@ std::optional<std::vector<double>> regularised_start(const NitscheForm<dim>& for
   return std::move(result.u);
 }
 
+/// The solution with gamma times `factor`; nothing where that fails, too.
+template <int dim>
+std::optional<std::vector<double>> start_with_gamma(double factor, const NitscheForm<dim>& form,
+                                                    std::span<const double> start, const Config& config,
+                                                    const std::function<void(const NewtonStep&)>& record)
+{
+  const NitscheForm<dim> other(form.problem(), form.space(), factor * form.gamma0());
+  const NewtonObserver<dim> watch = [&](const NewtonIterate<dim>& iterate)
+  {
+    record(iterate.step);
+    return false;
+  };
+  NewtonResult<dim> result = solve<dim>(other, start, config.newton, config.solver, watch);
+  if (!result.message.empty()) return std::nullopt;
+  return std::move(result.u);
+}
+
 }  // namespace
 
 template <int dim>
@@ -74,14 +92,19 @@ NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<con
     failure = std::current_exception();
   }
   const bool worth_it = config.newton.damping && !config.regularisation && form.problem().has_contact();
-  if (worth_it && (failure || !first.message.empty())) try
-    {
-      if (const auto better = regularised_start(form, start, config, record))
-        if (NewtonResult<dim> second = attempt(*better); second.message.empty()) return second;
-    }
-    catch (const SolveError&)
-    {
-    }
+  using Start = std::function<std::optional<std::vector<double>>()>;
+  const std::array<Start, 3> others = {[&] { return regularised_start(form, start, config, record); },
+                                       [&] { return start_with_gamma(3, form, start, config, record); },
+                                       [&] { return start_with_gamma(1. / 3, form, start, config, record); }};
+  if (worth_it && (failure || !first.message.empty()))
+    for (const Start& other : others) try
+      {
+        if (const auto better = other())
+          if (NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;
+      }
+      catch (const SolveError&)
+      {
+      }
   if (failure) std::rethrow_exception(failure);
   return first;
 }

@@ -45,7 +45,7 @@ struct ContactFacet
 {
   BoundaryFacet facet;
   FacetGeometry<dim> geometry;
-  double gamma;  ///< gamma_0 min(lambda + 2 mu, 11 mu) / h_F
+  double gamma;  ///< gamma_0 min(lambda + 2 mu, 34 mu) / h_F
   const Contact* contact;
   std::size_t number;  ///< in Mesh::boundary()
 };

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file penalty.h
-/// Nitsche's parameter gamma = gamma_0 min(lambda + 2 mu, 11 mu) / h_F.
+/// Nitsche's parameter gamma = gamma_0 min(lambda + 2 mu, 34 mu) / h_F.
 
 #include <algorithm>
 
@@ -10,13 +10,12 @@
 namespace tribound
 {
 
-/// The modulus in gamma: lambda + 2 mu, but not more than at nu = 0.45. Nearly incompressible materials would
-/// otherwise have a penalty of the size of lambda against everything that deforms, and Newton's method fails
-/// (docs/choosing.md).
+/// The modulus in gamma: lambda + 2 mu, but not more than at nu = 16/33 = 0.485. Nearly incompressible
+/// materials would otherwise have a penalty of the size of lambda against everything that deforms, and
+/// Newton's method fails (docs/choosing.md).
 [[nodiscard]] inline double penalty_modulus(const Material& material)
 {
-  constexpr double nu = 0.45;
-  constexpr double largest = 2 + 2 * nu / (1 - 2 * nu);  // (lambda + 2 mu) / mu
+  constexpr double largest = 34;  // of (lambda + 2 mu) / mu = (2 - 2 nu) / (1 - 2 nu)
   return std::min(material.lambda + 2 * material.mu, largest * material.mu);
 }
 

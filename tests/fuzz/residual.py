@@ -113,10 +113,10 @@ class Residual:
         return self.facet_rule(self.boundary[name], [contact["gap"], contact["threshold"]], cuts)
 
     def penalties(self, name):
-        """gamma of each facet: gamma_0 min(lambda + 2 mu, 11 mu) / h_F."""
+        """gamma of each facet: gamma_0 min(lambda + 2 mu, 34 mu) / h_F."""
         facets = self.boundary[name]
         lam, mu = self.materials[facets.cells].T
-        return self.case.gamma0 * np.minimum(lam + 2 * mu, 11 * mu) / facets.sizes
+        return self.case.gamma0 * np.minimum(lam + 2 * mu, 34 * mu) / facets.sizes
 
     def contact_state(self, name, owners, points):
         """P, T and what contact.csv holds, at barycentric points of the cells of the facets."""
