@@ -12,7 +12,7 @@ import numpy as np
 TOKEN = re.compile(r"\s*(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[A-Za-z_]\w*|<=|>=|==|!=|&&|\|\||[-+*/^<>?:(),])")
 
 FUNCTIONS = {
-    "rint": np.rint,
+    "rint": lambda x: np.floor(x + 0.5),  # as muParser; np.rint takes halves to the even number
     "sqrt": np.sqrt,
     "exp": np.exp,
     "ln": np.log,

@@ -82,8 +82,11 @@ class Level:
         return np.einsum("ab,cbi->cai", np.linalg.inv(bernstein(lattice(d + 1, p) / p, p)), nodal)
 
     def places(self, cells, points):
-        """Cartesian coordinates of barycentric points, one per cell number."""
-        return np.einsum("pv,pvi->pi", points, self.vertices[self.cells[cells]])
+        """Cartesian coordinates of barycentric points, one per cell number; one that all vertices of a facet share is
+        that of its points to the last bit."""
+        vertices = self.vertices[self.cells[cells]]
+        nearest = vertices[np.arange(len(points)), points.argmax(axis=1)]
+        return nearest + np.einsum("pv,pvi->pi", points, vertices - nearest[:, None, :])
 
     def displacement(self, cells, points):
         return np.einsum("pa,pai->pi", bernstein(points, self.degree), self.coefficients[cells])
