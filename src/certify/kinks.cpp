@@ -19,7 +19,7 @@ struct Range
   double lowest, highest;
   double seen_lowest, seen_highest;
 
-  [[nodiscard]] bool changes_sign(double noise) const { return lowest <= noise && highest >= -noise; }
+  [[nodiscard]] bool changes_sign(double noise) const { return lowest < -noise && highest > noise; }
   /// The square of the values of the other sign that was not seen.
   [[nodiscard]] double hidden() const
   {

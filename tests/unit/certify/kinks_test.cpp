@@ -111,6 +111,17 @@ TEST(Kinks, NoneIsMissed)
     }
 }
 
+TEST(Kinks, RoundingIsNone)
+{
+  const Quadrature<1> rule = quadrature<1>(6);
+  std::vector<Point<2>> p;
+  for (int q = 0; q < rule.size(); ++q) p.emplace_back(0, q % 2 == 0 ? 1e-15 : -1e-15);
+  const std::vector<double> none(p.size(), 0.0);
+  const KinkFinder<2> kinks(rule, 3);
+  EXPECT_FALSE(kinks(Frictionless{}, Point<2>::UnitY(), p, none, 1e-13).possible);
+  EXPECT_TRUE(kinks(Frictionless{}, Point<2>::UnitY(), p, none, 0).possible);
+}
+
 /// Sharp: no kink is suspected where the traction keeps well away from one.
 TEST(Kinks, NoneIsSuspectedFarAway)
 {
