@@ -54,7 +54,7 @@ Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
   if (std::string violation = identity_violation(identities.largest(degree)); !violation.empty())
     return {RunStatus::not_certified, std::move(violation)};
   if (bound.total_sharp <= tolerance * norms.sigma) return {RunStatus::certified, {}};
-  if (norms.sigma <= norms.round_off)
+  if (norms.sigma == 0)
     return {RunStatus::budget, "the bound holds, but the stress is zero, so that it is no share of that"};
   return {RunStatus::budget, fmt::format("the bound holds, but it is {:.3g} % of ||sigma(u_h)||, above "
                                          "adapt.tolerance = {:g} %",

@@ -75,7 +75,9 @@ TEST(Judge, NumbersThatAreNotFiniteAreNeverCertified)
 TEST(Judge, ABodyWithoutStressIsCertifiedByABoundOfZeroOnly)
 {
   EXPECT_EQ(judge(bound_of(0), {}, 1, norms_of(0), 0.01).status, RunStatus::certified);
-  EXPECT_EQ(judge(bound_of(1e-3), {}, 1, norms_of(0), 0.01).status, RunStatus::budget);
+  const Verdict bounded = judge(bound_of(1e-3), {}, 1, norms_of(0), 0.01);
+  EXPECT_EQ(bounded.status, RunStatus::budget);
+  EXPECT_THAT(bounded.reason, HasSubstr("the stress is zero"));
 }
 
 TEST(Judge, WhatIsNothingButRoundingIsComparedWithRounding)
