@@ -7,14 +7,13 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "mesh/bisect.h"
 #include "mesh/gmsh.h"
 #include "support/meshes.h"
+#include "unit/mesh/mesh_testing.h"
 
 namespace tribound::test
 {
@@ -41,10 +40,8 @@ Mesh<dim> bisected_box()
 template <int dim>
 Mesh<dim> read_again(const std::string& text)
 {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / ("gmsh_text" + std::to_string(dim) + ".msh");
-  std::ofstream(file) << text;
-  return std::get<Mesh<dim>>(read_gmsh({file, {}}));
+  const testing_mesh::Directory directory;
+  return std::get<Mesh<dim>>(read_gmsh(directory.write("again.msh", text)));
 }
 
 /// Cells or boundary facets by the coordinates of their vertices, with the name of their group.
