@@ -59,7 +59,7 @@ def key(dice, data):
         [lambda k: k + b"s", lambda k: k[:-1], lambda k: k.upper(), lambda k: k + b"." + k]
         + [lambda k: b'"' + k + b'"', lambda k: b""]
     )
-    return replaced_match(dice, data, re.compile(rb"\w+(?= = )"), lambda m: change(m.group()))
+    return replaced_match(dice, data, re.compile(rb"\b\w+(?= = )"), lambda m: change(m.group()))
 
 
 def bytes_(dice, data):
