@@ -1,7 +1,6 @@
 #include "adapt/persistent.h"
 
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -91,20 +90,23 @@ NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<con
   {
     failure = std::current_exception();
   }
+  if (!failure && first.message.empty()) return first;
+
   const bool worth_it = config.newton.damping && !config.regularisation && form.problem().has_contact();
   using Start = std::function<std::optional<std::vector<double>>()>;
-  const std::array<Start, 3> others = {[&] { return regularised_start(form, start, config, record); },
-                                       [&] { return start_with_gamma(3, form, start, config, record); },
-                                       [&] { return start_with_gamma(1. / 3, form, start, config, record); }};
-  if (worth_it && (failure || !first.message.empty()))
-    for (const Start& other : others) try
-      {
-        if (const auto better = other())
-          if (NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;
-      }
-      catch (const SolveError&)
-      {
-      }
+  std::vector<Start> others;
+  if (worth_it)
+    others = {[&] { return regularised_start(form, start, config, record); },
+              [&] { return start_with_gamma(3, form, start, config, record); },
+              [&] { return start_with_gamma(1. / 3, form, start, config, record); }};
+  for (const Start& other : others) try
+    {
+      if (const auto better = other())
+        if (NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;
+    }
+    catch (const SolveError&)
+    {
+    }
   if (failure) std::rethrow_exception(failure);
   return first;
 }

@@ -237,8 +237,8 @@ std::optional<double> relative_bound(const LevelRecord& level)
 
 bool is_round_off(const LevelRecord& level)
 {
-  return level.bound && level.figures.sigma_norm == 0.0 &&
-         level.bound->total_sharp <= level.figures.round_off;
+  const StressNorms norms{.sigma = level.figures.sigma_norm, .round_off = level.figures.round_off};
+  return level.bound && is_round_off(*level.bound, norms);
 }
 
 template <int dim>
