@@ -1,0 +1,255 @@
+/// @file rigid_motion_contact_test.cpp
+/// What contact holds, with every law, by geometry and by friction.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "unit/contact/rigid_motion_testing.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(RigidMotion, FrictionlessFloorLeavesTheMotionAlongIt)
+{
+  const std::string down = "boundary.top.traction = [0, -1]\n";
+  const std::string said = verdict<2>(block(), down + "boundary.bottom.contact = { friction = \"none\" }");
+  EXPECT_THAT(said, AllOf(HasSubstr("from: translation along x\n"), HasSubstr("or give its contact")));
+  for (const std::string zero : {"\"coulomb\", coefficient = 0", "\"tresca\", threshold = 0"})
+    EXPECT_EQ(verdict<2>(block(), down + "boundary.bottom.contact = { friction = " + zero + " }"), said);
+  EXPECT_THAT(verdict<2>(on_slope(0.5), down + "boundary.bottom.contact = { friction = \"none\" }"),
+              HasSubstr("from: translation along (0.8776, 0.4794)\n"));
+}
+
+TEST(RigidMotion, BlockOnFloorWithFrictionIsHeld)
+{
+  EXPECT_EQ(verdict<2>(block(),
+                       "boundary.top.traction = [0, -1]\n"
+                       "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }"),
+            "held");
+  EXPECT_EQ(verdict<3>(brick(),
+                       "boundary.top.traction = [0.1, -1, 0.1]\n"
+                       "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }"),
+            "held");
+}
+
+TEST(RigidMotion, BalancedOrAbsentLoadsNeedNoContactForce)
+{
+  const std::string floor = "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }\n";
+  EXPECT_EQ(verdict<2>(block(), floor), "held");
+  EXPECT_EQ(verdict<2>(block(), floor + "boundary.left.traction = [-0.3, 0]\nboundary.right.traction = [0.3, "
+                                        "0]"),
+            "held");
+}
+
+TEST(RigidMotion, BlockPulledOffTheFloor)
+{
+  const std::string said =
+      verdict<2>(block(),
+                 "boundary.top.traction = [0, 1]\n"
+                 "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }");
+  EXPECT_THAT(said, HasSubstr("boundary.bottom: contact cannot hold the body (region \"box\"): the loads "
+                              "drive it into translation along y; contact only pushes"));
+  EXPECT_THAT(verdict<3>(brick(),
+                         "boundary.top.traction = [0, 1, 0]\n"
+                         "boundary.bottom.contact = { friction = \"tresca\", threshold = 9 }"),
+              HasSubstr("drive it into translation along y"));
+}
+
+TEST(RigidMotion, BlockTippedOverItsEdge)
+{
+  // down 2 in the middle of [0, 2], up at the right end: the resultant acts left of the block
+  const std::string said =
+      verdict<2>(block(),
+                 "boundary.top.traction = [0, -1]\nboundary.right.traction = [0, 1.5]\n"
+                 "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 5 }");
+  EXPECT_THAT(said, HasSubstr("drive it into rotation about (0, 0)"));
+}
+
+TEST(RigidMotion, BlockPushedHighTipsBeforeItSlides)
+{
+  // A side load on top of a block of weight 2, 2 wide and 1 high, tips it from 2 on, and makes it slide from
+  // 4 on.
+  const auto pushed = [](const std::string& load)
+  {
+    return verdict<2>(block(), "load.body = [0, -1]\nboundary.top.traction = [" + load +
+                                   ", 0]\n"
+                                   "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 2 }");
+  };
+  EXPECT_EQ(pushed("0.999"), "held");
+  EXPECT_THAT(pushed("1.001"), HasSubstr("drive it into rotation about (2, 0); contact only pushes"));
+}
+
+std::string on_floor(double coefficient)
+{
+  return "load.body = [0, -1]\nboundary.bottom.contact = { friction = \"coulomb\", coefficient = " +
+         std::to_string(coefficient) + " }";
+}
+
+TEST(RigidMotion, CoulombHoldsUpToTheFrictionAngle)
+{
+  const double angle = 0.3;
+  EXPECT_EQ(verdict<2>(on_slope(angle), on_floor(std::tan(angle) * 1.001)), "held");
+  EXPECT_THAT(verdict<2>(on_slope(angle), on_floor(std::tan(angle) * 0.999)),
+              HasSubstr("drive it into translation along (-0.9553, -0.2955); friction is too weak"));
+}
+
+TEST(RigidMotion, CoulombConeIn3DIsCircumscribed)
+{
+  const auto slope = [](double angle, double coefficient)
+  {
+    return verdict<3>(brick_on_slope(angle),
+                      "load.body = [0, 0, -1]\nboundary.back.contact = { friction = \"coulomb\", coefficient "
+                      "= " +
+                          std::to_string(coefficient) + " }");
+  };
+  const double angle = 0.3;
+  EXPECT_EQ(slope(angle, std::tan(angle) * 1.001), "held");
+  EXPECT_THAT(slope(angle, std::tan(angle) * 0.9), HasSubstr("friction is too weak"));
+}
+
+TEST(RigidMotion, CoulombIn3DRefusesNothingThatTheRoundConeHolds)
+{
+  constexpr double coefficient = 0.5;
+  for (int i = 0; i < 16; ++i)
+  {
+    const double side = 0.999 * coefficient;
+    const double angle = i * std::numbers::pi / 8;
+    EXPECT_EQ(
+        verdict<3>(brick(), "load.body = [" + std::to_string(side * std::cos(angle)) + ", -1, " +
+                                std::to_string(side * std::sin(angle)) +
+                                "]\nboundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.5 }"),
+        "held")
+        << "direction " << i;
+  }
+}
+
+TEST(RigidMotion, TrescaThresholdTooSmallForTheSideLoad)
+{
+  // 0.1 on the right side of length 1 against s on the bottom of length 2
+  const auto pushed = [](const std::string& threshold)
+  {
+    return verdict<2>(block(),
+                      "boundary.top.traction = [0, -1]\nboundary.right.traction = [-0.1, 0]\n"
+                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
+                          threshold + " }");
+  };
+  EXPECT_EQ(pushed("0.0501"), "held");
+  EXPECT_EQ(pushed("\"0.0502*x\""), "held");
+  EXPECT_THAT(pushed("0.0499"),
+              HasSubstr("translation along -x; the friction threshold takes up only 99.8 % of"));
+  EXPECT_THAT(pushed("0.025"), HasSubstr("translation along -x; the friction threshold takes up "
+                                         "only 50 % of their work in it"));
+}
+
+/// Strips of friction between the points of the rule hold as much as their width makes of them.
+TEST(RigidMotion, TrescaOnANarrowStripCounts)
+{
+  const auto pulled = [](const std::string& from, double threshold)
+  {
+    return verdict<2>(box<2>({0, 0}, {1, 1}, {1, 1}),
+                      "boundary.top.traction = [0, -1]\nboundary.right.traction = [1, 0]\n"
+                      "boundary.bottom.contact = { friction = \"tresca\", threshold = \"x > " +
+                          from + " && x < " + from + " + 0.07 ? " + std::to_string(threshold) + " : 0\" }");
+  };
+  for (const std::string from : {"0.34", "0.08", "0.6"})
+  {
+    EXPECT_EQ(pulled(from, 100), "held");
+    EXPECT_EQ(pulled(from, 1.001 / 0.07), "held");
+    EXPECT_THAT(pulled(from, 0.999 / 0.07), HasSubstr("takes up only 99.9 % of their work"));
+  }
+}
+
+TEST(RigidMotion, TrescaBelowARollerThatTakesTheNormalForces)
+{
+  const auto pushed = [](const std::string& threshold)
+  {
+    return verdict<2>(block(),
+                      "boundary.top.displacement = [\"free\", 0]\nboundary.right.traction = [-0.1, 0]\n"
+                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
+                          threshold + " }");
+  };
+  EXPECT_EQ(pushed("0.0501"), "held");
+  EXPECT_THAT(pushed("0.0499"), HasSubstr("drive it into translation along -x"));
+}
+
+TEST(RigidMotion, TrescaIn3DAgainstTheDirectionOfTheLoad)
+{
+  // resultant 0.1 (1, 0, 1) and its moments against s on an area of 2
+  const auto pushed = [](const std::string& threshold)
+  {
+    return verdict<3>(brick(),
+                      "load.body = [0.05, -1, 0.05]\n"
+                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
+                          threshold + " }");
+  };
+  EXPECT_EQ(pushed("0.0708"), "held");
+  EXPECT_THAT(pushed("0.0706"), HasSubstr("translation along (0.7071, 0, 0.7071)"));
+}
+
+/// The body can only move along x, off its inclined floor, and only Tresca friction resists that.
+TEST(RigidMotion, TrescaTooWeakAgainstAPullOffTheFloor)
+{
+  const double angle = 0.3;
+  const auto pulled = [&](double threshold)
+  {
+    return verdict<2>(on_slope(angle),
+                      "load.body = [-0.1, 0]\nboundary.top.displacement = [\"free\", 0]\n"
+                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
+                          std::to_string(threshold) + " }");
+  };
+  EXPECT_EQ(pulled(0.1001 / std::cos(angle)), "held");
+  EXPECT_THAT(pulled(0.0999 / std::cos(angle)),
+              HasSubstr("translation along -x; the friction threshold takes up only 99.9 % of"));
+  EXPECT_THAT(pulled(0.003), HasSubstr("takes up only 2.87 % of"));
+}
+
+/// An L of three squares, foot to the right; frictionless obstacles around it.
+MeshData<2> hook()
+{
+  MeshData<2> data = box<2>({0, 0}, {2, 2}, {2, 2});
+  std::erase_if(data.cells,
+                [&](const Cell<2>& cell)
+                {
+                  Point<2> middle = Point<2>::Zero();
+                  for (const Index v : cell) middle += data.vertices[v] / 3;
+                  return middle[0] > 1 && middle[1] > 1;
+                });
+  data.regions.resize(data.cells.size());
+  data.vertices.pop_back();  // (2, 2)
+  std::erase_if(data.facets,
+                [](const TaggedFacet<2>& f) { return f.vertices[0] == 8 || f.vertices[1] == 8; });
+  data.boundary_names.insert(data.boundary_names.end(), {"step", "notch"});
+  data.facets.push_back({{4, 5}, 4});  // (1, 1)-(2, 1)
+  data.facets.push_back({{4, 7}, 5});  // (1, 1)-(1, 2)
+  return data;
+}
+
+TEST(RigidMotion, HookIsHeldByGeometryAlone)
+{
+  const std::string smooth = ".contact = { friction = \"none\" }\n";
+  const std::string inside = "boundary.step" + smooth + "boundary.notch" + smooth;
+  EXPECT_EQ(verdict<2>(hook(), inside + "boundary.bottom.traction = [0, 1]"
+                                        "\nboundary.left.traction = [1, 0]"),
+            "held");
+  EXPECT_THAT(
+      verdict<2>(hook(), inside + "boundary.bottom.traction = [0, 1]\nboundary.left.traction = [-1, 0]"),
+      HasSubstr("contact cannot hold the body"));
+  // A foot on the floor and its upper side under a ledge: two-sided, holds up and down and against turning.
+  EXPECT_EQ(verdict<2>(hook(), "boundary.bottom" + smooth + "boundary.step" + smooth +
+                                   "boundary.left.displacement = [0, \"free\"]\nload.body = [0, 1]"),
+            "held");
+}
+
+}  // namespace
+
+}  // namespace tribound::test

@@ -1,0 +1,134 @@
+/// @file rigid_motion_random_test.cpp
+/// Random loads that contact tractions balance are never refused.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "unit/contact/rigid_motion_testing.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// The box with a condition on each side, turned, so that no side is parallel to an axis.
+template <int dim>
+struct RandomCase
+{
+  std::mt19937 random;
+  double pick(double from, double to) { return std::uniform_real_distribution<>(from, to)(random); }
+
+  std::string side()
+  {
+    switch (random() % 5)
+    {
+      case 0:
+        return "contact = {}";
+      case 1:
+        return fmt::format("contact = {{ friction = \"tresca\", threshold = {} }}", pick(0, 1));
+      case 2:
+        return fmt::format("contact = {{ friction = \"tresca\", threshold = \"x > {} ? 0.2 : {}*x^2\" }}",
+                           pick(0, 2), pick(0, 1));
+      case 3:
+        return fmt::format("contact = {{ friction = \"coulomb\", coefficient = {} }}", pick(0, 1));
+      default:
+        return dim == 2 ? "traction = [0, 0]" : "traction = [0, 0, 0]";
+    }
+  }
+
+  std::string boundaries()
+  {
+    std::string toml;
+    std::vector<std::string> names = {"left", "right", "bottom", "top"};
+    if (dim == 3) names.insert(names.end(), {"back", "front"});
+    for (const std::string& name : names) toml += fmt::format("boundary.{} = {{ {} }}\n", name, side());
+    return toml;
+  }
+
+  MeshData<dim> mesh()
+  {
+    Tensor<dim> turn = Tensor<dim>::Identity();
+    const double angle = pick(0, 6.28);
+    turn.topLeftCorner(2, 2) << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    if constexpr (dim == 2)
+      return mapped<2>(block(), [&](const Point<2>& x) -> Point<2> { return turn * x; });
+    else
+      return mapped<3>(brick(), [&](const Point<3>& x) -> Point<3> { return turn * x; });
+  }
+
+  /// A traction that contact can exert, often one of the largest.
+  Point<dim> traction(const ContactFacet<dim>& facet, const Point<dim>& x)
+  {
+    const Point<dim>& n = facet.geometry.normal;
+    const double pressure = random() % 2 == 0 ? 0 : std::pow(pick(0, 1), 4);
+    double limit = 0;
+    if (const auto* tresca = std::get_if<Tresca>(&facet.contact->friction)) limit = tresca->threshold(x);
+    if (const auto* coulomb = std::get_if<Coulomb>(&facet.contact->friction))
+      limit = coulomb->coefficient * pressure;
+    const Point<dim> any = Point<dim>::Random();
+    const Point<dim> direction = (any - any.dot(n) * n).normalized();
+    return -pressure * n + (random() % 2 == 0 ? limit : pick(0, limit)) * direction;
+  }
+};
+
+bool refused(const std::string& verdict)
+{
+  return verdict.find("contact cannot hold") != std::string::npos;
+}
+
+/// Loads that are in equilibrium with tractions which the contact laws allow are never refused.
+template <int dim>
+void never_refused(int n_cases)
+{
+  int tried = 0;
+  for (int i = 0; i < n_cases; ++i)
+  {
+    RandomCase<dim> any{std::mt19937(i)};
+    const DiscreteCase<dim> c(material + any.boundaries(), any.mesh());
+    // On a third of the cases all friction pulls in one direction as hard as it can.
+    const Point<dim> pull = Point<dim>::Random();
+    std::vector<Point<dim>> t;
+    for (const ContactFacet<dim>& facet : c.form.contact_facets())
+      for (const Point<dim - 1>& s : c.form.facet_rule().points)
+      {
+        t.push_back(any.traction(
+            facet, cell_map(c.mesh, facet.facet.cell)(facet_to_cell<dim>(facet.facet.local, s))));
+        const Point<dim>& n = facet.geometry.normal;
+        const Point<dim> along = pull - pull.dot(n) * n;
+        const Point<dim> friction = t.back() - t.back().dot(n) * n;
+        if (i % 3 == 0) t.back() += friction.norm() * along.normalized() - friction;
+      }
+    std::vector<double> load(c.space.n_dofs(), 0.0);
+    c.form.add_contact_load(t, load);
+    for (double& entry : load) entry = -entry;
+    std::string said = "held";
+    try
+    {
+      check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load);
+      ++tried;
+    }
+    catch (const InputError& error)
+    {
+      said = error.what();
+    }
+    EXPECT_FALSE(refused(said)) << "case " << i << ": " << said;
+  }
+  EXPECT_GT(tried, n_cases / 2) << "most cases leave a motion free";
+  fmt::print("{}D: {} cases with a solution, all held\n", dim, tried);
+}
+
+TEST(RigidMotion, RefusesNothingThatHasASolution)
+{
+  never_refused<2>(500);
+  never_refused<3>(100);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
