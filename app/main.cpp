@@ -18,20 +18,20 @@
 #include <variant>
 #include <vector>
 
-#include "base/error.h"
-#include "base/memory.h"
-#include "base/version.h"
-#include "init.h"
-#include "interrupt.h"
-#include "io/console.h"
-#include "io/shared_file.h"
-#include "mesh/gmsh.h"
-#include "run.h"
-#include "run_report.h"
-#include "solve/petsc.h"
-#include "study.h"
-#include "sweep.h"
-#include "verify.h"
+#include "app/command/init.h"
+#include "app/command/interrupt.h"
+#include "app/command/run.h"
+#include "app/command/run_report.h"
+#include "app/command/study.h"
+#include "app/command/sweep.h"
+#include "app/command/verify.h"
+#include "app/console/console.h"
+#include "app/shared_file.h"
+#include "tribound/algebra/petsc.h"
+#include "tribound/base/error.h"
+#include "tribound/base/memory.h"
+#include "tribound/base/version.h"
+#include "tribound/mesh/gmsh.h"
 
 namespace
 {

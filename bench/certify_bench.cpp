@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "case/config.h"
-#include "certify/equilibrate.h"
-#include "certify/estimate.h"
-#include "contact/nitsche.h"
-#include "mesh/box.h"
+#include "tribound/case/config.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/box.h"
 
 namespace
 {

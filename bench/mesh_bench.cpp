@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <random>
 
-#include "mesh/bisect.h"
-#include "mesh/box.h"
-#include "mesh/gmsh.h"
-#include "mesh/mesh.h"
+#include "tribound/mesh/bisect.h"
+#include "tribound/mesh/box.h"
+#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/mesh.h"
 
 namespace
 {

@@ -13,14 +13,14 @@
 #include <variant>
 #include <vector>
 
-#include "base/clock.h"
-#include "case/config.h"
-#include "contact/elasticity.h"
-#include "contact/nitsche.h"
-#include "mesh/gmsh.h"
-#include "solve/linear_solver.h"
-#include "solve/newton.h"
-#include "solve/petsc.h"
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/algebra/petsc.h"
+#include "tribound/base/clock.h"
+#include "tribound/case/config.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/gmsh.h"
+#include "tribound/solve/newton.h"
 
 namespace
 {

@@ -17,14 +17,14 @@ if(TARGET tribound_app)
   install(FILES ${PROJECT_SOURCE_DIR}/app/completions/_tribound DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 
-# What the program runs: io/figures.h.
+# What the program runs: app/result/figures.h.
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/study_figures DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
 foreach(module result_files study_bodies study_charts study_fields)
   install(FILES ${PROJECT_SOURCE_DIR}/scripts/${module}.py DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
 endforeach()
 
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tribound FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/tribound
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
 install(EXPORT tribound NAMESPACE tribound:: FILE tribound-targets.cmake DESTINATION ${package_dir})
 get_target_property(library_type tribound TYPE)

@@ -3,7 +3,7 @@
 /// on one mesh, once by the adaptive loop. Exit code 0 if the bound reaches the tolerance and the floor
 /// carries the load.
 
-#include <tribound.h>
+#include <tribound/tribound.h>
 #include <atomic>
 #include <cmath>
 #include <cstdio>

@@ -16,14 +16,18 @@ def includes(file):
     return re.findall(r'#include "(.*?)"', file.read_text())
 
 
+def room(file):
+    return file.parts[1]
+
+
 def main():
     root = Path(sys.argv[1])
     source = root / "src"
     users = {file.relative_to(source): includes(file) for file in source.rglob("*") if file.suffix in (".h", ".cpp")}
-    reached, pending = set(), ["tribound.h"]
+    reached, pending = set(), ["tribound/tribound.h"]
     while pending:
         header = pending.pop()
-        if header not in reached:
+        if header not in reached and Path(header) in users:
             reached.add(header)
             pending += users[Path(header)]
     problems = []
@@ -31,7 +35,7 @@ def main():
         if file.suffix != ".h" or str(file) in reached or file.parent.name == "base":
             continue
         for user, headers in users.items():
-            if str(file) in headers and user.parent != file.parent:
+            if str(file) in headers and room(user) != room(file):
                 problems.append(f"{file} is used by {user}, but tribound.h does not reach it")
     print(f"tribound.h reaches {len(reached) - 1} headers", *problems, sep="\n")
     return 1 if problems or len(reached) < 30 else 0

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/types.h"
+#include "tribound/base/types.h"
 
 namespace tribound::test
 {

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "fem/quadrature.h"
+#include "tribound/fem/quadrature.h"
 
 namespace tribound::test
 {

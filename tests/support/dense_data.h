@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "contact/nitsche.h"
-#include "fem/polynomials.h"
 #include "support/dense_patch.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/polynomials.h"
 
 namespace tribound::test
 {

@@ -7,8 +7,8 @@
 
 #include <span>
 
-#include "certify/stress.h"
-#include "contact/nitsche.h"
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::test
 {

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "case/config.h"
-#include "contact/nitsche.h"
-#include "mesh/gmsh.h"
-#include "solve/newton.h"
+#include "tribound/case/config.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/gmsh.h"
+#include "tribound/solve/newton.h"
 
 namespace tribound::test
 {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "solve/petsc.h"
+#include "tribound/algebra/petsc.h"
 
 namespace
 {

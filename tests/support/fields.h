@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/elasticity.h"
-#include "fem/space.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/space.h"
 
 namespace tribound::test
 {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/box.h"
-#include "mesh/mesh.h"
+#include "tribound/mesh/box.h"
+#include "tribound/mesh/mesh.h"
 
 namespace tribound::test
 {

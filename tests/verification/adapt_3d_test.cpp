@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "adapt/loop.h"
 #include "support/meshes.h"
+#include "tribound/adapt/loop.h"
 
 namespace tribound::test
 {

@@ -14,10 +14,10 @@
 #include <utility>
 #include <variant>
 
-#include "adapt/loop.h"
-#include "certify/true_error.h"
-#include "mesh/gmsh.h"
 #include "support/t2d.h"
+#include "tribound/adapt/loop.h"
+#include "tribound/certify/truth/true_error.h"
+#include "tribound/mesh/gmsh.h"
 
 namespace tribound::test
 {

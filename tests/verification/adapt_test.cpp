@@ -2,7 +2,7 @@
 /// The adaptive algorithm on problem T2D: optimal rates, few Newton steps, and the certificate it ends with
 /// whatever happens.
 
-#include "adapt/loop.h"
+#include "tribound/adapt/loop.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "mesh/gmsh.h"
 #include "support/t2d.h"
+#include "tribound/base/error.h"
+#include "tribound/mesh/gmsh.h"
 
 namespace tribound::test
 {

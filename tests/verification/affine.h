@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "contact/elasticity.h"
-#include "contact/nitsche.h"
 #include "support/meshes.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::test
 {

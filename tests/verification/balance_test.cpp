@@ -2,7 +2,7 @@
 /// Loads, reactions and contact forces: their sum vanishes to rounding at every Newton iterate, and the parts
 /// are those of a hand calculation.
 
-#include "certify/balance.h"
+#include "tribound/certify/bound/balance.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <cmath>
 #include <string>
 
-#include "certify/equilibrate.h"
 #include "support/discrete_case.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
 
 namespace tribound::test
 {

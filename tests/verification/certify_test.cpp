@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "certify/equilibrate.h"
-#include "certify/estimate.h"
 #include "support/discrete_case.h"
 #include "support/t2d.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
 
 namespace tribound::test
 {

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "certify/equilibrate.h"
-#include "certify/estimate.h"
-#include "certify/true_error.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/truth/true_error.h"
 
 namespace tribound::test
 {

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <utility>
 
-#include "certify/equilibrate.h"
-#include "certify/estimate.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
 #include "verification/affine.h"
 #include "verification/manufactured.h"
 #include "verification/solutions.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "adapt/loop.h"
-#include "mesh/gmsh.h"
+#include "tribound/adapt/loop.h"
+#include "tribound/mesh/gmsh.h"
 
 namespace tribound::test
 {

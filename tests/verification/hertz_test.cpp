@@ -17,9 +17,9 @@
 #include <variant>
 #include <vector>
 
-#include "adapt/loop.h"
-#include "contact/nitsche.h"
-#include "mesh/gmsh.h"
+#include "tribound/adapt/loop.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/gmsh.h"
 
 namespace tribound::test
 {

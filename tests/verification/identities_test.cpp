@@ -12,12 +12,12 @@
 #include <string>
 #include <utility>
 
-#include "certify/checks.h"
-#include "certify/equilibrate.h"
-#include "mesh/bisect.h"
 #include "support/box_sides.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/mesh/bisect.h"
 
 namespace tribound::test
 {

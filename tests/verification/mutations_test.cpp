@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "certify/checks.h"
-#include "certify/equilibrate.h"
-#include "certify/estimate.h"
 #include "support/dense_patch.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
 #include "support/t2d.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
 
 namespace tribound::test
 {

@@ -2,14 +2,14 @@
 /// The regularised variant, method section 7: the identities and the guarantee hold at every iterate whatever
 /// delta is, the parts of the stress add up, and with delta everything tends to the plain method.
 
-#include "adapt/regularisation.h"
+#include "tribound/adapt/regularisation.h"
 
 #include <cmath>
 
-#include "adapt/level.h"
-#include "base/norm.h"
-#include "certify/checks.h"
 #include "effectivity.h"
+#include "tribound/adapt/level.h"
+#include "tribound/base/norm.h"
+#include "tribound/certify/bound/checks.h"
 
 namespace tribound::test
 {

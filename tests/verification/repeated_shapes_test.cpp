@@ -8,11 +8,11 @@
 #include <numbers>
 #include <string>
 
-#include "certify/checks.h"
-#include "certify/equilibrate.h"
-#include "certify/repeated_shapes.h"
-#include "mesh/box.h"
 #include "support/discrete_case.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/equilibrate/repeated_shapes.h"
+#include "tribound/mesh/box.h"
 
 namespace tribound::test
 {

@@ -1,6 +1,6 @@
 /// Marking: against all subsets, against sorting, and where estimates are equal or zero.
 
-#include "adapt/mark.h"
+#include "tribound/adapt/mark.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 /// Rates of quantities that are known to behave like powers.
 
-#include "adapt/rate.h"
+#include "tribound/adapt/rate.h"
 
 #include <gtest/gtest.h>
 

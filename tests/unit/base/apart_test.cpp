@@ -1,4 +1,4 @@
-#include "base/apart.h"
+#include "tribound/base/apart.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "base/error.h"
+#include "tribound/base/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 /// @file memory_test.cpp
 /// Limits of control groups, from files as the system shows them.
 
-#include "base/memory.h"
+#include "tribound/base/memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/parallel.h"
+#include "tribound/base/parallel.h"
 
 #include <gtest/gtest.h>
 

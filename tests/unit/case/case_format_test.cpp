@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "case/config.h"
+#include "tribound/case/config.h"
 #include "unit/case/case_format.h"
 
 namespace tribound::test

@@ -1,4 +1,4 @@
-#include "case/config.h"
+#include "tribound/case/config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

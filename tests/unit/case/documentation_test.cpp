@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "case/config.h"
+#include "tribound/case/config.h"
 
 namespace tribound
 {

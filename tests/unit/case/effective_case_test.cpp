@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "case/config.h"
-#include "case/node.h"
+#include "tribound/case/config.h"
+#include "tribound/case/node.h"
 
 namespace tribound
 {

@@ -1,4 +1,4 @@
-#include "case/problem.h"
+#include "tribound/problem/problem.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-#include "case/sweep_values.h"
+#include "tribound/case/sweep_values.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "tribound/base/error.h"
 
 namespace tribound
 {

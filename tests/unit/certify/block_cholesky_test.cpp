@@ -1,7 +1,7 @@
 /// @file block_cholesky_test.cpp
 /// Solutions of sparse block systems, put back into the system.
 
-#include "certify/block_cholesky.h"
+#include "tribound/certify/equilibrate/block_cholesky.h"
 
 #include <gtest/gtest.h>
 

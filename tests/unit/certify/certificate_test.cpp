@@ -1,7 +1,7 @@
 /// @file certificate_test.cpp
 /// The verdict: nothing is certified that must not be.
 
-#include "certify/certificate.h"
+#include "tribound/certify/bound/certificate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

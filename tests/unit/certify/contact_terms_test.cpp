@@ -1,7 +1,7 @@
 /// @file contact_terms_test.cpp
 /// The norms on the contact boundary against integrals done by hand, across kinks of the traction.
 
-#include "certify/contact_terms.h"
+#include "tribound/certify/bound/contact_terms.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "fem/polynomials.h"
 #include "support/discrete_case.h"
+#include "tribound/fem/polynomials.h"
 
 namespace tribound::test
 {

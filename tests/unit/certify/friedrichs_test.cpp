@@ -2,7 +2,7 @@
 /// The Friedrichs constant against an independent program, exact constants, and functions that attain a
 /// large part of it: ||f||_* <= C_F ||f|| for the residual of u = 0 under a body force f.
 
-#include "certify/friedrichs.h"
+#include "tribound/certify/bound/friedrichs.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include <numbers>
 #include <string>
 
-#include "certify/true_error.h"
-#include "mesh/geometry.h"
-#include "mesh/refine.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
+#include "tribound/certify/truth/true_error.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/refine.h"
 
 namespace tribound::test
 {

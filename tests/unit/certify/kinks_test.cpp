@@ -1,7 +1,7 @@
 /// @file kinks_test.cpp
 /// What is said of kinks of the contact traction against the traction on a lattice.
 
-#include "certify/kinks.h"
+#include "tribound/certify/bound/kinks.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "contact/traction.h"
+#include "tribound/contact/nitsche/traction.h"
 
 namespace tribound::test
 {

@@ -1,7 +1,7 @@
 /// @file small_dense_test.cpp
 /// The kernels against their definitions, entry by entry.
 
-#include "certify/small_dense.h"
+#include "tribound/certify/equilibrate/small_dense.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /// Errors on the common refinement of two meshes against differences that are known otherwise.
 
-#include "certify/solution_error.h"
+#include "tribound/certify/truth/solution_error.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <random>
 #include <string>
 
-#include "fem/nested.h"
-#include "mesh/bisect.h"
 #include "support/dimensions.h"
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "tribound/fem/nested.h"
+#include "tribound/mesh/bisect.h"
 
 namespace tribound::test
 {

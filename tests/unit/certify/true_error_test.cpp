@@ -2,7 +2,7 @@
 /// The dual norm of residuals whose Riesz representative is a known polynomial; errors against known
 /// solutions.
 
-#include "certify/true_error.h"
+#include "tribound/certify/truth/true_error.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include <functional>
 #include <string>
 
-#include "fem/nested.h"
 #include "support/dimensions.h"
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "tribound/fem/nested.h"
 
 namespace tribound::test
 {

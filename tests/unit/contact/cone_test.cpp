@@ -1,7 +1,7 @@
 /// @file cone_test.cpp
 /// The remainder of a vector outside a cone, by its defining properties.
 
-#include "contact/cone.h"
+#include "tribound/contact/support/cone.h"
 
 #include <gtest/gtest.h>
 

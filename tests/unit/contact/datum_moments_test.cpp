@@ -1,4 +1,4 @@
-#include "contact/datum_moments.h"
+#include "tribound/contact/nitsche/datum_moments.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/polynomials.h"
+#include "tribound/fem/polynomials.h"
 
 namespace tribound::test
 {

@@ -1,7 +1,7 @@
 /// @file discrete_data_test.cpp
 /// Data that jump exactly where a boundary is.
 
-#include "contact/discrete_data.h"
+#include "tribound/contact/nitsche/discrete_data.h"
 
 #include <gtest/gtest.h>
 

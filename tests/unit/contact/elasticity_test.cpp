@@ -1,7 +1,7 @@
 /// @file elasticity_test.cpp
 /// Stiffness and loads against Hooke's law in its inverse form and against integrals in closed form.
 
-#include "contact/elasticity.h"
+#include "tribound/contact/nitsche/elasticity.h"
 
 #include <gtest/gtest.h>
 

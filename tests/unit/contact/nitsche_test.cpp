@@ -2,7 +2,7 @@
 /// The tangent of the contact form against central differences of its tractions, for every friction law and
 /// contact state.
 
-#include "contact/nitsche.h"
+#include "tribound/contact/nitsche/nitsche.h"
 
 #include <gtest/gtest.h>
 

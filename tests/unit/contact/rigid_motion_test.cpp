@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "contact/rigid_modes.h"
+#include "tribound/contact/support/rigid_modes.h"
 #include "unit/contact/rigid_motion_testing.h"
 
 namespace tribound::test

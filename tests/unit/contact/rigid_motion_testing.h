@@ -6,10 +6,10 @@
 #include <Eigen/Geometry>
 #include <string>
 
-#include "base/error.h"
-#include "contact/rigid_motion.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
+#include "tribound/base/error.h"
+#include "tribound/contact/support/rigid_motion.h"
 
 namespace tribound::test
 {

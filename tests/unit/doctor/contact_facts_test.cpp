@@ -1,7 +1,7 @@
 /// @file contact_facts_test.cpp
 /// Normals, kinks and gaps of contact boundaries of known shape.
 
-#include "doctor/contact_facts.h"
+#include "tribound/doctor/contact_facts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 /// @file cost_test.cpp
 /// Costs: the number of unknowns is exact, the rest grows with it.
 
-#include "doctor/cost.h"
+#include "tribound/doctor/cost.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "fem/space.h"
 #include "support/meshes.h"
+#include "tribound/fem/space.h"
 
 namespace tribound::test
 {

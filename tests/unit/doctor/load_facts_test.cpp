@@ -1,14 +1,14 @@
 /// @file load_facts_test.cpp
 /// Stresses, strains and units guessed from the data of a case.
 
-#include "doctor/load_facts.h"
+#include "tribound/doctor/load_facts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "doctor/units.h"
 #include "support/discrete_case.h"
 #include "support/meshes.h"
+#include "tribound/doctor/units.h"
 
 namespace tribound::test
 {

@@ -1,7 +1,7 @@
 /// @file mesh_quality_test.cpp
 /// Angles and aspect ratios of cells whose shape is known.
 
-#include "doctor/mesh_quality.h"
+#include "tribound/doctor/mesh_quality.h"
 
 #include <gtest/gtest.h>
 

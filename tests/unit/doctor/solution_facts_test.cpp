@@ -2,7 +2,7 @@
 /// Penetration, sliding and zigzags of given displacements. With E = 1, nu = 0 a displacement (0, w(x)) that
 /// is constant in y has sigma^n = 0 at the bottom, where the pressure is then gamma (-w - g)_+.
 
-#include "doctor/solution_facts.h"
+#include "tribound/doctor/solution_facts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

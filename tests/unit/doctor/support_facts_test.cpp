@@ -1,7 +1,7 @@
 /// @file support_facts_test.cpp
 /// Motions that contact alone stops, what to fix against a motion, and corners with too many conditions.
 
-#include "doctor/support_facts.h"
+#include "tribound/doctor/support_facts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 /// @file bernstein_test.cpp
 /// Coefficients in Bernstein's basis: they make the polynomial, and they enclose it.
 
-#include "fem/bernstein.h"
+#include "tribound/fem/bernstein.h"
 
 #include <gtest/gtest.h>
 

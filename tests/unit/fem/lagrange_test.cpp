@@ -1,7 +1,7 @@
 /// @file lagrange_test.cpp
 /// The nodal basis on the reference simplex.
 
-#include "fem/lagrange.h"
+#include "tribound/fem/lagrange.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <set>
 #include <vector>
 
-#include "fem/polynomials.h"
-#include "fem/quadrature.h"
-#include "mesh/geometry.h"
 #include "support/dimensions.h"
+#include "tribound/fem/polynomials.h"
+#include "tribound/fem/quadrature.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::test
 {

@@ -1,15 +1,15 @@
 /// Functions carried to a bisected mesh are the same functions.
 
-#include "fem/nested.h"
+#include "tribound/fem/nested.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "mesh/bisect.h"
 #include "support/dimensions.h"
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "tribound/mesh/bisect.h"
 
 namespace tribound::test
 {

@@ -1,7 +1,7 @@
 /// @file polynomials_test.cpp
 /// The orthonormal basis by its defining properties, with quadrature and differences.
 
-#include "fem/polynomials.h"
+#include "tribound/fem/polynomials.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fem/quadrature.h"
 #include "support/dimensions.h"
+#include "tribound/fem/quadrature.h"
 
 namespace tribound::test
 {

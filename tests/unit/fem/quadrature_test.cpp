@@ -1,7 +1,7 @@
 /// @file quadrature_test.cpp
 /// Rules against the closed formula for monomials.
 
-#include "fem/quadrature.h"
+#include "tribound/fem/quadrature.h"
 
 #include <gtest/gtest.h>
 

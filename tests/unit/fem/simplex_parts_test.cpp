@@ -1,4 +1,4 @@
-#include "fem/simplex_parts.h"
+#include "tribound/fem/simplex_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 /// @file space_test.cpp
 /// Global numbering: continuity, number of nodes, Dirichlet values.
 
-#include "fem/space.h"
+#include "tribound/fem/space.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "fem/quadrature.h"
-#include "mesh/geometry.h"
 #include "support/dimensions.h"
 #include "support/meshes.h"
+#include "tribound/base/error.h"
+#include "tribound/fem/quadrature.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::test
 {

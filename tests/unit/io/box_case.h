@@ -7,12 +7,12 @@
 #include <string_view>
 #include <variant>
 
-#include "case/config.h"
-#include "case/problem.h"
-#include "contact/nitsche.h"
-#include "fem/space.h"
-#include "mesh/box.h"
-#include "mesh/mesh.h"
+#include "tribound/case/config.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/space.h"
+#include "tribound/mesh/box.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
 
 namespace tribound::test
 {

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "adapt/level.h"
-#include "certify/equilibrate.h"
+#include "tribound/adapt/level.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
 #include "unit/io/box_case.h"
 
 namespace tribound::test

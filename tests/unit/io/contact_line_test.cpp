@@ -1,4 +1,4 @@
-#include "io/contact_line.h"
+#include "tribound/io/fields/contact_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/csv.h"
+#include "tribound/io/file/csv.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "io/facts.h"
+#include "tribound/io/record/facts.h"
 
 #include <gtest/gtest.h>
 

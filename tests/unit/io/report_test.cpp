@@ -1,4 +1,4 @@
-#include "io/report.h"
+#include "tribound/io/record/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -170,23 +170,6 @@ TEST(Report, CertificateNamesTheEffectiveCase)
             json({{"file", "case.toml"},
                   {"sha256", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
                   {"overrides", {"degree=2"}}}));
-}
-
-/// A case file that stands in the output directory is not replaced by something else.
-TEST(Report, EffectiveCaseDoesNotReplaceTheCaseOfTheUser)
-{
-  const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "effective_case";
-  std::filesystem::create_directories(directory);
-  Config config;
-  config.output.directory = directory;
-  config.effective.text = "degree = 1\n";
-  config.file = "elsewhere.toml";
-  EXPECT_EQ(effective_file_name(config), "case.toml");
-  config.file = directory / "case.toml";
-  std::ofstream(config.file) << "degree = 1 # with a comment\n";
-  EXPECT_EQ(effective_file_name(config), "case_effective.toml");
-  std::ofstream(config.file) << "degree = 1\n";
-  EXPECT_EQ(effective_file_name(config), "case.toml");
 }
 
 TEST(Report, CertificateOfAnUncertifiedRun)

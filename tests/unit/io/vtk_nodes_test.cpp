@@ -1,4 +1,4 @@
-#include "io/vtk_nodes.h"
+#include "tribound/io/fields/vtk_nodes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/vtu.h"
+#include "tribound/io/fields/vtu.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "io/atomic_file.h"
-#include "io/vtu_file.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/vtu_file.h"
 
 namespace tribound
 {

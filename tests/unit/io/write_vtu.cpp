@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "io/vtu.h"
+#include "tribound/io/fields/vtu.h"
 #include "unit/io/box_case.h"
 
 namespace tribound::test

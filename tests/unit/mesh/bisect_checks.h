@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/bisect.h"
+#include "tribound/mesh/bisect.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound::testing_mesh

@@ -1,7 +1,7 @@
 /// Bisection: conforming, tags and measures inherited, children inside their parents, shapes bounded,
 /// independent of the numbering.
 
-#include "mesh/bisect.h"
+#include "tribound/mesh/bisect.h"
 
 #include <algorithm>
 #include <bit>

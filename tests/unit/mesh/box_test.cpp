@@ -1,4 +1,4 @@
-#include "mesh/box.h"
+#include "tribound/mesh/box.h"
 
 #include "unit/mesh/mesh_testing.h"
 

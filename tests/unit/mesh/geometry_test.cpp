@@ -1,4 +1,4 @@
-#include "mesh/geometry.h"
+#include "tribound/mesh/geometry.h"
 
 #include <Eigen/LU>
 #include <random>

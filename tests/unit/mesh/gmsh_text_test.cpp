@@ -1,6 +1,6 @@
 // A mesh written for Gmsh is read again as it was.
 
-#include "mesh/gmsh_text.h"
+#include "tribound/mesh/gmsh_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/bisect.h"
-#include "mesh/gmsh.h"
 #include "support/meshes.h"
+#include "tribound/mesh/bisect.h"
+#include "tribound/mesh/gmsh.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound::test

@@ -1,6 +1,6 @@
 /// How bisection hands marked edges down: orientation, and the shapes that it leads to.
 
-#include "mesh/marked_cell.h"
+#include "tribound/mesh/marked_cell.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <set>
 #include <vector>
 
-#include "mesh/geometry.h"
 #include "support/dimensions.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::test
 {

@@ -15,10 +15,10 @@
 #include <numbers>
 #include <string>
 
-#include "mesh/geometry.h"
-#include "mesh/gmsh.h"
-#include "mesh/mesh.h"
 #include "support/meshes.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/mesh.h"
 
 namespace tribound::testing_mesh
 {

@@ -1,6 +1,6 @@
 /// The common refinement of two meshes from one forest.
 
-#include "mesh/overlay.h"
+#include "tribound/mesh/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "fem/nested.h"
-#include "mesh/bisect.h"
 #include "support/dimensions.h"
 #include "support/meshes.h"
+#include "tribound/fem/nested.h"
+#include "tribound/mesh/bisect.h"
 
 namespace tribound::test
 {

@@ -1,7 +1,7 @@
 /// Uniform refinement: conforming, tags and measures inherited, children inside their parents, shapes
 /// bounded.
 
-#include "mesh/refine.h"
+#include "tribound/mesh/refine.h"
 
 #include <cmath>
 #include <map>

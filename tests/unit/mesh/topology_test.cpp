@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "mesh/box.h"
+#include "tribound/mesh/box.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound

@@ -3,7 +3,7 @@
 #include <functional>
 #include <limits>
 
-#include "mesh/box.h"
+#include "tribound/mesh/box.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound

@@ -1,7 +1,7 @@
 /// @file newton_test.cpp
 /// The generalised Newton method on small cases of every friction law.
 
-#include "solve/newton.h"
+#include "tribound/solve/newton.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "tribound/base/error.h"
 
 namespace tribound::test
 {

@@ -1,0 +1,69 @@
+#include "app/command/interrupt.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <string_view>
+
+#include "app/command/run.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+std::atomic<bool> stop_requested = false;
+
+constexpr std::array stop_signals = {SIGINT, SIGTERM};
+
+void request_stop(int)
+{
+  stop_requested = true;
+  for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
+}
+
+/// Calls only what may be called in a signal handler.
+void report_crash(int)
+{
+  constexpr std::string_view text =
+      "tribound: crashed, which it should not do whatever the input: please report the case\n"
+      "  hint: are numbers absurdly large or small? Results written before hold\n";
+  (void)!::write(STDERR_FILENO, text.data(), text.size());
+  ::_exit(static_cast<int>(ExitCode::failed));
+}
+
+/// The handler has a stack of its own: one that has overflowed is of no use.
+void catch_crashes()
+{
+  static std::array<char, 1 << 16> memory;
+  stack_t stack{};
+  stack.ss_sp = memory.data();
+  stack.ss_size = memory.size();
+  ::sigaltstack(&stack, nullptr);
+  struct sigaction action
+  {
+  };
+  action.sa_handler = report_crash;
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) ::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void prepare_signals()
+{
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGCHLD, SIG_DFL);  // ignored, as by the shell's trap '' CHLD, children could not be waited for
+  catch_crashes();
+}
+
+const std::atomic<bool>& stop_on_signals()
+{
+  for (const int signal : stop_signals)
+    if (!stop_requested) std::signal(signal, request_stop);
+  return stop_requested;
+}
+
+}  // namespace tribound

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file run.h
+/// The commands of the program on one case.
+
+#include "app/console/console.h"
+#include "tribound/case/config.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+/// Exit codes, a contract with scripts.
+enum class ExitCode
+{
+  success = 0,        ///< certified: the identities hold, the tolerance is reached
+  bad_input = 1,      ///< InputError
+  failed = 2,         ///< no convergence, singular matrix, identity violated, a result not written
+  budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
+};
+
+/// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError,
+/// SolveError and WriteError.
+template <int dim>
+[[nodiscard]] ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress);
+
+/// Reads and verifies everything `run` would, and prints a summary with what the doctor finds, for people or
+/// as JSON.
+template <int dim>
+void check(const Config& config, const Mesh<dim>& mesh, bool as_json);
+
+}  // namespace tribound

@@ -1,0 +1,354 @@
+#include "app/command/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "app/command/interrupt.h"
+#include "app/command/run_report.h"
+#include "app/output_directory.h"
+#include "app/page/report_page.h"
+#include "app/page/study_page.h"
+#include "app/result/figures.h"
+#include "app/result/study.h"
+#include "app/shared_file.h"
+#include "tribound/adapt/loop.h"
+#include "tribound/base/clock.h"
+#include "tribound/certify/truth/solution_error.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/mesh/bisect.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A level that is still needed when its run is over.
+template <int dim>
+struct KeptLevel
+{
+  std::shared_ptr<const Discretisation<dim>> discrete;
+  CertifiedLevel<dim> level;
+};
+
+/// A run that is over.
+template <int dim>
+struct FinishedRun
+{
+  Verdict verdict{RunStatus::failed, {}};
+  std::vector<LevelRecord> records;
+  std::vector<KeptLevel<dim>> levels;  ///< as many as asked for
+};
+
+enum class Keep
+{
+  all,
+  last
+};
+
+/// The relative bound that counts as round-off.
+constexpr double resolution = 1e-10;
+
+/// The case as variant `name` of the study.
+Config variant_config(const Config& config, const std::string& name)
+{
+  Config variant = config;
+  const bool converged = name.ends_with("_converged");
+  if (converged)
+    variant.newton.stopping = Stopping::tolerance;
+  else if (config.newton.stopping == Stopping::tolerance)
+    variant.newton.stopping = Stopping::adaptive;
+  if (name.starts_with("uniform")) variant.adapt.marking = Marking::uniform;
+  variant.newton.finish = false;  // stopping criteria are what is compared
+  variant.output.directory /= name;
+  variant.effective = {};  // that of the study stands beside its tables
+  variant.output.vtu = config.output.vtu && !converged;
+  variant.output.mesh = false;
+  return variant;
+}
+
+/// The case of the reference solution, its bound to be at most `required` of ||sigma||. Its Newton iterates
+/// are ten times closer to convergence than those it is to measure.
+Config reference_config(const Config& config, double required)
+{
+  Config reference = config;
+  reference.degree = config.study.reference_degree.value_or(std::min(config.degree + 1, 4));
+  reference.newton.stopping = Stopping::adaptive;
+  reference.newton.gamma_lin = 0.1 * config.newton.gamma_lin;
+  reference.newton.damping = true;
+  reference.newton.finish = false;
+  reference.adapt.tolerance = required;
+  reference.adapt.max_levels = std::numeric_limits<int>::max();
+  reference.adapt.max_cells.reset();
+  reference.adapt.max_dofs = config.study.max_reference_dofs;
+  reference.output.directory /= "reference";
+  reference.effective = {};
+  reference.output.vtu = false;
+  reference.output.mesh = false;
+  return reference;
+}
+
+/// The richest space within the budget in which the dual norm can be looked for, if there is one.
+template <int dim>
+std::optional<RicherSpace> dual_space(const LagrangeSpace<dim>& space, long max_dofs)
+{
+  for (const int refinements : {2, 1})
+    for (const int further : {2, 1})
+    {
+      const RicherSpace richer = {.refinements = refinements, .degree = space.degree() + further};
+      if (count_dofs(space.mesh(), richer) <= static_cast<double>(max_dofs)) return richer;
+    }
+  return std::nullopt;
+}
+
+template <int dim>
+class StudyCommand
+{
+ public:
+  StudyCommand(const Config& config, Mesh<dim> mesh, const Progress& progress)
+      : config_(config),
+        mesh_(std::move(mesh)),
+        problem_(config, mesh_.region_names(), mesh_.boundary_names()),
+        progress_(progress),
+        stop_(stop_on_signals())
+  {
+    study_.facts = case_facts(config, dim);
+    study_.build = library_facts();
+    study_.gamma_lin = config.newton.gamma_lin;
+    study_.marking = config.adapt.marking == Marking::doerfler ? "doerfler" : "maximum";
+    study_.theta = config.adapt.theta;
+  }
+
+  ExitCode run()
+  {
+    const OutputDirectory directory(config_.output.directory);
+    remove_results(config_.output.directory, {"study.json", "study.csv", "report.html"});
+    for (const char* name : variant_names)
+      if (!stop_) solve_variant(name);
+    if (!stop_) solve_reference();
+    measure();
+    if (stop_) study_.interruption = "by a signal; what was complete is in the tables";
+    study_.times.emplace_back("total", seconds_since(begin_));
+    write();
+    print_study(study_, config_.output.directory.string());
+    if (config_.study.figures && !stop_) draw_figures(config_.output.directory);
+    write_page();
+    return exit_code();
+  }
+
+ private:
+  void solve_variant(const std::string& name);
+  void solve_reference();
+  /// Errors and dual norms of all levels of all variants.
+  void measure();
+  void measure(std::size_t variant, std::size_t number);
+  /// Adds them to the report page of the variant.
+  void show_errors(const StudyVariant& variant) const;
+  /// `own_limit`: how the reason ends for a limit that is not of the case.
+  FinishedRun<dim> adapt_and_report(const Config& config, Keep keep, const std::string& own_limit = {});
+  [[nodiscard]] double smallest_relative_bound() const;
+  [[nodiscard]] ExitCode exit_code() const;
+  /// What is complete so far.
+  void write() const;
+  void write_page() const;
+
+  const Config& config_;
+  Mesh<dim> mesh_;
+  Problem<dim> problem_;
+  const Progress& progress_;
+  const std::atomic<bool>& stop_;
+  Clock::time_point begin_ = Clock::now();
+  Study study_;
+  std::vector<std::vector<KeptLevel<dim>>> levels_;  ///< of the variants
+  std::optional<KeptLevel<dim>> reference_;
+};
+
+/// As `tribound run` does it, from the mesh of the case.
+template <int dim>
+FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep keep,
+                                                     const std::string& own_limit)
+{
+  FinishedRun<dim> finished;
+  // Bisected nowhere, the mesh is copied.
+  auto first = std::make_unique<Discretisation<dim>>(bisect<dim>(mesh_, {}).mesh, problem_, config);
+  RunReport<dim> report(config, problem_, *first, Clock::now(), Printed::levels);
+  const LoopObserver<dim> observer = {[&](const CertifiedStep& step) { progress_(step.step, step.relative); },
+                                      [&](const LevelView<dim>& view)
+                                      {
+                                        report.add(view);
+                                        if (keep == Keep::last) finished.levels.clear();
+                                        finished.levels.push_back({view.owner, view.level});
+                                        if (!config.output.vtu) finished.levels.back().level.stress = {};
+                                      }};
+  try
+  {
+    finished.verdict = adapt<dim>(problem_, config, std::move(first), observer, stop_);
+    if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
+      finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
+    (void)report.close(finished.verdict);
+  }
+  catch (const SolveError& error)
+  {
+    report.fail(error.what());
+    finished.verdict = {RunStatus::failed, error.what()};
+  }
+  finished.records = report.record().levels;
+  return finished;
+}
+
+template <int dim>
+void StudyCommand<dim>::solve_variant(const std::string& name)
+{
+  Config variant = variant_config(config_, name);
+  print_stage("variant", name);
+  std::string own_limit;
+  if (variant.adapt.marking == Marking::uniform && !study_.variants[0].levels.empty())
+  {
+    // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times larger.
+    const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
+    if (std::lround(size) < variant.adapt.max_dofs)
+      own_limit = fmt::format("adapt.max_dofs = {}", std::lround(size));
+    variant.adapt.max_dofs = std::min(variant.adapt.max_dofs, std::lround(size));
+  }
+  const Clock::time_point begin = Clock::now();
+  FinishedRun<dim> finished = adapt_and_report(variant, Keep::all, own_limit);
+  study_.times.emplace_back(name, seconds_since(begin));
+  StudyVariant& result = study_.variants.emplace_back();
+  result.name = name;
+  result.status = finished.verdict.status;
+  result.reason = finished.verdict.reason;
+  for (LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
+  levels_.push_back(std::move(finished.levels));
+  write();
+}
+
+template <int dim>
+double StudyCommand<dim>::smallest_relative_bound() const
+{
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const StudyVariant& variant : study_.variants)
+    for (const StudiedLevel& level : variant.levels)
+      smallest = std::min(smallest, relative_bound(level.record).value_or(smallest));
+  return smallest;
+}
+
+template <int dim>
+void StudyCommand<dim>::solve_reference()
+{
+  const double smallest = smallest_relative_bound();
+  if (!std::isfinite(smallest)) return;
+  const double required = std::max(config_.study.reference_factor * smallest, resolution);
+  const Config config = reference_config(config_, required);
+  print_stage("reference",
+              fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.degree, required));
+  const Clock::time_point begin = Clock::now();
+  FinishedRun<dim> finished = adapt_and_report(config, Keep::last);
+  study_.times.emplace_back("reference", seconds_since(begin));
+  const bool holds =
+      finished.verdict.status == RunStatus::certified || finished.verdict.status == RunStatus::budget;
+  if (stop_ || !holds) return;
+  StudyReference& reference = study_.reference.emplace();
+  reference.degree = config.degree;
+  reference.level = finished.records.back();
+  reference.required = required;
+  reference.fine_enough = finished.verdict.status == RunStatus::certified;
+  reference.reason = finished.verdict.reason;
+  reference_ = std::move(finished.levels.back());
+}
+
+template <int dim>
+void StudyCommand<dim>::measure()
+{
+  const Clock::time_point begin = Clock::now();
+  for (std::size_t variant = 0; variant < levels_.size(); ++variant)
+  {
+    if (!stop_) progress_.stage(fmt::format("errors of the variant {}", variant_names[variant]));
+    for (std::size_t number = 0; number < levels_[variant].size() && !stop_; ++number)
+      measure(variant, number);
+    show_errors(study_.variants[variant]);
+    levels_[variant].clear();
+    write();
+  }
+  study_.times.emplace_back("errors", seconds_since(begin));
+}
+
+template <int dim>
+void StudyCommand<dim>::show_errors(const StudyVariant& variant) const
+{
+  std::vector<TrueErrors> errors;
+  for (const StudiedLevel& level : variant.levels)
+    errors.push_back({level.record.level, level.error ? std::optional(level.error->stress) : std::nullopt,
+                      level.dual_norm});
+  add_true_errors(config_.output.directory / variant.name / "report.html", errors);
+}
+
+template <int dim>
+void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
+{
+  const auto& [discrete, level] = levels_[variant][number];
+  StudiedLevel& result = study_.variants[variant].levels[number];
+  if (!result.record.bound) return;
+  if (const auto space = dual_space(discrete->space, config_.study.dual_norm_dofs))
+    result.dual_norm = DualNorm<dim>(discrete->form, *space)(level.u);
+  if (!reference_) return;
+  const LocalError error = solution_error<dim>(problem_, discrete->space, level.u,
+                                               reference_->discrete->space, reference_->level.u);
+  result.error = error.global;
+  const Config config = variant_config(config_, study_.variants[variant].name);
+  if (config.output.vtu)
+    write_level_fields<dim>(config.output.directory, static_cast<int>(number), *discrete, level,
+                            {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
+}
+
+template <int dim>
+void StudyCommand<dim>::write() const
+{
+  write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
+  write_study(config_.output.directory, study_);
+  write_page();
+}
+
+template <int dim>
+void StudyCommand<dim>::write_page() const
+{
+  if (config_.output.report)
+    write_study_page(find_shared_file("report.html"), config_.output.directory, study_);
+}
+
+template <int dim>
+ExitCode StudyCommand<dim>::exit_code() const
+{
+  const bool failed = std::ranges::any_of(
+      study_.variants, [](const StudyVariant& variant)
+      { return variant.status == RunStatus::failed || variant.status == RunStatus::not_certified; });
+  if (failed || !violation(study_).empty()) return ExitCode::failed;
+  const bool reached = !stop_ && std::ranges::all_of(study_.variants,
+                                                     [](const StudyVariant& variant) {
+                                                       return variant.name.starts_with("uniform") ||
+                                                              variant.status == RunStatus::certified;
+                                                     });
+  return reached ? ExitCode::success : ExitCode::budget_used_up;
+}
+
+}  // namespace
+
+template <int dim>
+ExitCode study(const Config& config, Mesh<dim> mesh, const Progress& progress)
+{
+  if (config.adapt.marking == Marking::uniform)
+    throw InputError({.file = config.file, .key = "adapt.marking"}, "is \"uniform\"",
+                     "the study compares an adaptive marking, such as \"doerfler\", with uniform refinement");
+  return StudyCommand<dim>(config, std::move(mesh), progress).run();
+}
+
+template ExitCode study(const Config&, Mesh<2>, const Progress&);
+template ExitCode study(const Config&, Mesh<3>, const Progress&);
+
+}  // namespace tribound

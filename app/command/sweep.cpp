@@ -1,0 +1,246 @@
+#include "app/command/sweep.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <thread>
+#include <variant>
+
+#include "app/command/interrupt.h"
+#include "app/console/text.h"
+#include "app/output_directory.h"
+#include "app/page/page_template.h"
+#include "app/result/sweep.h"
+#include "tribound/base/sha256.h"
+#include "tribound/case/config.h"
+#include "tribound/case/node.h"
+#include "tribound/io/file/atomic_file.h"
+
+extern char** environ;
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A variable of the environment, left alone where the user has set it.
+void limit_threads(int n_threads)
+{
+  for (const char* name : {"OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"})
+    ::setenv(name, fmt::format("{}", n_threads).c_str(), 0);
+}
+
+/// Starts this program with stdout and stderr in a file, in a process group of its own: Ctrl-C reaches the
+/// sweep alone, which ends its runs in order.
+pid_t start(std::vector<std::string> arguments, const std::filesystem::path& log)
+{
+  std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  ::posix_spawn_file_actions_init(&files);
+  ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  ::posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  ::posix_spawnattr_setpgroup(&attributes, 0);
+  pid_t child = 0;
+  const int error = ::posix_spawn(&child, "/proc/self/exe", &files, &attributes, words.data(), environ);
+  ::posix_spawn_file_actions_destroy(&files);
+  ::posix_spawnattr_destroy(&attributes);
+  if (error != 0)
+    throw InputError({.file = log.string()}, fmt::format("cannot start a run: {}", std::strerror(error)),
+                     "fewer --jobs");
+  return child;
+}
+
+/// Reads a mesh file of many runs once. What the file itself reads, such as the .step of a .geo, is not seen.
+class MeshHashes
+{
+ public:
+  /// Empty without a file, or where it cannot be read, which its run will say.
+  const std::string& operator()(const MeshSource& source)
+  {
+    const auto* file = std::get_if<MeshFile>(&source);
+    const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
+    if (is_new && file != nullptr)
+      if (const std::string content = read_text(file->path); !content.empty())
+        entry->second = sha256(content);
+    return entry->second;
+  }
+
+ private:
+  std::map<std::filesystem::path, std::string> known_;
+};
+
+class Sweep
+{
+ public:
+  Sweep(const SweepOptions& options, const SweepTable& table);
+  /// Ends the runs that an exception would leave alone.
+  ~Sweep();
+  Sweep(const Sweep&) = delete;
+  Sweep& operator=(const Sweep&) = delete;
+  ExitCode run();
+
+ private:
+  /// The --set of a run.
+  [[nodiscard]] std::vector<std::string> overrides(const SweepRun& run) const;
+  void start_next();
+  /// Takes note of a run that has ended.
+  void finish(pid_t child, int status);
+  void end_all() const;
+  [[nodiscard]] ExitCode exit_code() const;
+
+  const SweepOptions& options_;
+  std::filesystem::path directory_;
+  SweepRecord record_;
+  std::map<pid_t, SweepRun*> running_;
+  std::size_t next_ = 0;
+  bool interrupted_ = false;
+};
+
+Sweep::Sweep(const SweepOptions& options, const SweepTable& table) : options_(options)
+{
+  const Config config = read_config(options.case_file, options.overrides);
+  directory_ = config.output.directory / "sweep";
+  record_ = {config.title, options.case_file, table.keys, {}};
+  MeshHashes mesh_hash;
+  for (const auto& values : table.rows)
+  {
+    SweepRun& run = record_.runs.emplace_back();
+    run.name = fmt::format("{:04}", record_.runs.size());
+    run.values = values;
+    run.status = "not run";
+    const Config its_config = read_config(options.case_file, overrides(run));
+    run.sha256 = sha256(its_config.effective.text);
+    run.mesh_sha256 = mesh_hash(its_config.mesh);
+  }
+}
+
+Sweep::~Sweep()
+{
+  end_all();
+  for (const auto& [child, run] : running_) ::waitpid(child, nullptr, 0);
+}
+
+std::vector<std::string> Sweep::overrides(const SweepRun& run) const
+{
+  std::vector<std::string> result(options_.overrides.begin(), options_.overrides.end());
+  for (std::size_t i = 0; i < record_.keys.size(); ++i)
+    result.push_back(record_.keys[i] + "=" + run.values[i]);
+  result.push_back("output.directory=" + to_inline_toml({(directory_ / run.name).string(), {}}));
+  return result;
+}
+
+void Sweep::start_next()
+{
+  SweepRun& run = record_.runs[next_++];
+  if (run.exit_code) return;  // of an earlier sweep
+  const std::filesystem::path directory = directory_ / run.name;
+  std::filesystem::create_directories(directory);
+  remove_results(directory, {"certificate.json", "contact.csv"});  // a run that ends early would leave them
+  std::vector<std::string> arguments = {"tribound", "run", options_.case_file, "--quiet"};
+  for (const std::string& assignment : overrides(run))
+  {
+    arguments.emplace_back("--set");
+    arguments.push_back(assignment);
+  }
+  running_[start(std::move(arguments), directory / "log.txt")] = &run;
+}
+
+void Sweep::finish(pid_t child, int status)
+{
+  SweepRun& run = *running_.at(child);
+  running_.erase(child);
+  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  read_results(directory_ / run.name, run);
+  if (interrupted_ && run.exit_code != 1 && run.figures.empty())  // ended before its first level
+  {
+    run.exit_code.reset();
+    run.status = "not run";
+    run.reason.clear();
+  }
+  write_sweep(directory_, record_);
+  print(sweep_line(record_, run));
+}
+
+void Sweep::end_all() const
+{
+  for (const auto& [child, run] : running_) ::kill(child, SIGTERM);
+}
+
+ExitCode Sweep::exit_code() const
+{
+  const auto some = [&](const auto& property) { return std::ranges::any_of(record_.runs, property); };
+  if (some([](const SweepRun& run) { return run.exit_code == 1; })) return ExitCode::bad_input;
+  if (some([](const SweepRun& run) { return run.exit_code == 2 || run.exit_code > 3; }))
+    return ExitCode::failed;
+  if (some([](const SweepRun& run) { return run.exit_code != 0; })) return ExitCode::budget_used_up;
+  return ExitCode::success;
+}
+
+ExitCode Sweep::run()
+{
+  using namespace std::chrono_literals;
+  const OutputDirectory owned(directory_);
+  if (options_.resume)
+    for (const auto& [name, code] : complete_runs(directory_, record_))
+    {
+      SweepRun& run = *std::ranges::find(record_.runs, name, &SweepRun::name);
+      run.exit_code = code;
+      read_results(directory_ / name, run);
+      print(sweep_line(record_, run) + line("", "kept from an earlier sweep"));
+    }
+  limit_threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options_.jobs));
+  const std::atomic<bool>& stop = stop_on_signals();
+  write_sweep(directory_, record_);
+  while (next_ < record_.runs.size() || !running_.empty())
+  {
+    if (stop && !interrupted_)
+    {
+      interrupted_ = true;
+      next_ = record_.runs.size();
+      end_all();
+    }
+    if (next_ < record_.runs.size() && static_cast<int>(running_.size()) < options_.jobs)
+    {
+      start_next();
+      continue;
+    }
+    int status = 0;
+    const pid_t child = ::waitpid(-1, &status, WNOHANG);
+    if (child > 0 && running_.contains(child))
+      finish(child, status);
+    else
+      std::this_thread::sleep_for(10ms);
+  }
+  write_sweep(directory_, record_);
+  print(line("results", (directory_ / "sweep.csv").string()));
+  return exit_code();
+}
+
+}  // namespace
+
+ExitCode sweep(const SweepOptions& options, const SweepTable& table)
+{
+  return Sweep(options, table).run();
+}
+
+}  // namespace tribound

@@ -1,0 +1,315 @@
+#include "app/console/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "app/console/balance_text.h"
+#include "app/console/text.h"
+#include "app/result/check_json.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+std::string count(long n, std::string_view singular, std::string_view plural)
+{
+  return fmt::format("{} {}", n, n == 1 ? singular : plural);
+}
+
+/// line(), or nothing for an empty text.
+std::string line_if_any(std::string_view caption, std::string_view text)
+{
+  return text.empty() ? std::string{} : line(caption, text);
+}
+
+/// Width of the widest name in a list of regions or boundaries.
+template <typename Parts>
+std::size_t name_width(const Parts& parts)
+{
+  std::size_t width = 0;
+  for (const auto& part : parts) width = std::max(width, part.name.size());
+  return width;
+}
+
+std::string mesh_line(const MeshFacts& mesh)
+{
+  return line("mesh",
+              fmt::format("{}, {}, h from {:.4g} to {:.4g}", count(mesh.vertices, "vertex", "vertices"),
+                          count(mesh.cells, "cell", "cells"), mesh.smallest_cell, mesh.largest_cell));
+}
+
+std::string method_line(const CaseFacts& facts, const MeshFacts& mesh)
+{
+  return line("method", fmt::format("{}D, degree {}, {} free degrees of freedom, gamma_0 = {:g}",
+                                    facts.dimension, facts.degree, mesh.free_dofs, facts.gamma0));
+}
+
+std::string resultants_line(std::string_view caption, std::string_view boundary, const Resultants& r)
+{
+  return line(caption, fmt::format("{}: normal {:.8g}, tangential {:.8g}, force ({:.8g})", boundary, r.normal,
+                                   r.tangential, fmt::join(r.force, ", ")));
+}
+
+/// For a boundary with Coulomb friction: N and H are the normal and the tangential resultant.
+std::string sliding_line(const Resultants& r)
+{
+  const std::optional<Sliding> state = sliding(r);
+  if (!state) return {};
+  const std::string safety = state->safety_factor
+                                 ? fmt::format("factor of safety mu_F N/H = {:.4g}", *state->safety_factor)
+                                 : "no sliding force";
+  return line("sliding", fmt::format("{}: sliding factor H/N = {:.4g}, mu_F = {:g}: {}", r.boundary,
+                                     state->sliding_factor, state->coefficient, safety));
+}
+
+/// A text broken into lines of at most `width` characters, the later ones indented below the first.
+std::string wrapped(std::string_view text, std::size_t width)
+{
+  std::string result;
+  while (text.size() > width)
+  {
+    const std::size_t space = text.rfind(' ', width);
+    if (space == std::string_view::npos || space == 0) break;
+    result += std::string(text.substr(0, space)) + "\n" + std::string(caption_width, ' ');
+    text.remove_prefix(space + 1);
+  }
+  return result + std::string(text);
+}
+
+std::string paragraph(std::string_view caption, std::string_view text)
+{
+  return line(caption, wrapped(text, 80 - caption_width));
+}
+
+/// What each component measures, in the order of all_component_names.
+constexpr std::array<std::string_view, all_component_names.size()> component_meaning = {
+    "data oscillation",
+    "stress",
+    "Neumann data",
+    "linearisation, in the body",
+    "contact condition",
+    "friction",
+    "linearisation, normal",
+    "linearisation, tangential",
+    "quadrature of the loads",
+    "regularisation, body",
+    "regularisation, normal",
+    "regularisation, tangential"};
+
+/// Component by component with its share of the sum of squares.
+std::string component_lines(const BoundComponents& components, bool regularised)
+{
+  constexpr double round_off = 1e-12;
+  const std::span<const NamedComponent> names = names_of_components(regularised);
+  double squares = 0;
+  for (const auto& [name, member] : names) squares += components.*member * components.*member;
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+  {
+    double value = components.*names[i].second;
+    if (value <= round_off * std::sqrt(squares)) value = 0;
+    if (value == 0 && !is_of_cells(names[i].second)) continue;
+    const double share = squares > 0 ? 100 * value * value / squares : 0;
+    text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", names[i].first, component_meaning[i],
+                                 value, share));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string header_text(const CaseFacts& facts, const MeshFacts& mesh)
+{
+  return line("case", facts.title.empty() ? facts.file : facts.title) + mesh_line(mesh) +
+         method_line(facts, mesh);
+}
+
+std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound)
+{
+  const std::string bound = relative_bound ? fmt::format("bound {:.2e}  ", *relative_bound) : std::string{};
+  const std::string damping =
+      step.damping < 1 ? fmt::format("damping {:.1g}  ", step.damping) : std::string{};
+  const std::string iterations = fmt::format("GMRES {}", step.linear_iterations);
+  const std::string direct = step.factorised ? "factorised" : "direct";
+  return fmt::format("  step {:>2}  residual {:.1e}  {}{}{}, {:.1f} s\n", step.step, step.residual, bound,
+                     damping, step.linear_iterations == 0 ? direct : iterations, step.seconds);
+}
+
+std::string level_text(const LevelRecord& level)
+{
+  const std::string bound = relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level))
+                            : !level.bound        ? std::string("none")
+                            : is_round_off(level) ? std::string("rounding")
+                                                  : fmt::format("{:.4g}", level.bound->total_sharp);
+  return line(fmt::format("level {}", level.level),
+              fmt::format("{:>8} cells  {:>8} dofs  newton {:>2}  bound {:<8}  {:.2f} s", level.cells,
+                          level.dofs, newton_steps(level), bound, level.times.level));
+}
+
+std::string certificate_text(const RunRecord& run)
+{
+  if (run.levels.empty() || !run.levels.back().bound) return {};
+  const LevelRecord& level = run.levels.back();
+  const Bound& bound = *level.bound;
+  const std::optional<double> relative = relative_bound(level);
+  std::string text =
+      line("bound", fmt::format("{:.6g}, {} (plain sums: {:.6g})", bound.total_sharp,
+                                relative ? fmt::format("that is {:.4g} % of ||sigma(u_h)||", 100 * *relative)
+                                : is_round_off(level) ? std::string("rounding, as the stress is")
+                                                      : std::string("of a stress that is zero"),
+                                bound.total));
+  text += component_lines(bound.global, level.delta_updates.has_value());
+  if (level.identities)
+    text += line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
+                                           level.identities->largest(run.facts.degree), identity_limit));
+  for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
+  text += paragraph("law", run.statements.law);
+  for (const std::string& outside : run.statements.not_covered) text += paragraph("outside", outside);
+  return text;
+}
+
+std::string warnings_text(std::span<const RunWarning> warnings)
+{
+  std::string text;
+  for (const RunWarning& warning : warnings)
+    text += paragraph(
+        "warning", warning.where.empty() ? warning.text : fmt::format("{}: {}", warning.where, warning.text));
+  return text;
+}
+
+std::string summary_text(const RunRecord& run, const std::string& directory)
+{
+  std::string text;
+  if (!run.levels.empty())
+  {
+    const LevelRecord& last = run.levels.back();
+    for (const Resultants& part : last.figures.boundary_contact)
+      text += resultants_line("contact", part.boundary, part);
+    if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
+    for (const Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
+    if (last.balance) text += balance_text(*last.balance);
+    text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
+    text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
+                                       last.figures.sigma_norm));
+    text += certificate_text(run);
+    text += warnings_text(run.warnings);
+  }
+  return text + verdict_text(run, directory);
+}
+
+std::string verdict_text(const RunRecord& run, const std::string& directory)
+{
+  std::string reason = run.reason;
+  if (run.status == RunStatus::certified)
+    reason = run.levels.empty() || !is_round_off(run.levels.back())
+                 ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
+                               100 * run.tolerance)
+                 : std::string("the stress is zero up to rounding, and so is the bound of its error");
+  return line("status", to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
+         line_if_any("results", directory);
+}
+
+std::string check_text(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver)
+{
+  const char* unit = facts.dimension == 2 ? "area" : "volume";
+  std::string text = header_text(facts, mesh);
+  text += line_if_any("solver", solver);
+  text += "regions\n";
+  for (const RegionFacts& region : mesh.regions)
+    text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", region.name, name_width(mesh.regions),
+                        count(region.cells, "cell", "cells"), unit, region.measure, region.material);
+  text += "boundaries\n";
+  for (const BoundaryFacts& boundary : mesh.boundaries)
+    text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", boundary.name, name_width(mesh.boundaries),
+                        count(boundary.facets, "facet", "facets"), facts.dimension == 2 ? "length" : "area",
+                        boundary.measure, boundary.condition);
+  return text;
+}
+
+std::string findings_text(std::span<const Finding> findings)
+{
+  std::string text = "findings\n";
+  for (const Finding& finding : findings)
+  {
+    text += paragraph(fmt::format("  {}", to_string(finding.severity)), finding.text);
+    if (!finding.advice.empty()) text += paragraph("", "-> " + finding.advice);
+  }
+  const auto how_many = [&](Severity severity)
+  { return std::ranges::count(findings, severity, &Finding::severity); };
+  return text +
+         line("in all", fmt::format("{}, {}", count(how_many(Severity::warning), "warning", "warnings"),
+                                    count(how_many(Severity::note), "note", "notes")));
+}
+
+std::string info_text(const BuildFacts& build)
+{
+  const std::string threads =
+      build.blas_threads > 0 ? ", " + count(build.blas_threads, "thread", "threads") : std::string{};
+  return line("tribound", build.version) + line("compiler", build.compiler) +
+         line_if_any("PETSc", build.petsc) + line_if_any("MUMPS", build.mumps) +
+         line_if_any("Gmsh", build.gmsh) +
+         line_if_any("BLAS", build.blas.empty() ? "" : build.blas + threads) + line_if_any("MPI", build.mpi) +
+         line_if_any("Eigen", build.eigen) +
+         line_if_any("features", fmt::format("{}", fmt::join(build.features, ", "))) +
+         line("report page", build.report_page.empty() ? "none: Tribound was built without Node.js and npm"
+                                                       : build.report_page);
+}
+
+void print_header(const CaseFacts& facts, const MeshFacts& mesh)
+{
+  print(header_text(facts, mesh));
+}
+
+void print_level(const LevelRecord& level)
+{
+  print(level_text(level));
+}
+
+void print_summary(const RunRecord& run, const std::string& directory)
+{
+  print(summary_text(run, directory));
+}
+
+void print_verdict(const RunRecord& run, const std::string& directory)
+{
+  print(warnings_text(run.warnings) + verdict_text(run, directory));
+}
+
+void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
+                 std::span<const Finding> findings, bool as_json)
+{
+  print(as_json ? check_json(facts, mesh, solver, findings)
+                : check_text(facts, mesh, solver) + findings_text(findings));
+}
+
+void print_info(const BuildFacts& build)
+{
+  print(info_text(build));
+}
+
+Progress::Progress(bool quiet) : quiet_(quiet), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+void Progress::operator()(const NewtonStep& step, std::optional<double> relative_bound) const
+{
+  show(newton_text(step, relative_bound));
+}
+
+void Progress::stage(const std::string& text) const
+{
+  show(text + "\n");
+}
+
+void Progress::show(const std::string& text) const
+{
+  if (shown_) (void)std::fputs(text.c_str(), stderr);
+}
+
+}  // namespace tribound

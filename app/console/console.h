@@ -1,0 +1,69 @@
+#pragma once
+
+/// @file console.h
+/// What a user sees: results on stdout, progress on stderr.
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "tribound/doctor/findings.h"
+#include "tribound/io/record/facts.h"
+#include "tribound/io/record/report.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound
+{
+
+/// The texts of the program; each ends with a newline.
+[[nodiscard]] std::string header_text(const CaseFacts& facts, const MeshFacts& mesh);
+/// A step, with the relative bound after it where that is known.
+[[nodiscard]] std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound = {});
+/// One line on a level: its size, Newton steps, bound and time.
+[[nodiscard]] std::string level_text(const LevelRecord& level);
+/// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
+[[nodiscard]] std::string certificate_text(const RunRecord& run);
+/// A paragraph for each warning; nothing without any.
+[[nodiscard]] std::string warnings_text(std::span<const RunWarning> warnings);
+/// Resultants, largest displacement, the certificate, warnings, status, and where the files are.
+[[nodiscard]] std::string summary_text(const RunRecord& run, const std::string& directory);
+/// The end of the summary: status, and where the files are.
+[[nodiscard]] std::string verdict_text(const RunRecord& run, const std::string& directory);
+/// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
+[[nodiscard]] std::string check_text(const CaseFacts& facts, const MeshFacts& mesh,
+                                     const std::string& solver);
+/// What the doctor found, with advice, and how many warnings and notes there are.
+[[nodiscard]] std::string findings_text(std::span<const Finding> findings);
+/// `tribound info`.
+[[nodiscard]] std::string info_text(const BuildFacts& build);
+
+void print_header(const CaseFacts& facts, const MeshFacts& mesh);
+void print_level(const LevelRecord& level);
+void print_summary(const RunRecord& run, const std::string& directory);
+/// Warnings and status only.
+void print_verdict(const RunRecord& run, const std::string& directory);
+void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
+                 std::span<const Finding> findings, bool as_json);
+void print_info(const BuildFacts& build);
+
+/// One line per Newton step on stderr, where somebody can be watching: stderr is a terminal and the user has
+/// not asked for quiet.
+class Progress
+{
+ public:
+  explicit Progress(bool quiet);
+
+  void operator()(const NewtonStep& step, std::optional<double> relative_bound = {}) const;
+  /// Whether the user has asked for quiet.
+  [[nodiscard]] bool quiet() const { return quiet_; }
+  /// A line about a stage, such as "reading block.msh".
+  void stage(const std::string& text) const;
+
+ private:
+  void show(const std::string& text) const;
+
+  bool quiet_;
+  bool shown_;
+};
+
+}  // namespace tribound

@@ -1,0 +1,128 @@
+#include "app/page/packed_array.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Compresses well at little cost: the page is written after every level.
+constexpr int compression_level = 6;
+
+/// Compressed, in base64.
+std::string deflated(std::span<const unsigned char> bytes)
+{
+  uLongf size = compressBound(bytes.size());
+  std::vector<unsigned char> compressed(size);
+  if (compress2(compressed.data(), &size, bytes.data(), bytes.size(), compression_level) != Z_OK)
+    throw std::logic_error("zlib cannot compress an array");
+  return base64(std::span(compressed).first(size));
+}
+
+/// The bytes of the numbers by significance, compressed, in base64.
+std::string packed_bytes(std::span<const std::uint32_t> numbers, int width)
+{
+  std::vector<unsigned char> bytes;
+  bytes.reserve(numbers.size() * width);
+  for (int byte = 0; byte < width; ++byte)
+    for (const std::uint32_t number : numbers)
+      bytes.push_back(static_cast<unsigned char>(number >> (8 * byte)));
+  return deflated(bytes);
+}
+
+/// Each number as its difference from the one `stride` places before; `decoding`: the further members of the
+/// object, each with a comma in front.
+std::string packed(std::span<const std::uint32_t> numbers, std::size_t stride, const std::string& decoding)
+{
+  std::vector<std::uint32_t> codes;
+  codes.reserve(numbers.size());
+  std::uint32_t used = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    const std::int64_t difference = std::int64_t{numbers[i]} - (i < stride ? 0 : numbers[i - stride]);
+    // 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+    codes.push_back(static_cast<std::uint32_t>(difference < 0 ? -2 * difference - 1 : 2 * difference));
+    used |= codes.back();
+  }
+  int width = 1;
+  while (width < 4 && used >> (8 * width) != 0) ++width;
+  return fmt::format(R"({{"count":{},"width":{},"stride":{}{},"data":"{}"}})", codes.size(), width, stride,
+                     decoding, packed_bytes(codes, width));
+}
+
+/// 2^bits - 1.
+double largest_code(int bits)
+{
+  return std::ldexp(1.0, bits) - 1.0;
+}
+
+}  // namespace
+
+std::string base64(std::span<const unsigned char> bytes)
+{
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3)
+  {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < n ? bytes[i + j] : 0U);
+    for (std::size_t j = 0; j < 4; ++j) text += j <= n ? digits[group >> (18 - 6 * j) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string pack_linear(std::span<const double> values, int bits, std::size_t stride)
+{
+  assert(bits >= 1 && bits <= 31);
+  const auto [low, high] =
+      values.empty() ? std::ranges::minmax_result<double>{0.0, 0.0} : std::ranges::minmax(values);
+  const double step = (high - low) / largest_code(bits);
+  std::vector<std::uint32_t> codes;
+  codes.reserve(values.size());
+  for (const double value : values)
+    codes.push_back(step > 0.0 ? static_cast<std::uint32_t>(std::round((value - low) / step)) : 0U);
+  return packed(codes, stride, fmt::format(R"(,"offset":{},"step":{})", low, step));
+}
+
+std::string pack_logarithmic(std::span<const double> values, int bits, double decades)
+{
+  const double largest = values.empty() ? 0.0 : std::ranges::max(values);
+  const double top = largest > 0.0 ? std::log10(largest) : 0.0;
+  double bottom = top;
+  for (const double value : values)
+    if (value > 0.0) bottom = std::min(bottom, std::max(std::log10(value), top - decades));
+  const double step = top > bottom ? (top - bottom) / (largest_code(bits) - 1.0) : 1.0;
+  std::vector<std::uint32_t> codes;
+  codes.reserve(values.size());
+  for (const double value : values)
+  {
+    const double place = value > 0.0 ? std::round((std::log10(value) - bottom) / step) : -1.0;
+    codes.push_back(place < 0.0 ? 0U : 1U + static_cast<std::uint32_t>(place));
+  }
+  return packed(codes, 1, fmt::format(R"(,"offset":{},"step":{},"log":true)", bottom, step));
+}
+
+std::string pack_integers(std::span<const Index> values, std::size_t stride)
+{
+  return packed(std::vector<std::uint32_t>(values.begin(), values.end()), stride, {});
+}
+
+std::string pack_text(std::string_view text)
+{
+  const std::vector<unsigned char> bytes(text.begin(), text.end());
+  return fmt::format(R"({{"text":"{}"}})", deflated(bytes));
+}
+
+}  // namespace tribound

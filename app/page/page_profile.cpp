@@ -1,0 +1,73 @@
+#include "app/page/page_profile.h"
+
+#include <algorithm>
+
+#include "tribound/io/fields/contact_line.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// n + 1 points from 0 to 1.
+std::vector<Point<1>> even_points(std::size_t n)
+{
+  std::vector<Point<1>> points;
+  for (std::size_t i = 0; i <= n; ++i) points.emplace_back(static_cast<double>(i) / static_cast<double>(n));
+  return points;
+}
+
+void add_point(ContactProfile& profile, const ContactState<2>& state, const Point<2>& u, double arc)
+{
+  const Point<2> tangent(-state.normal[1], state.normal[0]);
+  profile.arc.push_back(arc);
+  profile.points.insert(profile.points.end(), state.point.begin(), state.point.end());
+  profile.displacement.insert(profile.displacement.end(), u.begin(), u.end());
+  profile.normal.insert(profile.normal.end(), state.normal.begin(), state.normal.end());
+  profile.pressure.push_back(state.pressure);
+  profile.friction.push_back(state.traction.dot(tangent));
+  profile.limit.push_back(state.limit);
+  profile.gap.push_back(state.gap);
+  profile.slip.push_back(state.slip.dot(tangent));
+  profile.status.push_back(static_cast<Index>(state.status));
+}
+
+ContactProfile contact_profile(const NitscheForm<2>& form, std::span<const double> u, int tag,
+                               std::size_t n_points)
+{
+  ContactProfile profile;
+  profile.tag = tag;
+  const std::vector<ChainLink> links = contact_chains(form, tag);
+  if (links.empty()) return profile;
+  const std::size_t n = std::clamp<std::size_t>(n_points / links.size(), form.space().degree(), 24);
+  const std::vector<Point<1>> points = even_points(n);
+  const FacetTabulation<2> table = tabulate_on_facets<2>(form.space().basis(), points);
+  for (const ChainLink& link : links)
+  {
+    const ContactFacet<2>& facet = form.contact_facets()[link.facet];
+    const std::vector<ContactState<2>> states = form.contact_states(u, link.facet, table);
+    for (std::size_t i = 0; i <= n; ++i)
+    {
+      const std::size_t q = link.reversed ? n - i : i;
+      const auto values = table.on_facet[facet.facet.local].values_at(static_cast<int>(q));
+      add_point(profile, states[q], value_at<2>(form.space().cell_nodes(facet.facet.cell), u, values),
+                link.arc + facet.geometry.measure * points[i][0]);
+    }
+  }
+  return profile;
+}
+
+}  // namespace
+
+std::vector<ContactProfile> contact_profiles(const NitscheForm<2>& form, std::span<const double> u,
+                                             std::size_t n_points)
+{
+  std::vector<ContactProfile> profiles;
+  const auto boundaries = form.problem().boundaries();
+  for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
+    if (boundaries[tag].contact) profiles.push_back(contact_profile(form, u, tag, n_points));
+  return profiles;
+}
+
+}  // namespace tribound

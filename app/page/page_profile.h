@@ -1,0 +1,39 @@
+#pragma once
+
+/// @file page_profile.h
+/// The contact boundary in 2D as curves over its length, for the report page.
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+/// The state along the contact boundary number `tag`; entry i of every column belongs to point i. The points
+/// are evenly spread over each facet, ends included, facets in the order of contact_chains(): where two join,
+/// the point is there twice, since tractions may jump.
+struct ContactProfile
+{
+  int tag = 0;
+  std::vector<double> arc;           ///< length along the boundary
+  std::vector<double> points;        ///< x, y of point after point, undeformed
+  std::vector<double> displacement;  ///< its components
+  std::vector<double> normal;        ///< components of n
+  std::vector<double> pressure;
+  std::vector<double> friction;  ///< T.t, t = n turned by +90 degrees
+  std::vector<double> limit;     ///< what |T.t| may reach
+  std::vector<double> gap;
+  std::vector<double> slip;   ///< u.t
+  std::vector<Index> status;  ///< ContactStatus
+};
+
+/// The profile of every boundary with contact, of about `n_points` points each, at least p + 1 per facet.
+[[nodiscard]] std::vector<ContactProfile> contact_profiles(const NitscheForm<2>& form,
+                                                           std::span<const double> u,
+                                                           std::size_t n_points = 3000);
+
+}  // namespace tribound

@@ -1,0 +1,249 @@
+#include "app/page/page_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "tribound/io/fields/vtu.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A triangle of the picture: a cell in 2D, a boundary facet in 3D.
+struct Face
+{
+  Index cell;
+  int local;  ///< 3D: local facet
+};
+
+template <int dim>
+std::vector<Face> contact_faces(const NitscheForm<dim>& form)
+{
+  std::vector<Face> faces;
+  if constexpr (dim == 3)
+    for (const ContactFacet<3>& contact : form.contact_facets())
+      faces.push_back({contact.facet.cell, contact.facet.local});
+  return faces;
+}
+
+/// All of them, those of contact_faces() first.
+template <int dim>
+std::vector<Face> all_faces(const NitscheForm<dim>& form)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  std::vector<Face> faces = contact_faces(form);
+  if constexpr (dim == 2)
+    for (Index c = 0; c < mesh.n_cells(); ++c) faces.push_back({c, 0});
+  else
+    for (const BoundaryFacet& facet : mesh.boundary())
+      if (!form.problem().boundary(facet.tag).contact) faces.push_back({facet.cell, facet.local});
+  return faces;
+}
+
+/// The lattice of one kind of face.
+struct FaceLattice
+{
+  std::vector<int> nodes;         ///< in the basis of degree k of the cell
+  std::vector<Point<2>> on_face;  ///< 3D: reference coordinates on the facet
+};
+
+/// The corners of a face in the cell, turning anticlockwise seen from outside.
+template <int dim>
+std::array<int, 3> corners(int local)
+{
+  if constexpr (dim == 2) return {0, 1, 2};
+  std::array<int, 3> vertices = facet_vertices(std::array<Index, 4>{0, 1, 2, 3}, local);
+  if (local % 2 == 1) std::swap(vertices[1], vertices[2]);  // see facet_geometry()
+  return vertices;
+}
+
+template <int dim>
+FaceLattice face_lattice(const LagrangeBasis<dim>& basis, int local)
+{
+  const int k = basis.degree();
+  const std::array<int, 3> corner = corners<dim>(local);
+  FaceLattice lattice;
+  for (int j = 0; j <= k; ++j)
+    for (int i = 0; i + j <= k; ++i)
+    {
+      std::array<int, dim + 1> weights{};
+      weights[corner[0]] = k - i - j;
+      weights[corner[1]] = i;
+      weights[corner[2]] = j;
+      int node = 0;
+      while (basis.node(node) != weights) ++node;
+      lattice.nodes.push_back(node);
+      Point<2> s(static_cast<double>(i) / k, static_cast<double>(j) / k);
+      if (local % 2 == 1) std::swap(s[0], s[1]);
+      lattice.on_face.push_back(s);
+    }
+  return lattice;
+}
+
+/// k: the degree of the displacement, lower where that would give too many triangles.
+int subdivision(std::size_t n_faces, int degree, std::size_t max_triangles)
+{
+  int k = degree;
+  while (k > 1 && n_faces * k * k > max_triangles) --k;
+  return k;
+}
+
+/// The middles of the triangles of a face, in the order of Surface: row by row, in each row those that point
+/// up and down by turns.
+std::vector<Point<2>> triangle_middles(int k, bool swapped)
+{
+  std::vector<Point<2>> middles;
+  const auto add = [&](double i, double j)
+  { middles.push_back(swapped ? Point<2>(j / k, i / k) : Point<2>(i / k, j / k)); };
+  for (int j = 0; j < k; ++j)
+    for (int i = 0; i + j < k; ++i)
+    {
+      add(i + 1.0 / 3.0, j + 1.0 / 3.0);
+      if (i + j + 1 < k) add(i + 2.0 / 3.0, j + 2.0 / 3.0);
+    }
+  return middles;
+}
+
+/// Fills a Surface face by face.
+template <int dim>
+class SurfaceSampler
+{
+ public:
+  SurfaceSampler(const NitscheForm<dim>& form, std::span<const double> u, const Stress<dim>& stress,
+                 int subdivision)
+      : form_(form),
+        u_(u),
+        space_(form.space().mesh(), subdivision),
+        stress_(equilibrated_stress_field(space_, stress)),
+        vertex_of_node_(space_.n_nodes(), -1)
+  {
+    surface_.subdivision = subdivision;
+    surface_.stress.resize(stress_entries<dim>.size());
+    at_nodes_ = form.space().basis().tabulate(space_.basis().node_points());
+    values_.resize(at_nodes_.n_points);
+    for (int local = 0; local < (dim == 2 ? 1 : dim + 1); ++local)
+      lattices_.push_back(face_lattice<dim>(space_.basis(), local));
+  }
+
+  void add(const Face& face)
+  {
+    const FaceLattice& lattice = lattices_[face.local];
+    const CellMap<dim> map = cell_map(space_.mesh(), face.cell);
+    stress_.at_nodes(face.cell, values_);
+    for (const int node : lattice.nodes)
+    {
+      Index& vertex = vertex_of_node_[space_.cell_nodes(face.cell)[node]];
+      if (vertex < 0) vertex = add_vertex(face.cell, node, map);
+      surface_.faces.push_back(vertex);
+      const std::array<double, 6> sigma = symmetric_part<dim>(values_[node], 0.0);
+      for (std::size_t i = 0; i < surface_.stress.size(); ++i)
+        surface_.stress[i].push_back(sigma[stress_entries<dim>[i]]);
+    }
+    surface_.cells.push_back(face.cell);
+  }
+
+  [[nodiscard]] Surface take() && { return std::move(surface_); }
+
+ private:
+  Index add_vertex(Index cell, int node, const CellMap<dim>& map)
+  {
+    const Point<dim> x = map(space_.basis().node_point(node));
+    const Point<dim> u = value_at<dim>(form_.space().cell_nodes(cell), u_, at_nodes_.values_at(node));
+    surface_.points.insert(surface_.points.end(), x.begin(), x.end());
+    surface_.displacement.insert(surface_.displacement.end(), u.begin(), u.end());
+    return static_cast<Index>(surface_.points.size() / dim) - 1;
+  }
+
+  const NitscheForm<dim>& form_;
+  std::span<const double> u_;
+  LagrangeSpace<dim> space_;  ///< of degree k: its nodes are the vertices of the lattices
+  TensorField<dim> stress_;
+  Tabulation<dim> at_nodes_;         ///< the basis of u at these nodes
+  std::vector<Tensor<dim>> values_;  ///< sigma_h at the nodes of a cell
+  std::vector<FaceLattice> lattices_;
+  std::vector<Index> vertex_of_node_;
+  Surface surface_;
+};
+
+/// Replaces the values at the lattice points by their mean on each face.
+void average_stress(Surface& surface)
+{
+  const std::size_t n = surface.n_face_points();
+  for (std::vector<double>& component : surface.stress)
+  {
+    for (std::size_t face = 0; face < surface.n_faces(); ++face)
+    {
+      const auto first = component.begin() + static_cast<std::ptrdiff_t>(face * n);
+      component[face] = std::reduce(first, first + static_cast<std::ptrdiff_t>(n)) / static_cast<double>(n);
+    }
+    component.resize(surface.n_faces());
+  }
+}
+
+SurfaceContact sample_contact(const NitscheForm<3>& form, std::span<const double> u, int k)
+{
+  const LagrangeBasis<3> lattice(k);
+  SurfaceContact contact;
+  for (int local = 0; local <= 3; ++local)
+  {
+    // Facets with the same local number share their tables; they are put in their places afterwards.
+    const FacetTabulation<3> at_points =
+        tabulate_on_facets<3>(form.space().basis(), face_lattice<3>(lattice, local).on_face);
+    const FacetTabulation<3> at_middles =
+        tabulate_on_facets<3>(form.space().basis(), triangle_middles(k, local % 2 == 1));
+    const std::size_t n = at_points.points.size();
+    const std::size_t n_middles = at_middles.points.size();
+    for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})
+      column->resize(form.contact_facets().size() * n);
+    contact.point_status.resize(form.contact_facets().size() * n);
+    contact.status.resize(form.contact_facets().size() * n_middles);
+    for (int facet = 0; facet < static_cast<int>(form.contact_facets().size()); ++facet)
+    {
+      if (form.contact_facets()[facet].facet.local != local) continue;
+      std::size_t place = facet * n;
+      for (const ContactState<3>& state : form.contact_states(u, facet, at_points))
+      {
+        contact.pressure[place] = state.pressure;
+        contact.friction[place] = (state.traction + state.pressure * state.normal).norm();
+        contact.limit[place] = state.limit;
+        contact.gap[place] = state.gap;
+        contact.point_status[place] = static_cast<Index>(state.status);
+        contact.slip[place++] = state.slip.norm();
+      }
+      place = facet * n_middles;
+      for (const ContactState<3>& state : form.contact_states(u, facet, at_middles))
+        contact.status[place++] = static_cast<Index>(state.status);
+    }
+  }
+  return contact;
+}
+
+}  // namespace
+
+template <int dim>
+Surface sample_surface(const NitscheForm<dim>& form, std::span<const double> u, const Stress<dim>& stress,
+                       const PageLimits& limits)
+{
+  const std::vector<Face> faces = all_faces(form);
+  const int k = subdivision(faces.size(), form.space().degree(), limits.subdivided);
+  SurfaceSampler<dim> sampler(form, u, stress, k);
+  for (const Face& face : faces) sampler.add(face);
+  Surface surface = std::move(sampler).take();
+  if constexpr (dim == 3) surface.contact = sample_contact(form, u, k);
+  if (surface.n_triangles() > limits.stresses) average_stress(surface);
+  if (surface.n_triangles() > limits.triangles) merge_details(surface, dim, limits.triangles);
+  return surface;
+}
+
+template Surface sample_surface(const NitscheForm<2>&, std::span<const double>, const Stress<2>&,
+                                const PageLimits&);
+template Surface sample_surface(const NitscheForm<3>&, std::span<const double>, const Stress<3>&,
+                                const PageLimits&);
+
+}  // namespace tribound

@@ -1,0 +1,76 @@
+#pragma once
+
+/// @file page_surface.h
+/// The body as triangles for the report page: the cells in 2D, the boundary facets in 3D.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tribound/adapt/level.h"
+#include "tribound/base/types.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+/// Sizes up to which the page shows a mesh as it is.
+struct PageLimits
+{
+  std::size_t subdivided = 24'000;   ///< triangles up to which faces are subdivided, to show degree p
+  std::size_t triangles = 240'000;   ///< triangles of a level; beyond, cells are merged
+  std::size_t stresses = 60'000;     ///< triangles up to which stresses are those of points, not of faces
+  std::size_t all_levels = 360'000;  ///< triangles of all levels together; beyond, levels are left out
+};
+
+/// Values at the lattice points of the contact faces, see Surface.
+struct SurfaceContact
+{
+  std::vector<double> pressure;
+  std::vector<double> friction;  ///< |T^t|
+  std::vector<double> limit;     ///< what it may reach
+  std::vector<double> gap;
+  std::vector<double> slip;         ///< |u^t|
+  std::vector<Index> point_status;  ///< ContactStatus
+  std::vector<Index> status;        ///< the same in the middle of each triangle
+};
+
+/// Faces with a lattice of (k + 1)(k + 2) / 2 vertices each, which cuts them into k^2 triangles. Number i +
+/// j' of row j: barycentric coordinates (k - i - j, i, j) / k of the corners, rows j = 0 ... k one after the
+/// other. Corners turn anticlockwise seen from outside, in 2D from above. Neighbours share vertices.
+struct Surface
+{
+  int subdivision = 1;               ///< k
+  std::vector<double> points;        ///< dim coordinates per vertex
+  std::vector<double> displacement;  ///< dim components per vertex
+  std::vector<Index> faces;          ///< vertices of the lattice, face by face
+  std::vector<Index> cells;          ///< per face: its cell
+  /// sigma_h, component by component (xx, yy, xy; in 3D xx, yy, zz, xy, yz, xz): at every lattice point of
+  /// every face, where it may jump, or one value per face.
+  std::vector<std::vector<double>> stress;
+  double merged_below = 0.0;  ///< length below which details are merged; 0: nothing is
+  SurfaceContact contact;     ///< 3D: of the first faces, which are those of Gamma_C
+
+  [[nodiscard]] std::size_t n_face_points() const { return (subdivision + 1) * (subdivision + 2) / 2; }
+  [[nodiscard]] std::size_t n_faces() const { return cells.size(); }
+  [[nodiscard]] std::size_t n_triangles() const { return n_faces() * subdivision * subdivision; }
+};
+
+/// Entries of symmetric_part() that a page has of a stress.
+template <int dim>
+inline constexpr std::array<int, 6> stress_entries = {0, 1, 2, 3, 4, 5};
+template <>
+inline constexpr std::array<int, 3> stress_entries<2> = {0, 1, 3};
+
+/// The surface of the body on one level.
+template <int dim>
+[[nodiscard]] Surface sample_surface(const NitscheForm<dim>& form, std::span<const double> u,
+                                     const Stress<dim>& stress, const PageLimits& limits = {});
+
+/// Merges the vertices that lie in the same square or cube of a grid and drops the faces that vanish thereby,
+/// with the smallest grid width for which at most `max_triangles` remain (to within 20 %). Faces keep their
+/// values. For k = 1 only.
+void merge_details(Surface& surface, int dim, std::size_t max_triangles);
+
+}  // namespace tribound

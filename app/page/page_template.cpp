@@ -1,0 +1,75 @@
+#include "app/page/page_template.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "app/machine.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/json.h"
+
+namespace tribound
+{
+
+std::string script_safe(std::string_view json)
+{
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json)
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  return safe;
+}
+
+PageTemplate::PageTemplate(const std::filesystem::path& path)
+{
+  const std::string text = read_text(path);
+  const std::size_t marker = text.find(page_data_marker);
+  if (marker == std::string::npos) return;
+  head_ = text.substr(0, marker);
+  tail_ = text.substr(marker + page_data_marker.size());
+}
+
+void PageTemplate::write(const std::filesystem::path& page, std::string_view id,
+                         std::span<const std::string_view> json) const
+{
+  if (empty()) return;
+  AtomicFile file(page);
+  file.write(head_);
+  file.write(R"(<script type="application/json" id=")");
+  file.write(id);
+  file.write(R"(">)");
+  for (const std::string_view piece : json) file.write(script_safe(piece));
+  file.write("</script>");
+  file.write(tail_);
+  file.commit();
+}
+
+std::string read_text(const std::filesystem::path& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string machine_json()
+{
+  const MachineFacts machine = machine_facts();
+  return Json{{"processor", machine.processor},
+              {"processors", machine.n_processors},
+              {"memory", machine.memory},
+              {"system", machine.system},
+              {"written", date_and_time()}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string files_json(const std::filesystem::path& directory, std::span<const std::string> names)
+{
+  Json existing = Json::array();
+  for (const std::string& name : names)
+    if (std::filesystem::exists(directory / name)) existing.push_back(name);
+  return existing.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace tribound

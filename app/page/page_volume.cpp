@@ -1,0 +1,46 @@
+#include "app/page/page_volume.h"
+
+#include <array>
+
+#include "app/page/page_surface.h"
+#include "tribound/io/fields/vtu.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+Volume sample_volume(const NitscheForm<3>& form, std::span<const double> u, const Stress<3>& stress)
+{
+  const Mesh<3>& mesh = form.space().mesh();
+  const LagrangeSpace<3> corners(mesh, 1);
+  const Tabulation<3> at_corners = form.space().basis().tabulate(corners.basis().node_points());
+  const TensorField<3> sigma = equilibrated_stress_field(corners, stress);
+  const std::size_t n = corners.n_nodes();
+  Volume volume;
+  volume.displacement.resize(3 * n);
+  volume.stress.assign(stress_entries<3>.size(), std::vector<double>(n));
+  for (const Point<3>& x : corners.node_points())
+    volume.points.insert(volume.points.end(), x.begin(), x.end());
+  std::vector<double> weight(n);
+  std::array<Tensor<3>, 4> values;
+  for (Index cell = 0; cell < mesh.n_cells(); ++cell)
+  {
+    sigma.at_nodes(cell, values);
+    const double det = cell_map(mesh, cell).det;
+    for (int i = 0; i < 4; ++i)
+    {
+      const Index vertex = corners.cell_nodes(cell)[i];
+      volume.cells.push_back(vertex);
+      weight[vertex] += det;
+      const std::array<double, 6> components = symmetric_part<3>(values[i], 0.0);
+      for (std::size_t s = 0; s < components.size(); ++s) volume.stress[s][vertex] += det * components[s];
+      const Point<3> at_vertex = value_at<3>(form.space().cell_nodes(cell), u, at_corners.values_at(i));
+      for (int c = 0; c < 3; ++c) volume.displacement[3 * vertex + c] = at_vertex[c];
+    }
+  }
+  for (std::vector<double>& component : volume.stress)
+    for (std::size_t v = 0; v < n; ++v) component[v] /= weight[v];
+  return volume;
+}
+
+}  // namespace tribound

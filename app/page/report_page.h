@@ -1,0 +1,78 @@
+#pragma once
+
+/// @file report_page.h
+/// report.html of a run: its data, put into the template of app/page/page_template.h.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/page/page_surface.h"
+#include "app/page/page_template.h"
+#include "tribound/adapt/level.h"
+#include "tribound/io/record/report.h"
+
+namespace tribound
+{
+
+/// The fields of a level, as JSON.
+struct PageLevel
+{
+  int number = 0;
+  std::size_t n_triangles = 0;
+  std::string json;
+};
+
+template <int dim>
+[[nodiscard]] PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
+                                   const PageLimits& limits = {});
+
+/// The inside of a body in 3D, as JSON; "null" in 2D, and beyond max_volume_cells.
+template <int dim>
+[[nodiscard]] std::string page_volume(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
+
+/// Leaves out levels between the first and the last, the largest first, until all have at most
+/// limits.all_levels triangles together.
+void drop_levels(std::vector<PageLevel>& levels, const PageLimits& limits);
+
+/// The comment in the template, and in a page without them, which add_true_errors() replaces.
+inline constexpr std::string_view true_errors_marker = "<!-- true errors -->";
+
+/// What a study knows of the error on a level.
+struct TrueErrors
+{
+  int level = 0;
+  std::optional<double> stress_error;  ///< ||sigma(u_ref - u_h)||
+  std::optional<double> dual_norm;     ///< of the residual, from below
+};
+
+/// Adds the true errors to a page that is written; does nothing where there is none. Throws WriteError when
+/// it cannot be written.
+void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors);
+
+/// The page of a run: level by level.
+class ReportPage
+{
+ public:
+  /// `page_template`: what report/ builds; where there is none nothing is collected or written.
+  explicit ReportPage(const std::filesystem::path& page_template);
+
+  /// In the place of the level with this number, if it is the last.
+  template <int dim>
+  void add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
+
+  /// Writes report.html into the directory, with links to those results that are there. Throws WriteError
+  /// when the file cannot be written.
+  void write(const std::filesystem::path& directory, const RunRecord& run) const;
+
+ private:
+  PageTemplate template_;
+  std::vector<PageLevel> levels_;
+  std::string volume_ = "null";  ///< of the last level
+};
+
+}  // namespace tribound

@@ -1,0 +1,19 @@
+#pragma once
+
+/// @file check_json.h
+/// `tribound check --json`.
+
+#include <span>
+#include <string>
+
+#include "tribound/doctor/findings.h"
+#include "tribound/io/record/facts.h"
+
+namespace tribound
+{
+
+/// What `tribound check` says, as JSON with the fields of docs/output.md.
+[[nodiscard]] std::string check_json(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
+                                     std::span<const Finding> findings);
+
+}  // namespace tribound

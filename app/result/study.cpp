@@ -1,0 +1,297 @@
+#include "app/result/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tribound/adapt/rate.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/csv.h"
+#include "tribound/io/file/json.h"
+#include "tribound/io/record/facts_json.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+constexpr const char* study_schema = "1";
+
+std::optional<double> energy_error(const StudiedLevel& level)
+{
+  return level.error ? std::optional(level.error->energy) : std::nullopt;
+}
+
+std::optional<double> stress_error(const StudiedLevel& level)
+{
+  return level.error ? std::optional(level.error->stress) : std::nullopt;
+}
+
+std::optional<double> bound_of(const StudiedLevel& level)
+{
+  return level.record.bound ? std::optional(level.record.bound->total_sharp) : std::nullopt;
+}
+
+std::optional<double> plain_bound_of(const StudiedLevel& level)
+{
+  return level.record.bound ? std::optional(level.record.bound->total) : std::nullopt;
+}
+
+using LevelValue = std::optional<double> (*)(const StudiedLevel&);
+
+/// The quantity at the levels where it is known.
+std::vector<RatePoint> rate_points(std::span<const StudiedLevel> levels, LevelValue value)
+{
+  std::vector<RatePoint> points;
+  for (const StudiedLevel& level : levels)
+    if (const auto known = value(level)) points.push_back({static_cast<double>(level.record.dofs), *known});
+  return points;
+}
+
+/// The columns of a level with its values, in their order: those of study.csv behind `variant`, and the
+/// fields of study.json.
+struct Column
+{
+  const char* name;
+  std::optional<double> value;
+  bool is_count = false;  ///< a whole number
+};
+
+std::vector<Column> columns(const StudyVariant& variant, std::size_t number)
+{
+  const StudiedLevel& level = variant.levels[number];
+  const Rates rates = level_rates(variant, number);
+  std::vector<Column> row = {{"level", level.record.level, true},
+                             {"cells", static_cast<double>(level.record.cells), true},
+                             {"dofs", static_cast<double>(level.record.dofs), true},
+                             {"newton_steps", static_cast<double>(newton_steps(level.record)), true}};
+  const std::optional<Bound>& bound = level.record.bound;
+  for (const auto& [name, member] : component_names)
+    row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
+  const std::vector<Column> rest = {{"total", plain_bound_of(level)},
+                                    {"total_sharp", bound_of(level)},
+                                    {"relative", relative_bound(level.record)},
+                                    {"energy_error", energy_error(level)},
+                                    {"stress_error", stress_error(level)},
+                                    {"dual_norm", level.dual_norm},
+                                    {"effectivity", level.effectivity()},
+                                    {"effectivity_stress", level.stress_effectivity()},
+                                    {"rate_error", rates.error},
+                                    {"rate_bound", rates.bound},
+                                    {"t_solve", level.record.times.solve},
+                                    {"t_certify", level.record.times.certify},
+                                    {"t_level", level.record.times.level}};
+  row.insert(row.end(), rest.begin(), rest.end());
+  if (!is_regularised(level.record)) return row;
+  for (const auto& [name, member] : regularisation_names)
+    row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
+  row.push_back({"delta", last_delta(level.record)});
+  row.push_back({"delta_updates", *level.record.delta_updates, true});
+  return row;
+}
+
+Json json(const std::vector<std::optional<double>>& values)
+{
+  Json array = Json::array();
+  for (const auto& value : values) array.push_back(number_or_null(value));
+  return array;
+}
+
+Json json(const StudyVariant& variant)
+{
+  Json levels = Json::array();
+  for (std::size_t i = 0; i < variant.levels.size(); ++i)
+  {
+    Json object;
+    for (const auto& [name, value, is_count] : columns(variant, i))
+      object[name] = is_count ? Json(static_cast<long>(*value)) : number_or_null(value);
+    levels.push_back(object);
+  }
+  const Rates rates = fitted_rates(variant);
+  return {{"status", to_string(variant.status)},
+          {"reason", text_or_null(variant.reason)},
+          {"rates", {{"error", number_or_null(rates.error)}, {"bound", number_or_null(rates.bound)}}},
+          {"levels", levels}};
+}
+
+Json json(const std::optional<StudyReference>& reference)
+{
+  if (!reference) return nullptr;
+  const LevelRecord& level = reference->level;
+  return {{"degree", reference->degree},
+          {"cells", level.cells},
+          {"dofs", level.dofs},
+          {"bound", level.bound ? Json(level.bound->total_sharp) : Json(nullptr)},
+          {"relative", number_or_null(relative_bound(level))},
+          {"required", reference->required},
+          {"fine_enough", reference->fine_enough},
+          {"reason", text_or_null(reference->reason)},
+          {"energy", level.figures.energy},
+          {"contact_normal", level.figures.contact.normal},
+          {"contact_tangential", level.figures.contact.tangential},
+          {"max_displacement", level.figures.max_displacement}};
+}
+
+/// Newton steps per level, a column per variant.
+Json newton_json(const Study& study)
+{
+  std::size_t n_levels = 0;
+  for (const StudyVariant& variant : study.variants) n_levels = std::max(n_levels, variant.levels.size());
+  Json table = Json::array();
+  for (std::size_t level = 0; level < n_levels; ++level)
+  {
+    Json row{{"level", level}};
+    for (const char* name : variant_names)
+    {
+      const StudyVariant* variant = find_variant(study, name);
+      row[name] = variant != nullptr && level < variant->levels.size()
+                      ? Json(newton_steps(variant->levels[level].record))
+                      : Json(nullptr);
+    }
+    table.push_back(row);
+  }
+  return table;
+}
+
+/// With the stopping criterion against without.
+Json differences(const Study& study)
+{
+  Json object = Json::object();
+  for (const char* name : {"adaptive", "uniform"})
+  {
+    const StudyVariant* with = find_variant(study, name);
+    const StudyVariant* without = find_variant(study, std::string(name) + "_converged");
+    object[name] =
+        with != nullptr && without != nullptr ? json(error_differences(*with, *without)) : Json(nullptr);
+  }
+  return object;
+}
+
+StressNorms norms_of(const LevelRecord& record)
+{
+  return {.energy = record.figures.energy,
+          .sigma = record.figures.sigma_norm,
+          .round_off = record.figures.round_off};
+}
+
+}  // namespace
+
+std::optional<double> StudiedLevel::effectivity() const
+{
+  const auto bound = bound_of(*this);
+  if (!bound || !dual_norm) return std::nullopt;
+  return tribound::effectivity(*bound, *dual_norm, norms_of(record));
+}
+
+std::optional<double> StudiedLevel::stress_effectivity() const
+{
+  const auto bound = bound_of(*this);
+  if (!bound || !error) return std::nullopt;
+  return tribound::effectivity(*bound, error->stress, norms_of(record));
+}
+
+const StudyVariant* find_variant(const Study& study, std::string_view name)
+{
+  const auto found = std::ranges::find(study.variants, name, &StudyVariant::name);
+  return found == study.variants.end() ? nullptr : &*found;
+}
+
+Rates level_rates(const StudyVariant& variant, std::size_t number)
+{
+  if (number == 0) return {};
+  const std::span<const StudiedLevel> both = std::span(variant.levels).subspan(number - 1, 2);
+  const auto rate = [&](LevelValue value) -> std::optional<double>
+  {
+    const std::vector<RatePoint> points = rate_points(both, value);
+    return points.size() == 2 ? rate_between(points[0], points[1]) : std::nullopt;
+  };
+  return {rate(energy_error), rate(bound_of)};
+}
+
+Rates fitted_rates(const StudyVariant& variant)
+{
+  return {fitted_rate(rate_points(variant.levels, energy_error)),
+          fitted_rate(rate_points(variant.levels, bound_of))};
+}
+
+std::vector<std::optional<double>> error_differences(const StudyVariant& with, const StudyVariant& without)
+{
+  const std::vector<RatePoint> converged = rate_points(without.levels, energy_error);
+  std::vector<std::optional<double>> result(with.levels.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+  {
+    const auto early = energy_error(with.levels[i]);
+    const auto other = value_at(converged, static_cast<double>(with.levels[i].record.dofs));
+    if (early && other && *other > 0) result[i] = (*early - *other) / *other;
+  }
+  return result;
+}
+
+std::string violation(const Study& study)
+{
+  for (const StudyVariant& variant : study.variants)
+    for (const StudiedLevel& level : variant.levels)
+      if (const auto e = level.effectivity(); e && *e < 1)
+        return fmt::format(
+            "the guarantee is violated: in the variant {} on level {} the bound {:.9g} is below the dual "
+            "norm "
+            "of the residual, which is at least {:.9g} (effectivity {:.6f})",
+            variant.name, level.record.level, *bound_of(level), *level.dual_norm, *e);
+  return {};
+}
+
+std::string study_csv(const Study& study)
+{
+  const auto regularised = [](const StudyVariant& variant)
+  { return std::ranges::any_of(variant.levels, is_regularised, &StudiedLevel::record); };
+  CsvTable table(
+      "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
+      "relative,"
+      "energy_error,stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,"
+      "t_certify,t_level" +
+      (std::ranges::any_of(study.variants, regularised) ? regularisation_columns() + ",delta_updates"
+                                                        : std::string{}));
+  for (const StudyVariant& variant : study.variants)
+    for (std::size_t i = 0; i < variant.levels.size(); ++i)
+    {
+      table.add(variant.name);
+      for (const auto& [name, value, is_count] : columns(variant, i))
+        is_count ? table.add(static_cast<long>(*value)) : table.add(value);
+      table.end_row();
+    }
+  return table.text();
+}
+
+std::string study_json(const Study& study)
+{
+  Json object{{"schema", study_schema},
+              {"program", program_json(study.build)},
+              {"title", study.facts.title},
+              {"file", study.facts.file},
+              {"d", study.facts.dimension},
+              {"p", study.facts.degree},
+              {"friction", study.facts.friction},
+              {"gamma_lin", study.gamma_lin},
+              {"marking", study.marking},
+              {"theta", study.theta},
+              {"guarantee", violation(study).empty() ? "holds" : "violated"},
+              {"interrupted", text_or_null(study.interruption)},
+              {"reference", json(study.reference)},
+              {"variants", Json::object()}};
+  for (const StudyVariant& variant : study.variants) object["variants"][variant.name] = json(variant);
+  object["newton_table"] = newton_json(study);
+  object["difference"] = differences(study);
+  object["times"] = Json::object();
+  for (const auto& [stage, seconds] : study.times) object["times"][stage] = seconds;
+  // Names from a file need not be UTF-8.
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_study(const std::filesystem::path& directory, const Study& study)
+{
+  write_file(directory / "study.csv", study_csv(study));
+  write_file(directory / "study.json", study_json(study));
+}
+
+}  // namespace tribound

@@ -1,0 +1,112 @@
+#pragma once
+
+/// @file study.h
+/// What `tribound study` finds: a case solved in several variants and measured against a reference solution.
+/// Plain data in, study.csv, study.json and the tables on the screen out; what is not known is absent.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tribound/certify/truth/true_error.h"
+#include "tribound/io/record/report.h"
+
+namespace tribound
+{
+
+/// A level with the true errors of its solution.
+struct StudiedLevel
+{
+  LevelRecord record;
+  std::optional<SolutionError> error;  ///< against the reference
+  std::optional<double> dual_norm;     ///< of the residual, from below
+
+  /// bound / dual norm: at least 1.
+  [[nodiscard]] std::optional<double> effectivity() const;
+  /// bound / ||sigma(u_ref - u_h)||, for comparison with other methods: no theorem says that it is at
+  /// least 1.
+  [[nodiscard]] std::optional<double> stress_effectivity() const;
+};
+
+/// The names of the variants, in the order of all tables. `_converged`: Newton's method runs to its
+/// tolerance.
+inline constexpr std::array<const char*, 4> variant_names = {"adaptive", "adaptive_converged", "uniform",
+                                                             "uniform_converged"};
+
+/// The case solved in one way.
+struct StudyVariant
+{
+  std::string name;
+  RunStatus status = RunStatus::uncertified;
+  std::string reason;  ///< why it is not certified; empty when it is
+  std::vector<StudiedLevel> levels;
+};
+
+/// The solution that stands for the exact one.
+struct StudyReference
+{
+  int degree = 0;
+  LevelRecord level;         ///< the mesh, the bound and the figures
+  double required = 0;       ///< what its relative bound should be at most
+  bool fine_enough = false;  ///< whether it is
+  std::string reason;        ///< why it is not
+};
+
+struct Study
+{
+  CaseFacts facts;
+  BuildFacts build;
+  double gamma_lin = 0;
+  std::string marking;
+  double theta = 0;
+  std::vector<StudyVariant> variants;  ///< those done so far, in the order of variant_names
+  std::optional<StudyReference> reference;
+  std::string interruption;                           ///< empty for a complete study
+  std::vector<std::pair<std::string, double>> times;  ///< s per stage
+};
+
+/// The variant of this name, or null.
+[[nodiscard]] const StudyVariant* find_variant(const Study& study, std::string_view name);
+
+/// The exponents of energy error and bound in the degrees of freedom.
+struct Rates
+{
+  std::optional<double> error;
+  std::optional<double> bound;
+};
+
+/// From level `number` - 1 to it; nothing for level 0.
+[[nodiscard]] Rates level_rates(const StudyVariant& variant, std::size_t number);
+/// Fitted over the last half of the levels, see fitted_rate().
+[[nodiscard]] Rates fitted_rates(const StudyVariant& variant);
+
+/// What stopping Newton's method early does to the energy error, for every level with the criterion:
+/// (its error - error without) / error without, at the same number of degrees of freedom, since the two runs
+/// may refine other cells (value_at). Nothing where the run without has no mesh of that size.
+[[nodiscard]] std::vector<std::optional<double>> error_differences(const StudyVariant& with,
+                                                                   const StudyVariant& without);
+
+/// What is wrong when an effectivity is below 1, naming the level; empty when the guarantee holds.
+[[nodiscard]] std::string violation(const Study& study);
+
+/// A row per variant and level; the columns are those of docs/output.md.
+[[nodiscard]] std::string study_csv(const Study& study);
+
+/// The same with the reference, the rates and the comparisons; unknown numbers are null.
+[[nodiscard]] std::string study_json(const Study& study);
+
+/// Writes study.csv and study.json. Throws WriteError when they cannot be written.
+void write_study(const std::filesystem::path& directory, const Study& study);
+
+/// The tables of the variants, of Newton's steps, the rates and where the files are.
+[[nodiscard]] std::string study_text(const Study& study, const std::string& directory);
+
+/// The text on stdout.
+void print_study(const Study& study, const std::string& directory);
+/// A line on stdout about what comes next.
+void print_stage(const std::string& name, const std::string& text);
+
+}  // namespace tribound

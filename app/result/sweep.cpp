@@ -1,0 +1,239 @@
+#include "app/result/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "app/console/text.h"
+#include "tribound/case/sweep_values.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/csv.h"
+#include "tribound/io/file/json.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using Figures = std::vector<std::pair<std::string, std::optional<double>>>;
+
+constexpr const char* sweep_schema = "1";
+
+/// Null where the file is missing or not whole.
+Json read_json(const std::filesystem::path& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  return stream ? Json::parse(stream, nullptr, false) : Json(nullptr);
+}
+
+std::optional<double> number(const Json& object, const char* key)
+{
+  const auto value = object.is_object() ? object.find(key) : object.end();
+  if (!object.is_object() || value == object.end() || !value->is_number()) return std::nullopt;
+  return value->get<double>();
+}
+
+std::string text(const Json& object, const char* key)
+{
+  const auto value = object.find(key);
+  return value != object.end() && value->is_string() ? value->get<std::string>() : std::string{};
+}
+
+void add_contact(const Json& certificate, Figures& figures)
+{
+  const Json contact = certificate.value("contact", Json(nullptr));
+  if (!contact.is_object()) return;
+  figures.emplace_back("contact_normal", number(contact, "normal"));
+  figures.emplace_back("contact_tangential", number(contact, "tangential"));
+  if (!contact.contains("boundaries")) return;
+  for (const auto& [name, part] : contact["boundaries"].items())
+    if (const Json sliding = part.value("sliding", Json(nullptr)); sliding.is_object())
+      figures.emplace_back("sliding_factor." + name, number(sliding, "sliding_factor"));
+}
+
+/// The largest pressure, and the measure of what is open: sums over contact.csv.
+void add_contact_line(const std::filesystem::path& file, Figures& figures)
+{
+  std::ifstream stream(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  const std::vector<std::vector<std::string>> rows = parse_csv(content, file.string());
+  if (rows.empty()) return;
+  const auto column = [&](const char* name) { return std::ranges::find(rows[0], name) - rows[0].begin(); };
+  const std::array places = {column("pressure"), column("status"), column("weight")};
+  double largest = 0;
+  double open = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i)
+  {
+    if (rows[i].size() != rows[0].size()) return;
+    largest = std::max(largest, std::stod(rows[i][places[0]]));
+    if (rows[i][places[1]] == "0") open += std::stod(rows[i][places[2]]);
+  }
+  figures.emplace_back("largest_pressure", largest);
+  figures.emplace_back("opened", open);
+}
+
+void add_reactions(const Json& certificate, Figures& figures)
+{
+  const Json balance = certificate.value("balance", Json(nullptr));
+  if (!balance.is_object()) return;
+  constexpr std::array axes = {"x", "y", "z"};
+  for (const Json& row : balance["rows"])
+    if (text(row, "kind") == "reaction")
+      for (std::size_t i = 0; i < row["force"].size(); ++i)
+        figures.emplace_back(fmt::format("reaction_{}.{}", axes[i], text(row, "name")),
+                             row["force"][i].get<double>());
+}
+
+/// The certificate of a run; null where there is none of this case.
+Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
+{
+  Json certificate = read_json(directory / "certificate.json");
+  const Json effective = certificate.is_object() ? certificate.value("case", Json(nullptr)) : Json(nullptr);
+  const bool its_own = effective.is_object() && text(effective, "sha256") == run.sha256;
+  return its_own ? certificate : Json(nullptr);
+}
+
+/// Whether a run that ended with this exit code has left the certificate at its end. After a crash or on a
+/// full disk it is that of an earlier level.
+bool is_final(const Json& certificate, int exit_code)
+{
+  if (!certificate.is_object()) return false;
+  const std::string status = text(certificate, "status");
+  if (exit_code == 2) return status == "failed" || status == "not certified";
+  return (exit_code == 0 && status == "certified") || (exit_code == 3 && status == "budget");
+}
+
+std::string status_without_certificate(const SweepRun& run)
+{
+  if (run.exit_code == 1) return "bad input";
+  return *run.exit_code > 128 ? "crashed" : "failed";
+}
+
+/// Every figure that some run has, in the order of the first that has it.
+std::vector<std::string> figure_names(const SweepRecord& sweep)
+{
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const SweepRun& run : sweep.runs)
+    for (const auto& [name, value] : run.figures)
+      if (seen.insert(name).second) names.push_back(name);
+  return names;
+}
+
+std::optional<double> figure(const SweepRun& run, const std::string& name)
+{
+  const auto found = std::ranges::find(run.figures, name, [](const auto& f) { return f.first; });
+  return found == run.figures.end() ? std::nullopt : found->second;
+}
+
+}  // namespace
+
+void read_results(const std::filesystem::path& directory, SweepRun& run)
+{
+  run.figures.clear();
+  run.reason.clear();
+  const Json certificate = certificate_of(directory, run);
+  if (!is_final(certificate, run.exit_code.value()))
+  {
+    run.status = status_without_certificate(run);
+    if (run.status == "crashed") run.reason = fmt::format("ended by signal {}", *run.exit_code - 128);
+    return;
+  }
+  run.status = text(certificate, "status");
+  run.reason = text(certificate, "reason");
+  for (const char* name : {"relative", "bound", "cells", "dofs"})
+    run.figures.emplace_back(name, number(certificate, name));
+  if (number(certificate, "bound"))
+  {
+    add_contact(certificate, run.figures);
+    add_contact_line(directory / "contact.csv", run.figures);
+    add_reactions(certificate, run.figures);
+  }
+  double seconds = 0;
+  const Json times = certificate.value("times", Json::object());
+  for (const auto& [stage, value] : times.items()) seconds += value.get<double>();
+  run.figures.emplace_back("seconds", seconds);
+}
+
+std::map<std::string, int> complete_runs(const std::filesystem::path& directory, const SweepRecord& sweep)
+{
+  std::map<std::string, int> complete;
+  const Json before = read_json(directory / "sweep.json");
+  if (!before.is_object()) return complete;
+  for (const Json& old : before.value("runs", Json::array()))
+  {
+    const std::string name = text(old, "run");
+    const auto run = std::ranges::find(sweep.runs, name, &SweepRun::name);
+    const std::optional<double> code = number(old, "exit_code");
+    if (run == sweep.runs.end() || !code || text(old, "sha256") != run->sha256 ||
+        text(old, "mesh_sha256") != run->mesh_sha256)
+      continue;
+    const Json certificate = certificate_of(directory / name, *run);
+    const bool complete_before = is_final(certificate, static_cast<int>(*code)) &&
+                                 text(certificate, "reason").find("interrupted") == std::string::npos;
+    if (complete_before) complete[name] = static_cast<int>(*code);
+  }
+  return complete;
+}
+
+std::string sweep_csv(const SweepRecord& sweep)
+{
+  const std::vector<std::string> names = figure_names(sweep);
+  std::string columns = "run";
+  for (const std::string& key : sweep.keys) columns += "," + csv_cell(key);
+  columns += ",status,reason";
+  for (const std::string& name : names) columns += "," + csv_cell(name);
+  CsvTable table(columns);
+  for (const SweepRun& run : sweep.runs)
+  {
+    table.add(run.name);
+    for (const std::string& value : run.values) table.add(value);
+    table.add(run.status);
+    table.add(run.reason);
+    for (const std::string& name : names) table.add(figure(run, name));
+    table.end_row();
+  }
+  return table.text();
+}
+
+std::string sweep_json(const SweepRecord& sweep)
+{
+  Json object{{"schema", sweep_schema}, {"title", sweep.title}, {"file", sweep.file}, {"keys", sweep.keys}};
+  object["runs"] = Json::array();
+  for (const SweepRun& run : sweep.runs)
+  {
+    Json row{{"run", run.name}, {"values", Json::object()}};
+    for (std::size_t i = 0; i < sweep.keys.size(); ++i) row["values"][sweep.keys[i]] = run.values[i];
+    row["sha256"] = run.sha256;
+    row["mesh_sha256"] = text_or_null(run.mesh_sha256);
+    row["exit_code"] = run.exit_code ? Json(*run.exit_code) : Json(nullptr);
+    row["status"] = run.status;
+    row["reason"] = text_or_null(run.reason);
+    for (const auto& [name, value] : run.figures) row[name] = number_or_null(value);
+    object["runs"].push_back(row);
+  }
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep)
+{
+  write_file(directory / "sweep.csv", sweep_csv(sweep));
+  write_file(directory / "sweep.json", sweep_json(sweep));
+}
+
+std::string sweep_line(const SweepRecord& sweep, const SweepRun& run)
+{
+  std::string values;
+  for (std::size_t i = 0; i < sweep.keys.size(); ++i)
+    values += fmt::format("{}{}={}", i == 0 ? "" : "  ", sweep.keys[i], run.values[i]);
+  const std::optional<double> relative = figure(run, "relative");
+  const std::string bound = relative ? fmt::format(", bound {:.4g} %", 100 * *relative) : std::string{};
+  return line("run " + run.name, fmt::format("{}: {}{}", values, run.status, bound));
+}
+
+}  // namespace tribound

@@ -1,0 +1,183 @@
+#include "app/result/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "app/console/text.h"
+#include "tribound/certify/bound/certificate.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/json.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+constexpr const char* verification_schema = "1";
+
+std::string number_or_dash(const std::optional<double>& value)
+{
+  return value ? fmt::format("{:.4f}", *value) : "-";
+}
+
+std::string iterate_line(const VerifiedIterate& iterate)
+{
+  return fmt::format("{:>4}  {:>9.3e}  {:>12.6g}  {:>12.6g}  {:>12.6g}  {:>11}  {:>10.1e}\n",
+                     iterate.step.step, iterate.step.residual, iterate.bound_plain, iterate.bound,
+                     iterate.dual_norm, number_or_dash(iterate.effectivity()), iterate.identities);
+}
+
+std::string richer_text(const Verification& v)
+{
+  if (!v.richer) return line("richer", "not computed, because Newton's method did not converge");
+  const double sigma_norm = v.iterates.back().norms.sigma;
+  const std::string where =
+      fmt::format("degree {} on {} cells, {} free degrees of freedom, {} Newton steps", v.richer_degree,
+                  v.richer->cells, v.richer->dofs, v.richer->newton_steps);
+  if (!v.richer->error) return line("richer", where) + line("", "no solution: " + v.richer->failure);
+  const double error = v.richer->error->stress;
+  std::string stress = fmt::format("{:.6g}", error);
+  if (sigma_norm > 0) stress += fmt::format(", {:.3g} of ||sigma||", error / sigma_norm);
+  if (error > 0) stress += fmt::format("; bound / error = {:.4g}", v.iterates.back().bound / error);
+  return line("richer", where) + line("energy error", fmt::format("{:.6g}", v.richer->error->energy)) +
+         line("stress error", stress);
+}
+
+std::string status_text(const Verification& v)
+{
+  std::string problem = violation(v);
+  if (!problem.empty()) return problem;
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (const VerifiedIterate& iterate : v.iterates)
+    if (const auto e = iterate.effectivity())
+    {
+      smallest = std::min(smallest, *e);
+      largest = std::max(largest, *e);
+    }
+  return largest == 0 ? std::string("bound and dual norm are both round-off")
+                      : fmt::format("the bound holds at every iterate, effectivity {:.4f} to {:.4f}",
+                                    smallest, largest);
+}
+
+Json json(const VerifiedIterate& iterate)
+{
+  return {{"step", iterate.step.step},
+          {"residual", iterate.step.residual},
+          {"damping", iterate.step.damping},
+          {"delta", iterate.step.delta},
+          {"bound", iterate.bound},
+          {"bound_plain", iterate.bound_plain},
+          {"dual_norm", iterate.dual_norm},
+          {"effectivity", number_or_null(iterate.effectivity())},
+          {"sigma_norm", iterate.norms.sigma},
+          {"identities", iterate.identities}};
+}
+
+Json json(const std::optional<RicherSolution>& solution, int degree)
+{
+  if (!solution) return nullptr;
+  const RicherSolution& richer = *solution;
+  Json object{{"degree", degree},         {"cells", richer.cells},
+              {"dofs", richer.dofs},      {"newton_steps", richer.newton_steps},
+              {"energy_error", nullptr},  {"stress_error", nullptr},
+              {"failure", richer.failure}};
+  if (!richer.error) return object;
+  object["energy_error"] = richer.error->energy;
+  object["stress_error"] = richer.error->stress;
+  return object;
+}
+
+}  // namespace
+
+std::string VerifiedIterate::refusal() const
+{
+  if (std::max(bound, norms.sigma) <= norms.round_off) return {};
+  return identity_violation(identities);
+}
+
+std::string violation(const Verification& verification)
+{
+  for (const VerifiedIterate& iterate : verification.iterates)
+    if (const auto e = iterate.effectivity(); e && *e < 1 && iterate.refusal().empty())
+      return fmt::format(
+          "the guarantee is violated: after Newton step {} the bound {:.9g} is below the dual norm of the "
+          "residual, "
+          "which is at least {:.9g} (effectivity {:.6f})",
+          iterate.step.step, iterate.bound, iterate.dual_norm, *e);
+  return verification.iterates.back().refusal();
+}
+
+std::string verification_text(const Verification& v, const std::string& directory)
+{
+  std::string text =
+      line("dual norm",
+           fmt::format("from below, degree {} on {} cells ({} refinements), {} degrees of freedom",
+                       v.dual_space.degree, v.dual_space.cells, v.refinements, v.dual_space.dofs)) +
+      fmt::format("{:>4}  {:>9}  {:>12}  {:>12}  {:>12}  {:>11}  {:>10}\n", "step", "residual", "plain bound",
+                  "bound", "dual norm", "effectivity", "identities");
+  for (const VerifiedIterate& iterate : v.iterates) text += iterate_line(iterate);
+  const VerifiedIterate& last = v.iterates.back();
+  text +=
+      line("||sigma||", last.norms.sigma > 0 ? fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}",
+                                                           last.norms.sigma, last.bound / last.norms.sigma)
+                                             : std::string("0"));
+  return text + richer_text(v) + line("status", status_text(v)) + line("results", directory);
+}
+
+namespace
+{
+
+const char* guarantee(const Verification& v)
+{
+  const std::string problem = violation(v);
+  if (problem.empty()) return "holds";
+  return problem == v.iterates.back().refusal() ? "not certified" : "violated";
+}
+
+}  // namespace
+
+std::string verification_json(const Verification& v)
+{
+  const VerifiedIterate& last = v.iterates.back();
+  Json object{{"schema", verification_schema},
+              {"title", v.facts.title},
+              {"file", v.facts.file},
+              {"d", v.facts.dimension},
+              {"p", v.facts.degree},
+              {"friction", v.facts.friction},
+              {"gamma0", v.facts.gamma0},
+              {"cells", v.mesh.cells},
+              {"dofs", v.mesh.free_dofs},
+              {"guarantee", guarantee(v)},
+              {"converged", v.converged},
+              {"bound", last.bound},
+              {"bound_plain", last.bound_plain},
+              {"dual_norm", last.dual_norm},
+              {"effectivity", number_or_null(last.effectivity())},
+              {"sigma_norm", last.norms.sigma},
+              {"refinements", v.refinements},
+              {"dual_space",
+               {{"degree", v.dual_space.degree}, {"cells", v.dual_space.cells}, {"dofs", v.dual_space.dofs}}},
+              {"richer_solution", json(v.richer, v.richer_degree)},
+              {"iterates", Json::array()},
+              {"times", Json::object()}};
+  for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(iterate));
+  for (const auto& [stage, seconds] : v.times) object["times"][stage] = seconds;
+  return object.dump(2) + "\n";
+}
+
+void write_verification(const std::filesystem::path& directory, const Verification& verification)
+{
+  write_file(directory / "verify.json", verification_json(verification));
+}
+
+void print_verification(const Verification& verification, const std::string& directory)
+{
+  print(verification_text(verification, directory));
+}
+
+}  // namespace tribound

@@ -1,0 +1,76 @@
+#pragma once
+
+/// @file verification.h
+/// What `tribound verify` reports: the bound beside what it bounds. Plain data in, text out.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tribound/certify/truth/true_error.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/io/record/facts.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound
+{
+
+/// One Newton iterate: its bound and the dual norm of its residual from below, stress units times
+/// length^(dim/2).
+struct VerifiedIterate
+{
+  NewtonStep step;
+  double bound = 0;        ///< the certificate's bound (total_sharp)
+  double bound_plain = 0;  ///< with plain sums, as in the paper
+  double dual_norm = 0;
+  StressNorms norms;      ///< of u^k
+  double identities = 0;  ///< the largest defect, relative to the stress
+
+  [[nodiscard]] std::optional<double> effectivity() const
+  {
+    return tribound::effectivity(bound, dual_norm, norms);
+  }
+  /// Whether an identity is violated and not by rounding alone, so that `bound` need not be one.
+  [[nodiscard]] std::string refusal() const;
+};
+
+/// A space in which the truth was looked for.
+struct RicherSpaceFacts
+{
+  int degree = 0;
+  long cells = 0;
+  long dofs = 0;  ///< fixed ones included
+};
+
+struct Verification
+{
+  CaseFacts facts;
+  MeshFacts mesh;
+  int refinements = 0;
+  RicherSpaceFacts dual_space;
+  std::vector<VerifiedIterate> iterates;  ///< k = 1, 2, ...; the last is the solution
+  bool converged = false;
+  int richer_degree = 0;
+  std::optional<RicherSolution> richer;  ///< what the solution was measured against, if it is one
+  std::vector<std::pair<std::string, double>> times;  ///< s per stage
+};
+
+/// What is wrong when an effectivity is below 1 although the identities hold, naming the iterate; then when
+/// they do not hold for the last one, which `tribound run` would not certify; empty when the guarantee holds.
+[[nodiscard]] std::string violation(const Verification& verification);
+
+/// The table of the iterates, the errors and where the file is.
+[[nodiscard]] std::string verification_text(const Verification& verification, const std::string& directory);
+
+/// The same as JSON with the fields of docs/output.md; unknown numbers are null.
+[[nodiscard]] std::string verification_json(const Verification& verification);
+
+/// Writes verify.json, whole or not at all. Throws InputError when it cannot be written.
+void write_verification(const std::filesystem::path& directory, const Verification& verification);
+
+/// The text on stdout.
+void print_verification(const Verification& verification, const std::string& directory);
+
+}  // namespace tribound

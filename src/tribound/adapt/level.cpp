@@ -1,0 +1,263 @@
+#include "tribound/adapt/level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "tribound/adapt/persistent.h"
+#include "tribound/base/clock.h"
+#include "tribound/base/error.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/elasticity.h"
+
+namespace tribound
+{
+
+bool linearisation_is_negligible(const BoundComponents& eta, double gamma_lin)
+{
+  return eta.linearisation() <= gamma_lin * (eta.discretisation() + eta.regularisation());
+}
+
+bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& config)
+{
+  const auto negligible = [&](const BoundComponents& eta)
+  { return linearisation_is_negligible(eta, config.gamma_lin); };
+  switch (config.stopping)
+  {
+    case Stopping::adaptive:
+      return negligible(estimate.global);
+    case Stopping::adaptive_local:
+      return std::ranges::all_of(estimate.cells, negligible);
+    default:
+      return false;
+  }
+}
+
+namespace
+{
+
+/// lin1, lin2n and lin2t alone.
+BoundComponents linearisation_part(const BoundComponents& eta)
+{
+  BoundComponents part;
+  for (const auto member : linearisation_components) part.*member = eta.*member;
+  return part;
+}
+
+/// Bounds the iterates on one mesh.
+template <int dim>
+class Certifier
+{
+ public:
+  Certifier(const NitscheForm<dim>& form, const Config& config, const std::optional<double>& expected,
+            const std::optional<FriedrichsConstant>& friedrichs)
+      : form_(form),
+        config_(config),
+        known_(expected),
+        equilibrator_(form),
+        estimator_(form, config.certify.contact_rule, friedrichs)
+  {
+  }
+
+  /// Whether the iterate may be kept as the solution; its bound, unless sigma_lin alone says that it may not.
+  [[nodiscard]] bool examine(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step,
+                             CertifiedLevel<dim>& level)
+  {
+    if (always_complete() || !known_ || may_be_accepted(u, t, step)) complete(u, t, step, level);
+    return step.bound && linearisation_is_negligible(level.estimate, config_.newton);
+  }
+
+  /// The stress of the iterate and its bound.
+  void complete(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step,
+                CertifiedLevel<dim>& level)
+  {
+    level.stress = equilibrator_(u, t, step.step.delta);
+    level.estimate = estimator_(u, level.stress);
+    level.friedrichs = estimator_.friedrichs();
+    level.norms = stress_norms(form_.problem(), form_.space(), u);
+    step.bound = level.estimate;
+    step.linearisation = linearisation_part(level.estimate.global);
+    if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;
+    known_ = level.estimate.global.discretisation();
+  }
+
+ private:
+  [[nodiscard]] bool always_complete() const
+  {
+    return dim == 2 || config_.newton.stopping == Stopping::tolerance || config_.regularisation;
+  }
+
+  /// Whether the linearisation error may be negligible, the discretisation error being that last known. What
+  /// is negligible on every cell is so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for
+  /// vectors x, y, z >= 0.
+  bool may_be_accepted(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step)
+  {
+    const double factor = config_.newton.stopping == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
+    step.linearisation = estimator_.linearisation(equilibrator_.linearisation(u, t));
+    return step.linearisation->linearisation() <= factor * config_.newton.gamma_lin * *known_;
+  }
+
+  const NitscheForm<dim>& form_;
+  const Config& config_;
+  std::optional<double> known_;  ///< discretisation() of the last complete bound, or as expected
+  Equilibrator<dim> equilibrator_;
+  Estimator<dim> estimator_;
+};
+
+/// The stress, the bound and the identities of the last step, whose iterate is kept.
+template <int dim>
+void keep_last(const NitscheForm<dim>& form, Certifier<dim>& certifier, CertifiedLevel<dim>& level)
+{
+  CertifiedStep& last = level.steps.back();
+  if (!last.bound) certifier.complete(level.u, level.traction, last, level);
+  last.accepted = true;
+  level.identities = check_identities<dim>(form, level.traction, level.stress);
+}
+
+/// The level with its systems solved as far as rounding lets them be, where this mends the identities.
+template <int dim>
+void tighten(const NitscheForm<dim>& form, const Config& config, const StepObserver& observer,
+             CertifiedLevel<dim>& level)
+{
+  Config tight = config;
+  tight.solver.tolerance = 0;
+  try
+  {
+    if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
+      level = std::move(*better);
+  }
+  catch (const SolveError&)  // the identities stay as they are, and the bound is refused
+  {
+  }
+  level.finishing_steps = 0;
+  level.tightened = true;
+}
+
+}  // namespace
+
+template <int dim>
+bool bound_holds(const CertifiedLevel<dim>& level, int degree)
+{
+  if (!level.solved()) return false;
+  const Verdict verdict = judge(level.estimate, level.identities, degree, level.norms, 0);
+  return verdict.status != RunStatus::not_certified;
+}
+
+template <int dim>
+std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
+                                            const Config& config, const StepObserver& observer)
+{
+  CertifiedLevel<dim> result = level;
+  const int before = static_cast<int>(level.steps.size());
+  const NewtonObserver<dim> record = [&](const NewtonIterate<dim>& iterate)
+  {
+    CertifiedStep& step = result.steps.emplace_back(CertifiedStep{iterate.step, {}});
+    step.step.step += before;
+    if (observer) observer(step);
+    return false;
+  };
+  NewtonResult<dim> newton;
+  {
+    const Charge charge(result.solve_seconds, result.solve_cpu);
+    newton = solve<dim>(form, level.u, config.newton, config.solver, record, level.delta);
+  }
+  if (newton.status != NewtonStatus::converged) return std::nullopt;
+  for (CertifiedStep& step : result.steps) step.accepted = false;
+  result.finishing_steps += static_cast<int>(result.steps.size()) - before;
+  result.converged = true;
+  result.u = std::move(newton.u);
+  result.traction = std::move(newton.traction);
+  {
+    const Charge charge(result.certify_seconds, result.certify_cpu);
+    Certifier<dim> certifier(form, config, {}, level.friedrichs);
+    keep_last(form, certifier, result);
+  }
+  if (!bound_holds(result, config.degree)) return std::nullopt;
+  return result;
+}
+
+template <int dim>
+CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<const double> start,
+                                      const Config& config, const StepObserver& observer, double delta,
+                                      const std::optional<double>& expected,
+                                      const std::optional<FriedrichsConstant>& friedrichs)
+{
+  CertifiedLevel<dim> level;
+  double wall = 0;
+  double cpu = 0;
+  std::optional<Certifier<dim>> certifier;
+  std::optional<DeltaUpdates> regularisation;
+  if (config.regularisation) regularisation = DeltaUpdates{*config.regularisation, delta};
+
+  const auto record = [&](const NewtonStep& step)
+  {
+    level.steps.push_back({step, {}});
+    level.steps.back().step.step = static_cast<int>(level.steps.size());
+  };
+  const auto certify = [&](const NewtonIterate<dim>& iterate)
+  {
+    record(iterate.step);
+    CertifiedStep& step = level.steps.back();
+    NewtonAdvice advice = false;
+    if (std::isfinite(iterate.step.residual))
+    {
+      const Charge charge(level.certify_seconds, level.certify_cpu);
+      if (!certifier) certifier.emplace(form, config, expected, friedrichs);
+      advice = certifier->examine(iterate.u, iterate.traction, step, level);
+      if (regularisation)
+        advice = regularisation->advise(form, iterate, level.estimate.global,
+                                        advice.good_enough || iterate.converged);
+      step.accepted = advice.good_enough;
+    }
+    if (observer) observer(step);
+    return advice;
+  };
+  NewtonResult<dim> newton;
+  {
+    const Charge charge(wall, cpu);
+    newton = solve_persistently<dim>(form, start, config, certify, delta,
+                                     [&](const NewtonStep& step)
+                                     {
+                                       record(step);
+                                       if (observer) observer(level.steps.back());
+                                     });
+  }
+  level.solve_seconds = wall - level.certify_seconds;
+  level.solve_cpu = cpu - level.certify_cpu;
+  if (regularisation)
+  {
+    level.delta = regularisation->delta;
+    level.delta_updates = regularisation->n_updates;
+  }
+  level.failure = std::move(newton.message);
+  level.converged = newton.status == NewtonStatus::converged;
+  level.u = std::move(newton.u);
+  level.traction = std::move(newton.traction);
+  if (!level.solved())
+  {
+    level.norms = stress_norms(form.problem(), form.space(), level.u);
+    return level;
+  }
+  {
+    const Charge charge(level.certify_seconds, level.certify_cpu);
+    keep_last(form, *certifier, level);
+  }
+  if (!bound_holds(level, config.degree)) tighten(form, config, observer, level);
+  return level;
+}
+
+template CertifiedLevel<2> solve_and_certify(const NitscheForm<2>&, std::span<const double>, const Config&,
+                                             const StepObserver&, double, const std::optional<double>&,
+                                             const std::optional<FriedrichsConstant>&);
+template CertifiedLevel<3> solve_and_certify(const NitscheForm<3>&, std::span<const double>, const Config&,
+                                             const StepObserver&, double, const std::optional<double>&,
+                                             const std::optional<FriedrichsConstant>&);
+template std::optional<CertifiedLevel<2>> converge(const NitscheForm<2>&, const CertifiedLevel<2>&,
+                                                   const Config&, const StepObserver&);
+template std::optional<CertifiedLevel<3>> converge(const NitscheForm<3>&, const CertifiedLevel<3>&,
+                                                   const Config&, const StepObserver&);
+template bool bound_holds(const CertifiedLevel<2>&, int);
+template bool bound_holds(const CertifiedLevel<3>&, int);
+
+}  // namespace tribound

@@ -1,0 +1,143 @@
+#pragma once
+
+/// @file level.h
+/// One mesh of the adaptive algorithm: the discrete problem, Newton's method with the bound of every iterate,
+/// and the identities of the iterate that is kept.
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/adapt/regularisation.h"
+#include "tribound/case/config.h"
+#include "tribound/certify/bound/certificate.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound
+{
+
+/// A mesh with everything up to the discrete problem on it. Its parts refer to each other: it stays where it
+/// is made.
+template <int dim>
+struct Discretisation
+{
+  Discretisation(Mesh<dim> m, const Problem<dim>& problem, const Config& config,
+                 const DataAccuracy& accuracy = {})
+      : mesh(std::move(m)), space(mesh, config.degree), form(problem, space, config.gamma0(), accuracy)
+  {
+  }
+  Discretisation(const Discretisation&) = delete;
+  Discretisation& operator=(const Discretisation&) = delete;
+
+  Mesh<dim> mesh;
+  LagrangeSpace<dim> space;
+  NitscheForm<dim> form;  ///< a(u,v) - (T(u),v)_C - L(v)
+};
+
+/// A Newton step with the bound of its iterate.
+struct CertifiedStep
+{
+  NewtonStep step;
+  /// Absent where the iterate is not finite, or ruled out by its linearisation error (solve_and_certify).
+  std::optional<Bound> bound = {};
+  bool accepted = false;                ///< whether its iterate was taken as the solution on the mesh
+  std::optional<double> relative = {};  ///< bound / ||sigma(u^k)||
+  /// lin1, lin2n and lin2t, the others 0; absent where the iterate is not finite.
+  std::optional<BoundComponents> linearisation = {};
+};
+
+/// Wall time of what led to a mesh; 0 for the given one.
+struct RefinementSeconds
+{
+  double bisect = 0;      ///< marking and bisection, with the topology of the new mesh
+  double discretise = 0;  ///< space, load and contact points
+  double transfer = 0;    ///< the solution carried over
+};
+
+/// The solution on one mesh and what is known of its error.
+template <int dim>
+struct CertifiedLevel
+{
+  std::string failure;  ///< why there is no solution; empty when there is
+  std::vector<double> u;
+  std::vector<Point<dim>> traction;  ///< t^k at the contact points, in equilibrium with the loads
+  std::vector<CertifiedStep> steps;
+  int finishing_steps = 0;           ///< the last of them, which converge() has added
+  bool converged = false;            ///< to newton.tolerance, not only as far as the bound needs
+  bool tightened = false;            ///< whether its systems were solved anew, see solve_and_certify()
+  double delta = 0;                  ///< of the regularised variant, for the next mesh
+  std::optional<int> delta_updates;  ///< how often delta was shrunk; absent in the plain method
+  Stress<dim> stress;
+  Estimate estimate;
+  StressNorms norms{};  ///< of u
+  IdentityDefects identities;
+  std::optional<FriedrichsConstant> friedrichs;  ///< where it was needed, on this mesh or one before
+  double solve_seconds = 0;                      ///< wall time
+  double certify_seconds = 0;                    ///< of all iterates
+  double solve_cpu = 0;                          ///< CPU time, all threads
+  double certify_cpu = 0;
+  RefinementSeconds refinement;
+
+  [[nodiscard]] bool solved() const { return failure.empty(); }
+};
+
+/// Whether iterating further is pointless, method section 6:
+/// eta_lin1 + eta_lin2n + eta_lin2t <= gamma_lin (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc), where T
+/// is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
+[[nodiscard]] bool linearisation_is_negligible(const BoundComponents& eta, double gamma_lin);
+
+/// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.
+[[nodiscard]] bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& config);
+
+/// Called after every Newton step; may throw to leave the level.
+using StepObserver = std::function<void(const CertifiedStep&)>;
+
+/// Newton's method from `start` (empty: from scratch) with the bound of its iterates. With an adaptive
+/// stopping criterion it ends at the first iterate whose linearisation error is negligible. In the
+/// regularised variant (config.regularisation) it starts with `delta` (0: chosen after the first step), and
+/// goes on with smaller ones until the regularisation is negligible too.
+///
+/// The iterate that is kept always has the complete bound of its own stress; so has every other in 2D, with
+/// Stopping::tolerance and in the regularised variant. Otherwise in 3D, where the patches cost as much as
+/// some steps, sigma_lin comes first, which needs those around Gamma_C alone: an iterate whose linearisation
+/// error is not negligible beside osc + str + neu + cnt + frc + quad of the last complete bound, or at first
+/// beside what this sum is `expected` to be if something is known of it, gets no complete bound, and Newton's
+/// method goes on.
+///
+/// `friedrichs`: of a mesh of which this is a refinement, if it is known.
+///
+/// Where Newton's method fails it is started anew (solve_persistently); `steps` has the steps of all
+/// attempts.
+///
+/// Where the identities of the iterate that is kept are violated, the linear systems may have been solved too
+/// loosely: Newton's method goes on with new factors, solving them as far as rounding lets it.
+///
+/// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
+template <int dim>
+[[nodiscard]] CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form,
+                                                    std::span<const double> start, const Config& config,
+                                                    const StepObserver& observer = {}, double delta = 0,
+                                                    const std::optional<double>& expected = {},
+                                                    const std::optional<FriedrichsConstant>& friedrichs = {});
+
+/// The same level with Newton's method gone on until newton.tolerance, whatever the stopping criterion, delta
+/// as it is, and with the bound of its last iterate. Nothing where it does not get there, be it that an
+/// identity is violated; throws as solve_and_certify() does. Of `level` neither stress nor estimate is used.
+template <int dim>
+[[nodiscard]] std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form,
+                                                          const CertifiedLevel<dim>& level,
+                                                          const Config& config,
+                                                          const StepObserver& observer = {});
+
+/// Whether there is a solution and judge() may call its bound a bound.
+template <int dim>
+[[nodiscard]] bool bound_holds(const CertifiedLevel<dim>& level, int degree);
+
+}  // namespace tribound

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file mark.h
+/// Which cells to refine, from the bound of each cell.
+
+#include <span>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/case/config.h"
+#include "tribound/certify/bound/estimate.h"
+
+namespace tribound
+{
+
+/// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96]; of cells with equal
+/// eta_T those with the lower numbers. Ascending; empty where every eta_T is 0. `eta`: per cell, finite and
+/// not negative; 0 < theta <= 1. O(n) on average.
+[[nodiscard]] std::vector<Index> mark_doerfler(std::span<const double> eta, double theta);
+
+/// The cells with eta_T >= theta max eta_T, ascending; empty where every eta_T is 0. Arguments as above.
+[[nodiscard]] std::vector<Index> mark_maximum(std::span<const double> eta, double theta);
+
+/// All cells 0, ..., n_cells - 1, whatever their share: uniform refinement.
+[[nodiscard]] std::vector<Index> mark_all(std::size_t n_cells);
+
+/// As adapt.marking and adapt.theta ask for, by eta_T = total_sharp of every cell. With
+/// adapt.separate_contact the union of what body() and contact() mark, each for itself; a part whose square
+/// is below a hundredth of the bound's is left to the other.
+[[nodiscard]] std::vector<Index> mark(std::span<const BoundComponents> cells, const AdaptConfig& config);
+
+}  // namespace tribound

@@ -1,0 +1,26 @@
+#pragma once
+
+/// @file persistent.h
+/// Newton's method with more than one start.
+
+#include <functional>
+#include <span>
+
+#include "tribound/case/config.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound
+{
+
+/// solve(), and where that fails, with damping and contact and without [regularisation], from other starts:
+/// from solutions with T_delta in the place of T, which has no kinks, for smaller and smaller delta, then
+/// from those with three times and with a third of gamma. Near incompressibility Newton's method may go round
+/// in circles between contact states, and finds its way from there. The steps of these solutions go to
+/// `record`, those of all attempts to `observer`. Should all fail, it is the first one that is told of.
+template <int dim>
+[[nodiscard]] NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form,
+                                                   std::span<const double> start, const Config& config,
+                                                   const NewtonObserver<dim>& observer, double delta,
+                                                   const std::function<void(const NewtonStep&)>& record);
+
+}  // namespace tribound

@@ -1,0 +1,57 @@
+#include "tribound/adapt/regularisation.h"
+
+#include <cmath>
+
+namespace tribound
+{
+
+bool regularisation_is_negligible(const BoundComponents& eta, double gamma_reg)
+{
+  return eta.regularisation() <= gamma_reg * eta.discretisation();
+}
+
+template <int dim>
+double mean_contact_traction(const NitscheForm<dim>& form, std::span<const Point<dim>> t)
+{
+  double square = 0;
+  double measure = 0;
+  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
+    for (int q = 0; q < form.n_facet_points(); ++q)
+    {
+      const double weight =
+          form.contact_facets()[k].geometry.measure * (dim - 1) * form.facet_rule().weights[q];
+      square += weight * t[k * form.n_facet_points() + q].squaredNorm();
+      measure += weight;
+    }
+  return measure > 0 ? std::sqrt(square / measure) : 0;
+}
+
+template <int dim>
+NewtonAdvice DeltaUpdates::advise(const NitscheForm<dim>& form, const NewtonIterate<dim>& iterate,
+                                  const BoundComponents& eta, bool inner_done)
+{
+  NewtonAdvice advice = inner_done;
+  if (delta == 0)
+  {
+    delta = config.delta * mean_contact_traction<dim>(form, iterate.traction);
+    if (!inner_done && delta > 0) advice.delta = delta;
+  }
+  else if (inner_done && n_updates < config.max_updates &&
+           !regularisation_is_negligible(eta, config.gamma_reg))
+  {
+    delta *= config.factor;
+    ++n_updates;
+    advice.delta = delta;
+    advice.good_enough = false;
+  }
+  return advice;
+}
+
+template double mean_contact_traction(const NitscheForm<2>&, std::span<const Point<2>>);
+template double mean_contact_traction(const NitscheForm<3>&, std::span<const Point<3>>);
+template NewtonAdvice DeltaUpdates::advise(const NitscheForm<2>&, const NewtonIterate<2>&,
+                                           const BoundComponents&, bool);
+template NewtonAdvice DeltaUpdates::advise(const NitscheForm<3>&, const NewtonIterate<3>&,
+                                           const BoundComponents&, bool);
+
+}  // namespace tribound

@@ -1,0 +1,41 @@
+#pragma once
+
+/// @file regularisation.h
+/// How the regularised variant chooses delta, method section 7.
+
+#include <span>
+
+#include "tribound/case/config.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound
+{
+
+/// Whether a smaller delta is pointless:
+/// eta_reg1 + eta_reg2n + eta_reg2t <= gamma_reg (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc).
+[[nodiscard]] bool regularisation_is_negligible(const BoundComponents& eta, double gamma_reg);
+
+/// The root mean square of |t| over Gamma_C, t given at the contact points; 0 without contact.
+template <int dim>
+[[nodiscard]] double mean_contact_traction(const NitscheForm<dim>& form, std::span<const Point<dim>> t);
+
+/// The outer loop of the regularised variant around Newton's method on one mesh.
+struct DeltaUpdates
+{
+  RegularisationConfig config;
+  double delta = 0;   ///< of the next Newton step; 0 until the first step has shown the size of the traction
+  int n_updates = 0;  ///< on this mesh
+
+  /// What to do after the step that gave `iterate`, whose components are `eta`; `inner_done`: the iteration
+  /// with the present delta has come to its end. The first delta is config.delta times the mean contact
+  /// traction. At the end of an iteration delta shrinks by config.factor, until the regularisation is
+  /// negligible or config.max_updates is reached: then the iterate is good enough, its bound holds in any
+  /// case.
+  template <int dim>
+  [[nodiscard]] NewtonAdvice advise(const NitscheForm<dim>& form, const NewtonIterate<dim>& iterate,
+                                    const BoundComponents& eta, bool inner_done);
+};
+
+}  // namespace tribound

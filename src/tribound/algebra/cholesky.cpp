@@ -1,0 +1,60 @@
+#include "tribound/algebra/cholesky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tribound/algebra/petsc_detail.h"
+
+namespace tribound
+{
+
+using detail::check;
+using detail::wrap;
+
+namespace
+{
+
+/// A zero pivot means that the matrix is not positive definite; nothing else may go wrong.
+bool succeeded(Mat factors)
+{
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  check(MatFactorGetError(factors, &error), "factorising");
+  if (error == MAT_FACTOR_OUTMEMORY) check(PETSC_ERR_MEM, "factorising");
+  if (error != MAT_FACTOR_NOERROR && error != MAT_FACTOR_NUMERIC_ZEROPIVOT)
+    throw SolveError("MUMPS failed while factorising a symmetric matrix");
+  return error == MAT_FACTOR_NOERROR;
+}
+
+}  // namespace
+
+SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
+{
+  check(MatSetOption(a.handle(), MAT_SPD, PETSC_TRUE), "factorising");  // no pivoting
+  Mat factors = nullptr;
+  check(MatGetFactor(a.handle(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors), "factorising");
+  factors_.reset(factors);
+  detail::configure_mumps(factors, dim);
+  MatFactorInfo info;
+  check(MatFactorInfoInitialize(&info), "factorising");
+  check(MatCholeskyFactorSymbolic(factors, a.handle(), nullptr, &info), "ordering a matrix");
+  if (!succeeded(factors)) return;
+  check(MatCholeskyFactorNumeric(factors, a.handle(), &info), "factorising");
+  if (!succeeded(factors)) return;
+
+  PetscInt negative = 0;
+  check(MatMumpsGetInfog(factors, 12, &negative), "counting pivots");
+  if (negative > 0) return;
+  // A pivot that is no number counts as none of them; it spoils every solution.
+  const std::vector<double> ones(a.size(), 1.0);
+  std::vector<double> x(a.size());
+  solve(ones, x);
+  positive_definite_ = std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
+}
+
+void SparseCholesky::solve(std::span<const double> b, std::span<double> x) const
+{
+  check(MatSolve(factors_.get(), wrap(b).get(), wrap(x).get()), "solving a linear system");
+}
+
+}  // namespace tribound

@@ -1,0 +1,77 @@
+#pragma once
+
+/// @file petsc.h
+/// PETSc behind values and RAII. Only the .cpp files of this folder touch Mat, Vec and KSP.
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/contact/nitsche/elasticity.h"
+
+struct _p_Mat;
+
+namespace tribound
+{
+
+/// Starts MPI (with threads: PT-Scotch deadlocks otherwise) and PETSc; ends them when destroyed. One per
+/// process, alive as long as matrices and solvers are.
+class Environment
+{
+ public:
+  Environment();
+  ~Environment();
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  std::filesystem::path session_directory_;  ///< of Open MPI; empty: not ours
+};
+
+/// Names and versions of the libraries behind the linear algebra.
+struct AlgebraVersions
+{
+  std::string petsc;
+  std::string mumps;
+  std::string mpi;
+  std::string blas;      ///< file of the library
+  int blas_threads = 0;  ///< 0: unknown
+};
+[[nodiscard]] AlgebraVersions algebra_versions();
+
+struct MatDeleter
+{
+  void operator()(_p_Mat* mat) const;
+};
+
+/// A square sparse matrix assembled from (row, column, value) entries.
+class SparseMatrix
+{
+ public:
+  /// Sums the entries; block_size is the number of components per node.
+  SparseMatrix(Index n, int block_size, Triplets entries);
+
+  /// A matrix of the same pattern and values.
+  [[nodiscard]] SparseMatrix duplicate() const;
+  [[nodiscard]] Index size() const { return size_; }
+  /// A x.
+  [[nodiscard]] std::vector<double> multiply(std::span<const double> x) const;
+  [[nodiscard]] std::vector<double> diagonal() const;
+  /// New values for the entries the matrix was made of, in the same order.
+  void set_values(std::span<const double> values);
+  /// this = a + b; this has the pattern of a, which contains the pattern of b.
+  void assign_sum(const SparseMatrix& a, const SparseMatrix& b);
+
+  [[nodiscard]] _p_Mat* handle() const { return mat_.get(); }
+
+ private:
+  SparseMatrix() = default;
+
+  Index size_ = 0;
+  std::unique_ptr<_p_Mat, MatDeleter> mat_;
+};
+
+}  // namespace tribound

@@ -1,0 +1,35 @@
+#pragma once
+
+/// @file petsc_detail.h
+/// What the files of this folder that use PETSc share; includes PETSc's own headers.
+
+#include <petscksp.h>
+
+#include <memory>
+#include <span>
+
+#include "tribound/base/error.h"
+
+namespace tribound::detail
+{
+
+/// Turns a PETSc error code into a SolveError.
+void check(PetscErrorCode error, const char* doing);
+
+struct VecDeleter
+{
+  void operator()(_p_Vec* vec) const { VecDestroy(&vec); }
+};
+using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
+
+/// A PETSc vector on the caller's memory.
+[[nodiscard]] VecHandle wrap(std::span<double> values);
+/// The same for reading: PETSc has no vectors of const.
+[[nodiscard]] VecHandle wrap(std::span<const double> values);
+
+/// Sets an option of PETSc unless the user has set it.
+void set_default_option(const char* name, const char* value);
+/// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
+void configure_mumps(Mat factors, int dim);
+
+}  // namespace tribound::detail

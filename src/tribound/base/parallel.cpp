@@ -1,0 +1,36 @@
+#include "tribound/base/parallel.h"
+
+#include <atomic>
+#include <exception>
+
+namespace tribound
+{
+
+void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body)
+{
+  constexpr std::size_t worth_threads =
+      2000;  // waking threads and letting them wait costs more than some loops
+  std::exception_ptr failure;
+  std::atomic<std::size_t> failed = n;
+#pragma omp parallel for schedule(dynamic, 64) if (n > worth_threads)
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    if (i > failed) continue;  // of no interest any more
+    try
+    {
+      body(i);
+    }
+    catch (...)
+    {
+#pragma omp critical(tribound_parallel_for)
+      if (i < failed)
+      {
+        failed = i;
+        failure = std::current_exception();
+      }
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace tribound

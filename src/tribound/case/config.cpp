@@ -1,0 +1,284 @@
+#include "tribound/case/config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "tribound/case/node.h"
+#include "tribound/case/physics.h"
+#include "tribound/case/table_reader.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+constexpr auto mesh_hint =
+    "file = \"block.msh\", or box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }";
+
+template <class T, class Convert>
+std::vector<T> components(const TableReader& table, std::string_view key, const Convert& convert)
+{
+  std::vector<T> values;
+  for (const Node& item : to_components(table.require(key, mesh_hint), "one number per dimension"))
+    values.push_back(convert(item));
+  return values;
+}
+
+BoxMesh read_box(const Node& node)
+{
+  const TableReader table(node, {"lower", "upper", "cells"});
+  BoxMesh box{
+      .lower = components<double>(table, "lower", to_number),
+      .upper = components<double>(table, "upper", to_number),
+      .cells = components<int>(table, "cells", integer_from(1, "the number of cells in this direction")),
+      .where = node.where};
+  const std::size_t dim = box.lower.size();
+  if (box.upper.size() != dim || box.cells.size() != dim)
+    throw InputError(node.where,
+                     fmt::format("lower, upper and cells have {}, {} and {} numbers", dim, box.upper.size(),
+                                 box.cells.size()),
+                     "each has 2 in 2D, 3 in 3D");
+  double n_simplices = dim == 2 ? 2.0 : 6.0;
+  for (std::size_t i = 0; i < dim; ++i)
+  {
+    if (!(box.lower[i] < box.upper[i]))
+      throw InputError(
+          table.find("upper")->where,
+          fmt::format("upper[{}] = {} is not above lower[{}] = {}", i, box.upper[i], i, box.lower[i]),
+          "lower and upper are opposite corners of the box");
+    n_simplices *= box.cells[i];
+  }
+  if (n_simplices > static_cast<double>(std::numeric_limits<Index>::max()))
+    throw InputError(table.find("cells")->where, fmt::format("makes {:.3g} simplices", n_simplices),
+                     fmt::format("at most {}", std::numeric_limits<Index>::max()));
+  return box;
+}
+
+MeshSource read_mesh_source(const Node& node, const std::filesystem::path& case_directory)
+{
+  const TableReader table(node, {"file", "box"});
+  const Node* file = table.find("file");
+  const Node* box = table.find("box");
+  const std::string hint = fmt::format("one of them: {}", mesh_hint);
+  if (file == nullptr && box == nullptr) throw InputError(node.where, "neither file nor box is given", hint);
+  if (file != nullptr && box != nullptr) throw InputError(box->where, "box stands beside file", hint);
+  if (box != nullptr) return read_box(*box);
+  const std::string path = to_text(*file);
+  if (path.empty()) throw InputError(file->where, "is empty", mesh_hint);
+  return MeshFile{case_directory / path, file->where};
+}
+
+NitscheConfig read_nitsche(const Node& node)
+{
+  const TableReader table(node, {"gamma0"});
+  NitscheConfig nitsche;
+  table.read("gamma0", nitsche.gamma0, number_in(positive, "the dimensionless penalty, such as 10"));
+  return nitsche;
+}
+
+NewtonConfig read_newton(const Node& node)
+{
+  const TableReader table(node, {"stopping", "gamma_lin", "tolerance", "max_steps", "damping", "finish"});
+  NewtonConfig newton;
+  table.read("stopping", newton.stopping, one_of<Stopping>({"adaptive", "adaptive_local", "tolerance"}));
+  table.read("gamma_lin", newton.gamma_lin,
+             number_in(positive, "the share of the linearisation in the error, such as 0.1"));
+  table.read("tolerance", newton.tolerance,
+             number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
+  table.read("max_steps", newton.max_steps, integer_from(1, "a number of steps, such as 50"));
+  table.read("damping", newton.damping, to_bool);
+  table.read("finish", newton.finish, to_bool);
+  return newton;
+}
+
+RegularisationConfig read_regularisation(const Node& node)
+{
+  const TableReader table(node, {"delta", "factor", "gamma_reg", "max_updates"});
+  RegularisationConfig regularisation;
+  table.read("delta", regularisation.delta,
+             number_in(positive, "a multiple of the mean contact traction, such as 1"));
+  table.read("factor", regularisation.factor,
+             number_in({.lower = 0.0, .upper = 1.0}, "what an update multiplies delta by, such as 0.25"));
+  table.read("gamma_reg", regularisation.gamma_reg,
+             number_in(positive, "the share of the regularisation in the error, such as 0.1"));
+  table.read("max_updates", regularisation.max_updates, integer_from(0, "a number of updates, such as 20"));
+  return regularisation;
+}
+
+AdaptConfig read_adapt(const Node& node)
+{
+  const TableReader table(node, {"tolerance", "marking", "theta", "separate_contact", "max_levels",
+                                 "max_dofs", "max_cells", "max_time", "max_memory"});
+  AdaptConfig adapt;
+  table.read("tolerance", adapt.tolerance, number_in(positive, "a relative error, such as 0.01"));
+  table.read("marking", adapt.marking, one_of<Marking>({"doerfler", "maximum", "uniform"}));
+  table.read(
+      "theta", adapt.theta,
+      number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true}, "such as 0.5; 1 marks every cell"));
+  table.read("separate_contact", adapt.separate_contact, to_bool);
+  table.read("max_levels", adapt.max_levels, integer_from(0, "0 solves on the given mesh only"));
+  table.read("max_dofs", adapt.max_dofs, integer_from(1L, "a number of unknowns, such as 2_000_000"));
+  table.read("max_cells", adapt.max_cells, integer_from(1L, "a number of cells, such as 500_000"));
+  table.read("max_time", adapt.max_time, number_in(positive, "seconds, such as 600"));
+  table.read("max_memory", adapt.max_memory, number_in(positive, "GB, such as 16"));
+  return adapt;
+}
+
+CertifyConfig read_certify(const Node& node)
+{
+  const TableReader table(node, {"contact_rule"});
+  CertifyConfig certify;
+  table.read("contact_rule", certify.contact_rule, one_of<ContactRule>({"resolved", "reference"}));
+  return certify;
+}
+
+SolverConfig read_solver(const Node& node)
+{
+  const TableReader table(node, {"method", "package", "tolerance", "max_iterations"});
+  SolverConfig solver;
+  table.read("method", solver.method, one_of<LinearMethod>({"auto", "direct", "iterative"}));
+  table.read("package", solver.package, one_of<DirectPackage>({"auto", "mumps", "umfpack"}));
+  table.read("tolerance", solver.tolerance,
+             number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
+  table.read("max_iterations", solver.max_iterations, integer_from(1, "a number of iterations, such as 500"));
+  return solver;
+}
+
+StudyConfig read_study(const Node& node, int degree)
+{
+  const TableReader table(
+      node, {"reference_degree", "reference_factor", "max_reference_dofs", "dual_norm_dofs", "figures"});
+  StudyConfig study;
+  table.read("reference_degree", study.reference_degree,
+             integer_from(degree, "not below the degree of the case, not above 4", 4));
+  table.read("reference_factor", study.reference_factor,
+             number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true},
+                       "how much smaller the bound of the reference shall be, such as 0.2"));
+  table.read("max_reference_dofs", study.max_reference_dofs,
+             integer_from(1L, "a number of unknowns, such as 500_000"));
+  table.read("dual_norm_dofs", study.dual_norm_dofs,
+             integer_from(0L, "a number of unknowns, such as 100_000; 0 computes no dual norms"));
+  table.read("figures", study.figures, to_bool);
+  return study;
+}
+
+OutputConfig read_output(const Node& node, OutputConfig output)
+{
+  const TableReader table(node, {"directory", "vtu", "report", "mesh", "moment_about"});
+  table.read("directory", output.directory, to_text);
+  if (output.directory.empty())
+    throw InputError(table.find("directory")->where, "is empty", "a directory to write to, such as \"out\"");
+  table.read("vtu", output.vtu, to_bool);
+  table.read("report", output.report, to_bool);
+  table.read("mesh", output.mesh, to_bool);
+  if (const Node* point = table.find("moment_about"))
+  {
+    output.moment_about_where = point->where;
+    for (const Node& item : to_components(*point, "one coordinate per dimension"))
+      output.moment_about.push_back(to_number(item));
+  }
+  return output;
+}
+
+/// The document as a case file in the output directory: paths lead from there.
+EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
+{
+  auto& tables = std::get<Node::Table>(document.value);
+  if (const auto* file = std::get_if<MeshFile>(&config.mesh))
+  {
+    std::error_code unknown;
+    const std::filesystem::path path = std::filesystem::absolute(file->path, unknown);
+    const std::filesystem::path from_there =
+        std::filesystem::relative(path, std::filesystem::absolute(config.output.directory, unknown), unknown);
+    auto& mesh = std::get<Node::Table>(find(tables, "mesh")->node.value);
+    find(mesh, "file")->node.value = (unknown || from_there.empty() ? path : from_there).string();
+  }
+  if (find(tables, "output") == nullptr) tables.push_back({"output", {}, {Node::Table{}, {}}});
+  auto& output = std::get<Node::Table>(find(tables, "output")->node.value);
+  if (find(output, "directory") == nullptr)
+    output.insert(output.begin(), {"directory", {}, {config.output.directory.string(), {}}});
+  return {to_toml(document), {overrides.begin(), overrides.end()}};
+}
+
+Config read_document(const Node& document, std::string file)
+{
+  const TableReader root(document,
+                         {"title", "degree", "mesh", "material", "load", "boundary", "nitsche", "newton",
+                          "regularisation", "adapt", "certify", "solver", "study", "output"});
+  Config config;
+  const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
+  config.file = std::move(file);
+  root.read("title", config.title, to_text);
+  root.read("degree", config.degree, integer_from(1, "the polynomial degree p", 4));
+  config.mesh =
+      read_mesh_source(root.require("mesh", fmt::format("[mesh] with {}", mesh_hint)), case_directory);
+  config.materials = read_materials(root.require("material", "[material] with E = 210e9 and nu = 0.3"));
+  root.read("load", config.loads, read_loads);
+  root.read("boundary", config.boundaries, read_boundaries);
+  root.read("nitsche", config.nitsche, read_nitsche);
+  root.read("newton", config.newton, read_newton);
+  root.read("regularisation", config.regularisation, read_regularisation);
+  root.read("adapt", config.adapt, read_adapt);
+  root.read("certify", config.certify, read_certify);
+  root.read("solver", config.solver, read_solver);
+  root.read("study", config.study, [&](const Node& node) { return read_study(node, config.degree); });
+  config.output.directory = default_directory(config.file);
+  root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
+  return config;
+}
+
+}  // namespace
+
+std::filesystem::path default_directory(const std::filesystem::path& case_file)
+{
+  return std::filesystem::path("out") / case_file.stem();
+}
+
+double default_gamma0(int degree)
+{
+  return degree <= 3 ? 10.0 : std::max(10.0, 3.0 * degree * degree);
+}
+
+std::string friction_name(const Config& config)
+{
+  constexpr std::array names = {"none", "tresca", "coulomb"};
+  static_assert(names.size() == std::variant_size_v<FrictionLaw>);
+  std::array<bool, names.size()> used{};
+  for (const BoundaryConfig& boundary : config.boundaries)
+    if (boundary.contact) used[boundary.contact->friction.index()] = true;
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (used[i]) text += (text.empty() ? "" : "+") + std::string(names[i]);
+  return text;
+}
+
+Config parse_config(std::string_view text, std::string name, std::span<const std::string> overrides)
+{
+  Node document = parse_toml(text, name);
+  for (const std::string& assignment : overrides) apply_override(document, assignment);
+  // The document itself stands nowhere in particular.
+  document.where.line = document.where.column = 0;
+  Config config = read_document(document, std::move(name));
+  config.effective = effective_case(std::move(document), config, overrides);
+  return config;
+}
+
+Config read_config(const std::filesystem::path& file, std::span<const std::string> overrides)
+{
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file))
+    throw InputError({.file = file.string()},
+                     stream ? "is a directory" : fmt::format("cannot be read: {}", std::strerror(errno)),
+                     "the path of a case file, such as examples/01_tresca_block/case.toml");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_config(text, file.string(), overrides);
+}
+
+}  // namespace tribound

@@ -1,0 +1,73 @@
+#pragma once
+
+/// @file node.h
+/// A TOML document as a tree of values that know where they stand; independent of the TOML library.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "tribound/base/error.h"
+
+namespace tribound
+{
+
+struct Entry;
+
+/// A value and its place: line and column of the value itself, key with all tables around it.
+struct Node
+{
+  using Table = std::vector<Entry>;  ///< in the order of the document
+  using Array = std::vector<Node>;
+  /// TOML has dates and times; no key of a case takes one.
+  struct DateOrTime
+  {
+  };
+
+  std::variant<Table, Array, std::string, std::int64_t, double, bool, DateOrTime> value;
+  Where where;
+
+  [[nodiscard]] bool is_table() const { return std::holds_alternative<Table>(value); }
+};
+
+/// A key of a table.
+struct Entry
+{
+  std::string name;
+  Where where;  ///< of the key
+  Node node;
+};
+
+/// The entry of that name, or null.
+[[nodiscard]] const Entry* find(const Node::Table& table, std::string_view name);
+[[nodiscard]] Entry* find(Node::Table& table, std::string_view name);
+
+/// What stands there, for messages: "the string \"abc\"", "the integer 5", "an array of 2", "a table".
+[[nodiscard]] std::string describe(const Node& node);
+
+/// "table.name", the name quoted where TOML asks for it.
+[[nodiscard]] std::string dotted_key(const std::string& table, std::string_view name);
+
+/// Parses a TOML document; `file` stands for it in messages. Throws InputError with line and column.
+[[nodiscard]] Node parse_toml(std::string_view text, const std::string& file);
+
+/// The document as TOML that parse_toml() reads back to the same values: first the keys of a table, then its
+/// tables with a header each. Numbers have the fewest digits that read back as the same number.
+[[nodiscard]] std::string to_toml(const Node& document);
+
+/// A value as it stands behind "key = ".
+[[nodiscard]] std::string to_inline_toml(const Node& node);
+
+/// "key" and "value" of "key=value"; the first "=" outside quotes divides. Throws InputError with the hint.
+[[nodiscard]] std::pair<std::string, std::string> split_assignment(const std::string& assignment,
+                                                                   const Where& where,
+                                                                   const std::string& hint);
+
+/// Carries out one "dotted.key=TOML value" on the document: adds the key or replaces its value; a bare word
+/// that is no TOML value counts as a string. Throws InputError.
+void apply_override(Node& document, const std::string& assignment);
+
+}  // namespace tribound

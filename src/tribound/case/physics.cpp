@@ -1,0 +1,172 @@
+#include "tribound/case/physics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tribound/case/table_reader.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+PlaneModel to_plane(const Node& node)
+{
+  return one_of<PlaneModel>({"strain", "stress"})(node);
+}
+
+MaterialConfig read_material(const TableReader& table, std::string region, PlaneModel plane)
+{
+  MaterialConfig material{.region = std::move(region), .plane = plane, .where = table.where()};
+  const Node& E = table.require("E", "Young's modulus, in the units of stress: E = 210e9");
+  material.E = to_number_in(E, positive, "Young's modulus in the units of stress, such as 210e9");
+  (void)to_number_in(E, reasonable, "squares of stresses must be numbers, too: take other units");
+  material.nu = to_number_in(table.require("nu", "Poisson's ratio in (-1, 0.5): nu = 0.3"),
+                             {.lower = -1.0, .upper = 0.5},
+                             "Poisson's ratio, such as 0.3; nearly incompressible is 0.499, not 0.5");
+  table.read("plane", material.plane, to_plane);
+  return material;
+}
+
+LoadConfig read_load(const TableReader& table, std::string region)
+{
+  const Node& body = table.require("body", "force per volume: body = [0, -9.81]");
+  return {std::move(region), to_expressions(body), body.where};
+}
+
+std::vector<std::optional<Expression>> read_displacement(const Node& node)
+{
+  std::vector<std::optional<Expression>> displacement;
+  for (const Node& item :
+       to_components(node, "one number, formula or \"free\" per dimension, such as [0, \"free\"]"))
+  {
+    const auto* text = std::get_if<std::string>(&item.value);
+    if (text != nullptr && *text == "free")
+      displacement.emplace_back();
+    else
+      displacement.emplace_back(to_expression(item));
+  }
+  return displacement;
+}
+
+FrictionLaw read_friction(const TableReader& table)
+{
+  const std::vector<std::string> names = {"none", "tresca", "coulomb"};
+  enum class Law
+  {
+    none,
+    tresca,
+    coulomb
+  };
+  Law law = Law::none;
+  table.read("friction", law, one_of<Law>(names));
+  const auto reject = [&](std::string_view key, Law owner)
+  {
+    if (const Node* node = table.find(key); node != nullptr && law != owner)
+      throw InputError(node->where,
+                       fmt::format("does not belong to friction = \"{}\"", names[static_cast<int>(law)]),
+                       fmt::format("it goes with friction = \"{}\"", names[static_cast<int>(owner)]));
+  };
+  reject("threshold", Law::tresca);
+  reject("coefficient", Law::coulomb);
+  if (law == Law::tresca)
+    return Tresca{to_nonnegative_expression(
+        table.require("threshold", "the largest tangential stress, a number or formula: threshold = 0.03"))};
+  if (law == Law::coulomb)
+    return Coulomb{to_number_in(table.require("coefficient", "the friction coefficient: coefficient = 0.3"),
+                                not_negative, "the friction coefficient, such as 0.3")};
+  return Frictionless{};
+}
+
+Contact read_contact(const Node& node)
+{
+  const TableReader table(node, {"friction", "threshold", "coefficient", "gap"});
+  Contact contact{.friction = read_friction(table), .gap = Expression(0.0, node.where)};
+  table.read("gap", contact.gap, to_nonnegative_expression);
+  return contact;
+}
+
+/// Conditions that exclude each other.
+void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
+{
+  const auto fail = [&](std::string_view key, const std::string& problem, const std::string& hint)
+  { throw InputError(table.find(key)->where, problem, hint); };
+  if (boundary.contact)
+    for (const std::string_view key : {"displacement", "traction", "pressure"})
+      if (table.has(key))
+        fail(key, "stands beside contact on the same boundary",
+             "a part of the boundary is either in contact or has displacement, traction and pressure; "
+             "split the group in the mesh; a pressure in the joint itself, such as uplift, is not modelled");
+  if (boundary.displacement.empty()) return;
+
+  const auto is_fixed = [](const std::optional<Expression>& component) { return component.has_value(); };
+  if (boundary.pressure && std::ranges::all_of(boundary.displacement, is_fixed))
+    fail("pressure", "has no effect: displacement fixes every component", "drop it, or leave one \"free\"");
+  if (boundary.traction.empty()) return;
+  if (boundary.traction.size() != boundary.displacement.size())
+    fail("traction",
+         fmt::format("has {} components, displacement has {}", boundary.traction.size(),
+                     boundary.displacement.size()),
+         "both have one per dimension");
+  for (std::size_t i = 0; i < boundary.traction.size(); ++i)
+    if (boundary.displacement[i] && !boundary.traction[i].is_zero())
+      throw InputError(boundary.traction[i].where(), "is not 0, but displacement fixes this component",
+                       fmt::format("set it to 0, or displacement[{}] to \"free\"", i));
+}
+
+BoundaryConfig read_boundary(const Entry& entry)
+{
+  const TableReader table(entry.node, {"displacement", "traction", "pressure", "contact"});
+  if (std::get<Node::Table>(entry.node.value).empty())
+    throw InputError(entry.where, "nothing is given on this boundary",
+                     "displacement, traction, pressure or contact; traction-free is traction = [0, 0]");
+  BoundaryConfig boundary;
+  boundary.name = entry.name;
+  boundary.where = entry.where;
+  table.read("displacement", boundary.displacement, read_displacement);
+  table.read("traction", boundary.traction, to_expressions);
+  table.read("pressure", boundary.pressure, to_expression);
+  table.read("contact", boundary.contact, read_contact);
+  check_boundary(table, boundary);
+  return boundary;
+}
+
+}  // namespace
+
+std::vector<MaterialConfig> read_materials(const Node& node)
+{
+  const TableReader table(node, {"E", "nu", "plane"}, TableReader::Subtables::named);
+  PlaneModel plane = PlaneModel::strain;
+  table.read("plane", plane, to_plane);
+
+  std::vector<MaterialConfig> materials;
+  if (table.has("E") || table.has("nu") || table.named().empty())
+    materials.push_back(read_material(table, {}, plane));
+  for (const Entry* entry : table.named())
+    materials.push_back(read_material(TableReader(entry->node, {"E", "nu", "plane"}), entry->name, plane));
+  return materials;
+}
+
+std::vector<LoadConfig> read_loads(const Node& node)
+{
+  const TableReader table(node, {"body"}, TableReader::Subtables::named);
+  std::vector<LoadConfig> loads;
+  if (table.has("body")) loads.push_back(read_load(table, {}));
+  for (const Entry* entry : table.named())
+    loads.push_back(read_load(TableReader(entry->node, {"body"}), entry->name));
+  return loads;
+}
+
+std::vector<BoundaryConfig> read_boundaries(const Node& node)
+{
+  const auto* table = std::get_if<Node::Table>(&node.value);
+  if (table == nullptr) fail_type(node, "a table", "one table for each boundary, such as [boundary.top]");
+  std::vector<BoundaryConfig> boundaries;
+  for (const Entry& entry : *table) boundaries.push_back(read_boundary(entry));
+  return boundaries;
+}
+
+}  // namespace tribound

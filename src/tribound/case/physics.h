@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file physics.h
+/// The tables [material], [load] and [boundary] of a case file.
+
+#include <vector>
+
+#include "tribound/case/config.h"
+#include "tribound/case/node.h"
+
+namespace tribound
+{
+
+/// E, nu, plane directly or in [material.<region>]; `plane` given directly is the default of the regions.
+[[nodiscard]] std::vector<MaterialConfig> read_materials(const Node& table);
+
+/// body directly or in [load.<region>].
+[[nodiscard]] std::vector<LoadConfig> read_loads(const Node& table);
+
+/// One table for each boundary.
+[[nodiscard]] std::vector<BoundaryConfig> read_boundaries(const Node& table);
+
+}  // namespace tribound

@@ -1,0 +1,176 @@
+#include "tribound/case/table_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tribound
+{
+
+namespace
+{
+
+[[noreturn]] void fail_unknown_key(const Entry& entry, const std::vector<std::string>& keys,
+                                   bool named_tables)
+{
+  const std::string near = closest(entry.name, keys);
+  throw InputError(
+      entry.where, "unknown key",
+      fmt::format("{}allowed here: {}{}", near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
+                  fmt::join(keys, ", "), named_tables ? ", or tables of single regions" : ""));
+}
+
+std::string requirement(const Interval& interval)
+{
+  if (interval.lower == 0.0 && std::isinf(interval.upper))
+    return interval.includes_lower ? "must not be negative" : "must be positive";
+  return fmt::format("must lie in {}{}, {}{}", interval.includes_lower ? '[' : '(', interval.lower,
+                     interval.upper, interval.includes_upper ? ']' : ')');
+}
+
+}  // namespace
+
+TableReader::TableReader(const Node& node, std::initializer_list<std::string_view> keys, Subtables subtables)
+    : table_(std::get_if<Node::Table>(&node.value)),
+      keys_(keys.begin(), keys.end()),
+      subtables_(subtables),
+      where_(node.where)
+{
+  if (table_ == nullptr)
+    fail_type(node, "a table", fmt::format("a table with the keys {}", fmt::join(keys_, ", ")));
+  for (const Entry& entry : *table_)
+    if (!is_named(entry) && std::ranges::find(keys_, entry.name) == keys_.end())
+      fail_unknown_key(entry, keys_, subtables_ == Subtables::named);
+}
+
+const Node* TableReader::find(std::string_view key) const
+{
+  assert(std::ranges::find(keys_, key) != keys_.end());
+  const Entry* entry = tribound::find(*table_, key);
+  return entry == nullptr || is_named(*entry) ? nullptr : &entry->node;
+}
+
+const Node& TableReader::require(std::string_view key, const std::string& hint) const
+{
+  if (const Node* node = find(key)) return *node;
+  Where where = where_;
+  where.key = dotted_key(where_.key, key);
+  throw InputError(std::move(where), "is missing", hint);
+}
+
+std::vector<const Entry*> TableReader::named() const
+{
+  std::vector<const Entry*> entries;
+  for (const Entry& entry : *table_)
+    if (is_named(entry)) entries.push_back(&entry);
+  return entries;
+}
+
+void fail_type(const Node& node, std::string_view expected, const std::string& hint)
+{
+  throw InputError(node.where, fmt::format("must be {}, found {}", expected, describe(node)), hint);
+}
+
+std::string to_text(const Node& node)
+{
+  const auto* text = std::get_if<std::string>(&node.value);
+  if (text == nullptr) fail_type(node, "a string", "strings stand in quotes");
+  if (text->find('\0') != std::string::npos)
+    throw InputError(node.where, "holds the character \\u0000", "letters, digits and ordinary signs");
+  return *text;
+}
+
+bool to_bool(const Node& node)
+{
+  const auto* truth = std::get_if<bool>(&node.value);
+  if (truth == nullptr) fail_type(node, "true or false", "true or false without quotes");
+  return *truth;
+}
+
+double to_number(const Node& node)
+{
+  if (const auto* integer = std::get_if<std::int64_t>(&node.value)) return static_cast<double>(*integer);
+  const auto* number = std::get_if<double>(&node.value);
+  if (number == nullptr) fail_type(node, "a number", "a number without quotes, such as 0.3");
+  if (!std::isfinite(*number)) fail_type(node, "a finite number", "an ordinary number, such as 0.3");
+  return *number;
+}
+
+Expression to_expression(const Node& node)
+{
+  if (const auto* text = std::get_if<std::string>(&node.value)) return Expression(*text, node.where);
+  if (!std::holds_alternative<std::int64_t>(node.value) && !std::holds_alternative<double>(node.value))
+    fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
+  const double number = to_number(node);
+  if (std::abs(number) > reasonable.upper)
+    throw InputError(node.where, fmt::format("is beyond all physics, {}", number),
+                     "its square must be a number, too: take other units");
+  return Expression(number, node.where);
+}
+
+Expression to_nonnegative_expression(const Node& node)
+{
+  Expression expression = to_expression(node);
+  if (expression.is_constant() && expression(Point<2>::Zero().eval()) < 0)
+    throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
+                     nonnegative_hint(node.where));
+  return expression;
+}
+
+const Node::Array& to_components(const Node& node, std::string_view what)
+{
+  const auto* array = std::get_if<Node::Array>(&node.value);
+  if (array == nullptr || (array->size() != 2 && array->size() != 3))
+    fail_type(node, "an array of 2 or 3", std::string(what));
+  return *array;
+}
+
+std::vector<Expression> to_expressions(const Node& node)
+{
+  std::vector<Expression> components;
+  for (const Node& item : to_components(node, "one number or formula per dimension, such as [0, -1]"))
+    components.push_back(to_expression(item));
+  return components;
+}
+
+double to_number_in(const Node& node, const Interval& interval, const std::string& hint)
+{
+  const double number = to_number(node);
+  const bool above = interval.includes_lower ? number >= interval.lower : number > interval.lower;
+  const bool below = interval.includes_upper ? number <= interval.upper : number < interval.upper;
+  if (!above || !below)
+    throw InputError(node.where, fmt::format("{}, found {}", requirement(interval), number), hint);
+  return number;
+}
+
+long to_integer_in(const Node& node, long lower, long upper, const std::string& hint)
+{
+  const auto* integer = std::get_if<std::int64_t>(&node.value);
+  if (integer == nullptr) fail_type(node, "an integer", hint);
+  if (*integer < lower || *integer > upper)
+  {
+    // The largest value of a type is a limit of the machine, not worth telling unless it is exceeded.
+    const std::string range = *integer < lower && upper >= std::numeric_limits<int>::max()
+                                  ? fmt::format("of at least {}", lower)
+                                  : fmt::format("from {} to {}", lower, upper);
+    throw InputError(node.where, fmt::format("must be an integer {}, found {}", range, *integer), hint);
+  }
+  return *integer;
+}
+
+std::size_t to_choice(const Node& node, const std::vector<std::string>& names)
+{
+  const std::string list = fmt::format("one of \"{}\"", fmt::join(names, "\", \""));
+  const auto* text = std::get_if<std::string>(&node.value);
+  if (text == nullptr) fail_type(node, "a string", list);
+  const auto it = std::ranges::find(names, *text);
+  if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
+  const std::string near = closest(*text, names);
+  throw InputError(node.where, fmt::format("unknown value \"{}\"", *text),
+                   near.empty() ? list : fmt::format("did you mean \"{}\"? {}", near, list));
+}
+
+}  // namespace tribound

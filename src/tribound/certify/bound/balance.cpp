@@ -1,0 +1,222 @@
+#include "tribound/certify/bound/balance.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tribound/certify/equilibrate/frame_table.h"
+#include "tribound/fem/quadrature.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A force and its moment about a point.
+template <int dim>
+struct Resultant
+{
+  static constexpr int n_moments = dim == 2 ? 1 : 3;
+  Point<dim> force = Point<dim>::Zero();
+  Point<n_moments> moment = Point<n_moments>::Zero();
+
+  /// A force that acts at `arm` from the point.
+  void add(const Point<dim>& arm, const Point<dim>& f)
+  {
+    force += f;
+    if constexpr (dim == 2)
+      moment[0] += arm[0] * f[1] - arm[1] * f[0];
+    else
+      moment += cross(arm, f);
+  }
+};
+
+template <int dim>
+struct Loads
+{
+  std::vector<Resultant<dim>> regions;
+  std::vector<Resultant<dim>> boundaries;
+};
+
+/// (f, .) of every region and (g_N, .)_N of every boundary, with the rules of L(v).
+template <int dim>
+Loads<dim> integrate_loads(const NitscheForm<dim>& form, const Point<dim>& about)
+{
+  const Problem<dim>& problem = form.problem();
+  const Mesh<dim>& mesh = form.space().mesh();
+  Loads<dim> loads;
+  loads.regions.resize(problem.region_names().size());
+  loads.boundaries.resize(problem.boundaries().size());
+  const Quadrature<dim>& rule = form.data().cell_rule();
+  std::vector<Point<dim>> f(rule.size());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    if (!form.data().has_body_force(c)) continue;
+    const CellMap<dim> map = cell_map(mesh, c);
+    form.data().body_force(c, f);
+    for (int q = 0; q < rule.size(); ++q)
+      loads.regions[mesh.region(c)].add(map(rule.points[q]) - about, rule.weights[q] * map.det * f[q]);
+  }
+  const Quadrature<dim - 1>& facet_rule = form.facet_rule();
+  std::vector<Point<dim>> g(facet_rule.size());
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    const BoundaryFacet& facet = mesh.boundary()[k];
+    if (facet.tag < 0 || !form.data().has_traction(k)) continue;
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const double scale =
+        facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
+    form.data().traction(k, g);
+    for (int q = 0; q < facet_rule.size(); ++q)
+      loads.boundaries[facet.tag].add(map(facet_rule.points[q]) - about,
+                                      scale * facet_rule.weights[q] * g[q]);
+  }
+  return loads;
+}
+
+/// The facet rule on all facets of the reference cell, facet by facet.
+template <int dim>
+std::vector<Point<dim>> points_on_facets(const Quadrature<dim - 1>& rule)
+{
+  std::vector<Point<dim>> points;
+  for (int local = 0; local <= dim; ++local)
+    for (const Point<dim - 1>& s : rule.points) points.push_back(facet_to_cell<dim>(local, s));
+  return points;
+}
+
+/// The integral of sigma_h n over every boundary, free components left out where a displacement is given.
+template <int dim>
+std::vector<Resultant<dim>> integrate_tractions(const NitscheForm<dim>& form, const Stress<dim>& stress,
+                                                const Point<dim>& about)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  const Quadrature<dim - 1> rule = quadrature<dim - 1>(stress.degree + 1);  // sigma_h times x
+  const FrameTable<dim> table(stress.degree, points_on_facets<dim>(rule));
+  const int n = table.n_points();
+  std::vector<Resultant<dim>> result(form.problem().boundaries().size());
+  std::vector<double> block(stress.block_size());
+  std::vector<double> sigma(static_cast<std::size_t>(dim) * dim * n);
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
+    if (facet.tag < 0 || (!condition.contact && !condition.fixes_any())) continue;
+    std::ranges::copy(stress.dis_in(facet.cell), block.begin());
+    for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
+      for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
+    table.evaluate(make_frame(mesh, facet.cell), block, sigma);
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      Point<dim> t = Point<dim>::Zero();
+      for (int r = 0; r < dim; ++r)
+        for (int c = 0; c < dim && (condition.contact || condition.fixes(r)); ++c)
+          t[r] += sigma[(dim * r + c) * n + facet.local * rule.size() + q] * geometry.normal[c];
+      const double weight = geometry.measure * (dim - 1) * rule.weights[q];
+      result[facet.tag].add(map(rule.points[q]) - about, weight * t);
+    }
+  }
+  return result;
+}
+
+template <int dim>
+std::string load_source(const BoundaryCondition<dim>& condition)
+{
+  const bool traction = std::ranges::any_of(condition.traction, [](const auto& t) { return !t.is_zero(); });
+  if (!condition.pressure) return "traction";
+  return traction ? "traction and pressure" : "pressure";
+}
+
+template <int dim>
+BalanceRow row(BalanceKind kind, const std::string& name, const std::string& source,
+               const Resultant<dim>& resultant, bool has_moment = true)
+{
+  BalanceRow result{kind, name, source, {resultant.force.begin(), resultant.force.end()}, {}};
+  if (has_moment) result.moment.emplace(resultant.moment.begin(), resultant.moment.end());
+  return result;
+}
+
+/// Adds the sum of all rows; its moment is known where all are.
+void add_sum(std::vector<BalanceRow>& rows, std::size_t dim, std::size_t n_moments)
+{
+  BalanceRow sum{BalanceKind::sum, {}, {}, std::vector<double>(dim), std::vector<double>(n_moments)};
+  for (const BalanceRow& part : rows)
+  {
+    for (std::size_t i = 0; i < dim; ++i) sum.force[i] += part.force[i];
+    if (!part.moment) sum.moment.reset();
+    for (std::size_t i = 0; sum.moment && i < n_moments; ++i) (*sum.moment)[i] += (*part.moment)[i];
+  }
+  rows.push_back(std::move(sum));
+}
+
+}  // namespace
+
+std::string to_string(BalanceKind kind)
+{
+  constexpr std::array names = {"load", "reaction", "contact", "sum"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+std::string moment_note(const Balance& balance)
+{
+  if (std::ranges::all_of(balance.rows, [](const BalanceRow& row) { return row.moment.has_value(); }))
+    return {};
+  return "moments of reactions need degree 2 or more: with degree 1 the equilibrated stress is symmetric "
+         "only "
+         "up to the error";
+}
+
+template <int dim>
+Point<dim> centroid(const Mesh<dim>& mesh)
+{
+  Point<dim> sum = Point<dim>::Zero();
+  double volume = 0;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const CellMap<dim> map = cell_map(mesh, c);
+    sum += map.det * map(Point<dim>::Constant(1.0 / (dim + 1)));
+    volume += map.det;
+  }
+  return sum / volume;
+}
+
+template <int dim>
+Balance balance(const NitscheForm<dim>& form, const Stress<dim>& stress, const Point<dim>& about)
+{
+  const Problem<dim>& problem = form.problem();
+  const Loads<dim> loads = integrate_loads<dim>(form, about);
+  const std::vector<Resultant<dim>> tractions = integrate_tractions<dim>(form, stress, about);
+  Balance result{{about.begin(), about.end()}, {}};
+  for (int r = 0; r < static_cast<int>(loads.regions.size()); ++r)
+    if (!problem.body_force_is_zero(r))
+      result.rows.push_back(
+          row(BalanceKind::load, problem.region_names()[r], "body force", loads.regions[r]));
+  const auto boundaries = problem.boundaries();
+  const auto add =
+      [&](BalanceKind kind, const auto& applies, const auto& source, const auto& resultants, bool has_moment)
+  {
+    for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
+      if (applies(boundaries[tag]))
+        result.rows.push_back(
+            row(kind, boundaries[tag].name, source(boundaries[tag]), resultants[tag], has_moment));
+  };
+  add(
+      BalanceKind::load, [](const auto& b) { return b.is_loaded(); }, load_source<dim>, loads.boundaries,
+      true);
+  add(
+      BalanceKind::reaction, [](const auto& b) { return b.fixes_any(); },
+      [](const auto&) { return "displacement"; }, tractions, stress.degree > 1);
+  add(
+      BalanceKind::contact, [](const auto& b) { return b.contact.has_value(); },
+      [](const auto&) { return "contact"; }, tractions, true);
+  add_sum(result.rows, dim, Resultant<dim>::n_moments);
+  return result;
+}
+
+template Point<2> centroid(const Mesh<2>&);
+template Point<3> centroid(const Mesh<3>&);
+template Balance balance(const NitscheForm<2>&, const Stress<2>&, const Point<2>&);
+template Balance balance(const NitscheForm<3>&, const Stress<3>&, const Point<3>&);
+
+}  // namespace tribound

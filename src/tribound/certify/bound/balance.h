@@ -1,0 +1,60 @@
+#pragma once
+
+/// @file balance.h
+/// The loads on the body and what holds it, from the equilibrated stress: these balance to rounding for every
+/// Newton iterate, those of sigma(u_h) do not.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+enum class BalanceKind
+{
+  load,      ///< integral of f over a region, or of g_N over a boundary
+  reaction,  ///< integral of sigma_h n over a boundary, those components that its displacement fixes
+  contact,   ///< integral of sigma_h n over a boundary in contact: that of t^k
+  sum        ///< of all rows
+};
+
+/// "load", "reaction", "contact", "sum".
+[[nodiscard]] std::string to_string(BalanceKind kind);
+
+/// A force on the body (per unit of depth in 2D).
+struct BalanceRow
+{
+  BalanceKind kind = BalanceKind::load;
+  std::string name;    ///< of the region or the boundary; empty for the sum
+  std::string source;  ///< such as "body force", "traction", "pressure"
+  std::vector<double> force;
+  /// integral of (x - about) x t; one number in 2D. Absent where it is not known: for p = 1 sigma_h is
+  /// symmetric only up to the error, and its reactions balance the moments only up to that.
+  std::optional<std::vector<double>> moment;
+};
+
+struct Balance
+{
+  std::vector<double> about;  ///< the point of the moments
+  std::vector<BalanceRow> rows;
+};
+
+/// Why moments are missing; empty where all are there.
+[[nodiscard]] std::string moment_note(const Balance& balance);
+
+/// The centroid of the body.
+template <int dim>
+[[nodiscard]] Point<dim> centroid(const Mesh<dim>& mesh);
+
+/// Loads, reactions, contact forces and their sum, which vanishes up to rounding and the linear solver's
+/// accuracy. Rows come in the order of BalanceKind, regions and boundaries in their own; what carries nothing
+/// has none.
+template <int dim>
+[[nodiscard]] Balance balance(const NitscheForm<dim>& form, const Stress<dim>& stress,
+                              const Point<dim>& about);
+
+}  // namespace tribound

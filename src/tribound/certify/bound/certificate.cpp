@@ -1,0 +1,252 @@
+#include "tribound/certify/bound/certificate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+const char* to_string(RunStatus status)
+{
+  switch (status)
+  {
+    case RunStatus::certified:
+      return "certified";
+    case RunStatus::budget:
+      return "budget";
+    case RunStatus::not_certified:
+      return "not certified";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::uncertified:
+      break;
+  }
+  return "uncertified";
+}
+
+bool is_round_off(const Bound& bound, const StressNorms& norms)
+{
+  return bound.total_sharp <= norms.round_off && norms.sigma <= norms.round_off;
+}
+
+std::string identity_violation(double defect)
+{
+  if (defect <= identity_limit) return {};
+  return fmt::format(
+      "an identity of the equilibrated stress is violated: {:.2e} of ||sigma_h||, the limit "
+      "is {:g}; what was computed is no bound",
+      defect, identity_limit);
+}
+
+Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree, const StressNorms& norms,
+              double tolerance)
+{
+  if (!std::isfinite(bound.total_sharp) || !std::isfinite(norms.sigma))
+    return {RunStatus::not_certified, "the bound is not a finite number"};
+  if (is_round_off(bound, norms)) return {RunStatus::certified, {}};
+  if (std::string violation = identity_violation(identities.largest(degree)); !violation.empty())
+    return {RunStatus::not_certified, std::move(violation)};
+  if (bound.total_sharp <= tolerance * norms.sigma) return {RunStatus::certified, {}};
+  if (norms.sigma == 0)
+    return {RunStatus::budget, "the bound holds, but the stress is zero, so that it is no share of that"};
+  return {RunStatus::budget, fmt::format("the bound holds, but it is {:.3g} % of ||sigma(u_h)||, above "
+                                         "adapt.tolerance = {:g} %",
+                                         100 * bound.total_sharp / norms.sigma, 100 * tolerance)};
+}
+
+namespace
+{
+
+/// What is known of the continuous problem under the friction laws in use.
+template <int dim>
+std::string describe_law(const Problem<dim>& problem)
+{
+  bool coulomb = false;
+  for (const BoundaryCondition<dim>& boundary : problem.boundaries())
+    coulomb = coulomb || (boundary.contact && std::holds_alternative<Coulomb>(boundary.contact->friction));
+  if (!problem.has_contact()) return "linear elasticity: the solution exists and is unique";
+  if (coulomb)
+    return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "
+           "residual is bounded in any case";
+  return "unilateral contact without friction or with Tresca friction: the solution exists and is unique";
+}
+
+/// What was done about data that are no polynomials.
+std::string describe_data(const DataEffort& effort, int degree)
+{
+  std::string exact = fmt::format(
+      "loads, gaps and thresholds that are polynomials of degree {} are integrated exactly", degree);
+  if (effort.formulas == 0) return exact;
+  const std::string cut =
+      effort.subdivided == 0 ? std::string()
+                             : fmt::format(", {} of them cut into {} parts", effort.subdivided, effort.parts);
+  return exact + fmt::format(
+                     "; other formulas are enclosed by intervals on {} cells and boundary facets{}, and "
+                     "what their integrals may miss is in osc, neu, cnt, frc and quad",
+                     effort.formulas, cut);
+}
+
+/// How the integrals in the bound are evaluated.
+template <int dim>
+std::string describe_quadrature(const NitscheForm<dim>& form, ContactRule rule)
+{
+  std::string text = describe_data(form.data().effort(), form.space().degree() + 2);
+  if (!form.problem().has_contact()) return text;
+  return text +
+         (rule == ContactRule::resolved
+              ? "; cnt and frc on facets with a kink of the traction are subdivided until they settle"
+              : "; cnt and frc with the plain rule, which is not rigorous on facets with a kink of the "
+                "traction (certify.contact_rule = \"reference\")");
+}
+
+}  // namespace
+
+template <int dim>
+double dirichlet_interpolation_error(const NitscheForm<dim>& form)
+{
+  const LagrangeSpace<dim>& space = form.space();
+  const FacetTabulation<dim> table = tabulate_on_facets<dim>(space.basis(), form.facet_rule().points);
+  double largest = 0;
+  for (const BoundaryFacet& facet : space.mesh().boundary())
+  {
+    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    if (!boundary.fixes_any()) continue;
+    const FacetMap<dim> map = facet_map(space.mesh(), facet.cell, facet.local);
+    for (int q = 0; q < form.n_facet_points(); ++q)
+    {
+      const Point<dim> interpolant = value_at<dim>(space.cell_nodes(facet.cell), form.constraints().values,
+                                                   table.on_facet[facet.local].values_at(q));
+      const Point<dim> x = map(table.points[q]);
+      for (int c = 0; c < dim; ++c)
+        if (boundary.fixes(c))
+          largest = std::max(largest, std::abs((*boundary.displacement[c])(x)-interpolant[c]));
+    }
+  }
+  return largest;
+}
+
+namespace
+{
+
+/// How far the value at a node of a facet may be from what the formula is on any side of it: more than
+/// rounding where the formula jumps there.
+template <int dim>
+double jump_at_nodes(const NitscheForm<dim>& form, const BoundaryFacet& facet, int component)
+{
+  const LagrangeSpace<dim>& space = form.space();
+  const Expression& u_D = *form.problem().boundary(facet.tag).displacement[component];
+  const FacetMap<dim> map = facet_map(space.mesh(), facet.cell, facet.local);
+  double largest = 0;
+  for (int i = 0; i < space.basis().n_nodes(); ++i)
+  {
+    if (space.basis().node(i)[facet.local] > 0) continue;
+    const Point<dim> x = map(cell_to_facet<dim>(facet.local, space.basis().node_point(i)));
+    const double value = form.constraints().values[dim * space.cell_nodes(facet.cell)[i] + component];
+    std::array<Enclosure, 1> near;
+    u_D.enclose({x.data(), dim}, dim, near, Sides::around);
+    largest = std::max({largest, near[0].upper - value, value - near[0].lower});
+  }
+  return largest;
+}
+
+/// Let |u_D - P| <= delta inside of the facet and |v - P| <= delta' for the values v at the nodes, P of
+/// degree p. Then the interpolant is nowhere farther than delta + Lambda delta' from u_D. If delta is that on
+/// the closed facet, delta' = delta; otherwise delta' is larger by what v differs from the values inside.
+template <int dim>
+double interpolation_bound(const NitscheForm<dim>& form, const BoundaryFacet& facet, int component)
+{
+  // Of equispaced nodes on triangles, p = 1, ..., 4, rounded up; those on segments have smaller ones.
+  constexpr std::array<double, 5> lebesgue = {1, 1, 1.67, 2.28, 3.48};
+  const Mesh<dim>& mesh = form.space().mesh();
+  const int p = form.space().degree();
+  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(facet.cell), facet.local));
+  const auto distance = [&](Sides sides)
+  {
+    std::array<Enclosure, 6> taylor;
+    form.problem().boundary(facet.tag).displacement[component]->enclose(
+        std::span(points[0].data(), dim * points.size()), dim, std::span(taylor).first(p + 2), sides);
+    return distance_from_polynomials(taylor, p + 1);
+  };
+  const double closed = distance(Sides::closed);
+  const double inside = distance(Sides::inside);
+  if (inside == closed) return (1 + lebesgue[p]) * closed;
+  return std::min((1 + lebesgue[p]) * closed,
+                  (1 + lebesgue[p]) * inside + lebesgue[p] * jump_at_nodes(form, facet, component));
+}
+
+}  // namespace
+
+template <int dim>
+double dirichlet_interpolation_bound(const NitscheForm<dim>& form)
+{
+  double largest = 0;
+  for (const BoundaryFacet& facet : form.space().mesh().boundary())
+  {
+    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    for (int c = 0; c < dim; ++c)
+      if (boundary.fixes(c) && boundary.displacement[c]->degree() > form.space().degree())
+        largest = std::max(largest, interpolation_bound(form, facet, c));
+  }
+  return largest;
+}
+
+template <int dim>
+Statements statements(const NitscheForm<dim>& form, ContactRule rule,
+                      const std::optional<FriedrichsConstant>& friedrichs)
+{
+  constexpr double pi = std::numbers::pi;
+  Statements result;
+  result.covered = {
+      "the dual norm of the residual of the computed displacement: the largest <R(u_h), v> over all v in "
+      "H^1, "
+      "zero where displacements are prescribed, with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
+      "facets F; no unknown constant",
+      "the errors of discretisation, of the data, of the contact and friction conditions, and of stopping "
+      "Newton's method"};
+  result.law = describe_law(form.problem());
+  result.constants = {{"poincare", 1 / pi},
+                      {"trace_squared", 1 / (pi * pi) + 2 / (dim * pi)},
+                      {"identity_limit", identity_limit}};
+  if (friedrichs) result.constants.emplace_back("friedrichs", friedrichs->value);
+
+  double largest = 0;
+  for (const double value : form.constraints().values) largest = std::max(largest, std::abs(value));
+  const double interpolation = dirichlet_interpolation_bound(form);
+  const bool exact = interpolation <= 1e-12 * largest;
+  result.assumptions = {
+      {"quadrature", describe_quadrature(form, rule)},
+      {"displacement", exact ? std::string("the prescribed displacements are in the finite element space")
+                             : fmt::format("the prescribed displacements are interpolated at the nodes; they "
+                                           "differ by {:.3g} where they were compared, by {:.3g} at most",
+                                           dirichlet_interpolation_error(form), interpolation)},
+      {"geometry", "facets are straight"},
+      {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
+
+  if (rule == ContactRule::reference && form.problem().has_contact())
+    result.not_covered.emplace_back(
+        "contact and friction conditions on facets where the contact law has a kink: there the plain rule is "
+        "no bound (certify.contact_rule = \"reference\")");
+  if (!exact)
+    result.not_covered.push_back(
+        fmt::format("the interpolation of the prescribed displacements, which changes them by {:.3g} at most",
+                    interpolation));
+  result.not_covered.emplace_back("straight facets in place of a curved boundary");
+  result.not_covered.emplace_back("the model: linear elasticity, small strains, the friction law, the data");
+  return result;
+}
+
+template Statements statements(const NitscheForm<2>&, ContactRule, const std::optional<FriedrichsConstant>&);
+template Statements statements(const NitscheForm<3>&, ContactRule, const std::optional<FriedrichsConstant>&);
+template double dirichlet_interpolation_bound(const NitscheForm<2>&);
+template double dirichlet_interpolation_bound(const NitscheForm<3>&);
+template double dirichlet_interpolation_error(const NitscheForm<2>&);
+template double dirichlet_interpolation_error(const NitscheForm<3>&);
+
+}  // namespace tribound

@@ -1,0 +1,34 @@
+#pragma once
+
+/// @file checks.h
+/// The identities that make the bound a bound, method section 4, checked from the stress alone: nothing here
+/// is shared with the code that builds it.
+
+#include <span>
+
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+/// Norms of what should vanish, each relative to ||sigma_h||, with powers of h_T or h_F that make it a
+/// stress.
+struct IdentityDefects
+{
+  double divergence = 0;  ///< (sum h_T^2 ||div sigma_h + Pi^{p-1} f||_T^2)^{1/2}
+  double jump = 0;        ///< (sum h_F ||[sigma_h n]||_F^2)^{1/2} over facets inside Omega
+  double neumann = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F g_N||_F^2)^{1/2}, free components only
+  double contact = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
+  double symmetry = 0;    ///< ||Pi^{p-1} skew sigma_h|| (does not hold for p = 1, see the method)
+
+  /// The largest of those that hold at this degree; nan where one is.
+  [[nodiscard]] double largest(int degree) const;
+};
+
+/// t: the running traction t^k at the contact points of the form.
+template <int dim>
+[[nodiscard]] IdentityDefects check_identities(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
+                                               const Stress<dim>& stress);
+
+}  // namespace tribound

@@ -1,0 +1,278 @@
+#include "tribound/certify/bound/contact_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribound/contact/nitsche/traction.h"
+#include "tribound/fem/polynomials.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A facet with kinks has settled when halving its pieces changes the squared components by less than this
+/// part of them. A kink is a point in 2D, where many halvings cost little, and a curve in 3D.
+template <int dim>
+constexpr double settled = dim == 2 ? 1e-10 : 1e-5;
+template <int dim>
+constexpr int max_depth = dim == 2 ? 40 : 10;
+/// More than the data ask for: so many are left where rounding makes the kinks.
+constexpr std::size_t max_pieces = 4096;
+
+/// The parts of a segment or triangle halved along each edge.
+std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
+{
+  const Point<1> middle = (s[0] + s[1]) / 2;
+  return {{{s[0], middle}, {middle, s[1]}}};
+}
+std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
+{
+  const Point<2> a = (s[1] + s[2]) / 2;
+  const Point<2> b = (s[0] + s[2]) / 2;
+  const Point<2> c = (s[0] + s[1]) / 2;
+  return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
+}
+
+/// h_F |F| / |Fhat|.
+template <int dim>
+double norm_scale(const ContactFacet<dim>& contact)
+{
+  return contact.geometry.diameter * contact.geometry.measure * (dim - 1);
+}
+
+/// Adds h_F ||t^n||_F^2 and h_F ||t^t||_F^2 of a traction with the given coefficients.
+template <int dim>
+void add_squares(std::span<const Point<dim>> traction, const ContactFacet<dim>& contact, double& normal_part,
+                 double& tangential_part)
+{
+  const Point<dim>& n = contact.geometry.normal;
+  for (const Point<dim>& coefficient : traction)
+  {
+    const double normal = coefficient.dot(n);
+    normal_part += norm_scale(contact) * normal * normal;
+    tangential_part += norm_scale(contact) * (coefficient - normal * n).squaredNorm();
+  }
+}
+
+}  // namespace
+
+template <int dim>
+ContactTerms<dim>::ContactTerms(const NitscheForm<dim>& form, ContactRule rule)
+    : form_(form),
+      rule_(rule),
+      space_table_(tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
+      n_(polynomial_dimension(dim - 1, form.space().degree())),
+      kinks_(form.facet_rule(), form.space().degree() + 2)
+{
+  const Quadrature<dim - 1>& points = form.facet_rule();
+  for (int local = 0; local <= dim; ++local)
+  {
+    std::vector<Point<dim>> in_cell;
+    for (const FacetPoint& s : points.points) in_cell.push_back(facet_to_cell<dim>(local, s));
+    stress_table_.emplace_back(form.space().degree(), in_cell);
+  }
+  theta_.resize(static_cast<std::size_t>(n_) * points.size());
+  for (int q = 0; q < points.size(); ++q)
+    orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
+                                std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+}
+
+/// Coefficients of a polynomial of degree p on the facet from its values at the points of the rule.
+template <int dim>
+std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> values) const
+{
+  std::vector<Point<dim>> coefficients(n_, Point<dim>::Zero());
+  for (std::size_t q = 0; q < values.size(); ++q)
+    for (int i = 0; i < n_; ++i)
+      coefficients[i] += form_.facet_rule().weights[q] * theta_[q * n_ + i] * values[q];
+  return coefficients;
+}
+
+template <int dim>
+std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const double> block) const
+{
+  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
+  const int n_points = form_.n_facet_points();
+  std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
+  stress_table_[facet.local].evaluate(make_frame(form_.space().mesh(), facet.cell), block, entries);
+  std::vector<Point<dim>> values(n_points, Point<dim>::Zero());
+  for (int q = 0; q < n_points; ++q)
+    for (int r = 0; r < dim; ++r)
+      for (int c = 0; c < dim; ++c)
+        values[q][r] += entries[(dim * r + c) * n_points + q] * geometry.normal[c];
+  return project(values);
+}
+
+template <int dim>
+auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
+{
+  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
+  const Point<dim>& n = geometry.normal;
+  const LagrangeSpace<dim>& space = form_.space();
+  const Material& material = form_.problem().material(space.mesh().region(facet.cell));
+  const std::span<const Index> nodes = space.cell_nodes(facet.cell);
+  const Tabulation<dim>& table = space_table_.on_facet[facet.local];
+  const Tensor<dim> inverse_transpose = cell_map(space.mesh(), facet.cell).inverse_transpose;
+  const int n_points = form_.n_facet_points();
+
+  std::vector<Point<dim>> values(n_points);
+  for (int q = 0; q < n_points; ++q)
+    values[q] = augmented_traction<dim>(material, gamma, 0, n, value_at<dim>(nodes, u, table.values_at(q)),
+                                        gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
+  return {project(values), normal_trace(k, stress.dis_in(facet.cell))};
+}
+
+template <int dim>
+auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece) const -> Integrals
+{
+  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
+  const Point<dim>& n = geometry.normal;
+  const FacetMap<dim> map = facet_map(form_.space().mesh(), facet.cell, facet.local);
+  const Quadrature<dim - 1>& rule = form_.facet_rule();
+  std::array<double, polynomial_dimension(dim - 1, 4)> theta;
+  const FrictionLaw& law = contact->friction;
+  Integrals result;
+  std::vector<Point<dim>> augmented(rule.size());
+  std::vector<double> thresholds(rule.size());
+  double round_off = 0;
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    const FacetPoint s = point_in<dim - 1>(piece, rule.points[q]);
+    orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
+    const Point<dim> x = map(s);
+    const double closing = gamma * gap_at<dim>(*contact, x);
+    Point<dim> p = closing * n;
+    Point<dim> dis = Point<dim>::Zero();
+    for (int i = 0; i < n_; ++i)
+    {
+      p += theta[i] * fields.augmented[i];
+      dis += theta[i] * fields.dis[i];
+    }
+    augmented[q] = p;
+    thresholds[q] = threshold_if_any<dim>(law, x);
+    round_off = std::max(round_off, 1e-14 * (p.norm() + closing));
+
+    const Point<dim> difference = contact_traction<dim>(law, thresholds[q], p, n) - dis;
+    const double normal = difference.dot(n);
+    const double weight = fraction<dim - 1>(piece) * rule.weights[q];
+    result.normal += weight * normal * normal;
+    result.tangential += weight * (difference - normal * n).squaredNorm();
+  }
+  result.kinks = kinks_(law, n, augmented, thresholds, round_off);
+  return result;
+}
+
+/// The halves of a piece of the part with the given number.
+template <int dim>
+auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
+                              const Integrals& whole) const -> Halved
+{
+  Halved result{part, halves(piece), {}, 0};
+  Integrals sum;
+  for (std::size_t i = 0; i < result.pieces.size(); ++i)
+  {
+    result.values[i] = integrate(k, fields, result.pieces[i]);
+    sum += result.values[i];
+    result.change += fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
+  }
+  result.change += std::abs(sum.normal - whole.normal) + std::abs(sum.tangential - whole.tangential);
+  return result;
+}
+
+/// Halves the parts that may have a kink, and of these those again, until that changes nothing any more. What
+/// it did change last, where there is no end of it, is added.
+template <int dim>
+void ContactTerms<dim>::settle(int k, const Fields& fields, std::span<const ContactDatumPart<dim>> parts,
+                               std::span<Integrals> integrals) const
+{
+  std::vector<Halved> active;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (integrals[i].kinks.possible)
+    {
+      active.push_back(halve(k, fields, i, parts[i].part, integrals[i]));
+      integrals[i] = {.kinks = integrals[i].kinks};
+    }
+  for (int depth = 1; !active.empty(); ++depth)
+  {
+    Integrals total;
+    double change = 0;
+    for (const Integrals& part : integrals) total += part;
+    for (const Halved& halved : active)
+    {
+      change += halved.change;
+      for (const Integrals& value : halved.values) total += value;
+    }
+    const double negligible = settled<dim> * (total.normal + total.tangential);
+    const bool done = change <= negligible;
+    const bool last = done || depth == max_depth<dim> || active.size() > max_pieces + parts.size();
+    std::vector<Halved> next;
+    for (const Halved& halved : active)
+    {
+      Integrals& sum = integrals[halved.part];
+      const bool enough = last || halved.change * static_cast<double>(active.size()) <= negligible;
+      for (std::size_t i = 0; i < halved.pieces.size(); ++i)
+        if (enough || !halved.values[i].kinks.possible)
+          sum += halved.values[i];
+        else
+          next.push_back(halve(k, fields, halved.part, halved.pieces[i], halved.values[i]));
+      if (last && !done) sum += {.normal = halved.change, .tangential = halved.change};
+    }
+    active = std::move(next);
+  }
+}
+
+template <int dim>
+ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
+                                             const Stress<dim>& stress) const
+{
+  const Fields on_facet = fields(k, u, stress);
+  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  ContactSquares result = linearisation(k, stress);
+  const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
+  std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
+  if (parts.empty()) parts = std::span(&whole, 1);
+  std::vector<Integrals> integrals;
+  for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));
+  if (rule_ == ContactRule::resolved) settle(k, on_facet, parts, integrals);
+  for (std::size_t i = 0; i < parts.size(); ++i) add_part(contact, parts[i], integrals[i], result);
+  if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
+    add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
+  return result;
+}
+
+/// T is Lipschitz continuous in g and s: [.]_- and the projections on balls do not expand, and neither does
+/// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
+/// the rule and at most 2 |K|^{1/2} times what the remainders change.
+template <int dim>
+void ContactTerms<dim>::add_part(const ContactFacet<dim>& contact, const ContactDatumPart<dim>& part,
+                                 const Integrals& integrals, ContactSquares& squares) const
+{
+  const double scale = norm_scale(contact);
+  const double missed =
+      2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fraction<dim - 1>(part.part));
+  // Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
+  // polynomial up to gamma delta, with which it was seen at the points, too.
+  const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * contact.gamma * part.gap;
+  const double pressure = open ? 0 : contact.gamma * part.gap;
+  const auto* coulomb = std::get_if<Coulomb>(&contact.contact->friction);
+  const double limit = coulomb ? coulomb->coefficient * pressure : part.threshold;
+  squares.cnt += std::pow(std::sqrt(scale * integrals.normal) + missed * pressure, 2);
+  squares.frc += std::pow(std::sqrt(scale * integrals.tangential) + missed * limit, 2);
+}
+
+template <int dim>
+ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress) const
+{
+  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  ContactSquares result;
+  add_squares<dim>(normal_trace(k, stress.lin_in(contact.facet.cell)), contact, result.lin2n, result.lin2t);
+  return result;
+}
+
+template class ContactTerms<2>;
+template class ContactTerms<3>;
+
+}  // namespace tribound

@@ -1,0 +1,190 @@
+#include "tribound/certify/bound/estimate.h"
+
+#include <omp.h>
+
+#include <cmath>
+
+#include "tribound/base/norm.h"
+#include "tribound/contact/nitsche/elasticity.h"
+
+namespace tribound
+{
+
+double BoundComponents::body() const
+{
+  return osc + str + neu + lin1 + reg1;
+}
+
+double BoundComponents::contact() const
+{
+  return std::hypot(cnt + lin2n + reg2n, frc + lin2t + reg2t);
+}
+
+double BoundComponents::total() const
+{
+  return std::hypot(body(), cnt + frc + lin2n + lin2t + reg2n + reg2t);
+}
+
+double BoundComponents::total_sharp() const
+{
+  return std::hypot(body(), contact());
+}
+
+namespace
+{
+
+/// Component by component the root of the sum of squares, and both totals with what no cell has.
+void add_up(Estimate& estimate, double quad)
+{
+  double total = 0;
+  double total_sharp = 0;
+  BoundComponents& global = estimate.global;
+  for (const BoundComponents& cell : estimate.cells)
+  {
+    for (const auto& [name, member] : all_component_names) global.*member += std::pow(cell.*member, 2);
+    total += std::pow(cell.total(), 2);
+    total_sharp += std::pow(cell.total_sharp(), 2);
+  }
+  for (const auto& [name, member] : all_component_names) global.*member = std::sqrt(global.*member);
+  global.quad = quad;
+  estimate.total = std::sqrt(total) + quad;
+  estimate.total_sharp = std::sqrt(total_sharp) + quad;
+}
+
+}  // namespace
+
+template <int dim>
+Estimator<dim>::Estimator(const NitscheForm<dim>& form, ContactRule rule,
+                          const std::optional<FriedrichsConstant>& known)
+    : form_(form),
+      data_(data_terms(form)),
+      friedrichs_(known),
+      contact_(form, rule),
+      rule_(quadrature<dim>(2 * form.space().degree())),
+      stress_table_(form.space().degree(), rule_.points)
+{
+  if (data_.missed > 0 && !friedrichs_)
+    friedrichs_ = friedrichs_constant(form.problem(), form.space().mesh());
+  const Tabulation<dim> table = form.space().basis().tabulate(rule_.points);
+  const int n_points = rule_.size();
+  gradient_.resize(static_cast<std::size_t>(dim) * table.n_nodes * n_points);
+  for (int q = 0; q < n_points; ++q)
+    for (int i = 0; i < table.n_nodes; ++i)
+      for (int k = 0; k < dim; ++k)
+        gradient_[(k * table.n_nodes + i) * n_points + q] = table.gradients_at(q)[i][k];
+}
+
+template <int dim>
+Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>& stress, int n_threads) const
+{
+  Estimate result;
+  result.cells.resize(form_.space().mesh().n_cells());
+  for (std::size_t c = 0; c < result.cells.size(); ++c)
+  {
+    result.cells[c].osc = data_.osc[c];
+    result.cells[c].neu = data_.neu[c];
+  }
+  stress_terms(u, stress, n_threads > 0 ? n_threads : omp_get_max_threads(), result);
+  contact_terms(u, stress, result);
+  add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0);
+  return result;
+}
+
+template <int dim>
+BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
+{
+  BoundComponents squares;
+  for (const double x : stress.lin) squares.lin1 += x * x;
+  for (std::size_t k = 0; k < form_.contact_facets().size(); ++k)
+  {
+    const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress);
+    squares.lin2n += facet.lin2n;
+    squares.lin2t += facet.lin2t;
+  }
+  BoundComponents result;
+  for (const auto member : linearisation_components) result.*member = std::sqrt(squares.*member);
+  return result;
+}
+
+/// ||sigma_dis - sigma(u)||_T at quadrature points, which shares nothing with the way sigma_dis is made, and
+/// ||sigma_lin||_T and ||sigma_reg||_T from their coefficients.
+template <int dim>
+void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
+                                  Estimate& result) const
+{
+  const LagrangeSpace<dim>& space = form_.space();
+  const Mesh<dim>& mesh = space.mesh();
+  const int n_points = rule_.size();
+#pragma omp parallel num_threads(n_threads)
+  {
+    std::vector<double> dis(static_cast<std::size_t>(dim) * dim * n_points);
+    std::vector<double> derivative(dis.size());  // [(a dim + k) n_points + q]: d_k u_a, reference coordinates
+#pragma omp for schedule(static)
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+    {
+      stress_table_.evaluate(make_frame(mesh, c), stress.dis_in(c), dis);
+      const std::span<const Index> nodes = space.cell_nodes(c);
+      std::ranges::fill(derivative, 0);
+      for (int a = 0; a < dim; ++a)
+        for (int k = 0; k < dim; ++k)
+          for (std::size_t i = 0; i < nodes.size(); ++i)
+          {
+            const double value = u[static_cast<std::size_t>(dim) * nodes[i] + a];
+            const double* const row = &gradient_[(k * nodes.size() + i) * n_points];
+            double* const sum = &derivative[(a * dim + k) * n_points];
+            for (int q = 0; q < n_points; ++q) sum[q] += value * row[q];
+          }
+
+      const CellMap<dim> map = cell_map(mesh, c);
+      const Material& material = form_.problem().material(mesh.region(c));
+      double squares = 0;
+      for (int q = 0; q < n_points; ++q)
+      {
+        Tensor<dim> reference;
+        Tensor<dim> equilibrated;
+        for (int r = 0; r < dim; ++r)
+          for (int s = 0; s < dim; ++s)
+          {
+            reference(r, s) = derivative[(r * dim + s) * n_points + q];
+            equilibrated(r, s) = dis[(r * dim + s) * n_points + q];
+          }
+        const Tensor<dim> discrete = sigma<dim>(material, reference * map.inverse_transpose.transpose());
+        squares += rule_.weights[q] * (equilibrated - discrete).squaredNorm();
+      }
+      result.cells[c].str = std::sqrt(map.det * squares);
+      result.cells[c].lin1 = norm(stress.lin_in(c));
+      result.cells[c].reg1 = norm(stress.reg_in(c));
+    }
+  }
+}
+
+template <int dim>
+void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>& stress,
+                                   Estimate& result) const
+{
+  const auto facets = form_.contact_facets();
+  std::vector<Index> touched;
+  for (std::size_t k = 0; k < facets.size(); ++k)  // squares first: a cell may have several facets
+  {
+    const ContactSquares squares = contact_(static_cast<int>(k), u, stress);
+    BoundComponents& cell = result.cells[facets[k].facet.cell];
+    cell.cnt += squares.cnt;
+    cell.frc += squares.frc;
+    cell.lin2n += squares.lin2n;
+    cell.lin2t += squares.lin2t;
+    cell.reg2n += squares.reg2n;
+    cell.reg2t += squares.reg2t;
+    touched.push_back(facets[k].facet.cell);
+  }
+  std::ranges::sort(touched);
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  for (const Index c : touched)
+    for (const auto member : {&BoundComponents::cnt, &BoundComponents::frc, &BoundComponents::lin2n,
+                              &BoundComponents::lin2t, &BoundComponents::reg2n, &BoundComponents::reg2t})
+      result.cells[c].*member = std::sqrt(result.cells[c].*member);
+}
+
+template class Estimator<2>;
+template class Estimator<3>;
+
+}  // namespace tribound

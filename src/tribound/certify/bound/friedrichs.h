@@ -1,0 +1,41 @@
+#pragma once
+
+/// @file friedrichs.h
+/// The Friedrichs constant of a mesh and its boundary conditions, guaranteed from above: what bounds a
+/// function by its gradient and its trace on Gamma_C.
+
+#include <limits>
+
+#include "tribound/base/types.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+/// C_F^2 = 1/theta + kappa^2 H^2 with kappa < 0.3 in 2D, 0.34 in 3D.
+struct FriedrichsConstant
+{
+  double value;      ///< C_F, a length
+  double theta;      ///< the smallest of all components
+  double mesh_size;  ///< H, the largest h_T of the mesh of the proof; 0 for a proof that needs none
+  Index cells;       ///< of the mesh of the proof
+};
+
+/// With more cells than that in 3D the proof does without factors. A cube of Kuhn's tetrahedra, one
+/// component, seconds of a core with factors and without: 105 000 cells 10 and 1.4, 304 000 cells 40 and 6,
+/// where the factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large.
+inline constexpr Index most_cells_factorised_3d = 100'000;
+
+/// C_F with ||v|| <= C_F ||v||_{C,h} for all v that vanish in the components that Gamma_D fixes,
+///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2,
+/// on this mesh and on all its refinements, whose h_F are not larger. Infinite (and theta = 0) where a body
+/// has a component with neither Gamma_D nor Gamma_C, which check_rigid_motions() refuses as a free
+/// translation, and where no theta could be proved. Where the factorisation fails, as for want of memory,
+/// the proof does without factors, too.
+template <int dim>
+[[nodiscard]] FriedrichsConstant friedrichs_constant(
+    const Problem<dim>& problem, const Mesh<dim>& mesh,
+    Index most_cells_factorised = dim == 3 ? most_cells_factorised_3d : std::numeric_limits<Index>::max());
+
+}  // namespace tribound

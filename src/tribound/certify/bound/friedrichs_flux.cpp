@@ -1,0 +1,117 @@
+#include "tribound/certify/bound/friedrichs_flux.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// -grad phi . n |F| for each facet, outward of its first cell, from the Raviart-Thomas field
+/// -grad phi_h + (x - x_T) / d of the Crouzeix-Raviart solution phi_h; seen from the two cells of a facet,
+/// the mean of both.
+template <int dim>
+std::vector<double> potential_fluxes(const Mesh<dim>& mesh, std::span<const double> means)
+{
+  const Topology<dim>& topology = mesh.topology();
+  std::vector<double> fluxes(means.size(), 0.0);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const CellMap<dim> map = cell_map(mesh, c);
+    const double volume = map.det / (dim == 2 ? 2 : 6);
+    std::array<Point<dim>, dim + 1> hat_gradients;
+    hat_gradients[0] = -map.inverse_transpose.rowwise().sum();
+    for (int i = 0; i < dim; ++i) hat_gradients[i + 1] = map.inverse_transpose.col(i);
+    Point<dim> gradient = Point<dim>::Zero();
+    for (int i = 0; i <= dim; ++i) gradient -= dim * means[topology.cell_facets[c][i]] * hat_gradients[i];
+    for (int i = 0; i <= dim; ++i)
+    {
+      // |F| n = -d |T| grad lambda_i, and (x - x_T).n |F| = d |T| / (d + 1)
+      const Index f = topology.cell_facets[c][i];
+      const double flux = dim * volume * gradient.dot(hat_gradients[i]) + volume / (dim + 1);
+      const bool first = topology.facet_cells[f][0] == c;
+      fluxes[f] += (first ? flux : -flux) * (topology.facet_cells[f][1] < 0 ? 1 : 0.5);
+    }
+  }
+  return fluxes;
+}
+
+/// What the flux of q through each facet may not exceed: infinity but for the boundary.
+template <int dim>
+std::vector<double> largest_fluxes(const Problem<dim>& problem, const Mesh<dim>& mesh,
+                                   std::span<const char> fixed)
+{
+  std::vector<double> largest(fixed.size(), std::numeric_limits<double>::infinity());
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const Index f = mesh.topology().cell_facets[facet.cell][facet.local];
+    if (fixed[f]) continue;
+    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    largest[f] = problem.boundary(facet.tag).contact ? geometry.measure / geometry.diameter : 0;
+  }
+  return largest;
+}
+
+/// min(div q - |q|^2): div q is constant in each cell, |q| largest at a vertex. 0 where q is not finite.
+template <int dim>
+double smallest_value(const Mesh<dim>& mesh, std::span<const double> fluxes)
+{
+  const Topology<dim>& topology = mesh.topology();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const auto points = points_of(mesh.vertices(), mesh.cell(c));
+    const double volume = determinant<dim>(points) / (dim == 2 ? 2 : 6);
+    std::array<double, dim + 1> outward;
+    double divergence = 0;
+    for (int i = 0; i <= dim; ++i)
+    {
+      const Index f = topology.cell_facets[c][i];
+      outward[i] = topology.facet_cells[f][0] == c ? fluxes[f] : -fluxes[f];
+      divergence += outward[i] / volume;
+    }
+    for (const Point<dim>& x : points)
+    {
+      Point<dim> q = Point<dim>::Zero();
+      for (int i = 0; i <= dim; ++i) q += outward[i] / (dim * volume) * (x - points[i]);
+      const double value = divergence - q.squaredNorm();
+      if (!std::isfinite(value)) return 0;
+      smallest = std::min(smallest, value);
+    }
+  }
+  return smallest;
+}
+
+}  // namespace
+
+template <int dim>
+double flux_theta(const Problem<dim>& problem, const Mesh<dim>& mesh, std::span<const char> fixed,
+                  std::span<const double> means)
+{
+  const std::vector<double> potential = potential_fluxes(mesh, means);
+  const std::vector<double> largest = largest_fluxes(problem, mesh, fixed);
+  std::vector<double> fluxes(potential.size());
+  constexpr int n_tries = 24;
+  constexpr double rounding = 1e-6;
+  double theta = 0;
+  double c = std::ranges::max(means) / 64;
+  for (int k = 0; k < n_tries; ++k, c *= 1.5)
+  {
+    for (std::size_t f = 0; f < fluxes.size(); ++f)
+      fluxes[f] = std::min(potential[f] / (means[f] + c), largest[f]);
+    theta = std::max(theta, (1 - rounding) * smallest_value(mesh, fluxes));
+  }
+  return theta;
+}
+
+template double flux_theta(const Problem<2>&, const Mesh<2>&, std::span<const char>, std::span<const double>);
+template double flux_theta(const Problem<3>&, const Mesh<3>&, std::span<const char>, std::span<const double>);
+
+}  // namespace tribound

@@ -1,0 +1,97 @@
+#include "tribound/certify/bound/kinks.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "tribound/contact/nitsche/traction.h"
+#include "tribound/fem/bernstein.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A function between its enclosure, and between its smallest and largest values seen.
+struct Range
+{
+  double lowest, highest;
+  double seen_lowest, seen_highest;
+
+  [[nodiscard]] bool changes_sign(double noise) const { return lowest < -noise && highest > noise; }
+  /// The square of the values of the other sign that was not seen.
+  [[nodiscard]] double hidden() const
+  {
+    if (seen_lowest > 0) return std::pow(std::min(lowest, 0.0), 2);
+    if (seen_highest < 0) return std::pow(std::max(highest, 0.0), 2);
+    return 0;
+  }
+};
+
+/// P^n, P^t and S_h, where that is polynomial, in columns: at the points, or their coefficients in rows.
+template <int dim>
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, dim + 2>;
+
+auto matrix(const std::vector<double>& entries, Eigen::Index n_columns)
+{
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(entries.data(), static_cast<Eigen::Index>(entries.size()) / n_columns,
+                                    n_columns);
+}
+
+/// |P^t| - S_h, S_h <= 0 standing for 0.
+template <int dim>
+Range slip_range(const Columns<dim>& at_points, const Columns<dim>& coefficients)
+{
+  const auto tangential = [](const Columns<dim>& values) { return values.template middleCols<dim>(1); };
+  const auto excess = [&](const Columns<dim>& values)
+  { return (tangential(values).rowwise().norm() - values.col(dim + 1)).eval(); };
+  Point<dim> direction = tangential(at_points).colwise().sum().transpose();
+  if (direction.norm() > 0) direction.normalize();
+  const Eigen::VectorXd seen = excess(at_points);
+  return {(tangential(coefficients) * direction - coefficients.col(dim + 1)).minCoeff(),
+          excess(coefficients).maxCoeff(), seen.minCoeff(), seen.maxCoeff()};
+}
+
+}  // namespace
+
+template <int dim>
+KinkFinder<dim>::KinkFinder(const Quadrature<dim - 1>& rule, int degree)
+    : to_bernstein_(bernstein_from_points<dim - 1>(rule, degree)),
+      amplification_(matrix(to_bernstein_, rule.size()).cwiseAbs().rowwise().sum().maxCoeff())
+{
+}
+
+template <int dim>
+Kinks KinkFinder<dim>::operator()(const FrictionLaw& law, const Point<dim>& normal,
+                                  std::span<const Point<dim>> p, std::span<const double> threshold,
+                                  double noise) const
+{
+  const auto* coulomb = std::get_if<Coulomb>(&law);
+  Columns<dim> at_points(p.size(), dim + 2);
+  for (std::size_t q = 0; q < p.size(); ++q)
+  {
+    const double p_n = p[q].dot(normal);
+    at_points(q, 0) = p_n;
+    at_points.template block<1, dim>(q, 1) = (p[q] - p_n * normal).transpose();
+    at_points(q, dim + 1) = coulomb ? -coulomb->coefficient * p_n : threshold[q];
+  }
+  const Columns<dim> coefficients = matrix(to_bernstein_, at_points.rows()) * at_points;
+
+  const Range pressing{coefficients.col(0).minCoeff(), coefficients.col(0).maxCoeff(),
+                       at_points.col(0).minCoeff(), at_points.col(0).maxCoeff()};
+  Kinks result{pressing.changes_sign(noise), pressing.hidden(), pressing.lowest};
+  const bool rubs =
+      !std::holds_alternative<Frictionless>(law) && coefficients.col(dim + 1).maxCoeff() > noise;
+  if (!rubs) return result;
+  const Range slipping = slip_range<dim>(at_points, coefficients);
+  result.possible = result.possible || slipping.changes_sign(noise);
+  result.hidden += slipping.hidden();
+  return result;
+}
+
+template class KinkFinder<2>;
+template class KinkFinder<3>;
+
+}  // namespace tribound

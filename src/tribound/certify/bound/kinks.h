@@ -1,0 +1,46 @@
+#pragma once
+
+/// @file kinks.h
+/// Where the contact traction may have a kink, also between the points of a rule.
+
+#include <span>
+#include <vector>
+
+#include "tribound/fem/quadrature.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+/// What is known of T(u) on a piece of a contact facet.
+struct Kinks
+{
+  bool possible = false;  ///< P^n or |P^t| - S_h may change sign
+  double hidden = 0;  ///< the square of their values of the sign that no point of the rule has seen, at most
+  double lowest = 0;  ///< P^n is above
+};
+
+/// Encloses P^n and |P^t| - S_h, given at the points of a rule, between Bernstein coefficients: P and the
+/// threshold of Tresca's law are in P^degree. With b of P^t, l of S_h, and any unit vector e,
+///     min (b.e - l) <= |P^t| - S_h <= max (|b| - l)
+/// by P^t.e <= |P^t| and convexity; for Coulomb's law S_h = -mu_F P^n is one where P^n < 0 all over.
+template <int dim>
+class KinkFinder
+{
+ public:
+  KinkFinder(const Quadrature<dim - 1>& rule, int degree);
+
+  /// Values of size `noise` or less, the round-off of P, are no sign of anything.
+  [[nodiscard]] Kinks operator()(const FrictionLaw& law, const Point<dim>& normal,
+                                 std::span<const Point<dim>> p, std::span<const double> threshold,
+                                 double noise) const;
+
+  /// How much larger a coefficient can be than the values it is made from.
+  [[nodiscard]] double amplification() const { return amplification_; }
+
+ private:
+  std::vector<double> to_bernstein_;  ///< [coefficient * points + point]
+  double amplification_ = 0;
+};
+
+}  // namespace tribound

@@ -1,0 +1,263 @@
+#include "tribound/certify/equilibrate/cell_operator.h"
+
+#include "tribound/certify/equilibrate/too_flat.h"
+#include "tribound/contact/nitsche/elasticity.h"
+
+namespace tribound
+{
+
+template <int dim, int p>
+void CellOperator<dim, p>::build(const Frame<dim>& frame)
+{
+  factor(frame);
+  couple(frame);
+}
+
+/// A(r, s) = delta_rs (B_U B_U^T - D_c D_c^T / 2) + D_s D_r^T / 2 with D_c = sum_k J^{-1}(k, c) D_k: row r of
+/// a stress sees entry (r, c) of a skew tensor through d_c and row c through -d_r.
+template <int dim, int p>
+void CellOperator<dim, p>::factor(const Frame<dim>& frame)
+{
+  const Reference<dim, p>& ref = reference<dim, p>();
+  constexpr int m = S::multiplier;
+  const Tensor<dim> metric = frame.inverse * frame.inverse.transpose();
+  Dense<m, m> diagonal;
+  for (int k = 0; k < dim; ++k)
+    for (int l = 0; l < dim; ++l) add_multiple(diagonal, metric(k, l), ref.divergence[k][l]);
+  for (int r = 0; r < dim; ++r)
+    for (int s = r; s < dim; ++s)
+    {
+      Dense<m, m> block;
+      if (r == s) block = diagonal;
+      if constexpr (p > 1)
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l)
+            add_multiple(block, frame.inverse(k, s) * frame.inverse(l, r), ref.truncated_divergence[k][l]);
+      for (int i = 0; i < m; ++i) std::copy_n(block.row(i), m, factor_.row(r * m + i) + s * m);
+    }
+  if (!cholesky<S::u>(factor_.data(), factor_.stride, reciprocal_.data()))
+    throw no_equilibrated_stress<dim>(frame.origin, slenderness(frame));
+}
+
+/// C(a, b) = delta_ab (B_U N^T - ...) + grad_a lambda D_b E'^T / 2, times -|grad lambda|^{-1/2}.
+template <int dim, int p>
+void CellOperator<dim, p>::couple(const Frame<dim>& frame)
+{
+  const Reference<dim, p>& ref = reference<dim, p>();
+  constexpr int m = S::multiplier;
+  constexpr int n = S::facet;
+  for (int f = 0; f <= dim; ++f)
+  {
+    const double scale = -1 / std::sqrt(frame.grad_norm[f]);
+    const Point<dim> direction = scale * (frame.inverse * frame.grad[f]);
+    Dense<m, n> diagonal;
+    std::array<Dense<m, n>, dim> skew;
+    for (int k = 0; k < dim; ++k)
+    {
+      add_multiple(diagonal, direction[k], ref.coupling[k][f]);
+      if constexpr (p > 1)
+        for (int b = 0; b < dim; ++b)
+          add_multiple(skew[b], scale * frame.inverse(k, b), ref.truncated_coupling[k][f]);
+    }
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        for (int i = 0; i < m; ++i)
+        {
+          double* const target = coupling_.row(a * m + i) + f * facet_stride + b * n;
+          for (int j = 0; j < n; ++j)
+            target[j] = frame.grad[f][a] * skew[b](i, j) + (a == b ? diagonal(i, j) : 0);
+        }
+  }
+  solve_transposed<S::u, all_facets>(factor_.data(), factor_.stride, reciprocal_.data(), coupling_.data(),
+                                     all_facets);
+}
+
+/// N N^T - C_L^T C_L / 2 has the blocks (delta_st grad_f.grad_g (E_f E_g^T - E'_f E'_g^T / 2)
+/// + grad_f[t] grad_g[s] E'_f E'_g^T / 2) / (|grad_f| |grad_g|)^{1/2}.
+template <int dim, int p>
+void CellOperator<dim, p>::condense(const Frame<dim>& frame)
+{
+  const Reference<dim, p>& ref = reference<dim, p>();
+  constexpr int n = S::facet;
+  for (int f = 0; f <= dim; ++f)
+    for (int g = 0; g <= dim; ++g)
+    {
+      const double scale = 1 / std::sqrt(frame.grad_norm[f] * frame.grad_norm[g]);
+      const double product = scale * frame.grad[f].dot(frame.grad[g]);
+      for (int s = 0; s < dim; ++s)
+        for (int t = 0; t < dim; ++t)
+        {
+          const double skew = scale * frame.grad[f][t] * frame.grad[g][s];
+          for (int i = 0; i < n; ++i)
+          {
+            double* const target = schur_.row(f * S::block + s * n + i) + g * facet_stride + t * n;
+            for (int j = 0; j < n; ++j)
+              target[j] =
+                  skew * ref.truncated_schur[f][g](i, j) + (s == t ? product * ref.schur[f][g](i, j) : 0);
+          }
+        }
+    }
+  for (int f = 0; f <= dim; ++f)
+    subtract_transposed_product<S::block, all_facets, S::u>(schur_.row(f * S::block), all_facets,
+                                                            coupling_.data() + f * facet_stride, all_facets,
+                                                            coupling_.data(), all_facets);
+}
+
+template <int dim, int p>
+auto CellOperator<dim, p>::reduce(const UVector& r_u) const -> UVector
+{
+  UVector reduced = r_u;
+  solve_transposed<S::u>(factor_.data(), factor_.stride, reciprocal_.data(), reduced.data());
+  return reduced;
+}
+
+template <int dim, int p>
+void CellOperator<dim, p>::subtract_load(FacetVectors& load, const Frame<dim>& frame, const UVector& r_u,
+                                         const Tensor<dim>& w) const
+{
+  const UVector reduced = reduce(r_u);
+  subtract_transposed_times<S::u, all_facets>(load.data(), coupling_.data(), all_facets, reduced.data());
+  if constexpr (p == 1)  // C_L^T w: constant rotations have no part in B_U B_L^T
+    for (int f = 0; f <= dim; ++f)
+    {
+      const Point<dim> direction =
+          moment_of_one<dim, p>(frame) / std::sqrt(frame.grad_norm[f]) * (w * frame.grad[f]);
+      for (int s = 0; s < dim; ++s)
+        for (int j = 0; j < S::facet; ++j)
+          load(f, s * S::facet + j) -= direction[s] * reference<dim, p>().trace[f](j, 0);
+    }
+}
+
+template <int dim, int p>
+auto CellOperator<dim, p>::divergence(const Frame<dim>& frame, const DiscreteStress<dim, p>& sigma) const
+    -> UVector
+{
+  UVector result;
+  if constexpr (p > 1)
+  {
+    constexpr int m = S::multiplier;
+    for (int r = 0; r < dim; ++r)
+      for (int k = 0; k < dim; ++k)
+      {
+        std::array<double, m> row{};  // component k of row r on the reference cell
+        for (int c = 0; c < dim; ++c)
+          for (int j = 0; j < m; ++j) row[j] += frame.inverse(k, c) * sigma[(dim * r + c) * m + j];
+        const auto& derivative = reference<dim, p>().derivative[k];
+        for (int i = 0; i < m; ++i)
+          for (int j = 0; j < m; ++j) result[r * m + i] += derivative(i, j) * row[j];
+      }
+  }
+  return result;
+}
+
+template <int dim, int p>
+StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& frame, const UVector& r_u,
+                                                            const Tensor<dim>& w,
+                                                            const FacetVectors& mu) const
+{
+  const Reference<dim, p>& ref = reference<dim, p>();
+  constexpr int m = S::multiplier;
+  constexpr int n = S::facet;
+  using Column = DenseVector<S::stress>;
+  UVector eta = reduce(r_u);
+  subtract_times<S::u, all_facets>(eta.data(), coupling_.data(), all_facets, mu.data());
+  solve_upper<S::u>(factor_.data(), factor_.stride, reciprocal_.data(), eta.data());
+
+  StressCoefficients<dim, p> result{};
+  const auto add = [&](int r, int c, double factor, const Column& column)
+  {
+    for (int j = 0; j < S::stress; ++j) result[(dim * r + c) * S::stress + j] += factor * column[j];
+  };
+  for (int r = 0; r < dim; ++r)
+  {
+    for (int k = 0; k < dim; ++k)  // B_U^T: entry (r, c) gets sum_k J^{-1}(k, c) D_k^T eta_r
+    {
+      Column column;
+      subtract_transposed_times<m, Column::stride>(column.data(), ref.derivative[k].data(), Column::stride,
+                                                   eta.data() + r * m);
+      for (int c = 0; c < dim; ++c) add(r, c, frame.inverse(k, c), column);
+    }
+    for (int f = 0; f <= dim; ++f)  // N^T: entry (r, c) gets n_c |grad lambda|^{1/2} E^T mu_r
+    {
+      Column column;
+      subtract_transposed_times<n, Column::stride>(column.data(), ref.trace[f].data(), Column::stride,
+                                                   mu.row(f) + r * n);
+      const double scale = -1 / std::sqrt(frame.grad_norm[f]);
+      for (int c = 0; c < dim; ++c) add(r, c, scale * frame.grad[f][c], column);
+    }
+  }
+  for (const auto& [r, c] : skew_pairs<dim>)
+  {
+    for (int j = 0; j < m; ++j)
+    {
+      double& upper = result[(dim * r + c) * S::stress + j];
+      double& lower = result[(dim * c + r) * S::stress + j];
+      upper = lower = (upper + lower) / 2;
+    }
+    if constexpr (p == 1)
+    {
+      const double moment = w(r, c) * moment_of_one<dim, p>(frame);
+      result[(dim * r + c) * S::stress] += moment;
+      result[(dim * c + r) * S::stress] -= moment;
+    }
+  }
+  return result;
+}
+
+template <int dim, int p>
+DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const Material& material,
+                                       std::span<const Index> nodes, std::span<const double> u)
+{
+  using S = Sizes<dim, p>;
+  const Reference<dim, p>& ref = reference<dim, p>();
+  const auto& nodal = ref.nodal_derivative[permutation_number(frame.local)];
+  std::array<std::array<DenseVector<S::multiplier>, dim>, dim> gradient;  // minus d_k u_a: [k][a]
+  for (int a = 0; a < dim; ++a)
+  {
+    std::array<double, S::stress> values;
+    for (int i = 0; i < S::stress; ++i) values[i] = u[static_cast<std::size_t>(dim) * nodes[i] + a];
+    for (int k = 0; k < dim; ++k)
+      subtract_transposed_times<S::stress, padded(S::multiplier)>(gradient[k][a].data(), nodal[k].data(),
+                                                                  nodal[k].stride, values.data());
+  }
+  DiscreteStress<dim, p> result;
+  const double scale = -std::sqrt(frame.det);  // basis functions on the cell are chi / sqrt(det)
+  for (int j = 0; j < S::multiplier; ++j)
+  {
+    Tensor<dim> hat;
+    for (int k = 0; k < dim; ++k)
+      for (int a = 0; a < dim; ++a) hat(a, k) = scale * gradient[k][a][j];
+    const Tensor<dim> stress = sigma<dim>(material, hat * frame.inverse);
+    for (int r = 0; r < dim; ++r)
+      for (int c = 0; c < dim; ++c) result[(dim * r + c) * S::multiplier + j] = stress(r, c);
+  }
+  return result;
+}
+
+template class CellOperator<2, 1>;
+template class CellOperator<2, 2>;
+template class CellOperator<2, 3>;
+template class CellOperator<2, 4>;
+template class CellOperator<3, 1>;
+template class CellOperator<3, 2>;
+template class CellOperator<3, 3>;
+template class CellOperator<3, 4>;
+
+template DiscreteStress<2, 1> discrete_stress<2, 1>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<2, 2> discrete_stress<2, 2>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<2, 3> discrete_stress<2, 3>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<2, 4> discrete_stress<2, 4>(const Frame<2>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 1> discrete_stress<3, 1>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 2> discrete_stress<3, 2>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 3> discrete_stress<3, 3>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+template DiscreteStress<3, 4> discrete_stress<3, 4>(const Frame<3>&, const Material&, std::span<const Index>,
+                                                    std::span<const double>);
+
+}  // namespace tribound

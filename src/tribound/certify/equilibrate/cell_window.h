@@ -1,0 +1,172 @@
+#pragma once
+
+/// @file cell_window.h
+/// The cells that a stretch of vertices needs, with their data.
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tribound/certify/equilibrate/prepared_cell.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/polynomials.h"
+#include "tribound/fem/quadrature.h"
+
+namespace tribound
+{
+
+/// Moments of psi_a f on U for every vertex of every cell, or nothing where f = 0.
+template <int dim, int p>
+class BodyMoments
+{
+ public:
+  using Vector = DenseVector<Sizes<dim, p>::u>;
+
+  explicit BodyMoments(const NitscheForm<dim>& form)
+  {
+    const Mesh<dim>& mesh = form.space().mesh();
+    const Quadrature<dim>& rule = form.data().cell_rule();
+    std::vector<Point<dim>> f(rule.size());
+    std::vector<Table> tables;  // by permutation_number(frame.local), filled when first needed
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+    {
+      if (!form.data().has_body_force(c)) continue;
+      if (moments_.empty()) moments_.resize(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1));
+      const Frame<dim> frame = make_frame(mesh, c);
+      const auto number = static_cast<std::size_t>(permutation_number(frame.local));
+      if (number >= tables.size()) tables.resize(number + 1);
+      if (tables[number].points.empty()) tables[number] = Table(rule, frame.local);
+      const auto& [points, chi] = tables[number];
+      form.data().body_force(c, f);
+      for (int q = 0; q < rule.size(); ++q)
+        add(&moments_[static_cast<std::size_t>(c) * (dim + 1)], points[q],
+            rule.weights[q] * std::sqrt(frame.det) * f[q], &chi[m * q]);
+    }
+  }
+
+  [[nodiscard]] Vector operator()(Index cell, int vertex) const
+  {
+    return moments_.empty() ? Vector{} : moments_[static_cast<std::size_t>(cell) * (dim + 1) + vertex];
+  }
+
+ private:
+  static constexpr int m = Sizes<dim, p>::multiplier;
+
+  /// The points of the cell's own numbering, as for L(v) (collapsed rules are not symmetric), in the
+  /// coordinates of a frame, and the basis of P^{p-1} there.
+  struct Table
+  {
+    Table() = default;
+    Table(const Quadrature<dim>& rule, const std::array<int, dim + 1>& local) : chi(m * rule.size())
+    {
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        points.push_back(in_frame<dim>(local, rule.points[q]));
+        orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
+      }
+    }
+    std::vector<Point<dim>> points;
+    std::vector<double> chi;  ///< [q * m + i]
+  };
+
+  /// The share of one point in the moments of all vertices.
+  static void add(Vector* moments, const Point<dim>& xhat, const Point<dim>& weighted_f, const double* chi)
+  {
+    for (int a = 0; a <= dim; ++a)
+    {
+      const double hat = a == 0 ? 1 - xhat.sum() : xhat[a - 1];
+      for (int r = 0; r < dim; ++r)
+        for (int i = 0; i < m; ++i) moments[a][r * m + i] += hat * weighted_f[r] * chi[i];
+    }
+  }
+
+  std::vector<Vector> moments_;
+};
+
+/// Where prepared cells come from.
+template <int dim, int p>
+struct CellSource
+{
+  const NitscheForm<dim>& form;
+  std::span<const double> u;
+  const BodyMoments<dim, p>& body;
+  const RepeatedShapes<dim, p>& shapes;
+
+  /// The Schur complement is only made if `for_patches`.
+  void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
+  {
+    const LagrangeSpace<dim>& space = form.space();
+    cell.frame = make_frame(space.mesh(), c);
+    find_operator(c, cell, for_patches);
+    cell.sigma = discrete_stress<dim, p>(cell.frame, form.problem().material(space.mesh().region(c)),
+                                         space.cell_nodes(c), u);
+    cell.divergence = cell.op->divergence(cell.frame, cell.sigma);
+    for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
+    find_moments(cell);
+  }
+
+  void find_operator(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
+  {
+    cell.shape = shapes.find(c);
+    cell.op = cell.shape ? &cell.shape->op : nullptr;
+    if (cell.shape) return;
+    if (!cell.own) cell.own = std::make_unique<CellOperator<dim, p>>();
+    cell.own->build(cell.frame);
+    if (for_patches) cell.own->condense(cell.frame);
+    cell.op = cell.own.get();
+  }
+};
+
+/// The cells that a stretch of vertices needs: prepared when first asked for, forgotten when the caller has
+/// done with them.
+template <int dim, int p>
+class CellWindow
+{
+ public:
+  struct Slot
+  {
+    explicit Slot(int n_parts) : shares(n_parts) {}
+
+    PreparedCell<dim, p> cell;
+    CellShares<dim, p> shares;
+    int waiting = 0;  ///< vertices of the stretch that still need the cell; 0 when it is new
+  };
+
+  /// For stresses of n_parts parts.
+  CellWindow(const CellSource<dim, p>& source, int n_parts)
+      : source_(source), n_parts_(n_parts), place_(source.form.space().mesh().n_cells(), -1)
+  {
+  }
+
+  Slot& get(Index cell)
+  {
+    if (place_[cell] >= 0) return *pool_[place_[cell]];
+    if (free_.empty())
+    {
+      free_.push_back(static_cast<int>(pool_.size()));
+      pool_.push_back(std::make_unique<Slot>(n_parts_));
+    }
+    place_[cell] = free_.back();
+    free_.pop_back();
+    Slot& slot = *pool_[place_[cell]];
+    source_.prepare(cell, slot.cell, true);
+    slot.waiting = 0;
+    return slot;
+  }
+
+  void forget(Index cell)
+  {
+    free_.push_back(place_[cell]);
+    place_[cell] = -1;
+  }
+
+ private:
+  const CellSource<dim, p>& source_;
+  int n_parts_;
+  std::vector<int> place_;  ///< per cell: place in pool_, or -1
+  std::vector<std::unique_ptr<Slot>> pool_;
+  std::vector<int> free_;
+};
+
+}  // namespace tribound

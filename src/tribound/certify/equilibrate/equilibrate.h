@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file equilibrate.h
+/// The equilibrated stress of a Newton iterate, method section 4.
+
+#include <memory>
+#include <span>
+
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+/// Rebuilds the stress of the iterates on one mesh. What they share is made once: the order in which the
+/// patches are solved, the moments of f, the operators of repeated shapes.
+///
+/// Arguments of its members are the iterate u^k and its running traction t^k (at the contact points of the
+/// form). All run on `n_threads` threads (0: as many as OpenMP offers); the result does not depend on their
+/// number. All throw SolveError where a patch has no equilibrated stress.
+template <int dim>
+class Equilibrator
+{
+ public:
+  /// The form must outlive the object.
+  explicit Equilibrator(const NitscheForm<dim>& form, int n_threads = 0);
+  ~Equilibrator();
+  Equilibrator(const Equilibrator&) = delete;
+  Equilibrator& operator=(const Equilibrator&) = delete;
+
+  /// sigma_dis and sigma_lin on vertex patches in the Arnold-Falk-Winther spaces of the degree of the space
+  /// [FD24, section 4]. For delta > 0 Newton's method linearises T_delta: then sigma_lin has the traction
+  /// psi_a (t^k - T_delta(u^k)) on Gamma_C, and a third part sigma_reg, method section 7, has
+  /// psi_a (T_delta(u^k) - T(u^k)).
+  [[nodiscard]] Stress<dim> operator()(std::span<const double> u, std::span<const Point<dim>> t,
+                                       double delta = 0);
+  /// The same sigma_lin for delta = 0 without sigma_dis (`dis` is empty): only patches around vertices on
+  /// Gamma_C.
+  [[nodiscard]] Stress<dim> linearisation(std::span<const double> u, std::span<const Point<dim>> t);
+
+  /// What the object is for one degree.
+  class Implementation;
+
+ private:
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The stress of one iterate.
+template <int dim>
+[[nodiscard]] Stress<dim> equilibrate(const NitscheForm<dim>& form, std::span<const double> u,
+                                      std::span<const Point<dim>> t, int n_threads = 0, double delta = 0)
+{
+  return Equilibrator<dim>(form, n_threads)(u, t, delta);
+}
+
+}  // namespace tribound

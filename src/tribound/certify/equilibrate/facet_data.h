@@ -1,0 +1,80 @@
+#pragma once
+
+/// @file facet_data.h
+/// What the boundary prescribes for the patch stresses: moments of psi_a times the traction, method
+/// section 4.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tribound/certify/equilibrate/reference.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+/// Conditions and tractions on the boundary facets. Moments (psi_a t, theta_i)_F are taken with the reference
+/// quadrature rule and in the orthonormal basis theta of the facet with its vertices in ascending order.
+template <int dim, int p>
+class FacetData
+{
+ public:
+  using S = Sizes<dim, p>;
+  using FacetVector = DenseVector<S::block>;
+  /// Moments for each vertex of the facet; entry c * S::facet + i belongs to component c.
+  using Moments = std::array<FacetVector, dim>;
+
+  /// u is the Newton iterate and t its running traction t^k at the contact points of the form; T_delta is
+  /// what Newton's method linearises.
+  FacetData(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
+            double delta);
+
+  [[nodiscard]] bool is_boundary(Index facet) const { return number_[facet] >= 0; }
+  /// Whether Gamma_D fixes the component on the facet.
+  [[nodiscard]] bool fixes(Index facet, int component) const
+  {
+    return conditions_[number_[facet]].fixed[component];
+  }
+  [[nodiscard]] bool fixes_any(Index facet) const;
+  /// Parts of the stress: dis and lin, and reg for delta > 0.
+  [[nodiscard]] int n_parts() const { return n_parts_; }
+  /// psi_a g_N or psi_a T(u); null where the facet carries no load.
+  [[nodiscard]] const Moments* discretisation(Index facet) const
+  {
+    const int place = conditions_[number_[facet]].moments;
+    return place < 0 ? nullptr : &discretisation_[place];
+  }
+  /// psi_a (t^k - T_delta(u)); null off Gamma_C.
+  [[nodiscard]] const Moments* linearisation(Index facet) const
+  {
+    const int place = conditions_[number_[facet]].contact;
+    return place < 0 ? nullptr : &linearisation_[place];
+  }
+  /// psi_a (T_delta(u) - T(u)); null off Gamma_C. There is none for delta = 0.
+  [[nodiscard]] const Moments* regularisation(Index facet) const
+  {
+    const int place = conditions_[number_[facet]].contact;
+    return place < 0 ? nullptr : &regularisation_[place];
+  }
+  /// Whether the vertex lies on Gamma_C.
+  [[nodiscard]] bool on_contact(Index vertex) const { return on_contact_[vertex]; }
+
+ private:
+  struct Condition
+  {
+    std::array<bool, dim> fixed{};
+    int moments = -1;  ///< place in discretisation_
+    int contact = -1;  ///< place in linearisation_ and regularisation_
+  };
+
+  std::vector<int> number_;  ///< per facet: place in conditions_, or -1 inside Omega
+  std::vector<Condition> conditions_;
+  std::vector<Moments> discretisation_;
+  std::vector<Moments> linearisation_;
+  std::vector<Moments> regularisation_;
+  std::vector<char> on_contact_;
+  int n_parts_;
+};
+
+}  // namespace tribound

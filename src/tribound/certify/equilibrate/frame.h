@@ -1,0 +1,107 @@
+#pragma once
+
+/// @file frame.h
+/// A cell seen with its vertices in ascending global order. Two cells that share a facet then run through its
+/// vertices in the same order, so that polynomials on the facet need no reorientation.
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tribound/base/types.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+template <int dim>
+struct Frame
+{
+  Cell<dim> vertices;                     ///< ascending
+  std::array<int, dim + 1> local;         ///< local[i]: position of vertices[i] in Mesh::cell
+  Point<dim> origin;                      ///< of vertices[0]
+  Tensor<dim> jacobian;                   ///< x = origin + J xhat
+  Tensor<dim> inverse;                    ///< J^{-1}
+  double det;                             ///< |det J| = dim! |T|
+  std::array<Point<dim>, dim + 1> grad;   ///< of the barycentric coordinates; facet i has normal -grad/|grad|
+  std::array<double, dim + 1> grad_norm;  ///< |grad lambda_i| = |F_i| (dim-1)! / det
+
+  /// Position of vertex `v` in `vertices`.
+  [[nodiscard]] int find(Index v) const
+  {
+    return static_cast<int>(std::ranges::find(vertices, v) - vertices.begin());
+  }
+  /// Outward unit normal of the facet opposite to vertex i.
+  [[nodiscard]] Point<dim> normal(int i) const { return -grad[i] / grad_norm[i]; }
+  /// |F_i| / |reference facet|.
+  [[nodiscard]] double facet_scale(int i) const { return det * grad_norm[i]; }
+};
+
+/// Lexicographic rank of a permutation, such as Frame::local.
+template <std::size_t n>
+[[nodiscard]] int permutation_number(const std::array<int, n>& permutation)
+{
+  int number = 0;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    int smaller_behind = 0;
+    for (std::size_t j = i + 1; j < n; ++j) smaller_behind += permutation[j] < permutation[i];
+    number = number * static_cast<int>(n - i) + smaller_behind;
+  }
+  return number;
+}
+
+/// A point given in the reference coordinates of Mesh::cell, in those of the frame whose vertices are
+/// local[0], local[1], ... of the cell.
+template <int dim>
+[[nodiscard]] Point<dim> in_frame(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
+{
+  std::array<double, dim + 1> lambda;  // of the cell's own vertices
+  lambda[0] = 1 - in_cell.sum();
+  for (int i = 0; i < dim; ++i) lambda[i + 1] = in_cell[i];
+  Point<dim> sorted;
+  for (int i = 0; i < dim; ++i) sorted[i] = lambda[local[i + 1]];
+  return sorted;
+}
+
+template <int dim>
+[[nodiscard]] Cell<dim> sorted_vertices(Cell<dim> cell)
+{
+  std::ranges::sort(cell);
+  return cell;
+}
+
+/// J with x = x_0 + J xhat for the cell with these vertices.
+template <int dim>
+[[nodiscard]] Tensor<dim> jacobian_of(const Mesh<dim>& mesh, const Cell<dim>& vertices)
+{
+  Tensor<dim> jacobian;
+  for (int j = 0; j < dim; ++j) jacobian.col(j) = mesh.vertex(vertices[j + 1]) - mesh.vertex(vertices[0]);
+  return jacobian;
+}
+
+template <int dim>
+[[nodiscard]] Frame<dim> make_frame(const Mesh<dim>& mesh, Index c)
+{
+  Frame<dim> frame;
+  const Cell<dim>& cell = mesh.cell(c);
+  for (int i = 0; i <= dim; ++i) frame.local[i] = i;
+  std::ranges::sort(frame.local, {}, [&](int i) { return cell[i]; });
+  for (int i = 0; i <= dim; ++i) frame.vertices[i] = cell[frame.local[i]];
+
+  frame.origin = mesh.vertex(frame.vertices[0]);
+  frame.jacobian = jacobian_of(mesh, frame.vertices);
+  frame.inverse = frame.jacobian.inverse();
+  frame.det = std::abs(frame.jacobian.determinant());
+  frame.grad[0].setZero();
+  for (int j = 0; j < dim; ++j)
+  {
+    frame.grad[j + 1] = frame.inverse.row(j).transpose();
+    frame.grad[0] -= frame.grad[j + 1];
+  }
+  for (int i = 0; i <= dim; ++i) frame.grad_norm[i] = frame.grad[i].norm();
+  return frame;
+}
+
+}  // namespace tribound

@@ -1,0 +1,270 @@
+#include "tribound/certify/equilibrate/patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribound/certify/equilibrate/too_flat.h"
+
+namespace tribound
+{
+
+template <int dim, int p>
+void Patch<dim, p>::begin(Index vertex)
+{
+  vertex_ = vertex;
+  n_problems_ = data_.on_contact(vertex) ? data_.n_parts() : 1;
+  size_ = 0;
+  n_cells_ = 0;
+  found_.clear();
+  fixed_facets_.clear();
+}
+
+template <int dim, int p>
+void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
+                             std::span<CellShare<dim, p>> shares)
+{
+  const Frame<dim>& frame = prepared.frame;
+  if (n_cells_ == static_cast<int>(cells_.size()))
+    cells_.push_back({0, {}, nullptr, shares, nullptr, {}, {}});
+  CellPart& part = cells_[n_cells_++];
+  part.vertex = frame.find(vertex_);
+  part.prepared = &prepared;
+  part.shares = shares;
+  const auto& numbers = mesh_.topology().cell_facets[cell];
+  for (int f = 0; f <= dim; ++f)
+  {
+    part.facets[f] = -1;
+    if (f == part.vertex) continue;
+    const Index facet = numbers[frame.local[f]];
+    const auto known = std::ranges::find(found_, facet, &PatchFacet::number);
+    part.facets[f] = static_cast<int>(known - found_.begin());
+    if (known == found_.end()) found_.push_back({facet, frame.facet_scale(f)});
+  }
+  size_ = std::max(size_, 1 / frame.grad_norm[part.vertex]);  // the height of the cell above the vertex
+}
+
+template <int dim, int p>
+void Patch<dim, p>::solve()
+{
+  order_facets();
+  make_compatible();
+  assemble();
+  fix_rigid_motions(static_cast<int>(facets_.size()) - 1);
+  if (!matrix_.factor()) throw failure();
+  for (int problem = 0; problem < n_problems_; ++problem)
+  {
+    matrix_.solve(std::span(x_[problem]).first(facets_.size()));
+    for (int k = 0; k < n_cells_; ++k) recover(cells_[k], problem);
+  }
+}
+
+template <int dim, int p>
+SolveError Patch<dim, p>::failure() const
+{
+  double flattest = 0;
+  for (int k = 0; k < n_cells_; ++k) flattest = std::max(flattest, slenderness(cells_[k].prepared->frame));
+  return no_equilibrated_stress<dim>(mesh_.vertex(vertex_), flattest);
+}
+
+/// Renames the facets by the order of elimination.
+template <int dim, int p>
+void Patch<dim, p>::order_facets()
+{
+  matrix_.reset(static_cast<int>(found_.size()));
+  for (int k = 0; k < n_cells_; ++k)
+    for (int f = 0; f <= dim; ++f)
+      for (int g = f + 1; g <= dim; ++g)
+        if (f != cells_[k].vertex && g != cells_[k].vertex)
+          matrix_.connect(cells_[k].facets[f], cells_[k].facets[g]);
+  const std::span<const int> rank = matrix_.order();
+  for (int k = 0; k < n_cells_; ++k)
+    for (int& facet : cells_[k].facets)
+      if (facet >= 0) facet = rank[facet];
+  facets_.resize(found_.size());
+  for (std::size_t i = 0; i < found_.size(); ++i) facets_[rank[i]] = found_[i];
+}
+
+/// Coefficients of motion i in P^p(F)^d.
+template <int dim, int p>
+auto Patch<dim, p>::moments_on_facet(int place, int motion) const -> FacetVector
+{
+  const auto& hat = reference<dim, p>().facet_hat_moment;
+  FacetVector moments;
+  const double scale = std::sqrt(facets_[place].scale);
+  for (int v = 0; v < dim; ++v)
+  {
+    const Point<dim> z =
+        scale * motions_(motion, mesh_.vertex(mesh_.topology().facets[facets_[place].number][v]));
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < S::facet; ++i) moments[c * S::facet + i] += z[c] * hat(i, v);
+  }
+  return moments;
+}
+
+template <int dim, int p>
+int Patch<dim, p>::local_vertex(Index facet) const
+{
+  const auto& vertices = mesh_.topology().facets[facet];
+  return static_cast<int>(std::ranges::find(vertices, vertex_) - vertices.begin());
+}
+
+/// Moments of the traction of the dis (0), lin (1) or reg (2) problem, or null where there is none.
+template <int dim, int p>
+auto Patch<dim, p>::traction(Index facet, int problem) const -> const typename FacetData<dim, p>::FacetVector*
+{
+  if (!data_.is_boundary(facet)) return nullptr;
+  const auto* moments = problem == 0   ? data_.discretisation(facet)
+                        : problem == 1 ? data_.linearisation(facet)
+                                       : data_.regularisation(facet);
+  return moments ? &(*moments)[local_vertex(facet)] : nullptr;
+}
+
+template <int dim, int p>
+void Patch<dim, p>::assemble()
+{
+  for (int problem = 0; problem < n_problems_; ++problem) x_[problem].assign(facets_.size(), {});
+  for (int k = 0; k < n_cells_; ++k)
+  {
+    condense(cells_[k]);
+    for (int problem = 0; problem < n_problems_; ++problem) assemble_load(cells_[k], problem);
+  }
+  for (std::size_t i = 0; i < facets_.size(); ++i)
+  {
+    if (!data_.is_boundary(facets_[i].number)) continue;
+    for (int problem = 0; problem < n_problems_; ++problem)
+      if (const auto* t = traction(facets_[i].number, problem)) add_multiple(x_[problem][i], -1, *t);
+    decouple_fixed_components(static_cast<int>(i));
+  }
+}
+
+/// Eliminates the multiplier of the outer facet.
+template <int dim, int p>
+void Patch<dim, p>::condense(CellPart& part)
+{
+  const PreparedCell<dim, p>& cell = *part.prepared;
+  const int o = part.vertex;
+  part.outer = cell.shape ? &cell.shape->outer[o] : &part.own_outer;
+  if (!cell.shape) part.own_outer.factor(*cell.op, cell.frame, o);
+  for (int f = 0; f <= dim; ++f)
+    for (int g = 0; g <= dim; ++g)
+    {
+      if (f == o || g == o || part.facets[f] > part.facets[g]) continue;
+      auto& block = matrix_.block(part.facets[f], part.facets[g]);
+      if (cell.shape)
+        add_multiple(block, 1, cell.shape->reduced[o][f][g]);
+      else
+        part.own_outer.add_block(*cell.op, f, g, block);
+    }
+}
+
+/// g = N G - C^T (B B^T)^{-1} r with the outer facet eliminated. With div G = psi_a div sigma + sigma grad
+/// psi_a, r is (psi_a (div sigma + f) + y_a, v) on U and -(w_a, q) on Lambda for dis; (-y_lin, v) and
+/// -(w_lin, q) for lin, and the same for reg.
+template <int dim, int p>
+void Patch<dim, p>::assemble_load(CellPart& part, int problem)
+{
+  constexpr int m = S::multiplier;
+  constexpr int n = S::facet;
+  const PreparedCell<dim, p>& cell = *part.prepared;
+  const Frame<dim>& frame = cell.frame;
+  const Reference<dim, p>& ref = reference<dim, p>();
+  const int o = part.vertex;
+  UVector r_u;
+  FacetVectors load;
+  if (problem == 0)
+  {
+    r_u = cell.body[o];
+    for (int r = 0; r < dim; ++r)
+      for (int i = 0; i < m; ++i)
+        for (int j = 0; j < m; ++j) r_u[r * m + i] += ref.hat[o](i, j) * cell.divergence[r * m + j];
+    for (int f = 0; f <= dim; ++f)  // N (psi_a sigma)
+      for (int r = 0; r < dim && f != o; ++r)
+      {
+        std::array<double, m> normal{};
+        for (int c = 0; c < dim; ++c)
+          for (int j = 0; j < m; ++j) normal[j] -= frame.grad[f][c] * cell.sigma[(dim * r + c) * m + j];
+        const double scale = 1 / std::sqrt(frame.grad_norm[f]);
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < m; ++j) load(f, r * n + i) += scale * ref.hat_trace[f][o](i, j) * normal[j];
+      }
+  }
+  add_moments(r_u, cell, o, y_[problem], problem == 0 ? 1 : -1);
+  cell.op->subtract_load(load, frame, r_u, w_[problem]);
+
+  FacetVector& outer = part.outer_load[problem];
+  std::copy_n(load.row(o), FacetVector::stride, outer.data());
+  solve_transposed<S::block>(part.outer->rows.data() + o * FacetVector::stride, Operator::all_facets,
+                             part.outer->reciprocal.data(), outer.data());
+  subtract_transposed_times<S::block, Operator::all_facets>(load.data(), part.outer->rows.data(),
+                                                            Operator::all_facets, outer.data());
+  for (int f = 0; f <= dim; ++f)
+    if (f != o)
+      for (int i = 0; i < S::block; ++i) x_[problem][part.facets[f]][i] += load(f, i);
+}
+
+/// Where Gamma_D fixes a component the normal trace is free: its multiplier is 0.
+template <int dim, int p>
+void Patch<dim, p>::decouple_fixed_components(int place)
+{
+  for (int c = 0; c < dim; ++c)
+  {
+    if (!data_.fixes(facets_[place].number, c)) continue;
+    matrix_.template decouple<S::facet>(place, c * S::facet);
+    for (int problem = 0; problem < n_problems_; ++problem)
+      std::fill_n(x_[problem][place].data() + c * S::facet, S::facet, 0.0);
+  }
+}
+
+/// Multipliers that are the trace of an admissible rigid motion change nothing: makes the matrix definite by
+/// a term on one facet, which the solution, the data being compatible, does not feel.
+template <int dim, int p>
+void Patch<dim, p>::fix_rigid_motions(int place)
+{
+  auto& diagonal = matrix_.block(place, place);
+  double scale = 0;
+  for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
+  for (int motion = 0; motion < motions_.size(); ++motion)
+  {
+    FacetVector trace = moments_on_facet(place, motion);
+    if (data_.is_boundary(facets_[place].number))
+      for (int c = 0; c < dim; ++c)
+        if (data_.fixes(facets_[place].number, c)) std::fill_n(trace.data() + c * S::facet, S::facet, 0.0);
+    double square = 0;
+    for (int i = 0; i < S::block; ++i) square += trace[i] * trace[i];
+    for (int i = 0; i < S::block; ++i)
+      for (int j = 0; j < S::block; ++j) diagonal(i, j) += scale / square * trace[i] * trace[j];
+  }
+}
+
+/// The multiplier of the outer facet, and all that goes to the cell.
+template <int dim, int p>
+void Patch<dim, p>::recover(CellPart& part, int problem)
+{
+  constexpr int stride = Operator::facet_stride;
+  constexpr int row = Operator::all_facets;
+  CellShare<dim, p>& share = part.shares[problem];
+  const int o = part.vertex;
+  double* const outer = share.mu.row(o);
+  std::copy_n(part.outer_load[problem].data(), stride, outer);
+  for (int f = 0; f <= dim; ++f)
+  {
+    if (f == o) continue;
+    const FacetVector& x = x_[problem][part.facets[f]];
+    std::copy_n(x.data(), stride, share.mu.row(f));
+    subtract_times<S::block, stride>(outer, part.outer->rows.data() + f * stride, row, x.data());
+  }
+  solve_upper<S::block>(part.outer->rows.data() + o * stride, row, part.outer->reciprocal.data(), outer);
+  share.y = y_[problem];
+  share.w = w_[problem];
+}
+
+template class Patch<2, 1>;
+template class Patch<2, 2>;
+template class Patch<2, 3>;
+template class Patch<2, 4>;
+template class Patch<3, 1>;
+template class Patch<3, 2>;
+template class Patch<3, 3>;
+template class Patch<3, 4>;
+
+}  // namespace tribound

@@ -1,0 +1,46 @@
+#pragma once
+
+/// @file stress.h
+/// The equilibrated stress: piecewise polynomials of degree p, coefficients cell by cell.
+
+#include <span>
+#include <vector>
+
+#include "tribound/base/types.h"
+
+namespace tribound
+{
+
+/// sigma_h = sigma_dis + sigma_lin (+ sigma_reg, method section 7). On each cell, entry (r, c) has
+/// coefficients in the orthonormal basis of P^p(T), phi_j(xhat) / sqrt(det J) with the cell's vertices in
+/// ascending order (certify/equilibrate/frame.h); they are stored entry by entry: place (dim * r + c) * n + j. Norms are
+/// sums of squares, projections truncations.
+template <int dim>
+struct Stress
+{
+  int degree = 0;
+  int n = 0;                   ///< dim P^p
+  std::vector<double> dis;     ///< all cells
+  std::vector<int> lin_place;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
+  std::vector<double> lin;     ///< the cells with a vertex on Gamma_C
+  std::vector<double> reg;     ///< the same cells; empty unless T was regularised
+
+  [[nodiscard]] std::size_t block_size() const { return static_cast<std::size_t>(dim) * dim * n; }
+  [[nodiscard]] std::span<const double> dis_in(Index cell) const
+  {
+    return std::span(dis).subspan(cell * block_size(), block_size());
+  }
+  /// Empty where sigma_lin vanishes.
+  [[nodiscard]] std::span<const double> lin_in(Index cell) const { return in_cell(lin, cell); }
+  /// Empty where sigma_reg vanishes.
+  [[nodiscard]] std::span<const double> reg_in(Index cell) const { return in_cell(reg, cell); }
+
+ private:
+  [[nodiscard]] std::span<const double> in_cell(const std::vector<double>& part, Index cell) const
+  {
+    if (lin_place[cell] < 0 || part.empty()) return {};
+    return std::span(part).subspan(lin_place[cell] * block_size(), block_size());
+  }
+};
+
+}  // namespace tribound

@@ -1,0 +1,124 @@
+#pragma once
+
+/// @file true_error.h
+/// What the bound bounds, computed: the dual norm of the residual from below, and errors against a much
+/// richer solution; method section 9. Far more expensive than the bound: for verification.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/algebra/petsc.h"
+#include "tribound/case/config.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/refine.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound
+{
+
+/// How rich a space the truth is looked for in.
+struct RicherSpace
+{
+  int refinements = 2;  ///< uniform ones of the mesh, >= 1
+  int degree = 0;       ///< polynomial degree, not below that of the solution
+};
+
+/// Degrees of freedom of the vector-valued space on the mesh refined so, fixed ones included.
+template <int dim>
+[[nodiscard]] double count_dofs(const Mesh<dim>& mesh, const RicherSpace& space);
+
+/// The dual norm of the residual of functions of one discrete problem, from below.
+///
+/// For z in W = P^q on the refined mesh, 0 in the components that Gamma_D fixes, with
+///     (grad z, grad v) + sum_{F in C} (1/h_F) (z, v)_F = <R(u), v>   for all v in W,
+///     <R(u), v> = L(v) - a(u, v) + (T(u), v)_C,
+/// ||z||_{C,h} <= ||R(u)||_*, with equality as W grows. h_F, and gamma in T(u), are those of the facets of
+/// the original mesh. The operator couples no components: one scalar matrix for each set of fixed nodes,
+/// factored once. a(u, v) is exact; f and g_N are integrated as in a form of degree q on the refined mesh
+/// (DiscreteData, up to 1e-5 of their effect, and what it names in its remainders where its parts run out),
+/// T(u) with the rule on facets cut further, because it has kinks: from below up to these. Keeps a reference
+/// to the form.
+template <int dim>
+class DualNorm
+{
+ public:
+  DualNorm(const NitscheForm<dim>& form, const RicherSpace& richer);
+  DualNorm(const DualNorm&) = delete;
+  DualNorm& operator=(const DualNorm&) = delete;
+
+  /// ||z||_{C,h} for any function u of the form's space. The first call factorises. Throws SolveError when
+  /// that fails.
+  [[nodiscard]] double operator()(std::span<const double> u) { return of(residual(u)); }
+  /// The dual norm in W of a functional with the given values at the basis functions of W.
+  [[nodiscard]] double of(std::span<const double> functional);
+
+  /// W, fixed degrees of freedom included.
+  [[nodiscard]] const LagrangeSpace<dim>& space() const { return space_; }
+  /// <R(u), phi_i> for every degree of freedom of W.
+  [[nodiscard]] std::vector<double> residual(std::span<const double> u);
+  /// The same with the given values for L(phi_i).
+  [[nodiscard]] std::vector<double> residual(std::span<const double> u, std::span<const double> load) const;
+
+ private:
+  /// The scalar problem of the components that are fixed at the same nodes.
+  struct Operator
+  {
+    std::vector<char> fixed;  ///< per node
+    std::vector<int> components;
+    std::unique_ptr<SparseMatrix> matrix;
+    std::unique_ptr<LinearSolver> solver;
+  };
+  /// A facet of the refined mesh on Gamma_C.
+  struct ContactPart
+  {
+    BoundaryFacet facet;
+    int whole;  ///< number of the contact facet of the form that contains it
+  };
+
+  void find_contact_parts();
+  void find_operators();
+  [[nodiscard]] SparseMatrix matrix(const std::vector<char>& fixed) const;
+  void add_contact_load(std::span<const double> u, std::span<double> vector) const;
+
+  const NitscheForm<dim>& form_;
+  Refined<dim> refined_;
+  LagrangeSpace<dim> space_;
+  std::vector<double> load_;  ///< L(phi_i), when it has been needed
+  std::vector<ContactPart> contact_parts_;
+  std::vector<Operator> operators_;
+};
+
+/// bound / dual_norm, which the theorem says is at least 1; nothing where both are below norms.round_off or
+/// 1e-10 ||sigma(u)||, the size of the round-off to which the identities behind the bound hold.
+[[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm, const StressNorms& norms);
+
+/// The distance of a discrete solution from a much richer one.
+struct SolutionError
+{
+  double energy = 0;  ///< ||u - u_ref||_en = (sigma(e), eps(e))^{1/2}
+  double stress = 0;  ///< ||sigma(u - u_ref)||
+};
+
+/// The problem solved once more in a much richer space.
+struct RicherSolution
+{
+  long cells = 0;
+  long dofs = 0;  ///< free ones
+  int newton_steps = 0;
+  std::string failure;                 ///< why there is no solution; empty when there is
+  std::optional<SolutionError> error;  ///< absent where the richer problem was not solved
+};
+
+/// Solves the form's problem in the richer space with Nitsche's parameter gamma0, data evaluated anew,
+/// starting from u, and measures u against the result.
+template <int dim>
+[[nodiscard]] RicherSolution compare_with_richer(const NitscheForm<dim>& form, std::span<const double> u,
+                                                 const RicherSpace& richer, double gamma0,
+                                                 const NewtonConfig& newton, const SolverConfig& solver);
+
+}  // namespace tribound

@@ -1,0 +1,325 @@
+#include "tribound/contact/nitsche/datum_moments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tribound/base/error.h"
+#include "tribound/fem/polynomials.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Size of an affine function, relative to its terms, that counts as 0.
+constexpr double rounding = 1e-13;
+
+/// As many parts as a formula may need before a bound of it is seen. That is a matter of the formula and the
+/// simplex, not of how much effort all simplices together are worth.
+constexpr int most_parts = 1 << 15;
+
+/// Of a part, relative to the simplex.
+constexpr double smallest_edge = 1e-4;
+
+/// k!: integrals over a simplex of measure |T| are k! |T| times those over the reference simplex.
+template <int k>
+constexpr double factorial = k == 3 ? 6 : k;
+
+template <int k, int dim>
+double measure_of(const DatumPart<k, dim>& part, const SimplexMap<k, dim>& map)
+{
+  return map.measure * fraction<k>(part.part);
+}
+
+/// The two halves of a part, cut at the middle of its longest edge.
+template <int k, int dim>
+std::array<Part<k>, 2> halves(const Part<k>& part, const SimplexMap<k, dim>& map)
+{
+  int first = 0;
+  int second = 1;
+  double longest = 0;
+  for (int i = 0; i <= k; ++i)
+    for (int j = i + 1; j <= k; ++j)
+    {
+      const double length = (map.jacobian * (part[j] - part[i])).squaredNorm();
+      if (length <= longest) continue;
+      longest = length;
+      first = i;
+      second = j;
+    }
+  return split<k>(part, first, second, (part[first] + part[second]) / 2);
+}
+
+}  // namespace
+
+double distance_from_polynomials(std::span<const Enclosure> taylor, int order)
+{
+  double smallest = (taylor[0].upper - taylor[0].lower) / 2;
+  for (int n = 1; n <= order; ++n) smallest = std::min(smallest, taylor[n].magnitude());
+  return smallest;
+}
+
+template <int dim>
+Point<dim> Datum<dim>::operator()(const Point<dim>& x) const
+{
+  Point<dim> f = Point<dim>::Zero();
+  for (const auto& [value, direction] : terms) f += (*value)(x)*direction;
+  return f;
+}
+
+template <int dim>
+int Datum<dim>::degree() const
+{
+  int largest = 0;
+  for (const Term& term : terms) largest = std::max(largest, term.value->degree());
+  return largest;
+}
+
+template <int k, int dim>
+DatumMoments<k, dim>::DatumMoments(int p, int projected)
+    : p_(p),
+      n_projected_(polynomial_dimension(k, projected)),
+      rule_(quadrature<k>(data_quadrature_degree(p))),
+      n_(polynomial_dimension(k, p + 1)),
+      theta_(static_cast<std::size_t>(n_) * rule_.size())
+{
+  for (int q = 0; q < rule_.size(); ++q)
+    orthonormal_values<k>(p + 1, rule_.points[q],
+                          std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+}
+
+template <int k, int dim>
+auto DatumMoments<k, dim>::cut_at_switches(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+                                           int max_parts) const -> Parts
+{
+  std::vector<Part<k>> parts{reference_simplex<k>()};
+  for (const auto& term : datum.terms)
+    for (const Affine& a : term.value->switches())
+    {
+      if (static_cast<int>(parts.size()) >= max_parts) break;  // what is not cut is enclosed
+      std::vector<Part<k>> finer;
+      for (const Part<k>& part : parts)
+      {
+        std::array<double, k + 1> values;
+        double size = std::abs(a.b);
+        for (int i = 0; i <= k; ++i)
+        {
+          const Point<dim> x = map(part[i]);
+          values[i] = a.b;
+          for (int d = 0; d < dim; ++d)
+          {
+            values[i] += a.a[d] * x[d];
+            size = std::max(size, std::abs(a.a[d] * x[d]));
+          }
+        }
+        cut<k>(part, values, rounding * size, finer);
+      }
+      parts = std::move(finer);
+    }
+  Parts result;
+  for (const Part<k>& part : parts) result.push_back({part, {}, {}, {}});
+  return result;
+}
+
+/// Remainders of the part.
+template <int k, int dim>
+void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+                                   DatumPart<k, dim>& part) const
+{
+  // One less than the degree of the rule: moments against affine weights are integrated as well.
+  const int order = std::min(data_quadrature_degree(p_), Formula::max_order);
+  std::array<Enclosure, Formula::max_order + 1> storage;
+  const auto taylor = std::span(storage).first(order + 1);
+  std::array<double, (k + 1) * dim> vertices;
+  for (int i = 0; i <= k; ++i)
+  {
+    const Point<dim> x = map(part.part[i]);
+    std::ranges::copy(x, vertices.begin() + i * dim);
+  }
+  part.remainder.setZero();
+  part.mean_remainder.setZero();
+  for (const auto& [value, direction] : datum.terms)
+  {
+    if (value->degree() <= p_ + 2) continue;
+    value->enclose(vertices, dim, taylor);
+    const double remainder = distance_from_polynomials(taylor, p_ + 3);
+    const double mean_remainder = distance_from_polynomials(taylor, order);
+    for (int d = 0; d < dim; ++d)
+    {
+      if (direction[d] == 0) continue;
+      part.remainder[d] += remainder * std::abs(direction[d]);
+      part.mean_remainder[d] += mean_remainder * std::abs(direction[d]);
+    }
+  }
+}
+
+/// Throws for a term that has no bound on a part.
+template <int k, int dim>
+void DatumMoments<k, dim>::require_bounds(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+                                          const Parts& parts) const
+{
+  const auto is_bounded = [](const DatumPart<k, dim>& part) { return part.remainder.allFinite(); };
+  const auto found = std::ranges::find_if_not(parts, is_bounded);
+  if (found == parts.end()) return;
+  const Point<dim> x = map(point_in<k>(found->part, Point<k>::Constant(1.0 / (k + 1))));
+  for (const auto& term : datum.terms)
+  {
+    DatumPart<k, dim> part = *found;
+    enclose({{term}}, map, part);
+    if (!is_bounded(part))
+      throw InputError(
+          term.value->where(),
+          fmt::format("may be unbounded near the point ({:.6g})", fmt::join(x.data(), x.data() + dim, ", ")),
+          "keep it bounded, such as 1/max(x, 1e-12) for 1/x; if it is, write it so that this is seen, such "
+          "as "
+          "1/((x - 0.5)^2 + 0.01) for 1/(x^2 - x + 0.26)");
+  }
+}
+
+/// Halves the parts that leave out most.
+template <int k, int dim>
+void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+                                  const DatumWeights& weights, double allowed, int max_parts,
+                                  Parts& parts) const
+{
+  const auto costs = [&](const DatumPart<k, dim>& part)
+  {
+    const double measure = measure_of(part, map);
+    return std::pair(weights.remainder * 2 * part.remainder.norm() * std::sqrt(measure),
+                     weights.mean > 0 ? weights.mean * 2 * part.mean_remainder.norm() * measure : 0.0);
+  };
+  // Smaller parts of the simplex, where roots start or poles lie, are nothing but rounding.
+  const auto is_small = [](const DatumPart<k, dim>& part)
+  { return fraction<k>(part.part) < std::pow(smallest_edge, k); };
+  const auto is_unbounded = [](const DatumPart<k, dim>& part) { return !part.remainder.allFinite(); };
+  while (static_cast<int>(parts.size()) < (std::ranges::any_of(parts, is_unbounded) ? most_parts : max_parts))
+  {
+    double squares = 0;
+    double means = 0;
+    double largest = 0;
+    for (const auto& part : parts)
+    {
+      const auto [remainder, mean] = costs(part);
+      squares += remainder * remainder;
+      means += mean;
+      if (!is_small(part)) largest = std::max({largest, remainder, mean});
+    }
+    if (std::sqrt(squares) + means <= allowed || largest == 0) return;
+    Parts finer;
+    for (DatumPart<k, dim>& part : parts)
+    {
+      const auto [remainder, mean] = costs(part);
+      if (is_small(part) || std::max(remainder, mean) < largest / 4)
+      {
+        finer.push_back(std::move(part));
+        continue;
+      }
+      for (const Part<k>& half : halves<k, dim>(part.part, map))
+        enclose(datum, map, finer.emplace_back(DatumPart<k, dim>{half, {}, {}, {}}));
+    }
+    parts = std::move(finer);
+  }
+}
+
+template <int k, int dim>
+std::vector<Point<dim>> DatumMoments<k, dim>::moments(const Parts& parts) const
+{
+  std::vector<Point<dim>> result(n_, Point<dim>::Zero());
+  std::vector<double> at_point(n_);
+  for (const auto& part : parts)
+    for (int q = 0; q < rule_.size(); ++q)
+    {
+      std::span<const double> theta = at_point;
+      if (parts.size() == 1)
+        theta = std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_);
+      else
+        orthonormal_values<k>(p_ + 1, point_in<k>(part.part, rule_.points[q]), at_point);
+      const Point<dim> weighted = fraction<k>(part.part) * rule_.weights[q] * part.values[q];
+      for (int j = 0; j < n_; ++j) result[j] += theta[j] * weighted;
+    }
+  return result;
+}
+
+/// ||f - Pi f|| by the rules on the parts, and (sum_K (2 delta |K|^{1/2})^2)^{1/2} for what they miss.
+template <int k, int dim>
+double DatumMoments<k, dim>::oscillation(const Parts& parts, std::span<const Point<dim>> moments,
+                                         double measure) const
+{
+  double squares = 0;  // on the reference simplex
+  double missed = 0;
+  for (const auto& part : parts)
+  {
+    missed += 4 * part.remainder.squaredNorm() * measure * fraction<k>(part.part);
+    for (int q = 0; q < rule_.size(); ++q)
+    {
+      Point<dim> difference = part.values[q];
+      if (parts.size() == 1)
+        for (int j = 0; j < n_projected_; ++j) difference -= theta_[q * n_ + j] * moments[j];
+      squares += fraction<k>(part.part) * rule_.weights[q] * difference.squaredNorm();
+    }
+  }
+  if (parts.size() > 1)  // the rules on the parts are exact for products of the basis: ||f||^2 - ||Pi f||^2
+  {
+    // Sums of n terms, each of the squares with an error of n epsilon at most.
+    const double n_terms = static_cast<double>(parts.size()) * rule_.size();
+    const double cancellation = std::max(1e-14, std::numeric_limits<double>::epsilon() * n_terms);
+    const double all = squares;
+    for (int j = 0; j < n_projected_; ++j) squares -= moments[j].squaredNorm();
+    squares = std::max(squares, 0.0) + cancellation * all;
+  }
+  return std::sqrt(factorial<k> * measure * squares) + std::sqrt(missed);
+}
+
+template <int k, int dim>
+DatumOnSimplex<k, dim> DatumMoments<k, dim>::operator()(const Datum<dim>& datum,
+                                                        const SimplexMap<k, dim>& map,
+                                                        const DatumWeights& weights, double allowed,
+                                                        int max_parts) const
+{
+  DatumOnSimplex<k, dim> result;
+  Parts& parts = result.parts;
+  std::vector<Point<dim>> on_whole;  // first of all: where a formula is undefined, it shows there
+  for (const Point<k>& s : rule_.points) on_whole.push_back(datum(map(s)));
+  parts = cut_at_switches(datum, map, max_parts);
+  for (auto& part : parts) enclose(datum, map, part);
+  refine(datum, map, weights, allowed, max_parts, parts);
+  require_bounds(datum, map, parts);
+  if (parts.size() == 1)
+    parts.front().values = std::move(on_whole);
+  else
+    for (auto& part : parts)
+      for (const Point<k>& s : rule_.points) part.values.push_back(datum(map(point_in<k>(part.part, s))));
+  Point<dim> missed = Point<dim>::Zero();
+  for (const auto& part : parts) missed += 2 * measure_of(part, map) * part.mean_remainder;
+  result.mean = missed.norm();
+  const std::vector<Point<dim>> moments = this->moments(parts);
+  result.oscillation = oscillation(parts, moments, map.measure);
+  if (parts.size() > 1) result.moments = moments;
+  return result;
+}
+
+template <int k, int dim>
+void DatumMoments<k, dim>::evaluate(std::span<const Point<dim>> moments, std::span<Point<dim>> values) const
+{
+  for (int q = 0; q < rule_.size(); ++q)
+  {
+    values[q].setZero();
+    for (int j = 0; j < n_; ++j) values[q] += theta_[q * n_ + j] * moments[j];
+  }
+}
+
+template struct Datum<2>;
+template struct Datum<3>;
+template class DatumMoments<1, 2>;
+template class DatumMoments<2, 2>;
+template class DatumMoments<2, 3>;
+template class DatumMoments<3, 3>;
+
+}  // namespace tribound

@@ -1,0 +1,124 @@
+#pragma once
+
+/// @file datum_moments.h
+/// A datum on one simplex as the method sees it, and a bound of what that leaves out.
+///
+/// A rule sees a formula at its points alone: what lies between them may be missed. Here the simplex is cut
+/// where the formula jumps or kinks along a plane and halved elsewhere, until ENCLOSURES of the formula show
+/// that nothing of weight is left. On a part K, Taylor's theorem with interval coefficients gives delta with
+/// |f - P| <= delta for a polynomial P of degree n; a rule on K with positive weights, exact for what is
+/// integrated of P, then misses at most 2 delta |K| of the integral of f, and 2 delta |K|^{1/2} of its norm.
+
+#include <span>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/fem/quadrature.h"
+#include "tribound/fem/simplex_parts.h"
+#include "tribound/problem/field.h"
+#include "tribound/problem/formula.h"
+
+namespace tribound
+{
+
+/// f(x) = sum_j value_j(x) direction_j.
+template <int dim>
+struct Datum
+{
+  struct Term
+  {
+    const Expression* value;
+    Point<dim> direction;
+  };
+  std::vector<Term> terms;
+
+  [[nodiscard]] Point<dim> operator()(const Point<dim>& x) const;
+  /// The largest degree of a term; not_polynomial if one is none.
+  [[nodiscard]] int degree() const;
+};
+
+/// x = origin + J s maps the reference k-simplex onto a cell or facet.
+template <int k, int dim>
+struct SimplexMap
+{
+  Point<dim> origin;
+  Eigen::Matrix<double, dim, k> jacobian;
+  double measure;
+
+  [[nodiscard]] Point<dim> operator()(const Point<k>& s) const { return origin + jacobian * s; }
+};
+
+/// An upper bound of the distance of a formula from P^{order - 1} on a simplex, in the maximum norm, from its
+/// enclosures there: half the range, or the remainder of a Taylor polynomial.
+[[nodiscard]] double distance_from_polynomials(std::span<const Enclosure> taylor, int order);
+
+/// A part of the simplex on which one rule integrates the datum.
+template <int k, int dim>
+struct DatumPart
+{
+  Part<k> part;
+  Point<dim> remainder;            ///< per component: the largest distance of f from P^{p+2}, an upper bound
+  Point<dim> mean_remainder;       ///< the same from P^{2p+4}
+  std::vector<Point<dim>> values;  ///< f at the points of the rule on the part
+};
+
+template <int k, int dim>
+struct DatumOnSimplex
+{
+  std::vector<DatumPart<k, dim>> parts;
+  /// (f, theta_j) / |T| on P^{p+1}, theta orthonormal on the reference simplex; empty where the rule on the
+  /// whole simplex gives them.
+  std::vector<Point<dim>> moments;
+  double oscillation = 0;  ///< >= ||f - Pi f||, Pi the projection of the moments on the smaller space
+  double mean = 0;         ///< >= |integral of f - its moment|
+};
+
+/// What is left out costs: remainder * ||f - P|| + mean * |error of the integral of f|.
+struct DatumWeights
+{
+  double remainder;
+  double mean;
+};
+
+/// Takes moments of data for the degree p of a method, with the rule exact to data_quadrature_degree(p).
+template <int k, int dim>
+class DatumMoments
+{
+ public:
+  /// Oscillations are those against P^projected.
+  DatumMoments(int p, int projected);
+
+  /// Polynomials of degree <= p + 2 are integrated by the rule as it is. Others are looked into until what
+  /// is left out costs at most `allowed`, but with no more than some `max_parts` parts, unless a bound of
+  /// the formula is not seen yet. Throws InputError
+  /// where a formula is not finite, and near where the enclosures find no bound of it.
+  [[nodiscard]] DatumOnSimplex<k, dim> operator()(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+                                                  const DatumWeights& weights, double allowed,
+                                                  int max_parts) const;
+
+  /// The polynomial with the given moments at the points of the rule.
+  void evaluate(std::span<const Point<dim>> moments, std::span<Point<dim>> values) const;
+
+  [[nodiscard]] const Quadrature<k>& rule() const { return rule_; }
+
+ private:
+  using Parts = std::vector<DatumPart<k, dim>>;
+
+  [[nodiscard]] Parts cut_at_switches(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+                                      int max_parts) const;
+  void require_bounds(const Datum<dim>& datum, const SimplexMap<k, dim>& map, const Parts& parts) const;
+  void enclose(const Datum<dim>& datum, const SimplexMap<k, dim>& map, DatumPart<k, dim>& part) const;
+  void refine(const Datum<dim>& datum, const SimplexMap<k, dim>& map, const DatumWeights& weights,
+              double allowed, int max_parts, Parts& parts) const;
+  [[nodiscard]] std::vector<Point<dim>> moments(const Parts& parts) const;
+  [[nodiscard]] double oscillation(const Parts& parts, std::span<const Point<dim>> moments,
+                                   double measure) const;
+
+  int p_;
+  int n_projected_;
+  Quadrature<k> rule_;
+  int n_;                      ///< dim P^{p+1}
+  std::vector<double> theta_;  ///< at the points of the rule, [q * n + j]
+};
+
+}  // namespace tribound

@@ -1,0 +1,350 @@
+#include "tribound/contact/nitsche/discrete_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribound/base/parallel.h"
+#include "tribound/contact/nitsche/penalty.h"
+#include "tribound/contact/nitsche/traction.h"
+#include "tribound/fem/polynomials.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Values of basis functions that all parts of all cells and facets may take, and bounds of the parts of
+/// each: some seconds of one core.
+constexpr double all_values = 2e7;
+constexpr double fewest_parts = 64;
+constexpr double most_parts = 4096;
+
+/// The diagonal of the bounding box.
+template <int dim>
+double extent(const Mesh<dim>& mesh)
+{
+  Point<dim> lower = mesh.vertex(0);
+  Point<dim> upper = lower;
+  for (const Point<dim>& x : mesh.vertices())
+  {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+  return (upper - lower).norm();
+}
+
+template <int dim>
+SimplexMap<dim, dim> simplex_map(const Mesh<dim>& mesh, Index cell)
+{
+  const CellMap<dim> map = cell_map(mesh, cell);
+  return {map.origin, map.jacobian, map.det / (dim == 2 ? 2 : 6)};
+}
+
+template <int dim>
+SimplexMap<dim - 1, dim> simplex_map(const Mesh<dim>& mesh, const BoundaryFacet& facet)
+{
+  const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+  return {map.origin, map.jacobian, facet_geometry(mesh, facet.cell, facet.local).measure};
+}
+
+/// An upper bound of |f| on a cell or facet; 0 where there is none.
+template <int k, int dim>
+double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
+{
+  std::array<double, (k + 1) * dim> vertices;
+  for (int i = 0; i <= k; ++i) std::ranges::copy(map(reference_simplex<k>()[i]), vertices.begin() + i * dim);
+  Point<dim> size = Point<dim>::Zero();
+  for (const auto& [value, direction] : datum.terms)
+  {
+    std::array<Enclosure, 1> range;
+    value->enclose(vertices, dim, range);
+    if (range[0].bounded()) size += range[0].magnitude() * direction.cwiseAbs();
+  }
+  return size.norm();
+}
+
+}  // namespace
+
+template <int dim>
+DiscreteData<dim>::DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree, double gamma0,
+                                const DataAccuracy& accuracy)
+    : problem_(problem),
+      mesh_(mesh),
+      degree_(degree),
+      gamma0_(gamma0),
+      cell_moments_(degree, degree - 1),
+      facet_moments_(degree, degree),
+      size_(extent(mesh))
+{
+  count_formulas();
+  double allowed = 0;
+  if (effort_.formulas > 0)
+    allowed = accuracy.absolute ? *accuracy.absolute : accuracy.share * largest_effect();
+  const double of_each = static_cast<double>(cell_rule().size()) * polynomial_dimension(dim, degree + 1) *
+                         static_cast<double>(std::max<std::size_t>(effort_.formulas, 1));
+  max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts));
+  represent_body_forces(allowed);
+  represent_tractions(allowed);
+  represent_contact(allowed);
+}
+
+template <int dim>
+Datum<dim> DiscreteData<dim>::body_datum(Index cell) const
+{
+  Datum<dim> datum;
+  const auto& f = problem_.body_force(mesh_.region(cell));
+  for (int i = 0; i < dim; ++i)
+    if (!f[i].is_zero()) datum.terms.push_back({&f[i], Point<dim>::Unit(i)});
+  return datum;
+}
+
+template <int dim>
+Datum<dim> DiscreteData<dim>::traction_datum(const BoundaryFacet& facet) const
+{
+  const BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
+  Datum<dim> datum;
+  Point<dim> against_normal = -facet_geometry(mesh_, facet.cell, facet.local).normal;
+  for (int i = 0; i < dim; ++i)
+  {
+    if (boundary.fixes(i))
+      against_normal[i] = 0;
+    else if (!boundary.traction[i].is_zero())
+      datum.terms.push_back({&boundary.traction[i], Point<dim>::Unit(i)});
+  }
+  if (boundary.pressure && !boundary.pressure->is_zero())
+    datum.terms.push_back({&*boundary.pressure, against_normal});
+  return datum;
+}
+
+template <int dim>
+Datum<dim> DiscreteData<dim>::contact_datum(const BoundaryFacet& facet, double stiffness) const
+{
+  const Contact& contact = *problem_.boundary(facet.tag).contact;
+  Datum<dim> datum;
+  datum.terms.push_back({&contact.gap, stiffness * Point<dim>::Unit(0)});
+  if (const auto* tresca = std::get_if<Tresca>(&contact.friction))
+    datum.terms.push_back({&tresca->threshold, Point<dim>::Unit(1)});
+  return datum;
+}
+
+template <int dim>
+void DiscreteData<dim>::count_formulas()
+{
+  const auto count = [&](const Datum<dim>& datum) { effort_.formulas += datum.degree() > degree_ + 2; };
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+    if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c));
+  for (const BoundaryFacet& facet : mesh_.boundary())
+    count(problem_.boundary(facet.tag).contact ? contact_datum(facet, 1) : traction_datum(facet));
+}
+
+/// Of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; of prescribed displacements: the stress that
+/// they cause across the body.
+template <int dim>
+double DiscreteData<dim>::largest_effect() const
+{
+  double body = 0;
+  double volume = 0;
+  double stiffest = 0;
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+  {
+    const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
+    body += map.measure * std::pow(largest_value(body_datum(c), map), 2);
+    volume += map.measure;
+    const Material& material = problem_.material(mesh_.region(c));
+    stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
+  }
+  double traction = 0;
+  double displacement = 0;
+  for (const BoundaryFacet& facet : mesh_.boundary())
+  {
+    const BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
+    if (!boundary.contact) traction += map.measure * std::pow(largest_value(traction_datum(facet), map), 2);
+    Datum<dim> prescribed;
+    for (int i = 0; i < dim; ++i)
+      if (boundary.fixes(i)) prescribed.terms.push_back({&*boundary.displacement[i], Point<dim>::Unit(i)});
+    displacement = std::max(displacement, largest_value(prescribed, map));
+  }
+  return size_ * std::sqrt(body) + std::sqrt(size_ * traction) +
+         stiffest * displacement / size_ * std::sqrt(volume);
+}
+
+template <int dim>
+template <int k>
+void DiscreteData<dim>::keep(Represented& represented, std::size_t place, DatumOnSimplex<k, dim>&& found)
+{
+  if (!represented.remainders.empty()) represented.remainders[place] = {found.oscillation, found.mean};
+  if (found.moments.empty()) return;
+#pragma omp critical(tribound_discrete_data)
+  {
+    ++effort_.subdivided;
+    effort_.parts += found.parts.size();
+    represented.moments.emplace(place, std::move(found.moments));
+  }
+}
+
+template <int dim>
+void DiscreteData<dim>::represent_body_forces(double accuracy)
+{
+  bool varies = false;
+  for (std::size_t r = 0; r < problem_.region_names().size(); ++r)
+    varies = varies || !problem_.body_force_is_constant(static_cast<int>(r));
+  if (!varies) return;
+  double volume = 0;
+  for (Index c = 0; c < mesh_.n_cells(); ++c) volume += simplex_map(mesh_, c).measure;
+  body_.remainders.resize(mesh_.n_cells());
+  parallel_for(body_.remainders.size(),
+               [&](std::size_t i)
+               {
+                 const auto c = static_cast<Index>(i);
+                 if (problem_.body_force_is_constant(mesh_.region(c))) return;
+                 const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
+                 const DatumWeights weights{cell_diameter(mesh_, c) / 3, size_ / std::sqrt(map.measure)};
+                 keep(body_, i,
+                      cell_moments_(body_datum(c), map, weights, accuracy * std::sqrt(map.measure / volume),
+                                    max_parts_));
+               });
+}
+
+template <int dim>
+void DiscreteData<dim>::represent_tractions(double accuracy)
+{
+  const std::span<const BoundaryFacet> facets = mesh_.boundary();
+  double area = 0;
+  bool varies = false;
+  for (const BoundaryFacet& facet : facets)
+  {
+    area += simplex_map(mesh_, facet).measure;
+    varies = varies || traction_datum(facet).degree() > 0;
+  }
+  if (!varies) return;
+  traction_.remainders.resize(facets.size());
+  parallel_for(
+      facets.size(),
+      [&](std::size_t i)
+      {
+        if (problem_.boundary(facets[i].tag).contact) return;
+        const Datum<dim> datum = traction_datum(facets[i]);
+        if (datum.degree() == 0) return;
+        const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
+        const DatumWeights weights{std::sqrt(cell_diameter(mesh_, facets[i].cell)),
+                                   size_ / std::sqrt(simplex_map(mesh_, facets[i].cell).measure)};
+        keep(traction_, i,
+             facet_moments_(datum, map, weights, accuracy * std::sqrt(map.measure / area), max_parts_));
+      });
+}
+
+template <int dim>
+void DiscreteData<dim>::represent_contact(double accuracy)
+{
+  const std::span<const BoundaryFacet> facets = mesh_.boundary();
+  double area = 0;
+  for (const BoundaryFacet& facet : facets)
+    if (problem_.boundary(facet.tag).contact) area += simplex_map(mesh_, facet).measure;
+  parallel_for(facets.size(),
+               [&](std::size_t i)
+               {
+                 const BoundaryFacet& facet = facets[i];
+                 if (!problem_.boundary(facet.tag).contact) return;
+                 const Material& material = problem_.material(mesh_.region(facet.cell));
+                 const double h = facet_geometry(mesh_, facet.cell, facet.local).diameter;
+                 const double stiffness = gamma0_ * penalty_modulus(material) / h;
+                 const Datum<dim> datum = contact_datum(facet, stiffness);
+                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
+                 DatumOnSimplex<dim - 1, dim> found = facet_moments_(
+                     datum, map, {std::sqrt(h), 0}, accuracy * std::sqrt(map.measure / area), max_parts_);
+                 for (auto& moment : found.moments) moment[0] /= stiffness;
+                 for (auto& part : found.parts) part.remainder[0] /= stiffness;
+                 check_signs(facet, found);
+                 if (datum.degree() > degree_ + 2)
+                 {
+                   std::vector<ContactDatumPart<dim>> parts;
+                   for (const auto& part : found.parts)
+                     parts.push_back({part.part, part.remainder[0], part.remainder[1]});
+#pragma omp critical(tribound_discrete_data)
+                   contact_parts_.emplace(i, std::move(parts));
+                 }
+                 keep(contact_, i, std::move(found));
+               });
+}
+
+/// Throws where gap or threshold is negative at a point of a rule.
+template <int dim>
+void DiscreteData<dim>::check_signs(const BoundaryFacet& facet,
+                                    const DatumOnSimplex<dim - 1, dim>& found) const
+{
+  const Contact& contact = *problem_.boundary(facet.tag).contact;
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
+  for (const auto& part : found.parts)
+    for (int q = 0; q < facet_rule().size(); ++q)
+    {
+      if (part.values[q].minCoeff() >= 0) continue;
+      const Point<dim> x = map(point_in<dim - 1>(part.part, facet_rule().points[q]));
+      (void)gap_at<dim>(contact, x);
+      (void)threshold_if_any<dim>(contact.friction, x);
+    }
+}
+
+template <int dim>
+void DiscreteData<dim>::body_force(Index cell, std::span<Point<dim>> values) const
+{
+  if (const auto found = body_.moments.find(cell); found != body_.moments.end())
+  {
+    cell_moments_.evaluate(found->second, values);
+    return;
+  }
+  const Datum<dim> datum = body_datum(cell);
+  const SimplexMap<dim, dim> map = simplex_map(mesh_, cell);
+  for (int q = 0; q < cell_rule().size(); ++q) values[q] = datum(map(cell_rule().points[q]));
+}
+
+template <int dim>
+void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values) const
+{
+  if (const auto found = traction_.moments.find(facet); found != traction_.moments.end())
+  {
+    facet_moments_.evaluate(found->second, values);
+    return;
+  }
+  const Datum<dim> datum = traction_datum(mesh_.boundary()[facet]);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
+  for (int q = 0; q < facet_rule().size(); ++q) values[q] = datum(map(facet_rule().points[q]));
+}
+
+template <int dim>
+void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::span<double> threshold) const
+{
+  if (const auto found = contact_.moments.find(facet); found != contact_.moments.end())
+  {
+    std::vector<Point<dim>> values(facet_rule().size());
+    facet_moments_.evaluate(found->second, values);
+    for (int q = 0; q < facet_rule().size(); ++q)  // a polynomial in place of a jump overshoots
+    {
+      gap[q] = std::max(values[q][0], 0.0);
+      threshold[q] = std::max(values[q][1], 0.0);
+    }
+    return;
+  }
+  const Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
+  for (int q = 0; q < facet_rule().size(); ++q)
+  {
+    const Point<dim> x = map(facet_rule().points[q]);
+    gap[q] = gap_at<dim>(contact, x);
+    threshold[q] = threshold_if_any<dim>(contact.friction, x);
+  }
+}
+
+template <int dim>
+std::span<const ContactDatumPart<dim>> DiscreteData<dim>::contact_parts(std::size_t facet) const
+{
+  const auto found = contact_parts_.find(facet);
+  return found == contact_parts_.end() ? std::span<const ContactDatumPart<dim>>() : found->second;
+}
+
+template class DiscreteData<2>;
+template class DiscreteData<3>;
+
+}  // namespace tribound

@@ -1,0 +1,133 @@
+#pragma once
+
+/// @file discrete_data.h
+/// The data of a problem as the discrete problem on a mesh sees them: loads, gaps and thresholds at the
+/// points of the reference rules, the same for form, residual, patches and estimators, with bounds of what
+/// that leaves out.
+
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "tribound/contact/nitsche/datum_moments.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+/// What a load loses on one cell or facet when it is replaced by its values at the points of a rule.
+struct LoadRemainder
+{
+  double oscillation = 0;  ///< >= ||f - Pi f||: P^{p-1} on cells, P^p on facets
+  double mean = 0;  ///< >= |integral of f - what the rule makes of it|, also times affine weights of size 1
+};
+
+/// A part of a contact facet on which a rule integrates gap and threshold, up to the remainders: upper bounds
+/// of their distances from P^{p+2}.
+template <int dim>
+struct ContactDatumPart
+{
+  Part<dim - 1> part;
+  double gap;        ///< length
+  double threshold;  ///< stress
+};
+
+/// What the data that are no polynomials may leave out of the bound, stress times length^(dim/2).
+struct DataAccuracy
+{
+  double share = 1e-4;               ///< of the largest effect that the data can have
+  std::optional<double> absolute{};  ///< in its place
+};
+
+/// How far the data were looked into.
+struct DataEffort
+{
+  std::size_t formulas = 0;  ///< cells and boundary facets with data that are no polynomials of degree p + 2
+  std::size_t subdivided = 0;  ///< of these
+  std::size_t parts = 0;       ///< into which these were cut
+};
+
+/// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
+/// in the reference coordinates of Mesh::cell. Where a formula is subdivided they are those of the polynomial
+/// of degree p + 1 with the same moments. Boundary facets have their numbers in Mesh::boundary(). Keeps
+/// references to problem and mesh.
+template <int dim>
+class DiscreteData
+{
+ public:
+  /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count with the
+  /// stress gamma g, gamma Nitsche's parameter with the given gamma0. Throws InputError for
+  /// a negative gap or threshold and for data that are not finite, naming the place.
+  DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree, double gamma0,
+               const DataAccuracy& accuracy = {});
+
+  [[nodiscard]] const Quadrature<dim>& cell_rule() const { return cell_moments_.rule(); }
+  [[nodiscard]] const Quadrature<dim - 1>& facet_rule() const { return facet_moments_.rule(); }
+
+  [[nodiscard]] bool has_body_force(Index cell) const
+  {
+    return !problem_.body_force_is_zero(mesh_.region(cell));
+  }
+  [[nodiscard]] bool has_traction(std::size_t facet) const
+  {
+    return problem_.boundary(mesh_.boundary()[facet].tag).is_loaded();
+  }
+  /// f on a cell.
+  void body_force(Index cell, std::span<Point<dim>> values) const;
+  /// g_N on a boundary facet; fixed components are 0.
+  void traction(std::size_t facet, std::span<Point<dim>> values) const;
+  /// g and s (0 unless the law is Tresca's) on a contact facet; both >= 0.
+  void contact(std::size_t facet, std::span<double> gap, std::span<double> threshold) const;
+
+  [[nodiscard]] LoadRemainder body_remainder(Index cell) const
+  {
+    return body_.remainders.empty() ? LoadRemainder{} : body_.remainders[cell];
+  }
+  [[nodiscard]] LoadRemainder traction_remainder(std::size_t facet) const
+  {
+    return traction_.remainders.empty() ? LoadRemainder{} : traction_.remainders[facet];
+  }
+  /// Empty where gap and threshold are integrated exactly on the whole facet.
+  [[nodiscard]] std::span<const ContactDatumPart<dim>> contact_parts(std::size_t facet) const;
+  [[nodiscard]] const DataEffort& effort() const { return effort_; }
+
+ private:
+  /// Data on cells or on facets.
+  struct Represented
+  {
+    std::vector<LoadRemainder> remainders;                             ///< empty: all 0
+    std::unordered_map<std::size_t, std::vector<Point<dim>>> moments;  ///< where a formula is subdivided
+  };
+
+  [[nodiscard]] Datum<dim> body_datum(Index cell) const;
+  [[nodiscard]] Datum<dim> traction_datum(const BoundaryFacet& facet) const;
+  /// g in direction 0, as the stress `stiffness` g, and s in direction 1.
+  [[nodiscard]] Datum<dim> contact_datum(const BoundaryFacet& facet, double stiffness) const;
+
+  void count_formulas();
+  [[nodiscard]] double largest_effect() const;
+  void represent_body_forces(double accuracy);
+  void represent_tractions(double accuracy);
+  void represent_contact(double accuracy);
+  void check_signs(const BoundaryFacet& facet, const DatumOnSimplex<dim - 1, dim>& found) const;
+  template <int k>
+  void keep(Represented& represented, std::size_t place, DatumOnSimplex<k, dim>&& found);
+
+  const Problem<dim>& problem_;
+  const Mesh<dim>& mesh_;
+  int degree_;
+  double gamma0_;
+  DatumMoments<dim, dim> cell_moments_;
+  DatumMoments<dim - 1, dim> facet_moments_;
+  double size_;        ///< of the bounding box
+  int max_parts_ = 0;  ///< of a cell or facet
+  Represented body_;
+  Represented traction_;
+  Represented contact_;
+  std::unordered_map<std::size_t, std::vector<ContactDatumPart<dim>>> contact_parts_;
+  DataEffort effort_;
+};
+
+}  // namespace tribound

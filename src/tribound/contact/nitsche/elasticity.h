@@ -1,0 +1,104 @@
+#pragma once
+
+/// @file elasticity.h
+/// Linear elasticity: sigma, the bilinear form a(u, v) = (sigma(u), eps(v)) and norms of stresses.
+
+#include <span>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/fem/space.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+template <int dim>
+class DiscreteData;
+
+/// sigma = lambda tr(eps) I + 2 mu eps with eps = sym(grad u).
+template <int dim>
+[[nodiscard]] Tensor<dim> sigma(const Material& material, const Tensor<dim>& gradient)
+{
+  Tensor<dim> s = material.mu * (gradient + gradient.transpose());
+  s.diagonal().array() += material.lambda * gradient.trace();
+  return s;
+}
+
+/// grad u in a cell, from tabulated reference gradients at one point.
+template <int dim>
+[[nodiscard]] Tensor<dim> gradient_at(std::span<const Index> nodes, std::span<const double> u,
+                                      std::span<const Point<dim>> reference_gradients,
+                                      const Tensor<dim>& inverse_transpose)
+{
+  Tensor<dim> reference = Tensor<dim>::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      reference.row(a) +=
+          u[static_cast<std::size_t>(dim) * nodes[i] + a] * reference_gradients[i].transpose();
+  return reference * inverse_transpose.transpose();
+}
+
+/// u in a cell, from tabulated values at one point.
+template <int dim>
+[[nodiscard]] Point<dim> value_at(std::span<const Index> nodes, std::span<const double> u,
+                                  std::span<const double> values)
+{
+  Point<dim> result = Point<dim>::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (int a = 0; a < dim; ++a) result[a] += u[static_cast<std::size_t>(dim) * nodes[i] + a] * values[i];
+  return result;
+}
+
+/// Sparse matrix entries (row, column, value), to be added up; entries with row or column -1 do not count.
+struct Triplets
+{
+  std::vector<int> rows;
+  std::vector<int> cols;
+  std::vector<double> values;
+
+  void reserve(std::size_t n);
+  void add(int row, int col, double value)
+  {
+    rows.push_back(row);
+    cols.push_back(col);
+    values.push_back(value);
+  }
+};
+
+/// a(phi_j, phi_i) over free i and j, every place once, in the order of rows and columns: a seventh of the
+/// cells' own entries in 3D. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal alone, which
+/// decouples it without spoiling the scaling.
+template <int dim>
+[[nodiscard]] Triplets stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                                 const Constraints& constraints);
+
+/// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell.
+template <int dim>
+[[nodiscard]] std::vector<double> apply_stiffness(const Problem<dim>& problem,
+                                                  const LagrangeSpace<dim>& space, std::span<const double> u);
+
+/// What the displacement u stores in the body.
+struct StressNorms
+{
+  double energy = 0;  ///< a(u, u), not halved
+  double sigma = 0;   ///< ||sigma(u)||
+  /// Where sigma(u) is nothing but rounding, so that the exact stress is zero as far as can be known, how
+  /// large rounding may be: a multiple of the unit round-off times the norm of (2 mu + dim lambda) sum_i
+  /// |u_i| |grad phi_i|, whose terms cancel in sigma(u) when u is a rigid motion. Else 0; so under loads,
+  /// which need a stress, and where rounding might hide a stress that matters: more than 1e-5 of what a
+  /// strain of max |u| over the size of the body means in the softest material.
+  double round_off = 0;
+};
+
+template <int dim>
+[[nodiscard]] StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                                       std::span<const double> u);
+
+/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included. The data are
+/// those for the degree of the space.
+template <int dim>
+[[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,
+                                                const LagrangeSpace<dim>& space);
+
+}  // namespace tribound

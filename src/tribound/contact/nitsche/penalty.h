@@ -1,0 +1,22 @@
+#pragma once
+
+/// @file penalty.h
+/// Nitsche's parameter gamma = gamma_0 min(lambda + 2 mu, 34 mu) / h_F.
+
+#include <algorithm>
+
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+/// The modulus in gamma: lambda + 2 mu, but not more than at nu = 16/33 = 0.485. Nearly incompressible
+/// materials would otherwise have a penalty of the size of lambda against everything that deforms, and
+/// Newton's method fails (docs/choosing.md).
+[[nodiscard]] inline double penalty_modulus(const Material& material)
+{
+  constexpr double largest = 34;  // of (lambda + 2 mu) / mu = (2 - 2 nu) / (1 - 2 nu)
+  return std::min(material.lambda + 2 * material.mu, largest * material.mu);
+}
+
+}  // namespace tribound

@@ -1,0 +1,122 @@
+#include "tribound/contact/support/body.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "tribound/mesh/describe.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// The number of its body for each cell, by flooding across facets.
+template <int dim>
+std::vector<int> label_cells(const Topology<dim>& topology)
+{
+  std::vector<int> label(topology.cell_facets.size(), -1);
+  int n_bodies = 0;
+  for (std::size_t seed = 0; seed < label.size(); ++seed)
+  {
+    if (label[seed] >= 0) continue;
+    std::vector<Index> front{static_cast<Index>(seed)};
+    label[seed] = n_bodies;
+    while (!front.empty())
+    {
+      const Index cell = front.back();
+      front.pop_back();
+      for (const Index facet : topology.cell_facets[cell])
+        for (const Index next : topology.facet_cells[facet])
+        {
+          if (next < 0 || label[next] >= 0) continue;
+          label[next] = n_bodies;
+          front.push_back(next);
+        }
+    }
+    ++n_bodies;
+  }
+  return label;
+}
+
+/// The label of the cell of each vertex or node, of which there are n.
+template <class Numbers>
+std::vector<int> spread(std::span<const int> cell_label, Index n, Numbers numbers_of)
+{
+  std::vector<int> label(n, -1);
+  for (std::size_t c = 0; c < cell_label.size(); ++c)
+    for (const Index i : numbers_of(static_cast<Index>(c))) label[i] = cell_label[c];
+  return label;
+}
+
+/// Sets centre and size of the modes of every body.
+template <int dim>
+void measure(const Mesh<dim>& mesh, std::span<const int> vertex_label, std::vector<Body<dim>>& bodies)
+{
+  std::vector<Index> n_vertices(bodies.size(), 0);
+  for (Index v = 0; v < mesh.n_vertices(); ++v)
+  {
+    bodies[vertex_label[v]].modes.centre += mesh.vertex(v);
+    ++n_vertices[vertex_label[v]];
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+  {
+    bodies[b].modes.centre /= n_vertices[b];
+    bodies[b].modes.size = 0;
+  }
+  for (Index v = 0; v < mesh.n_vertices(); ++v)
+  {
+    RigidModes<dim>& modes = bodies[vertex_label[v]].modes;
+    modes.size = std::max(modes.size, (mesh.vertex(v) - modes.centre).norm());
+  }
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<Body<dim>> find_bodies(const LagrangeSpace<dim>& space)
+{
+  const Mesh<dim>& mesh = space.mesh();
+  const std::vector<int> cell_label = label_cells(mesh.topology());
+  std::vector<Body<dim>> bodies(std::ranges::max(cell_label) + 1);
+  measure<dim>(mesh,
+               spread(
+                   cell_label, mesh.n_vertices(), [&](Index c) -> const auto& { return mesh.cell(c); }),
+               bodies);
+
+  const std::vector<int> node_label =
+      spread(cell_label, space.n_nodes(), [&](Index c) { return space.cell_nodes(c); });
+  for (Index i = 0; i < space.n_nodes(); ++i) bodies[node_label[i]].nodes.push_back(i);
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    Body<dim>& body = bodies[cell_label[mesh.boundary()[k].cell]];
+    body.facets.push_back(mesh.boundary()[k]);
+    body.numbers.push_back(k);
+  }
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    bodies[cell_label[c]].cells.push_back(c);
+    std::vector<int>& regions = bodies[cell_label[c]].regions;
+    const auto place = std::ranges::lower_bound(regions, mesh.region(c));
+    if (place == regions.end() || *place != mesh.region(c)) regions.insert(place, mesh.region(c));
+  }
+  return bodies;
+}
+
+template <int dim>
+std::string describe(const Body<dim>& body, const Problem<dim>& problem, bool several)
+{
+  std::vector<std::string> names;
+  for (const int region : body.regions) names.push_back("\"" + problem.region_names()[region] + "\"");
+  const std::string place = several ? fmt::format(" around {}", describe(body.modes.centre)) : "";
+  return fmt::format("the body{} (region{} {})", place, names.size() > 1 ? "s" : "", fmt::join(names, ", "));
+}
+
+template std::vector<Body<2>> find_bodies(const LagrangeSpace<2>&);
+template std::vector<Body<3>> find_bodies(const LagrangeSpace<3>&);
+template std::string describe(const Body<2>&, const Problem<2>&, bool);
+template std::string describe(const Body<3>&, const Problem<3>&, bool);
+
+}  // namespace tribound

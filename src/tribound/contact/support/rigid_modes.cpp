@@ -1,0 +1,137 @@
+#include "tribound/contact/support/rigid_modes.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Parts of a motion smaller than this, relative to the whole, are round-off.
+constexpr double negligible = 1e-6;
+
+/// "(0.5, 0)" with four digits; components that are small against `scale` are 0.
+template <int dim>
+std::string in_words(const Point<dim>& x, double scale)
+{
+  std::string text = "(";
+  for (int i = 0; i < dim; ++i)
+    text += fmt::format("{}{:.4g}", i > 0 ? ", " : "", std::abs(x[i]) > negligible * scale ? x[i] : 0.0);
+  return text + ")";
+}
+
+/// "x" or "-x" for the direction of an axis, else its components.
+template <int dim>
+std::string direction(const Point<dim>& unit)
+{
+  for (int i = 0; i < dim; ++i)
+    if ((unit.cwiseAbs() - Point<dim>::Unit(i)).norm() <= negligible)
+      return std::string(unit[i] < 0 ? "-" : "") + "xyz"[i];
+  return in_words<dim>(unit, 1);
+}
+
+/// v turned by +90 degrees.
+Point<2> turned(const Point<2>& v)
+{
+  return {-v[1], v[0]};
+}
+
+/// Gauss-Jordan elimination of the rows of `a` from row `first` on, with pivots in columns [begin, end); rows
+/// that have none end up last. Returns the pivot columns, in the order of the rows.
+std::vector<Eigen::Index> eliminate(Eigen::MatrixXd& a, Eigen::Index first, Eigen::Index begin,
+                                    Eigen::Index end)
+{
+  std::vector<Eigen::Index> pivots;
+  for (Eigen::Index row = first; row < a.rows(); ++row)
+  {
+    Eigen::Index i = 0;
+    Eigen::Index j = 0;
+    if (a.block(row, begin, a.rows() - row, end - begin).cwiseAbs().maxCoeff(&i, &j) <= negligible) break;
+    a.row(row).swap(a.row(row + i));
+    a.row(row) /= a(row, begin + j);
+    for (Eigen::Index other = 0; other < a.rows(); ++other)
+      if (other != row) a.row(other) -= a(other, begin + j) * a.row(row).eval();
+    pivots.push_back(begin + j);
+  }
+  return pivots;
+}
+
+}  // namespace
+
+template <int dim>
+auto RigidModes<dim>::at(const Point<dim>& x) const -> ModeMatrix
+{
+  const Point<dim> arm = (x - centre) / size;
+  ModeMatrix m;
+  m.template leftCols<dim>().setIdentity();
+  if constexpr (dim == 2)
+    m.col(2) = turned(arm);
+  else
+    for (int a = 0; a < 3; ++a) m.col(3 + a) = cross(Point<3>::Unit(a), arm);
+  return m;
+}
+
+template <int dim>
+std::string RigidModes<dim>::describe(const Coefficients& motion) const
+{
+  const Point<dim> t = motion.template head<dim>();
+  const auto w = motion.template tail<n_modes - dim>();
+  if (w.norm() <= negligible * t.norm())
+    return fmt::format("translation along {}", direction<dim>(t.normalized()));
+
+  const double scale = std::max(size, centre.norm());
+  if constexpr (dim == 2)
+    return fmt::format("rotation about {}", in_words<2>(centre + size / w[0] * turned(t), scale));
+  else
+  {
+    const Point<3> foot = centre + size / w.squaredNorm() * cross(w, t);
+    const std::string axis = fmt::format("about the axis through {} along {}", in_words<3>(foot, scale),
+                                         in_words<3>(w.normalized(), 1));
+    const bool advances = std::abs(t.dot(w)) > negligible * (t.squaredNorm() + w.squaredNorm());
+    return (advances ? "screw motion " : "rotation ") + axis;
+  }
+}
+
+MotionBasis null_space(const Eigen::MatrixXd& gram, double scale)
+{
+  constexpr double threshold = 1e-14;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const auto n_null = (eigen.eigenvalues().array() <= threshold * scale).count();  // they ascend
+  return eigen.eigenvectors().leftCols(n_null);
+}
+
+template <int dim>
+std::vector<typename RigidModes<dim>::Coefficients> readable_basis(const MotionBasis& motions)
+{
+  constexpr int n_modes = RigidModes<dim>::n_modes;
+  if (motions.cols() == 0) return {};
+  Eigen::MatrixXd rows = motions.transpose();
+  const std::vector<Eigen::Index> rotations = eliminate(rows, 0, dim, n_modes);
+  const auto n_rotations = static_cast<Eigen::Index>(rotations.size());
+  rows.bottomRightCorner(rows.rows() - n_rotations, n_modes - dim).setZero();
+  const std::vector<Eigen::Index> translations = eliminate(rows, n_rotations, 0, dim);
+
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> order;  // pivot column, row: translations come first
+  for (std::size_t i = 0; i < rotations.size(); ++i) order.emplace_back(rotations[i], i);
+  for (std::size_t i = 0; i < translations.size(); ++i) order.emplace_back(translations[i], n_rotations + i);
+  std::ranges::sort(order);
+  std::vector<typename RigidModes<dim>::Coefficients> basis;
+  basis.reserve(order.size());
+  for (const auto& [pivot, row] : order) basis.emplace_back(rows.row(row).transpose());
+  return basis;
+}
+
+template struct RigidModes<2>;
+template struct RigidModes<3>;
+template std::vector<RigidModes<2>::Coefficients> readable_basis<2>(const MotionBasis&);
+template std::vector<RigidModes<3>::Coefficients> readable_basis<3>(const MotionBasis&);
+
+}  // namespace tribound

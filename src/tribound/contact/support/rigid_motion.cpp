@@ -1,0 +1,372 @@
+#include "tribound/contact/support/rigid_motion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "tribound/contact/support/body.h"
+#include "tribound/contact/support/body_support.h"
+#include "tribound/contact/support/cone.h"
+#include "tribound/fem/quadrature.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+template <int dim>
+using Coefficients = typename RigidModes<dim>::Coefficients;
+
+/// Unit vectors perpendicular to n: both in 2D, eight at equal angles in 3D.
+template <int dim>
+std::vector<Point<dim>> tangents(const Point<dim>& n)
+{
+  std::vector<Point<dim>> directions;
+  if constexpr (dim == 2)
+    directions = {Point<2>(-n[1], n[0]), Point<2>(n[1], -n[0])};
+  else
+  {
+    Eigen::Index smallest = 0;
+    n.cwiseAbs().minCoeff(&smallest);
+    const Point<3> first = cross(n, Point<3>::Unit(smallest)).normalized();
+    const Point<3> second = cross(n, first);
+    for (int i = 0; i < 8; ++i)
+      directions.push_back(std::cos(i * std::numbers::pi / 4) * first +
+                           std::sin(i * std::numbers::pi / 4) * second);
+  }
+  return directions;
+}
+
+/// Which friction counts among the forces that grow with the pressure without a limit.
+enum class ConeFriction
+{
+  unlimited,      ///< all friction holds whatever is pressed
+  coulomb_limit,  ///< Coulomb's obeys its coefficient, Tresca's holds
+  no_tresca       ///< Coulomb's obeys its coefficient, there is no other
+};
+
+/// The rule on the halves (2D) or quarters (3D) of the facet.
+template <int k>
+Quadrature<k> on_halves(const Quadrature<k>& rule)
+{
+  Quadrature<k> result;
+  const auto add = [&](const Point<k>& origin, double scale)
+  {
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      result.points.push_back(origin + scale * rule.points[q]);
+      result.weights.push_back(rule.weights[q] / (2 * k));
+    }
+  };
+  add(Point<k>::Zero(), 0.5);
+  for (int i = 0; i < k; ++i) add(0.5 * Point<k>::Unit(i), 0.5);
+  if constexpr (k == 2) add(Point<k>::Constant(0.5), -0.5);
+  return result;
+}
+
+/// What Tresca friction can do against a motion z at most.
+struct FrictionWork
+{
+  Eigen::VectorXd in_motions;  ///< integral of s z^t/|z^t| . y^t for each motion y of a basis
+  double most = 0;             ///< integral of s |z^t|
+  double missed = 0;           ///< what the rule may miss of it because of s
+};
+
+/// One body with what holds and drives it.
+template <int dim>
+class BodyCheck
+{
+ public:
+  BodyCheck(const Problem<dim>& problem, const Mesh<dim>& mesh, const DiscreteData<dim>& data,
+            const Body<dim>& body, std::string name)
+      : problem_(problem),
+        mesh_(mesh),
+        data_(data),
+        body_(body),
+        support_(problem, mesh, body),
+        name_(std::move(name))
+  {
+  }
+
+  /// Throws InputError for a motion that nothing stops.
+  void check_held() const;
+  /// Throws InputError for loads that contact cannot balance; work(z) = L(z) up to `round_off`.
+  void check_balanced(const Coefficients<dim>& work, double round_off) const;
+
+ private:
+  /// The work in each motion of the contact forces, one column for each generator of their cone.
+  [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, ConeFriction friction) const;
+  [[nodiscard]] FrictionWork tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                         const Quadrature<dim - 1>& rule) const;
+  /// What the work of the loads in a motion may miss.
+  [[nodiscard]] double missed_work(const Coefficients<dim>& motion) const;
+  /// A motion in which the loads do more work than Tresca friction can take up, and contact and Coulomb
+  /// friction none; nothing where there is none, or it is too close to tell. See check_rigid_motions().
+  [[nodiscard]] std::optional<Eigen::VectorXd> beyond_tresca(const MotionBasis& motions,
+                                                             const Eigen::VectorXd& loads,
+                                                             double tolerance) const;
+  /// What to do against motions that nothing stops, with a component for each of them.
+  [[nodiscard]] std::string hint(std::span<const Coefficients<dim>> free) const;
+  [[noreturn]] void fail(const Coefficients<dim>& motion, const std::string& reason) const;
+
+  const Problem<dim>& problem_;
+  const Mesh<dim>& mesh_;
+  const DiscreteData<dim>& data_;
+  const Body<dim>& body_;
+  BodySupport<dim> support_;
+  std::string name_;
+};
+
+template <int dim>
+std::string BodyCheck<dim>::hint(std::span<const Coefficients<dim>> free) const
+{
+  std::vector<std::string> remedies;
+  for (const Coefficients<dim>& z : free)
+    if (const std::optional<Remedy> remedy = support_.remedy(z))
+      if (const std::string words = describe(*remedy); std::ranges::find(remedies, words) == remedies.end())
+        remedies.push_back(words);
+  const auto has_smooth_contact = [&](const BoundaryFacet& facet)
+  {
+    const auto& contact = problem_.boundary(facet.tag).contact;
+    return contact && !has_friction(contact->friction);
+  };
+  const bool friction_may_help = std::ranges::any_of(body_.facets, has_smooth_contact);
+  return fmt::format(
+      "fix a displacement component that such a motion would change{} (symmetry: the component normal to the "
+      "plane of symmetry){}",
+      remedies.empty() ? ", on a boundary of this body"
+                       : fmt::format(", for example {}", fmt::join(remedies, ", ")),
+      friction_may_help ? ", or give its contact friction" : "");
+}
+
+template <int dim>
+void BodyCheck<dim>::check_held() const
+{
+  const std::vector<Coefficients<dim>> free = readable_basis<dim>(support_.left_by_contact(true));
+  if (free.empty()) return;
+  std::vector<std::string> motions;
+  motions.reserve(free.size());
+  for (const Coefficients<dim>& z : free) motions.push_back(body_.modes.describe(z));
+  const auto named = std::ranges::find_if(
+      problem_.boundaries(), [](const auto& boundary) { return boundary.where.line > 0; });  // not a --set
+  const std::string file = named == problem_.boundaries().end() ? "" : named->where.file;
+  throw InputError({.file = file, .key = "boundary"},
+                   fmt::format("nothing stops {} from: {}", name_, fmt::join(motions, "; ")), hint(free));
+}
+
+template <int dim>
+Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
+{
+  std::vector<Eigen::VectorXd> generators;
+  const auto add = [&](const Point<dim>& push, const Point<dim>& x)
+  {
+    const Eigen::VectorXd work = motions.transpose() * (body_.modes.at(x).transpose() * push);
+    if (work.norm() > 1e-12) generators.push_back(work.normalized());
+  };
+  support_.for_each_facet_vertex(
+      [&](const BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
+      {
+        if (!condition.contact) return;
+        const FrictionLaw& law = condition.contact->friction;
+        add(n, x);
+        if (!has_friction(law)) return;
+        const auto* coulomb = std::get_if<Coulomb>(&law);
+        if (!coulomb && friction == ConeFriction::no_tresca) return;
+        const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
+        for (const Point<dim>& t : tangents<dim>(n))
+          add(coulomb && friction != ConeFriction::unlimited
+                  ? Point<dim>(n + coulomb->coefficient / around * t)
+                  : t,
+              x);
+      });
+  Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
+  for (Eigen::Index j = 0; j < cone.cols(); ++j) cone.col(j) = generators[j];
+  return cone;
+}
+
+/// On the parts of the facets on which the rule integrates s; |z^t| is convex, the largest at a vertex.
+template <int dim>
+FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                         const Quadrature<dim - 1>& rule) const
+{
+  FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
+  const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
+  for (std::size_t k = 0; k < body_.facets.size(); ++k)
+  {
+    const BoundaryFacet& facet = body_.facets[k];
+    const auto& contact = problem_.boundary(facet.tag).contact;
+    const auto* tresca = contact ? std::get_if<Tresca>(&contact->friction) : nullptr;
+    if (!tresca) continue;
+    const FacetMap<dim> map = facet_map(mesh_, facet.cell, facet.local);
+    const FacetGeometry<dim> geometry = facet_geometry(mesh_, facet.cell, facet.local);
+    const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
+    { return z_x - z_x.dot(geometry.normal) * geometry.normal; };
+    const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(body_.numbers[k]);
+    for (const auto& [part, gap, threshold] : parts.empty() ? std::span(&whole, 1) : parts)
+    {
+      const double measure = geometry.measure * fraction<dim - 1>(part);
+      double largest = 0;
+      for (const Point<dim - 1>& s : part)
+        largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
+      result.missed += 2 * threshold * measure * largest;
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim> x = map(point_in<dim - 1>(part, rule.points[q]));
+        const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
+        const Point<dim> z_t = tangential(at_x * z);
+        if (z_t.norm() <= 1e-12 * z.norm()) continue;
+        const double force = measure * (dim - 1) * rule.weights[q] * threshold_at<dim>(*tresca, x);
+        result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
+        result.most += force * z_t.norm();
+      }
+    }
+  }
+  return result;
+}
+
+/// The remainders of the integrals hold those against affine weights, the values of which are the largest at
+/// vertices.
+template <int dim>
+double BodyCheck<dim>::missed_work(const Coefficients<dim>& motion) const
+{
+  const auto largest = [&](const auto& vertices)
+  {
+    double size = 0;
+    for (const Index v : vertices)
+      size = std::max(size, Point<dim>(body_.modes.at(mesh_.vertex(v)) * motion).norm());
+    return size;
+  };
+  double missed = 0;
+  for (const Index c : body_.cells)
+    if (const double mean = data_.body_remainder(c).mean; mean > 0) missed += mean * largest(mesh_.cell(c));
+  for (std::size_t k = 0; k < body_.facets.size(); ++k)
+    if (const double mean = data_.traction_remainder(body_.numbers[k]).mean; mean > 0)
+      missed += mean * largest(facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
+  return std::sqrt(dim) * missed;  // by components
+}
+
+// Tresca friction can do work in a convex set Z, all other contact forces in the cone K. The loads c are
+// balanced if c lies in K + Z. The nearest point of it is looked for with K and those points of Z that
+// proved useful, among them 0 (fully corrective Frank-Wolfe method); that their weights add up to at most 1
+// is one more row. What is left of c is a motion r that K can do nothing against, and c is outside as soon
+// as c.r exceeds what Z can do.
+template <int dim>
+std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& motions,
+                                                             const Eigen::VectorXd& loads,
+                                                             double tolerance) const
+{
+  constexpr int max_points = 200;
+  constexpr double relative = 1e-8;
+  const Eigen::Index m = loads.size();
+  const double one = loads.norm();
+  const Eigen::MatrixXd cone = contact_cone(motions, ConeFriction::no_tresca);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(m + 1, cone.cols() + 1);
+  columns.topLeftCorner(m, cone.cols()) = cone;
+  columns(m, cone.cols()) = one;
+  Eigen::VectorXd target(m + 1);
+  target << loads, one;
+  for (int i = 0; i < max_points; ++i)
+  {
+    const Eigen::VectorXd r = remainder_outside_cone(columns, target).head(m);
+    if (r.norm() <= tolerance) return {};
+    const FrictionWork friction = tresca_work(motions, r, data_.facet_rule());
+    const double driving = r.dot(loads) - missed_work(motions * r);
+    if (driving > (1 + relative) * friction.most + tolerance * r.norm())
+    {
+      // |z^t| has kinks: refuse only what refinement of the rule does not change.
+      const double finer = tresca_work(motions, r, on_halves(on_halves(data_.facet_rule()))).most;
+      const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
+      return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
+    }
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) << friction.in_motions, one;
+  }
+  return {};
+}
+
+template <int dim>
+void BodyCheck<dim>::fail(const Coefficients<dim>& motion, const std::string& reason) const
+{
+  const auto facet = std::ranges::find_if(
+      body_.facets, [&](const BoundaryFacet& f) { return problem_.boundary(f.tag).contact.has_value(); });
+  throw InputError(problem_.boundary(facet->tag).where,
+                   fmt::format("contact cannot hold {}: the loads drive it into {}; {}", name_,
+                               body_.modes.describe(motion), reason),
+                   "fix a displacement component that this motion would change, or mend the loads "
+                   "(tractions are forces on the body, a pressure acts against the outward normal)");
+}
+
+template <int dim>
+void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_off) const
+{
+  constexpr double relative = 1e-8;
+  const MotionBasis motions = support_.left_by_displacements();  // what contact alone has to stop
+  const Eigen::VectorXd c = motions.transpose() * work;          // L(z) for each of them
+  if (motions.cols() == 0 || c.norm() <= round_off) return;
+
+  const double tolerance = relative * c.norm() + round_off;
+  const Eigen::VectorXd lifted = remainder_outside_cone(contact_cone(motions, ConeFriction::unlimited), c);
+  // The work of the loads in a remainder r is |r|^2.
+  const auto is_free = [&](const Eigen::VectorXd& r)
+  { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
+  if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
+
+  const Eigen::VectorXd slipped =
+      remainder_outside_cone(contact_cone(motions, ConeFriction::coulomb_limit), c);
+  if (is_free(slipped))
+  {
+    // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
+    const Eigen::MatrixXd pressed = support_.contact_gram(false);
+    const MotionBasis sliding =
+        motions * null_space(motions.transpose() * pressed * motions, pressed.trace());
+    const Coefficients<dim> slide = sliding * (sliding.transpose() * work);
+    fail(slide.norm() > tolerance ? slide : Coefficients<dim>(motions * slipped),
+         "friction is too weak for the load along the contact boundary");
+  }
+
+  if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance))
+  {
+    const FrictionWork friction = tresca_work(motions, *z, data_.facet_rule());
+    fail(motions * *z, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
+                                   100 * (friction.most + friction.missed) / z->dot(c)));
+  }
+}
+
+}  // namespace
+
+template <int dim>
+void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                         const DiscreteData<dim>& data, std::span<const double> load)
+{
+  constexpr double relative_round_off = 1e-11;
+  const std::vector<Body<dim>> bodies = find_bodies(space);
+  const std::vector<Point<dim>> points = space.node_points();
+  for (const Body<dim>& body : bodies)
+  {
+    const BodyCheck<dim> check(problem, space.mesh(), data, body, describe(body, problem, bodies.size() > 1));
+    check.check_held();
+
+    Coefficients<dim> work = Coefficients<dim>::Zero();  // L(z) for each rigid motion z
+    double terms = 0;
+    for (const Index i : body.nodes)
+    {
+      const Point<dim> force(load.data() + static_cast<std::size_t>(dim) * i);
+      work += body.modes.at(points[i]).transpose() * force;
+      terms += force.norm();
+    }
+    check.check_balanced(work, relative_round_off * terms);
+  }
+}
+
+template void check_rigid_motions(const Problem<2>&, const LagrangeSpace<2>&, const DiscreteData<2>&,
+                                  std::span<const double>);
+template void check_rigid_motions(const Problem<3>&, const LagrangeSpace<3>&, const DiscreteData<3>&,
+                                  std::span<const double>);
+
+}  // namespace tribound

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file rigid_motion.h
+/// Whether the boundary conditions hold every body: a motion that nothing stops is an error of the case, to
+/// be named before a factorisation fails on it.
+
+#include <span>
+
+#include "tribound/contact/nitsche/discrete_data.h"
+#include "tribound/fem/space.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+/// Throws InputError naming the body and the motion when a part of the mesh that is connected through facets
+///  * can move rigidly although its displacement conditions hold and all contact is closed (and sticking,
+///    where there is friction): the first Newton step would be singular; or
+///  * is driven by its loads into a rigid motion that contact, which only pushes and whose friction is
+///    limited, cannot resist: there is no solution. There is one only if L(z) <= (s, |z^t|)_C for every
+///    rigid motion z with z^n <= 0 on frictionless and Tresca contact and z^n + mu_F |z^t| <= 0 on Coulomb
+///    contact, where (s, .) is over Tresca contact: take z as test function. Exact up to rounding in 2D and
+///    for constant s without friction of Coulomb; for Coulomb's law in 3D the cone of friction is replaced by
+///    an eight-sided one around it, and integrals of loads and of s |z^t| count with their quadrature error.
+///    So what is refused has no solution, but some cases without one pass.
+/// Bodies that displacement conditions hold by themselves pass at once.
+/// `load`: L(phi_i) for every degree of freedom, up to the remainders of the data.
+template <int dim>
+void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                         const DiscreteData<dim>& data, std::span<const double> load);
+
+}  // namespace tribound

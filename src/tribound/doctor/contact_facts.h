@@ -1,0 +1,44 @@
+#pragma once
+
+/// @file contact_facts.h
+/// The geometry of each contact boundary before anything is solved.
+
+#include <string>
+#include <vector>
+
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/place.h"
+
+namespace tribound
+{
+
+struct ContactBoundaryFacts
+{
+  std::string name;
+  long facets = 0;
+  double measure = 0;  ///< length or area
+  Place normal;        ///< mean unit normal, weighted by measure; empty for a closed surface, which has none
+  double spread = 0;   ///< degrees: the largest angle between a facet's normal and the mean
+  double kink = 0;     ///< the largest kink()
+  Place kink_at;
+  double smallest_gap = 0;  ///< g at the quadrature points
+  Place smallest_gap_at;
+  double largest_gap = 0;
+  Place largest_gap_at;
+};
+
+/// The angle between the normals of neighbouring facets, degrees; 0 from 45 on: that is a corner of the body,
+/// not a curved surface, and below 0.01: that is round-off of the coordinates in a file.
+template <int dim>
+[[nodiscard]] double kink(const ContactFacet<dim>& a, const ContactFacet<dim>& b);
+
+/// Facts of every contact boundary that has facets, in the order of the problem.
+template <int dim>
+[[nodiscard]] std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<dim>& form);
+
+/// Pairs of contact facets of one boundary that share a vertex (2D) or an edge (3D), by their numbers in the
+/// form.
+template <int dim>
+[[nodiscard]] std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<dim>& form);
+
+}  // namespace tribound

@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file cost.h
+/// What solving on a mesh may take.
+
+#include <vector>
+
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/case/config.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+/// Of the first mesh, all Newton steps and the certificate included, on one core.
+struct CostEstimate
+{
+  int degree = 0;
+  double dofs = 0;  ///< fixed ones included
+  LinearMethod method = LinearMethod::direct;
+  double bytes = 0;
+  double seconds = 0;
+};
+
+/// Estimates for the degrees 1 to 4, from a model fitted to measured runs (docs/doctor.md). On other runs of
+/// the same sizes, memory was right within a factor of 1.5, mostly a quarter, and time within 2; beyond these
+/// sizes both are extrapolated.
+template <int dim>
+[[nodiscard]] std::vector<CostEstimate> cost_estimates(const Mesh<dim>& mesh, const SolverConfig& config);
+
+}  // namespace tribound

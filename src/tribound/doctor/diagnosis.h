@@ -1,0 +1,57 @@
+#pragma once
+
+/// @file diagnosis.h
+/// All that `tribound check` finds out about a case before it is solved.
+
+#include <vector>
+
+#include "tribound/adapt/loop.h"
+#include "tribound/case/config.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/contact_facts.h"
+#include "tribound/doctor/cost.h"
+#include "tribound/doctor/load_facts.h"
+#include "tribound/doctor/mesh_quality.h"
+#include "tribound/doctor/support_facts.h"
+#include "tribound/doctor/units.h"
+
+namespace tribound
+{
+
+struct Diagnosis
+{
+  int degree = 1;
+  bool refines = true;  ///< whether the mesh is adapted
+  std::vector<ContactHeldMotion> held_by_contact;
+  std::vector<OverconstrainedCorner> corners;
+  std::vector<ContactBoundaryFacts> contacts;
+  LoadFacts loads;
+  std::vector<UnitSystem> units;
+  MeshQuality mesh;
+  std::vector<CostEstimate> costs;
+  double multigrid_bytes = 0;  ///< of the case's degree with solver.method = "iterative"
+  MemoryLimit memory;
+};
+
+/// For a case whose bodies are held, see check_rigid_motions().
+template <int dim>
+[[nodiscard]] Diagnosis diagnose(const Config& config, const NitscheForm<dim>& form)
+{
+  Diagnosis result;
+  result.degree = config.degree;
+  result.refines = config.adapt.max_levels > 0;
+  result.held_by_contact = motions_held_by_contact(form);
+  result.corners = overconstrained_corners(form);
+  result.contacts = contact_boundary_facts(form);
+  result.loads = load_facts(form);
+  result.units = plausible_units(result.loads);
+  result.mesh = mesh_quality(form.space().mesh());
+  result.costs = cost_estimates(form.space().mesh(), config.solver);
+  SolverConfig multigrid = config.solver;
+  multigrid.method = LinearMethod::iterative;
+  result.multigrid_bytes = cost_estimates(form.space().mesh(), multigrid)[config.degree - 1].bytes;
+  result.memory = memory_limit(config.adapt);
+  return result;
+}
+
+}  // namespace tribound

@@ -1,0 +1,240 @@
+#include "tribound/doctor/findings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Above, strains are no longer small: the quadratic terms that linear elasticity leaves out are of this
+/// relative size.
+constexpr double small_strain = 0.05;
+/// Below, loads and E are hardly in the same units: Pa for MPa is a factor of 1e6 off a usual 1e-4.
+constexpr double tiny_strain = 1e-9;
+/// Poisson's ratio from which elements of degree 1 lock.
+constexpr double nearly_incompressible = 0.49;
+constexpr double large_aspect = 10;    // 1 for the regular simplex
+constexpr double large_grading = 1e4;  // largest cell over smallest
+
+/// Angles outside are poor, degrees: what mesh generators deliver without being asked is inside.
+struct GoodAngles
+{
+  double smallest;
+  double largest;
+};
+constexpr GoodAngles good_2d{15, 150};
+constexpr GoodAngles good_3d{8, 165};
+
+using Findings = std::vector<Finding>;
+
+Finding held(const ContactHeldMotion& motion)
+{
+  Finding finding{.code = motion.by_friction ? "held_by_friction" : "held_by_contact",
+                  .severity = Severity::note};
+  finding.text =
+      motion.by_friction
+          ? fmt::format("only friction stops {} from {}", motion.body, motion.motion)
+          : fmt::format("only contact stops {} from {}, and contact only pushes", motion.body, motion.motion);
+  finding.advice = motion.by_friction ? "the loads must press the body on while friction holds it"
+                                      : "the loads must press the body against the obstacle";
+  if (motion.remedy)
+    finding.advice +=
+        fmt::format("; a fixed displacement {} would hold it for certain", describe(*motion.remedy));
+  return finding;
+}
+
+void add_supports(const Diagnosis& diagnosis, Findings& findings)
+{
+  for (const ContactHeldMotion& motion : diagnosis.held_by_contact) findings.push_back(held(motion));
+  if (diagnosis.held_by_contact.empty())
+    findings.push_back({.code = "held", .text = "displacement conditions alone stop every rigid motion"});
+}
+
+Finding strain_finding(const LoadFacts& loads)
+{
+  Finding finding{.code = "strain"};
+  finding.numbers = {{"strain", loads.strain()},
+                     {"traction_stress", loads.traction_stress},
+                     {"support_stress", loads.support_stress},
+                     {"body_stress", loads.body_stress},
+                     {"displacement_strain", loads.displacement_strain},
+                     {"E", loads.smallest_E}};
+  if (loads.strain() == 0)
+  {
+    finding.severity = Severity::note;
+    finding.code = "no_load";
+    finding.text = "there is no load and no prescribed displacement but 0";
+    finding.advice =
+        "the solution is 0; unless that is what you want, add a traction, a pressure, a body force or "
+        "a displacement";
+    return finding;
+  }
+  const bool stresses = loads.stress() / loads.smallest_E >= loads.displacement_strain;
+  finding.text = stresses ? fmt::format("expect strains of about {:.2g} % (stresses near {:.3g}, E = {:.4g})",
+                                        100 * loads.strain(), loads.stress(), loads.smallest_E)
+                          : fmt::format(
+                                "expect strains of about {:.2g} % (prescribed displacements of {:.3g} "
+                                "over the size {:.4g})",
+                                100 * loads.strain(), loads.strain() * loads.size, loads.size);
+  if (loads.strain() < tiny_strain)
+  {
+    finding.severity = Severity::note;
+    finding.advice = "so little is unusual: look at the units of loads and E";
+  }
+  if (loads.strain() <= small_strain) return finding;
+  finding.severity = Severity::warning;
+  finding.advice =
+      "linear elasticity is meant for strains of a few per cent at most: look at the units of loads "
+      "and E; in a scaled model only ratios mean something";
+  return finding;
+}
+
+void add_suction(const LoadFacts& loads, Findings& findings)
+{
+  for (const Suction& suction : loads.suction)
+  {
+    Finding finding{.code = "suction", .severity = Severity::warning};
+    finding.text = fmt::format("the pressure on boundary \"{}\" is negative, {:.4g} at {}: it pulls the body",
+                               suction.boundary, suction.lowest, describe(suction.where));
+    finding.advice =
+        "pressure is positive where it pushes; water above its level is cut off: \"9810*max(0, 9-y)\"";
+    finding.numbers = {{"pressure", suction.lowest}};
+    findings.push_back(std::move(finding));
+  }
+}
+
+void add_poisson(const Diagnosis& diagnosis, Findings& findings)
+{
+  for (const RegionMaterial& material : diagnosis.loads.materials)
+  {
+    if (material.nu <= nearly_incompressible || material.plane_stress) continue;
+    Finding finding{.code = "nearly_incompressible",
+                    .severity = diagnosis.degree == 1 ? Severity::warning : Severity::note};
+    finding.numbers = {{"nu", material.nu}};
+    finding.text =
+        fmt::format("region \"{}\" is nearly incompressible: nu = {:.6g}", material.region, material.nu);
+    finding.advice = diagnosis.degree == 1
+                         ? "elements of degree 1 are too stiff for it: take degree 2 or more"
+                         : "degree 2 or more copes, but expect larger bounds";
+    findings.push_back(finding);
+  }
+}
+
+/// "m, N, Pa (E = 2.1e+11 Pa, a body of 2 m)".
+std::string in_words(const UnitSystem& units, const LoadFacts& loads)
+{
+  return fmt::format("{}, {}, {} (E = {:.3g} {}, a body of {:.3g} {})", units.length, units.force,
+                     units.stress, loads.smallest_E, units.stress, loads.size, units.length);
+}
+
+Finding units_finding(const Diagnosis& diagnosis)
+{
+  Finding finding{.code = "units"};
+  finding.numbers = {{"E", diagnosis.loads.smallest_E},
+                     {"size", diagnosis.loads.size},
+                     {"body_force", diagnosis.loads.largest_body_force}};
+  if (diagnosis.units.empty())
+  {
+    finding.severity = Severity::note;
+    finding.text =
+        fmt::format("E = {:.3g} with a body of size {:.3g}{} fits no usual system of units",
+                    diagnosis.loads.smallest_E, diagnosis.loads.size,
+                    diagnosis.loads.largest_body_force > 0
+                        ? fmt::format(" and a body force of {:.3g}", diagnosis.loads.largest_body_force)
+                        : "");
+    finding.advice =
+        "fine for a scaled model; otherwise do not mix systems: m with N and Pa, mm with N and MPa, "
+        "m with MN and MPa";
+    return finding;
+  }
+  constexpr std::size_t most_guesses = 2;
+  std::vector<std::string> systems;
+  for (const UnitSystem& units :
+       std::span(diagnosis.units).first(std::min(most_guesses, diagnosis.units.size())))
+    systems.push_back(in_words(units, diagnosis.loads));
+  finding.text = fmt::format("a guess at the units: {}", fmt::join(systems, "; or "));
+  finding.advice = "only a guess from the size of the numbers: Tribound has no units of its own";
+  return finding;
+}
+
+void add_mesh(const Diagnosis& diagnosis, Findings& findings)
+{
+  const MeshQuality& mesh = diagnosis.mesh;
+  const GoodAngles good = diagnosis.loads.extent.size() == 2 ? good_2d : good_3d;
+  const bool sharp = mesh.smallest_angle < good.smallest;
+  const bool blunt = mesh.largest_angle > good.largest;
+  const bool poor = sharp || blunt || mesh.largest_aspect > large_aspect;
+  Finding shape{.code = "cell_shapes", .severity = poor ? Severity::warning : Severity::ok};
+  shape.numbers = {{"smallest_angle", mesh.smallest_angle},
+                   {"largest_angle", mesh.largest_angle},
+                   {"aspect", mesh.largest_aspect}};
+  shape.where = sharp ? mesh.smallest_angle_at : blunt ? mesh.largest_angle_at : mesh.largest_aspect_at;
+  shape.text = fmt::format(
+      "angles of the cells are between {:.3g} degrees at {} and {:.3g} degrees at {}, the worst "
+      "aspect ratio is {:.3g} at {}",
+      mesh.smallest_angle, describe(mesh.smallest_angle_at), mesh.largest_angle,
+      describe(mesh.largest_angle_at), mesh.largest_aspect, describe(mesh.largest_aspect_at));
+  if (poor)
+    shape.advice =
+        "such cells make the bound pessimistic and the matrices worse: mend the mesh there; bisection "
+        "keeps shapes as they are";
+  findings.push_back(shape);
+
+  const double ratio = mesh.largest_cell / mesh.smallest_cell;
+  Finding sizes{.code = "cell_sizes", .severity = ratio > large_grading ? Severity::warning : Severity::ok};
+  sizes.numbers = {{"smallest", mesh.smallest_cell}, {"largest", mesh.largest_cell}, {"ratio", ratio}};
+  sizes.text = fmt::format("cells have sizes from {:.4g} to {:.4g}, a ratio of {:.3g}", mesh.smallest_cell,
+                           mesh.largest_cell, ratio);
+  if (ratio > large_grading) sizes.advice = "is one of the sizes in the .geo a slip of the pen?";
+  findings.push_back(sizes);
+}
+
+}  // namespace
+
+const char* to_string(Severity severity)
+{
+  switch (severity)
+  {
+    case Severity::warning:
+      return "warning";
+    case Severity::note:
+      return "note";
+    default:
+      return "ok";
+  }
+}
+
+std::string describe(const Place& where)
+{
+  constexpr double round_off = 1e-12;
+  std::vector<double> x = where;
+  double largest = 0;
+  for (const double component : where) largest = std::max(largest, std::abs(component));
+  for (double& component : x)
+    if (std::abs(component) <= round_off * largest) component = 0;
+  return fmt::format("({:.6g})", fmt::join(x, ", "));
+}
+
+std::vector<Finding> findings(const Diagnosis& diagnosis)
+{
+  Findings result;
+  add_supports(diagnosis, result);
+  std::ranges::move(contact_findings(diagnosis), std::back_inserter(result));
+  result.push_back(strain_finding(diagnosis.loads));
+  add_suction(diagnosis.loads, result);
+  add_poisson(diagnosis, result);
+  result.push_back(units_finding(diagnosis));
+  add_mesh(diagnosis, result);
+  std::ranges::move(cost_findings(diagnosis), std::back_inserter(result));
+  return result;
+}
+
+}  // namespace tribound

@@ -1,0 +1,49 @@
+#pragma once
+
+/// @file findings.h
+/// The facts of the doctor put into words and judged.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tribound/doctor/diagnosis.h"
+#include "tribound/doctor/place.h"
+
+namespace tribound
+{
+
+enum class Severity
+{
+  ok,
+  note,    ///< worth knowing
+  warning  ///< likely to spoil the result
+};
+
+/// "ok", "note", "warning".
+[[nodiscard]] const char* to_string(Severity severity);
+
+/// One thing found; docs/doctor.md explains every code.
+struct Finding
+{
+  std::string code;
+  Severity severity = Severity::ok;
+  std::string text{};                                     ///< a sentence
+  std::vector<std::pair<std::string, double>> numbers{};  ///< by name
+  Place where{};                                          ///< empty: nowhere in particular
+  std::string advice{};                                   ///< empty when all is well
+};
+
+/// What can be said before solving, in the order of the case: supports, contact, loads, mesh, cost.
+[[nodiscard]] std::vector<Finding> findings(const Diagnosis& diagnosis);
+
+/// The part about contact boundaries.
+[[nodiscard]] std::vector<Finding> contact_findings(const Diagnosis& diagnosis);
+
+/// The part about memory and time.
+[[nodiscard]] std::vector<Finding> cost_findings(const Diagnosis& diagnosis);
+
+/// "(0.5, 1)" with six digits.
+[[nodiscard]] std::string describe(const Place& where);
+
+}  // namespace tribound

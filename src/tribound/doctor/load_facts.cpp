@@ -1,0 +1,193 @@
+#include "tribound/doctor/load_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tribound
+{
+
+namespace
+{
+
+template <int dim>
+RegionMaterial region_material(const Problem<dim>& problem, int region)
+{
+  const Material& material = problem.material(region);
+  const auto [E, nu] = elastic_constants(material, dim);
+  return {problem.region_names()[region], E, nu, dim == 2 && material.plane == PlaneModel::stress};
+}
+
+template <int dim>
+void measure_extent(const Mesh<dim>& mesh, LoadFacts& facts)
+{
+  Point<dim> lower = mesh.vertex(0);
+  Point<dim> upper = mesh.vertex(0);
+  for (const Point<dim>& x : mesh.vertices())
+  {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+  const Point<dim> extent = upper - lower;
+  facts.extent = {extent.begin(), extent.end()};
+  facts.size = extent.maxCoeff();
+}
+
+/// The integral of f; sets the largest mean of |f| over a cell.
+template <int dim>
+Point<dim> body_force_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
+{
+  constexpr double factorial = dim == 2 ? 2 : 6;
+  const Mesh<dim>& mesh = form.space().mesh();
+  const Quadrature<dim>& rule = form.data().cell_rule();
+  Point<dim> resultant = Point<dim>::Zero();
+  std::vector<Point<dim>> f(rule.size());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    if (!form.data().has_body_force(c)) continue;
+    form.data().body_force(c, f);
+    double magnitude = 0;  // mean
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      magnitude += factorial * rule.weights[q] * f[q].norm();
+      resultant += cell_map(mesh, c).det * rule.weights[q] * f[q];
+    }
+    facts.largest_body_force = std::max(facts.largest_body_force, magnitude);
+  }
+  return resultant;
+}
+
+/// What the boundary carries.
+struct BoundaryLoad
+{
+  double magnitude = 0;  ///< integral of |g_N|
+  double measure = 0;
+};
+
+/// The integral of g_N; sets the largest mean of |g_N| over a boundary.
+template <int dim>
+Point<dim> traction_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  const Quadrature<dim - 1>& rule = form.facet_rule();
+  Point<dim> resultant = Point<dim>::Zero();
+  std::vector<BoundaryLoad> loads(form.problem().boundaries().size());
+  std::vector<Point<dim>> g(rule.size());
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    const BoundaryFacet& facet = mesh.boundary()[k];
+    if (facet.tag < 0 || !form.data().has_traction(k)) continue;
+    const double measure = facet_geometry(mesh, facet.cell, facet.local).measure;
+    loads[facet.tag].measure += measure;
+    form.data().traction(k, g);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      const double weight = measure * (dim - 1) * rule.weights[q];
+      resultant += weight * g[q];
+      loads[facet.tag].magnitude += weight * g[q].norm();
+    }
+  }
+  for (const BoundaryLoad& load : loads)
+    if (load.measure > 0)
+      facts.traction_stress = std::max(facts.traction_stress, load.magnitude / load.measure);
+  return resultant;
+}
+
+/// Boundaries with a negative pressure, with the lowest.
+template <int dim>
+std::vector<Suction> find_suction(const NitscheForm<dim>& form)
+{
+  const Mesh<dim>& mesh = form.space().mesh();
+  const auto boundaries = form.problem().boundaries();
+  std::vector<Suction> lowest(boundaries.size());
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    if (facet.tag < 0 || !boundaries[facet.tag].pressure) continue;
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    for (const Point<dim - 1>& s : form.facet_rule().points)
+      if (const double p = (*boundaries[facet.tag].pressure)(map(s)); p < lowest[facet.tag].lowest)
+        lowest[facet.tag] = {boundaries[facet.tag].name, p, place<dim>(map(s))};
+  }
+  std::erase_if(lowest, [](const Suction& suction) { return suction.lowest == 0; });
+  return lowest;
+}
+
+/// The area of the boundaries that take up the loads.
+template <int dim>
+double supporting_measure(const Problem<dim>& problem, const Mesh<dim>& mesh)
+{
+  double measure = 0;
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
+    if (condition.contact || condition.fixes_any())
+      measure += facet_geometry(mesh, facet.cell, facet.local).measure;
+  }
+  return measure;
+}
+
+/// The largest range of a prescribed component. An obstacle that stays where it is counts as 0.
+template <int dim>
+double displacement_range(const NitscheForm<dim>& form)
+{
+  const Constraints& constraints = form.constraints();
+  const double start = form.problem().has_contact() ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  double range = 0;
+  for (int component = 0; component < dim; ++component)
+  {
+    double lowest = start;
+    double highest = start;
+    for (std::size_t i = component; i < constraints.fixed.size(); i += dim)
+    {
+      if (!constraints.fixed[i]) continue;
+      lowest = std::fmin(lowest, constraints.values[i]);  // fmin passes over NaN
+      highest = std::fmax(highest, constraints.values[i]);
+    }
+    range = std::fmax(range, highest - lowest);
+  }
+  return range;
+}
+
+}  // namespace
+
+ElasticConstants elastic_constants(const Material& material, int dimension)
+{
+  const auto& [lambda, mu, plane] = material;
+  const bool plane_stress = dimension == 2 && plane == PlaneModel::stress;
+  const double nu = plane_stress ? lambda / (lambda + 2 * mu) : lambda / (2 * (lambda + mu));
+  return {2 * mu * (1 + nu), nu};
+}
+
+double LoadFacts::stress() const
+{
+  return std::max({traction_stress, support_stress, body_stress});
+}
+
+double LoadFacts::strain() const
+{
+  return std::max(stress() / smallest_E, displacement_strain);
+}
+
+template <int dim>
+LoadFacts load_facts(const NitscheForm<dim>& form)
+{
+  const Problem<dim>& problem = form.problem();
+  const Mesh<dim>& mesh = form.space().mesh();
+  LoadFacts facts;
+  measure_extent(mesh, facts);
+  for (int region = 0; region < static_cast<int>(problem.region_names().size()); ++region)
+    facts.materials.push_back(region_material(problem, region));
+  facts.smallest_E = std::ranges::min_element(facts.materials, {}, &RegionMaterial::E)->E;
+  const Point<dim> resultant = body_force_resultant(form, facts) + traction_resultant(form, facts);
+  const double support = supporting_measure(problem, mesh);
+  if (support > 0) facts.support_stress = resultant.norm() / support;
+  facts.body_stress = facts.largest_body_force * facts.size;
+  facts.displacement_strain = displacement_range(form) / facts.size;
+  facts.suction = find_suction(form);
+  return facts;
+}
+
+template LoadFacts load_facts(const NitscheForm<2>&);
+template LoadFacts load_facts(const NitscheForm<3>&);
+
+}  // namespace tribound

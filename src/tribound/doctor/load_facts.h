@@ -1,0 +1,65 @@
+#pragma once
+
+/// @file load_facts.h
+/// Loads against stiffness: what strain to expect, before anything is solved.
+
+#include <string>
+#include <vector>
+
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/place.h"
+
+namespace tribound
+{
+
+/// Young's modulus and Poisson's ratio.
+struct ElasticConstants
+{
+  double E = 0;
+  double nu = 0;
+};
+
+/// E and nu of lambda and mu, the inverse of lame(). Plane stress, which counts in 2D only, works with
+/// lambda_ps = 2 lambda mu / (lambda + 2 mu), hence nu = lambda_ps / (lambda_ps + 2 mu).
+[[nodiscard]] ElasticConstants elastic_constants(const Material& material, int dimension);
+
+struct RegionMaterial
+{
+  std::string region;
+  double E = 0;
+  double nu = 0;
+  bool plane_stress = false;  ///< 2D only
+};
+
+/// A boundary whose pressure is negative somewhere: it pulls.
+struct Suction
+{
+  std::string boundary;
+  double lowest = 0;  ///< pressure at the quadrature points
+  Place where;
+};
+
+/// Stresses and strains that an engineer would put on the back of an envelope.
+struct LoadFacts
+{
+  std::vector<double> extent;  ///< of the bounding box of the mesh
+  double size = 0;             ///< its longest side L
+  std::vector<RegionMaterial> materials;
+  double smallest_E = 0;
+  double largest_body_force = 0;   ///< largest mean of |f| over a cell
+  double traction_stress = 0;      ///< the largest mean of |g_N| over a boundary
+  double support_stress = 0;       ///< |int f + int g_N| over the area that contact or displacements hold
+  double body_stress = 0;          ///< max |f| L
+  double displacement_strain = 0;  ///< range of a prescribed component / L; with contact, it includes 0
+  std::vector<Suction> suction;
+
+  /// The largest of these stresses.
+  [[nodiscard]] double stress() const;
+  /// stress() / smallest E or displacement_strain, whichever is larger.
+  [[nodiscard]] double strain() const;
+};
+
+template <int dim>
+[[nodiscard]] LoadFacts load_facts(const NitscheForm<dim>& form);
+
+}  // namespace tribound

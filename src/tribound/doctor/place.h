@@ -1,0 +1,21 @@
+#pragma once
+
+/// @file place.h
+
+#include <vector>
+
+#include "tribound/base/types.h"
+
+namespace tribound
+{
+
+/// A point whose dimension is known at run time only; empty: nowhere in particular.
+using Place = std::vector<double>;
+
+template <int dim>
+[[nodiscard]] Place place(const Point<dim>& x)
+{
+  return {x.begin(), x.end()};
+}
+
+}  // namespace tribound

@@ -1,0 +1,185 @@
+#include "tribound/doctor/solution_facts.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <variant>
+
+#include "tribound/contact/support/body_support.h"
+#include "tribound/doctor/contact_facts.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A contact facet after the solution.
+template <int dim>
+struct FacetOutcome
+{
+  double measure = 0;
+  Point<dim> centre = Point<dim>::Zero();
+  double pressure = 0;  ///< mean
+  double largest_pressure = 0;
+  Point<dim> largest_pressure_at = Point<dim>::Zero();
+  bool closed = true;  ///< pressure at every quadrature point
+};
+
+/// Adds the states on a facet to the outcome of its boundary.
+template <int dim>
+FacetOutcome<dim> add_facet(const Quadrature<dim - 1>& rule, double measure,
+                            std::span<const ContactState<dim>> states, ContactOutcome& outcome)
+{
+  FacetOutcome<dim> facet{.measure = measure};
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    const ContactState<dim>& state = states[q];
+    const double share = rule.weights[q] * (dim - 1);  // of the facet
+    facet.centre += share * state.point;
+    facet.pressure += share * state.pressure;
+    facet.closed = facet.closed && state.pressure > 0;
+    if (state.pressure > 0) outcome.closed += measure * share;
+    if (state.pressure > 0 && state.status == ContactStatus::slip) outcome.slipping += measure * share;
+    if (state.pressure > facet.largest_pressure)
+    {
+      facet.largest_pressure = state.pressure;
+      facet.largest_pressure_at = state.point;
+    }
+    if (-state.gap <= outcome.penetration) continue;
+    outcome.penetration = -state.gap;
+    outcome.penetration_at = place<dim>(state.point);
+  }
+  outcome.largest_pressure = std::max(outcome.largest_pressure, facet.largest_pressure);
+  outcome.force += measure * facet.pressure;
+  ++outcome.facets;
+  outcome.closed_facets += facet.closed ? 1 : 0;
+  return facet;
+}
+
+/// d_F of ContactOutcome::zigzag.
+template <int dim>
+double deviation(std::span<const FacetOutcome<dim>> facets, int k, const std::vector<int>& neighbours)
+{
+  const auto n = static_cast<Eigen::Index>(neighbours.size());
+  double size = 0;
+  for (const int j : neighbours) size = std::max(size, (facets[j].centre - facets[k].centre).norm());
+  Eigen::MatrixXd conditions(dim + 1, n);  // the weights reproduce 1 and x; in the least-squares sense on
+  for (Eigen::Index i = 0; i < n; ++i)     // a curved boundary
+    conditions.col(i) << 1, (facets[neighbours[i]].centre - facets[k].centre) / size;
+  const Eigen::VectorXd weights =
+      conditions.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Unit(dim + 1, 0));
+  double interpolated = 0;
+  for (Eigen::Index i = 0; i < n; ++i) interpolated += weights[i] * facets[neighbours[i]].pressure;
+  return facets[k].pressure - interpolated;
+}
+
+/// a_F of ContactOutcome::zigzag for every facet.
+template <int dim>
+std::vector<double> zigzag_amplitudes(std::span<const FacetOutcome<dim>> facets,
+                                      std::span<const std::array<int, 2>> pairs)
+{
+  std::vector<std::vector<int>> neighbours(facets.size());
+  for (const auto& [k, l] : pairs)
+  {
+    if (!facets[k].closed || !facets[l].closed) continue;
+    neighbours[k].push_back(l);
+    neighbours[l].push_back(k);
+  }
+  std::vector<double> d(facets.size(), 0);  // no sign where it is not defined
+  for (std::size_t k = 0; k < facets.size(); ++k)
+    if (neighbours[k].size() == dim) d[k] = deviation(facets, static_cast<int>(k), neighbours[k]);
+  std::vector<double> amplitudes(facets.size(), 0);
+  for (std::size_t k = 0; k < facets.size(); ++k)
+  {
+    double largest = 0;  // of the other sign
+    double second = 0;
+    for (const int j : neighbours[k])
+    {
+      if (d[j] * d[k] >= 0) continue;
+      second = std::max(second, std::min(largest, std::abs(d[j])));
+      largest = std::max(largest, std::abs(d[j]));
+    }
+    amplitudes[k] = std::min(std::abs(d[k]), second) / 2;
+  }
+  return amplitudes;
+}
+
+template <int dim>
+void add_zigzag(const NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> facets,
+                std::span<const std::array<int, 2>> pairs, std::map<int, ContactOutcome>& outcomes)
+{
+  struct Squares
+  {
+    double amplitude = 0;
+    double pressure = 0;
+    double largest_amplitude = 0;
+  };
+  std::map<int, Squares> squares;  // by boundary
+  const std::vector<double> amplitudes = zigzag_amplitudes<dim>(facets, pairs);
+  for (std::size_t k = 0; k < facets.size(); ++k)
+  {
+    if (!facets[k].closed) continue;
+    const int tag = form.contact_facets()[k].facet.tag;
+    Squares& sums = squares[tag];
+    sums.amplitude += facets[k].measure * amplitudes[k] * amplitudes[k];
+    sums.pressure += facets[k].measure * facets[k].pressure * facets[k].pressure;
+    if (amplitudes[k] <= sums.largest_amplitude) continue;
+    sums.largest_amplitude = amplitudes[k];
+    outcomes.at(tag).zigzag_at = place<dim>(facets[k].centre);
+  }
+  for (const auto& [tag, sums] : squares) outcomes.at(tag).zigzag = std::sqrt(sums.amplitude / sums.pressure);
+}
+
+template <int dim>
+void add_kinks(const NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> facets,
+               std::span<const std::array<int, 2>> pairs, std::map<int, ContactOutcome>& outcomes)
+{
+  for (const auto& [k, l] : pairs)
+  {
+    const double angle = kink(form.contact_facets()[k], form.contact_facets()[l]);
+    const FacetOutcome<dim>& facet = facets[facets[k].largest_pressure > facets[l].largest_pressure ? k : l];
+    if (angle == 0 || facet.largest_pressure == 0) continue;
+    ContactOutcome& outcome = outcomes.at(form.contact_facets()[k].facet.tag);
+    outcome.kink = std::max(outcome.kink, angle);
+    if (facet.largest_pressure <= outcome.kink_pressure) continue;
+    outcome.kink_pressure = facet.largest_pressure;
+    outcome.kink_at = place<dim>(facet.largest_pressure_at);
+  }
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<ContactOutcome> contact_outcomes(const NitscheForm<dim>& form, std::span<const double> u)
+{
+  const FacetTabulation<dim> table = tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
+  std::map<int, ContactOutcome> outcomes;  // by boundary
+  std::vector<FacetOutcome<dim>> facets;
+  facets.reserve(form.contact_facets().size());
+  for (int k = 0; k < static_cast<int>(form.contact_facets().size()); ++k)
+  {
+    const ContactFacet<dim>& facet = form.contact_facets()[k];
+    ContactOutcome& outcome = outcomes[facet.facet.tag];
+    outcome.boundary = form.problem().boundary(facet.facet.tag).name;
+    outcome.has_friction = has_friction(facet.contact->friction);
+    if (const auto* coulomb = std::get_if<Coulomb>(&facet.contact->friction))
+      outcome.coefficient = coulomb->coefficient;
+    facets.push_back(
+        add_facet<dim>(form.facet_rule(), facet.geometry.measure, form.contact_states(u, k, table), outcome));
+  }
+  const std::vector<std::array<int, 2>> pairs = contact_neighbours(form);
+  add_zigzag<dim>(form, facets, pairs, outcomes);
+  add_kinks<dim>(form, facets, pairs, outcomes);
+  std::vector<ContactOutcome> result;
+  result.reserve(outcomes.size());
+  for (auto& [tag, outcome] : outcomes) result.push_back(std::move(outcome));
+  return result;
+}
+
+template std::vector<ContactOutcome> contact_outcomes(const NitscheForm<2>&, std::span<const double>);
+template std::vector<ContactOutcome> contact_outcomes(const NitscheForm<3>&, std::span<const double>);
+
+}  // namespace tribound

@@ -1,0 +1,53 @@
+#pragma once
+
+/// @file solution_facts.h
+/// What a computed contact looks like: penetration, zigzags and peaks of the pressure, sliding.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/place.h"
+
+namespace tribound
+{
+
+struct ContactOutcome
+{
+  std::string boundary;
+  long facets = 0;
+  long closed_facets = 0;  ///< with pressure at every quadrature point
+  double closed = 0;       ///< measure at which there is pressure
+  double slipping = 0;     ///< part of it that slips
+  bool has_friction = false;
+  std::optional<double> coefficient;  ///< Coulomb's
+  double force = 0;                   ///< integral of the pressure
+  double largest_pressure = 0;
+  double penetration = 0;  ///< max (u^n - g) at the quadrature points, 0 if nowhere positive
+  Place penetration_at;
+
+  /// By how much the pressure goes up and down from facet to facet, relative to itself. With p_F the mean
+  /// pressure of a closed facet and d_F what it is above the linear function through those of its neighbours
+  /// (2 in 2D, 3 in 3D, all of them closed): where two neighbours or more have a d of the other sign, p_F
+  /// zigzags by a_F, half the smaller of |d_F| and the second largest of their |d|; elsewhere a_F = 0. This
+  /// is (sum |F| a_F^2 / sum |F| p_F^2)^(1/2) over the closed facets. A steep or bent pressure has d of one
+  /// sign; smooth ones have d = O(h^2).
+  double zigzag = 0;
+  Place zigzag_at;  ///< where a_F is largest
+
+  double kink = 0;           ///< degrees: the largest kink() where there is pressure on either side
+  double kink_pressure = 0;  ///< the largest on facets that meet at a kink
+  Place kink_at;             ///< where it is
+
+  /// Over what is closed; 0 where nothing is.
+  [[nodiscard]] double mean_pressure() const { return closed > 0 ? force / closed : 0; }
+};
+
+/// The outcome on every contact boundary that has facets, in the order of the problem.
+template <int dim>
+[[nodiscard]] std::vector<ContactOutcome> contact_outcomes(const NitscheForm<dim>& form,
+                                                           std::span<const double> u);
+
+}  // namespace tribound

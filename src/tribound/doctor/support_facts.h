@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file support_facts.h
+/// What holds the bodies, and where conditions contradict each other.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/support/body_support.h"
+#include "tribound/doctor/place.h"
+
+namespace tribound
+{
+
+/// A rigid motion that displacement conditions leave and only contact stops.
+struct ContactHeldMotion
+{
+  std::string body;
+  std::string motion;            ///< such as "translation along x"
+  bool by_friction = false;      ///< nothing but friction stops it; else pressure, one way
+  std::optional<Remedy> remedy;  ///< what would stop it without contact
+};
+
+/// The motions of every body that only contact stops: first those stopped by pressure, then by friction.
+template <int dim>
+[[nodiscard]] std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<dim>& form);
+
+/// Per boundary number, whether a body would slide along it as a whole without its friction: the facets of
+/// the boundary are within 10 degrees of a plane, and a rigid motion along the plane is stopped neither by
+/// displacement conditions nor by closed contact without friction. There, and only there, resultants tell how
+/// far sliding is.
+template <int dim>
+[[nodiscard]] std::vector<bool> slides_as_a_whole(const NitscheForm<dim>& form);
+
+/// Vertices where a contact boundary meets a boundary that fixes the normal displacement.
+struct OverconstrainedCorner
+{
+  std::string contact;
+  std::string displacement;
+  long vertices = 0;
+  Place where;          ///< the vertex with the largest u_D^n - g
+  double normal = 0;    ///< u_D^n there
+  double gap = 0;       ///< g there
+  bool sticks = false;  ///< whether everything is fixed there and the contact has friction
+
+  /// Whether the body is pushed into the obstacle, which no solution allows.
+  [[nodiscard]] bool contradicts() const;
+};
+
+/// One for each pair of boundaries that meet like this.
+template <int dim>
+[[nodiscard]] std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<dim>& form);
+
+}  // namespace tribound

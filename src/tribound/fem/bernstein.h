@@ -1,0 +1,21 @@
+#pragma once
+
+/// @file bernstein.h
+/// Polynomials on the reference simplex in Bernstein's basis, whose coefficients enclose them.
+
+#include <vector>
+
+#include "tribound/fem/quadrature.h"
+
+namespace tribound
+{
+
+/// The matrix, [coefficient * rule.size() + point], that gives the coefficients b_a of q = sum_a b_a B_a, |a|
+/// = degree, from its values at the points of a rule exact for products of two polynomials of the degree: min
+/// b <= q <= max b on the simplex, since the B_a = |a|!/a! lambda^a are positive and add up to 1; halving the
+/// simplex brings the b_a four times as close to q. Of values that are no polynomial's it takes the L2
+/// projection.
+template <int k>
+[[nodiscard]] std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree);
+
+}  // namespace tribound

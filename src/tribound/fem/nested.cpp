@@ -1,0 +1,63 @@
+#include "tribound/fem/nested.h"
+
+#include <cassert>
+
+namespace tribound
+{
+
+template <int dim>
+std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
+                                       std::span<const Index> parent, const LagrangeSpace<dim>& fine)
+{
+  assert(u.size() == static_cast<std::size_t>(coarse.n_dofs()));
+  assert(parent.size() == static_cast<std::size_t>(fine.mesh().n_cells()));
+  std::vector<double> result(fine.n_dofs(), 0.0);
+  std::vector<char> done(fine.n_nodes(), 0);  // once per node: tabulation is what costs
+  std::vector<Index> nodes;
+  std::vector<Point<dim>> in_parent;
+  for (Index c = 0; c < fine.mesh().n_cells(); ++c)
+  {
+    const CellMap<dim> map = cell_map(fine.mesh(), c);
+    const CellMap<dim> parent_map = cell_map(coarse.mesh(), parent[c]);
+    nodes.clear();
+    in_parent.clear();
+    for (int i = 0; i < fine.basis().n_nodes(); ++i)
+    {
+      const Index node = fine.cell_nodes(c)[i];
+      if (done[node] != 0) continue;
+      done[node] = 1;
+      nodes.push_back(node);
+      in_parent.push_back(reference_point(parent_map, map(fine.basis().node_point(i))));
+    }
+    const Tabulation<dim> table = coarse.basis().tabulate(in_parent);
+    const std::span<const Index> parent_nodes = coarse.cell_nodes(parent[c]);
+    for (int q = 0; q < table.n_points; ++q)
+      for (int a = 0; a < dim; ++a)
+      {
+        double value = 0;
+        for (int j = 0; j < table.n_nodes; ++j) value += table.values_at(q)[j] * u[dim * parent_nodes[j] + a];
+        result[dim * nodes[q] + a] = value;
+      }
+  }
+  return result;
+}
+
+template <int dim>
+std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
+                                       const Refined<dim>& refined, const LagrangeSpace<dim>& fine)
+{
+  std::vector<Index> parent(fine.mesh().n_cells());
+  for (Index c = 0; c < fine.mesh().n_cells(); ++c) parent[c] = refined.ancestor(c);
+  return nested_interpolant<dim>(coarse, u, parent, fine);
+}
+
+template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
+                                                std::span<const Index>, const LagrangeSpace<2>&);
+template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
+                                                std::span<const Index>, const LagrangeSpace<3>&);
+template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
+                                                const Refined<2>&, const LagrangeSpace<2>&);
+template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
+                                                const Refined<3>&, const LagrangeSpace<3>&);
+
+}  // namespace tribound

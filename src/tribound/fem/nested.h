@@ -1,0 +1,37 @@
+#pragma once
+
+/// @file nested.h
+/// Functions carried to a space that contains theirs.
+
+#include <span>
+#include <vector>
+
+#include "tribound/fem/space.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/refine.h"
+
+namespace tribound
+{
+
+/// The reference coordinates of x in a cell.
+template <int dim>
+[[nodiscard]] Point<dim> reference_point(const CellMap<dim>& map, const Point<dim>& x)
+{
+  return map.inverse_transpose.transpose() * (x - map.origin);
+}
+
+/// The degrees of freedom of u, a function of `coarse`, in `fine`, a space on a mesh nested in that of
+/// `coarse`: cell c of `fine` lies in cell parent[c] of `coarse`. Exact up to round-off where the degree of
+/// `fine` is not below that of `coarse`. For Bisected, `parent` is its member.
+template <int dim>
+[[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
+                                                     std::span<const double> u, std::span<const Index> parent,
+                                                     const LagrangeSpace<dim>& fine);
+
+/// The same for a mesh refined uniformly.
+template <int dim>
+[[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
+                                                     std::span<const double> u, const Refined<dim>& refined,
+                                                     const LagrangeSpace<dim>& fine);
+
+}  // namespace tribound

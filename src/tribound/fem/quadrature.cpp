@@ -1,0 +1,100 @@
+#include "tribound/fem/quadrature.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace tribound
+{
+
+namespace
+{
+
+/// The n-point Gauss rule on [0, 1] for the weight (1 - t)^alpha, from the eigenvalues of the Jacobi matrix
+/// (Golub and Welsch 1969).
+Quadrature<1> gauss_jacobi(int n, int alpha)
+{
+  Eigen::VectorXd diagonal(n);
+  Eigen::VectorXd offdiagonal(n - 1);
+  for (int i = 0; i < n; ++i)
+  {
+    const double s = 2.0 * i + alpha;
+    diagonal[i] = alpha == 0 ? 0.0 : -double(alpha) * alpha / (s * (s + 2));
+    if (i == 0) diagonal[i] = -alpha / (alpha + 2.0);
+    if (i > 0) offdiagonal[i - 1] = 2.0 * i * (i + alpha) / (s * std::sqrt((s + 1) * (s - 1)));
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  eigen.computeFromTridiagonal(diagonal, offdiagonal);
+
+  Quadrature<1> rule;
+  for (int i = 0; i < n; ++i)
+  {
+    rule.points.emplace_back(0.5 * (eigen.eigenvalues()[i] + 1));
+    rule.weights.push_back(std::pow(eigen.eigenvectors()(0, i), 2) / (alpha + 1));
+  }
+  return rule;
+}
+
+/// k+1 points, exact to degree 2 (Hammer and Stroud 1956).
+template <int k>
+Quadrature<k> degree_two_rule()
+{
+  const double a = k == 2 ? 1.0 / 6 : (5 - std::sqrt(5.0)) / 20;
+  Quadrature<k> rule;
+  for (int i = 0; i <= k; ++i)
+  {
+    Point<k> point = Point<k>::Constant(a);
+    if (i > 0) point[i - 1] = 1 - k * a;
+    rule.points.push_back(point);
+    rule.weights.push_back(k == 2 ? 1.0 / 6 : 1.0 / 24);
+  }
+  return rule;
+}
+
+/// Gauss-Jacobi in collapsed coordinates: x_j = t_j (1 - t_1) ... (1 - t_{j-1}).
+template <int k>
+Quadrature<k> collapsed_rule(int n)
+{
+  std::array<Quadrature<1>, k> line;
+  for (int j = 0; j < k; ++j) line[j] = gauss_jacobi(n, k - 1 - j);
+
+  int n_points = 1;
+  for (int j = 0; j < k; ++j) n_points *= n;
+  Quadrature<k> rule;
+  rule.points.reserve(n_points);
+  rule.weights.reserve(n_points);
+  for (int q = 0; q < n_points; ++q)
+  {
+    Point<k> point;
+    double weight = 1;
+    double rest = 1;
+    for (int j = 0, digits = q; j < k; ++j, digits /= n)
+    {
+      const double t = line[j].points[digits % n][0];
+      point[j] = rest * t;
+      rest *= 1 - t;
+      weight *= line[j].weights[digits % n];
+    }
+    rule.points.push_back(point);
+    rule.weights.push_back(weight);
+  }
+  return rule;
+}
+
+}  // namespace
+
+template <int k>
+Quadrature<k> quadrature(int degree)
+{
+  if constexpr (k > 1)
+  {
+    if (degree <= 1) return {{Point<k>::Constant(1.0 / (k + 1))}, {k == 2 ? 1.0 / 2 : 1.0 / 6}};
+    if (degree == 2) return degree_two_rule<k>();
+  }
+  return collapsed_rule<k>(degree / 2 + 1);
+}
+
+template Quadrature<1> quadrature<1>(int);
+template Quadrature<2> quadrature<2>(int);
+template Quadrature<3> quadrature<3>(int);
+
+}  // namespace tribound

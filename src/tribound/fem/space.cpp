@@ -1,0 +1,228 @@
+#include "tribound/fem/space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribound/fem/polynomials.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Where a reference node sits: inside which vertex, edge, facet (3D) or the cell.
+enum class Entity
+{
+  vertex,
+  edge,
+  facet,
+  cell
+};
+
+template <int dim>
+struct NodePlace
+{
+  Entity entity = Entity::cell;
+  int number = 0;                                ///< local vertex, edge or facet, or rank inside the cell
+  int n_vertices = 0;                            ///< of the entity
+  std::array<std::pair<int, int>, dim> weights;  ///< local vertex and weight, for edges and facets
+};
+
+template <int dim>
+int local_edge(int a, int b)
+{
+  const auto& edges = local_edges<dim>;
+  return static_cast<int>(std::ranges::find(edges, std::array{a, b}) - edges.begin());
+}
+
+/// Places of all reference nodes.
+template <int dim>
+std::vector<NodePlace<dim>> node_places(const LagrangeBasis<dim>& basis)
+{
+  std::vector<NodePlace<dim>> places;
+  int n_interior = 0;
+  for (int i = 0; i < basis.n_nodes(); ++i)
+  {
+    const auto& node = basis.node(i);
+    NodePlace<dim> place;
+    place.n_vertices = dim + 1 - static_cast<int>(std::ranges::count(node, 0));
+    if (place.n_vertices <= dim)
+      for (int v = 0, n = 0; v <= dim; ++v)
+        if (node[v] > 0) place.weights[n++] = {v, node[v]};
+    if (place.n_vertices == dim + 1)
+      place.number = n_interior++;
+    else if (place.n_vertices == 1)
+      place = {Entity::vertex, place.weights[0].first, 1, place.weights};
+    else if (place.n_vertices == 2)
+      place = {Entity::edge, local_edge<dim>(place.weights[0].first, place.weights[1].first), 2,
+               place.weights};
+    else
+      place = {Entity::facet, static_cast<int>(std::ranges::find(node, 0) - node.begin()), 3, place.weights};
+    places.push_back(place);
+  }
+  return places;
+}
+
+/// Rank of a node among those inside its edge or facet, the same from every cell: weights are taken in
+/// ascending order of the global vertex numbers.
+template <int dim>
+int rank_in_entity(const NodePlace<dim>& place, const Cell<dim>& cell, int p)
+{
+  auto weights = place.weights;
+  const auto by_vertex = [&](const auto& w) { return cell[w.first]; };
+  std::ranges::sort(weights.begin(), weights.begin() + place.n_vertices, {}, by_vertex);
+  if (place.n_vertices == 2) return weights[1].second - 1;
+  if constexpr (dim == 3)
+  {
+    const int i = weights[1].second - 1;
+    const int j = weights[2].second - 1;
+    return j * (p - 2) - j * (j - 1) / 2 + i;
+  }
+  return 0;
+}
+
+}  // namespace
+
+template <int dim>
+LagrangeSpace<dim>::LagrangeSpace(const Mesh<dim>& mesh, int degree) : mesh_(&mesh), basis_(degree)
+{
+  const int p = degree;
+  const Topology<dim>& topology = mesh.topology();
+  const int per_edge = p - 1;
+  const int per_facet = dim == 3 ? (p - 1) * (p - 2) / 2 : 0;
+  const int per_cell = polynomial_dimension(dim, p - dim - 1);
+  const auto edge_base = mesh.n_vertices();
+  const auto facet_base = edge_base + per_edge * static_cast<Index>(topology.edges.size());
+  const auto cell_base = facet_base + per_facet * static_cast<Index>(topology.facets.size());
+  n_nodes_ = cell_base + per_cell * mesh.n_cells();
+
+  const std::vector<NodePlace<dim>> places = node_places(basis_);
+  cell_nodes_.reserve(static_cast<std::size_t>(mesh.n_cells()) * places.size());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (const NodePlace<dim>& place : places) switch (place.entity)
+      {
+        case Entity::vertex:
+          cell_nodes_.push_back(mesh.cell(c)[place.number]);
+          break;
+        case Entity::edge:
+          cell_nodes_.push_back(edge_base + per_edge * topology.cell_edges[c][place.number] +
+                                rank_in_entity(place, mesh.cell(c), p));
+          break;
+        case Entity::facet:
+          cell_nodes_.push_back(facet_base + per_facet * topology.cell_facets[c][place.number] +
+                                rank_in_entity(place, mesh.cell(c), p));
+          break;
+        case Entity::cell:
+          cell_nodes_.push_back(cell_base + per_cell * c + place.number);
+          break;
+      }
+}
+
+template <int dim>
+std::vector<Point<dim>> LagrangeSpace<dim>::node_points() const
+{
+  std::vector<Point<dim>> points(n_nodes_);
+  const std::vector<Point<dim>> reference = basis_.node_points();
+  for (Index c = 0; c < mesh_->n_cells(); ++c)
+  {
+    const CellMap<dim> map = cell_map(*mesh_, c);
+    const std::span<const Index> nodes = cell_nodes(c);
+    for (std::size_t i = 0; i < nodes.size(); ++i) points[nodes[i]] = map(reference[i]);
+  }
+  for (Index v = 0; v < mesh_->n_vertices(); ++v) points[v] = mesh_->vertex(v);  // free of round-off
+  return points;
+}
+
+Index Constraints::n_fixed() const
+{
+  return static_cast<Index>(std::ranges::count(fixed, 1));
+}
+
+namespace
+{
+
+/// Largest extent of the mesh, the length scale of displacements.
+template <int dim>
+double extent(const Mesh<dim>& mesh)
+{
+  Point<dim> lower = mesh.vertex(0);
+  Point<dim> upper = mesh.vertex(0);
+  for (const Point<dim>& x : mesh.vertices())
+  {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+  return (upper - lower).maxCoeff();
+}
+
+/// Name of the first boundary that fixes component a at the node, empty if none does.
+template <int dim>
+std::string fixing_boundary(const Problem<dim>& problem, const LagrangeSpace<dim>& space, Index node, int a)
+{
+  for (const BoundaryFacet& facet : space.mesh().boundary())
+  {
+    const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    const std::span<const Index> nodes = space.cell_nodes(facet.cell);
+    const auto i = static_cast<int>(std::ranges::find(nodes, node) - nodes.begin());
+    if (boundary.fixes(a) && i < space.basis().n_nodes() && space.basis().node(i)[facet.local] == 0)
+      return boundary.name;
+  }
+  return {};
+}
+
+}  // namespace
+
+template <int dim>
+Constraints dirichlet(const Problem<dim>& problem, const LagrangeSpace<dim>& space)
+{
+  const Mesh<dim>& mesh = space.mesh();
+  const LagrangeBasis<dim>& basis = space.basis();
+  const double tolerance = 1e-12 * extent(mesh);
+  Constraints constraints{std::vector<char>(space.n_dofs(), 0), std::vector<double>(space.n_dofs(), 0.0)};
+
+  const auto fix = [&](const BoundaryCondition<dim>& boundary, int a, Index node, const Point<dim>& x)
+  {
+    const Index dof = dim * node + a;
+    const double value = (*boundary.displacement[a])(x);
+    const double known = constraints.values[dof];
+    if (constraints.fixed[dof] && std::abs(value - known) > tolerance + 1e-9 * std::abs(known))
+      throw InputError(
+          boundary.displacement[a]->where(),
+          fmt::format("is {:.9g} at the point ({:.9g}), where boundary \"{}\" prescribes {:.9g}", value,
+                      fmt::join(x.data(), x.data() + dim, ", "), fixing_boundary(problem, space, node, a),
+                      known),
+          "let the values agree where the boundaries meet, or leave the component \"free\" on one");
+    if (!constraints.fixed[dof]) constraints.values[dof] = value;
+    constraints.fixed[dof] = 1;
+  };
+
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    if (!boundary.fixes_any()) continue;
+    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const std::span<const Index> nodes = space.cell_nodes(facet.cell);
+    for (int i = 0; i < basis.n_nodes(); ++i)
+    {
+      if (basis.node(i)[facet.local] > 0) continue;  // not on the facet
+      const Point<dim> x = nodes[i] < mesh.n_vertices()
+                               ? mesh.vertex(nodes[i])  // the same from all facets
+                               : map(cell_to_facet<dim>(facet.local, basis.node_point(i)));
+      for (int a = 0; a < dim; ++a)
+        if (boundary.fixes(a)) fix(boundary, a, nodes[i], x);
+    }
+  }
+  return constraints;
+}
+
+template class LagrangeSpace<2>;
+template class LagrangeSpace<3>;
+template Constraints dirichlet(const Problem<2>&, const LagrangeSpace<2>&);
+template Constraints dirichlet(const Problem<3>&, const LagrangeSpace<3>&);
+
+}  // namespace tribound

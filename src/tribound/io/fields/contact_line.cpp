@@ -1,0 +1,228 @@
+#include "tribound/io/fields/contact_line.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/csv.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using Chain = std::vector<ChainLink>;
+
+/// The facets of one boundary group in 2D and how they hang together.
+class FacetGraph
+{
+ public:
+  FacetGraph(const NitscheForm<2>& form, int tag) : form_(form), visited_(form.contact_facets().size(), 0)
+  {
+    for (int k = 0; k < static_cast<int>(visited_.size()); ++k)
+      if (form.contact_facets()[k].facet.tag == tag)
+        for (const Index v : ends(k)) facets_at_[v].push_back(k);
+  }
+
+  /// All chains, those with ends first looked for, since what remains then is closed.
+  [[nodiscard]] std::vector<Chain> chains()
+  {
+    std::vector<Index> vertices;
+    for (const auto& [vertex, facets] : facets_at_) vertices.push_back(vertex);
+    std::ranges::sort(vertices, {}, [this](Index v) { return position(v); });
+
+    std::vector<Chain> chains;
+    for (const bool closed : {false, true})
+      for (const Index v : vertices)
+      {
+        const std::vector<int>& facets = facets_at_.at(v);
+        if (!visited_[facets.front()] && (closed || facets.size() == 1)) chains.push_back(follow(v));
+      }
+    std::ranges::sort(chains, {}, [this](const Chain& chain) { return position(first_vertex(chain[0])); });
+    return chains;
+  }
+
+ private:
+  /// The vertices of a facet along its reference coordinate.
+  [[nodiscard]] std::array<Index, 2> ends(int facet) const
+  {
+    const BoundaryFacet& f = form_.contact_facets()[facet].facet;
+    const Cell<2>& cell = form_.space().mesh().cell(f.cell);
+    return {cell[f.local == 0 ? 1 : 0], cell[f.local == 2 ? 1 : 2]};
+  }
+
+  [[nodiscard]] std::pair<double, double> position(Index vertex) const
+  {
+    const Point<2>& x = form_.space().mesh().vertex(vertex);
+    return {x[0], x[1]};
+  }
+
+  [[nodiscard]] Index first_vertex(const ChainLink& link) const
+  {
+    return ends(link.facet)[link.reversed ? 1 : 0];
+  }
+
+  /// From a vertex on, through facets not visited so far.
+  Chain follow(Index vertex)
+  {
+    Chain chain;
+    for (;;)
+    {
+      const std::vector<int>& facets = facets_at_.at(vertex);
+      const auto next = std::ranges::find_if(facets, [this](int k) { return !visited_[k]; });
+      if (next == facets.end()) return chain;
+      visited_[*next] = 1;
+      const std::array<Index, 2> v = ends(*next);
+      const bool reversed = v[0] != vertex;
+      chain.push_back({*next, reversed, 0.0});
+      vertex = reversed ? v[0] : v[1];
+    }
+  }
+
+  const NitscheForm<2>& form_;
+  std::vector<char> visited_;
+  std::map<Index, std::vector<int>> facets_at_;
+};
+
+template <int dim>
+std::string columns()
+{
+  return dim == 2
+             ? "boundary,facet,x,y,nx,ny,arc,pressure,traction_x,traction_y,limit,status,gap,slip_x,slip_y,"
+               "weight,level"
+             : "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,"
+               "slip_x,slip_y,slip_z,weight,level";
+}
+
+template <int dim>
+void add_point(CsvTable& table, const Point<dim>& x, double round_off = 0)
+{
+  for (const double component : x) table.add(std::abs(component) > round_off ? component : 0.0);
+}
+
+/// What every row needs.
+template <int dim>
+struct Rows
+{
+  Rows(const NitscheForm<dim>& f, std::span<const double> displacement, int number)
+      : form(f),
+        u(displacement),
+        level(number),
+        at_rule(tabulate_on_facets<dim>(f.space().basis(), f.facet_rule().points))
+  {
+    double size = 0;
+    for (const Point<dim>& x : f.space().mesh().vertices()) size = std::max(size, x.cwiseAbs().maxCoeff());
+    round_off = relative_round_off * size;
+  }
+
+  /// `arc` is absent in 3D.
+  void add(CsvTable& table, int facet, int q, const ContactState<dim>& state, const double* arc) const
+  {
+    const ContactFacet<dim>& contact = form.contact_facets()[facet];
+    table.add(form.problem().boundary(contact.facet.tag).name);
+    table.add(facet);
+    add_point<dim>(table, state.point, round_off);
+    add_point<dim>(table, state.normal, relative_round_off);
+    if (arc) table.add(*arc);
+    table.add(state.pressure);
+    add_point<dim>(table, state.traction);
+    table.add(state.limit);
+    table.add(static_cast<int>(state.status));
+    table.add(state.gap);
+    add_point<dim>(table, state.slip);
+    table.add(contact.geometry.measure * (dim - 1) * form.facet_rule().weights[q]);
+    table.add(level);
+    table.end_row();
+  }
+
+  static constexpr double relative_round_off = 1e-14;
+  const NitscheForm<dim>& form;
+  std::span<const double> u;
+  int level;
+  FacetTabulation<dim> at_rule;
+  double round_off = 0;  ///< of coordinates
+};
+
+void add_chains(CsvTable& table, const Rows<2>& rows, int tag)
+{
+  const Quadrature<1>& rule = rows.form.facet_rule();
+  std::vector<int> along(rule.size());
+  for (int q = 0; q < rule.size(); ++q) along[q] = q;
+  std::ranges::sort(along, {}, [&rule](int q) { return rule.points[q][0]; });
+
+  for (const ChainLink& link : contact_chains(rows.form, tag))
+  {
+    const double length = rows.form.contact_facets()[link.facet].geometry.measure;
+    const auto states = rows.form.contact_states(rows.u, link.facet, rows.at_rule);
+    for (std::size_t i = 0; i < along.size(); ++i)
+    {
+      const int q = along[link.reversed ? along.size() - 1 - i : i];
+      const double s = rule.points[q][0];
+      const double arc = link.arc + length * (link.reversed ? 1.0 - s : s);
+      rows.add(table, link.facet, q, states[q], &arc);
+    }
+  }
+}
+
+void add_facets(CsvTable& table, const Rows<3>& rows, int tag)
+{
+  const auto facets = rows.form.contact_facets();
+  for (int k = 0; k < static_cast<int>(facets.size()); ++k)
+  {
+    if (facets[k].facet.tag != tag) continue;
+    const auto states = rows.form.contact_states(rows.u, k, rows.at_rule);
+    for (int q = 0; q < static_cast<int>(states.size()); ++q) rows.add(table, k, q, states[q], nullptr);
+  }
+}
+
+}  // namespace
+
+std::vector<ChainLink> contact_chains(const NitscheForm<2>& form, int tag)
+{
+  std::vector<ChainLink> links;
+  double arc = 0.0;
+  for (const Chain& chain : FacetGraph(form, tag).chains())
+    for (ChainLink link : chain)
+    {
+      link.arc = arc;
+      arc += form.contact_facets()[link.facet].geometry.measure;
+      links.push_back(link);
+    }
+  return links;
+}
+
+template <int dim>
+std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level)
+{
+  CsvTable table(columns<dim>());
+  const Rows<dim> rows(form, u, level);
+  const int n_boundaries = static_cast<int>(form.problem().boundaries().size());
+  for (int tag = 0; tag < n_boundaries; ++tag)
+  {
+    if constexpr (dim == 2)
+      add_chains(table, rows, tag);
+    else
+      add_facets(table, rows, tag);
+  }
+  return table.text();
+}
+
+template <int dim>
+void write_contact_csv(const std::filesystem::path& path, const NitscheForm<dim>& form,
+                       std::span<const double> u, int level)
+{
+  write_file(path, contact_csv(form, u, level));
+}
+
+template std::string contact_csv(const NitscheForm<2>&, std::span<const double>, int);
+template std::string contact_csv(const NitscheForm<3>&, std::span<const double>, int);
+template void write_contact_csv(const std::filesystem::path&, const NitscheForm<2>&, std::span<const double>,
+                                int);
+template void write_contact_csv(const std::filesystem::path&, const NitscheForm<3>&, std::span<const double>,
+                                int);
+
+}  // namespace tribound

@@ -1,0 +1,94 @@
+#pragma once
+
+/// @file vtu.h
+/// The solution on a mesh as VTU files with true degree-p cells (VTK Lagrange simplices).
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/space.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+/// One number per cell, such as an error component eta_*.
+struct CellField
+{
+  std::string name;
+  std::span<const double> values;
+};
+
+/// A tensor field that may jump from cell to cell. `at_nodes(cell, values)` sets its values at the nodes of
+/// the cell, in the order of LagrangeSpace::basis(); its symmetric part is written.
+template <int dim>
+struct TensorField
+{
+  std::string name;
+  std::function<void(Index cell, std::span<Tensor<dim>> values)> at_nodes;
+};
+
+/// sigma(u_h) as a field. Keeps references to the arguments.
+template <int dim>
+[[nodiscard]] TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                                            std::span<const double> u);
+
+/// sigma_h = sigma_dis + sigma_lin as a field. Keeps references to the arguments.
+template <int dim>
+[[nodiscard]] TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space,
+                                                         const Stress<dim>& stress);
+
+/// sigma_zz / (sigma_xx + sigma_yy) in 2D: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
+/// stress.
+[[nodiscard]] double out_of_plane_ratio(const Material& material);
+
+/// Symmetric part of s in VTK's order (xx, yy, zz, xy, yz, xz); `ratio`, see out_of_plane_ratio(), gives zz
+/// in 2D.
+template <int dim>
+[[nodiscard]] std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio);
+
+/// Von Mises stress (3/2 dev sigma : dev sigma)^{1/2} of the symmetric tensor (xx, yy, zz, xy, yz, xz).
+[[nodiscard]] double von_mises(const std::array<double, 6>& sigma);
+
+/// Its eigenvalues, the largest first; tension positive.
+[[nodiscard]] std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma);
+
+/// Writes the cells of degree p with their own points each: points and `displacement` (3 components, z = 0 in
+/// 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz), `principal_stresses`
+/// and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz of every tensor
+/// follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws WriteError when
+/// the file cannot be written.
+template <int dim>
+void write_level_vtu(const std::filesystem::path& path, int level, const Problem<dim>& problem,
+                     const LagrangeSpace<dim>& space, std::span<const double> u,
+                     std::span<const CellField> cell_fields = {},
+                     std::span<const TensorField<dim>> tensors = {});
+
+/// Writes the facets of Gamma_C as curves or triangles of degree p, in the order of form.contact_facets():
+/// point data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick,
+/// 2 slip), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary group).
+/// Throws WriteError when the file cannot be written.
+template <int dim>
+void write_contact_vtu(const std::filesystem::path& path, int level, const NitscheForm<dim>& form,
+                       std::span<const double> u);
+
+/// The name of a numbered file, such as "level_003.vtu".
+[[nodiscard]] std::string level_file_name(std::string_view stem, int level);
+
+/// Writes series.pvd, which lists level_000.vtu, level_001.vtu, ... with the level as time.
+/// Throws WriteError when the file cannot be written.
+void write_series(const std::filesystem::path& directory, int n_levels);
+
+/// Removes what an earlier run left of such a series: level_NNN.vtu and contact_NNN.vtu, N a digit, at least
+/// three, and series.pvd. Other files stay. Throws InputError when one cannot be removed.
+void remove_series(const std::filesystem::path& directory);
+
+}  // namespace tribound

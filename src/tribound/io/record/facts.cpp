@@ -1,0 +1,139 @@
+#include "tribound/io/record/facts.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "tribound/base/version.h"
+#include "tribound/doctor/load_facts.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// A datum in words: its value where it is constant, else "varies".
+std::string text(const Expression& expression)
+{
+  return expression.is_constant() ? fmt::format("{:.6g}", expression(Point<2>::Zero().eval())) : "varies";
+}
+
+std::string text(const FrictionLaw& law)
+{
+  if (const auto* tresca = std::get_if<Tresca>(&law))
+    return fmt::format("Tresca friction, threshold {}", text(tresca->threshold));
+  if (const auto* coulomb = std::get_if<Coulomb>(&law))
+    return fmt::format("Coulomb friction, coefficient {:.6g}", coulomb->coefficient);
+  return "no friction";
+}
+
+template <int dim>
+std::vector<RegionFacts> region_facts(const Problem<dim>& problem, const Mesh<dim>& mesh)
+{
+  std::vector<RegionFacts> regions;
+  for (std::size_t r = 0; r < mesh.region_names().size(); ++r)
+    regions.push_back({mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dim)});
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    RegionFacts& region = regions[mesh.region(c)];
+    ++region.cells;
+    region.measure += cell_map(mesh, c).det / (dim == 2 ? 2.0 : 6.0);
+  }
+  return regions;
+}
+
+template <int dim>
+std::vector<BoundaryFacts> boundary_facts(const Problem<dim>& problem, const Mesh<dim>& mesh)
+{
+  std::vector<BoundaryFacts> boundaries;
+  for (const BoundaryCondition<dim>& condition : problem.boundaries())
+    boundaries.push_back({condition.name, 0, 0.0, describe(condition)});
+  BoundaryFacts unnamed{"(no group)", 0, 0.0, describe(problem.boundary(-1))};
+  for (const BoundaryFacet& facet : mesh.boundary())
+  {
+    BoundaryFacts& boundary = facet.tag < 0 ? unnamed : boundaries[facet.tag];
+    ++boundary.facets;
+    boundary.measure += facet_geometry(mesh, facet.cell, facet.local).measure;
+  }
+  if (unnamed.facets > 0) boundaries.push_back(unnamed);
+  return boundaries;
+}
+
+}  // namespace
+
+CaseFacts case_facts(const Config& config, int dimension)
+{
+  return {config.title, config.file, dimension, config.degree, friction_name(config), config.gamma0()};
+}
+
+std::string describe(const Material& material, int dimension)
+{
+  const auto [E, nu] = elastic_constants(material, dimension);
+  const bool plane_stress = material.plane == PlaneModel::stress;
+  const char* model = dimension == 3 ? "" : plane_stress ? ", plane stress" : ", plane strain";
+  return fmt::format("E = {:.6g}, nu = {:.6g}{}", E, nu, model);
+}
+
+template <int dim>
+std::string describe(const BoundaryCondition<dim>& condition)
+{
+  std::string words;
+  const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
+  const auto vector = [](const auto& component)
+  {
+    std::string list;
+    for (int i = 0; i < dim; ++i) list += (i == 0 ? "" : ", ") + component(i);
+    return "(" + list + ")";
+  };
+  if (condition.fixes_any())
+    add("displacement " +
+        vector([&](int i) { return condition.fixes(i) ? text(*condition.displacement[i]) : "free"; }));
+  if (std::ranges::any_of(condition.traction, [](const Expression& t) { return !t.is_zero(); }))
+    add("traction " + vector([&](int i) { return text(condition.traction[i]); }));
+  if (condition.pressure) add("pressure " + text(*condition.pressure));
+  if (condition.contact)
+    add("contact, " + text(condition.contact->friction) + ", gap " + text(condition.contact->gap));
+  return words.empty() ? "traction-free" : words;
+}
+
+template <int dim>
+MeshFacts mesh_facts(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                     const Constraints& constraints)
+{
+  const Mesh<dim>& mesh = space.mesh();
+  MeshFacts facts;
+  facts.vertices = mesh.n_vertices();
+  facts.cells = mesh.n_cells();
+  facts.free_dofs = space.n_dofs() - constraints.n_fixed();
+  facts.smallest_cell = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const double h = cell_diameter(mesh, c);
+    facts.smallest_cell = std::min(facts.smallest_cell, h);
+    facts.largest_cell = std::max(facts.largest_cell, h);
+  }
+  facts.regions = region_facts(problem, mesh);
+  facts.boundaries = boundary_facts(problem, mesh);
+  return facts;
+}
+
+BuildFacts build_facts()
+{
+  BuildFacts facts;
+  facts.version = version();
+  facts.compiler = compiler();
+  facts.eigen = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+  return facts;
+}
+
+template std::string describe(const BoundaryCondition<2>&);
+template std::string describe(const BoundaryCondition<3>&);
+template MeshFacts mesh_facts(const Problem<2>&, const LagrangeSpace<2>&, const Constraints&);
+template MeshFacts mesh_facts(const Problem<3>&, const LagrangeSpace<3>&, const Constraints&);
+
+}  // namespace tribound

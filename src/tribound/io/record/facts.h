@@ -1,0 +1,85 @@
+#pragma once
+
+/// @file facts.h
+/// What a case, its mesh and the program are, as plain data for the report and the console.
+
+#include <string>
+#include <vector>
+
+#include "tribound/fem/space.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound
+{
+
+struct CaseFacts
+{
+  std::string title;
+  std::string file;
+  int dimension = 0;
+  int degree = 0;
+  std::string friction;  ///< friction_name(); empty without contact
+  double gamma0 = 0.0;
+};
+
+struct RegionFacts
+{
+  std::string name;
+  long cells = 0;
+  double measure = 0.0;  ///< area or volume
+  std::string material;  ///< such as "E = 1, nu = 0.3, plane strain"
+};
+
+struct BoundaryFacts
+{
+  std::string name;
+  long facets = 0;
+  double measure = 0.0;   ///< length or area
+  std::string condition;  ///< such as "displacement (0, free)" or "contact, Tresca friction"
+};
+
+struct MeshFacts
+{
+  long vertices = 0;
+  long cells = 0;
+  long free_dofs = 0;
+  double smallest_cell = 0.0;  ///< min h_T
+  double largest_cell = 0.0;   ///< max h_T
+  std::vector<RegionFacts> regions;
+  std::vector<BoundaryFacts> boundaries;  ///< the groups, then the facets in no group if there are any
+};
+
+/// Versions and features of the program and of what it stands on.
+struct BuildFacts
+{
+  std::string version;  ///< of Tribound
+  std::string compiler;
+  std::string petsc;
+  std::string mumps;
+  std::string gmsh;
+  std::string blas;
+  int blas_threads = 0;  ///< 0: unknown
+  std::string mpi;
+  std::string eigen;
+  std::vector<std::string> features;
+  std::string report_page;  ///< path of its template; empty where there is none
+};
+
+[[nodiscard]] CaseFacts case_facts(const Config& config, int dimension);
+
+/// The mesh of `space` with what `problem` says about its parts.
+template <int dim>
+[[nodiscard]] MeshFacts mesh_facts(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+                                   const Constraints& constraints);
+
+/// Version, compiler and Eigen; the libraries that io does not know are left to the caller.
+[[nodiscard]] BuildFacts build_facts();
+
+/// "lambda = ..., mu = ..." in terms of E and nu, with the plane model in 2D.
+[[nodiscard]] std::string describe(const Material& material, int dimension);
+
+/// What holds on a part of the boundary, in words.
+template <int dim>
+[[nodiscard]] std::string describe(const BoundaryCondition<dim>& condition);
+
+}  // namespace tribound

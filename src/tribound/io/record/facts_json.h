@@ -1,0 +1,26 @@
+#pragma once
+
+/// @file facts_json.h
+/// Facts as JSON.
+
+#include "tribound/certify/bound/balance.h"
+#include "tribound/io/file/json.h"
+#include "tribound/io/record/facts.h"
+#include "tribound/io/record/report.h"
+
+namespace tribound
+{
+
+/// The `program` of certificate.json and study.json.
+[[nodiscard]] Json program_json(const BuildFacts& build);
+
+/// The `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
+[[nodiscard]] Json mesh_json(const MeshFacts& mesh);
+
+/// `case` of the certificate: the effective case by the hash of its text; null where there is none.
+[[nodiscard]] Json effective_case_json(const RunRecord& run);
+
+/// `balance` of the certificate.
+[[nodiscard]] Json balance_json(const Balance& balance);
+
+}  // namespace tribound

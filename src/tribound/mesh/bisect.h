@@ -1,0 +1,35 @@
+#pragma once
+
+/// @file bisect.h
+/// Local refinement by bisection: newest vertex in 2D, Arnold, Mukherjee and Pouly in 3D.
+
+#include <span>
+#include <vector>
+
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+template <int dim>
+struct Bisected
+{
+  Mesh<dim> mesh;
+  std::vector<Index> parent;  ///< per cell of `mesh`: the cell of the original mesh that contains it
+};
+
+/// The coarsest conforming mesh, among those that these bisections lead to, in which every cell inside a
+/// marked one comes from at least `times` bisections of it. With times = dim, every edge of a marked cell is
+/// halved. All cells of the mesh may be marked, in any order and more than once.
+///
+/// Regions, boundary tags and names are inherited. The vertices keep their numbers, and the descendants of a
+/// cell follow each other in the order of the cells. Whatever was marked and however often this is repeated,
+/// the cells belong to a number of similarity classes that depends on the initial mesh alone [AMP00]. Edges
+/// of equal length are told apart by their coordinates: how the cells are cut depends neither on the
+/// numbering nor on the order of `marked`.
+///
+/// Throws InputError when the cells outgrow 32-bit numbers.
+template <int dim>
+[[nodiscard]] Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times = dim);
+
+}  // namespace tribound

@@ -1,0 +1,77 @@
+#include <algorithm>
+
+#include "tribound/mesh/describe.h"
+#include "tribound/mesh/verify.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// The number of the facet with these vertices, or -1.
+template <int dim>
+Index facet_number(const Topology<dim>& topology, std::array<Index, dim> vertices)
+{
+  std::sort(vertices.begin(), vertices.end());
+  const auto found = std::lower_bound(topology.facets.begin(), topology.facets.end(), vertices);
+  if (found == topology.facets.end() || *found != vertices) return -1;
+  return static_cast<Index>(found - topology.facets.begin());
+}
+
+template <int dim>
+[[noreturn]] void throw_misplaced(const MeshData<dim>& data, const TaggedFacet<dim>& tagged,
+                                  const std::string& problem, const std::string& hint)
+{
+  throw InputError(data.source,
+                   fmt::format("{} of group \"{}\" {}", describe_facet<dim>(data, tagged.vertices),
+                               data.boundary_names[tagged.tag], problem),
+                   hint);
+}
+
+/// The tag of every facet, -1 where there is none.
+template <int dim>
+std::vector<int> facet_tags(const MeshData<dim>& data, const Topology<dim>& topology)
+{
+  std::vector<int> tags(topology.facets.size(), -1);
+  for (const TaggedFacet<dim>& tagged : data.facets)
+  {
+    const Index f = facet_number<dim>(topology, tagged.vertices);
+    if (f < 0)
+      throw_misplaced(data, tagged, fmt::format("is not {} of any cell", dim == 2 ? "an edge" : "a face"),
+                      "the boundary must be meshed together with the domain");
+    if (topology.facet_cells[f][1] >= 0)
+      throw_misplaced(
+          data, tagged, "lies inside the domain, between two cells",
+          fmt::format("physical groups of {} are boundaries; take the inner ones out of the group",
+                      dim == 2 ? "curves" : "surfaces"));
+    if (tags[f] >= 0 && tags[f] != tagged.tag)
+      throw_misplaced(data, tagged, fmt::format("is also in group \"{}\"", data.boundary_names[tags[f]]),
+                      "a facet carries the conditions of one group; take it out of the other");
+    tags[f] = tagged.tag;
+  }
+  return tags;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topology<dim>& topology)
+{
+  const std::vector<int> tags = facet_tags(data, topology);
+  std::vector<BoundaryFacet> boundary;
+  for (Index f = 0; f < static_cast<Index>(topology.facets.size()); ++f)
+  {
+    const auto [cell, other] = topology.facet_cells[f];
+    if (other >= 0) continue;
+    const auto& facets = topology.cell_facets[cell];
+    const auto local = static_cast<int>(std::find(facets.begin(), facets.end(), f) - facets.begin());
+    boundary.push_back({cell, local, tags[f]});
+  }
+  return boundary;
+}
+
+template std::vector<BoundaryFacet> find_boundary<2>(const MeshData<2>&, const Topology<2>&);
+template std::vector<BoundaryFacet> find_boundary<3>(const MeshData<3>&, const Topology<3>&);
+
+}  // namespace tribound

@@ -1,0 +1,138 @@
+#include "tribound/mesh/box.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tribound
+{
+
+namespace
+{
+
+/// The cells of the unit cube; bit a of a corner is its coordinate along axis a.
+template <int dim>
+constexpr auto cube_cells = []
+{
+  if constexpr (dim == 2)
+    return std::array<Cell<2>, 2>{{{0, 1, 3}, {0, 3, 2}}};
+  else  // one tetrahedron per order of the axes; odd orders with two corners swapped
+    return std::array<Cell<3>, 6>{
+        {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+}();
+
+void check(const BoxMesh& box, int dim)
+{
+  const auto expect = [&](bool good, const std::string& problem, const std::string& hint)
+  {
+    if (!good) throw InputError(box.where, problem, hint);
+  };
+  const auto n = static_cast<std::size_t>(dim);
+  expect(box.lower.size() == n && box.upper.size() == n && box.cells.size() == n,
+         fmt::format("lower, upper and cells have {}, {} and {} entries", box.lower.size(), box.upper.size(),
+                     box.cells.size()),
+         "two entries each in 2D, three in 3D");
+  double n_cells = dim == 2 ? 2.0 : 6.0;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    expect(std::isfinite(box.lower[i]) && std::isfinite(box.upper[i]) && box.lower[i] < box.upper[i],
+           fmt::format("lower = {} and upper = {} along {}", box.lower[i], box.upper[i], "xyz"[i]),
+           "lower < upper along every axis");
+    expect(box.cells[i] >= 1, fmt::format("{} cells along {}", box.cells[i], "xyz"[i]),
+           "at least one cell along every axis");
+    n_cells *= box.cells[i];
+  }
+  expect(n_cells * Topology<3>::n_cell_edges <= std::numeric_limits<Index>::max(),
+         fmt::format("{:.3g} cells are too many for 32-bit numbers", n_cells), "fewer cells along some axis");
+}
+
+/// Steps through the grid points below `counts`, the first axis fastest; calls visit(grid point).
+template <int dim, class Visit>
+void for_each_grid_point(const std::array<Index, dim>& counts, const Visit& visit)
+{
+  std::array<Index, dim> at{};
+  for (int i = 0; i < dim;)
+  {
+    visit(at);
+    for (i = 0; i < dim && ++at[i] == counts[i]; ++i) at[i] = 0;
+  }
+}
+
+/// The sides of the box on which a facet of a cube's cell lies.
+template <int dim, class Visit>
+void for_each_side(const std::array<Index, dim>& corners, const std::array<Index, dim>& cube,
+                   std::span<const int> n_cubes, const Visit& visit)
+{
+  Index all = ~0;
+  Index any = 0;
+  for (const Index corner : corners)
+  {
+    all &= corner;
+    any |= corner;
+  }
+  for (int axis = 0; axis < dim; ++axis)
+  {
+    if (cube[axis] == 0 && (any >> axis & 1) == 0) visit(2 * axis);
+    if (cube[axis] == n_cubes[axis] - 1 && (all >> axis & 1) != 0) visit(2 * axis + 1);
+  }
+}
+
+}  // namespace
+
+template <int dim>
+MeshData<dim> box_mesh(const BoxMesh& box)
+{
+  check(box, dim);
+  MeshData<dim> data;
+  data.source = box.where;
+  data.region_names = {"box"};
+  data.boundary_names = {"left", "right", "bottom", "top"};
+  if (dim == 3) data.boundary_names.insert(data.boundary_names.end(), {"back", "front"});
+
+  std::array<Index, dim> n_cubes;
+  std::array<Index, dim> n_points;
+  std::array<Index, dim> stride;  // between the vertex numbers of neighbours along an axis
+  for (int i = 0; i < dim; ++i)
+  {
+    n_cubes[i] = box.cells[i];
+    n_points[i] = n_cubes[i] + 1;
+    stride[i] = i == 0 ? 1 : stride[i - 1] * n_points[i - 1];
+  }
+
+  for_each_grid_point<dim>(n_points,
+                           [&](const auto& at)
+                           {
+                             Point<dim> x;
+                             for (int i = 0; i < dim; ++i)
+                               x[i] = std::lerp(box.lower[i], box.upper[i], double(at[i]) / n_cubes[i]);
+                             data.vertices.push_back(x);
+                           });
+  for_each_grid_point<dim>(n_cubes,
+                           [&](const auto& cube)
+                           {
+                             const auto vertex = [&](Index corner)
+                             {
+                               Index v = 0;
+                               for (int i = 0; i < dim; ++i) v += (cube[i] + (corner >> i & 1)) * stride[i];
+                               return v;
+                             };
+                             for (const Cell<dim>& corners : cube_cells<dim>)
+                             {
+                               Cell<dim>& cell = data.cells.emplace_back();
+                               for (int i = 0; i <= dim; ++i) cell[i] = vertex(corners[i]);
+                               for (int i = 0; i <= dim; ++i)
+                                 for_each_side<dim>(facet_vertices(corners, i), cube, n_cubes,
+                                                    [&](int tag) {
+                                                      data.facets.push_back({facet_vertices(cell, i), tag});
+                                                    });
+                             }
+                           });
+  data.regions.assign(data.cells.size(), 0);
+  return data;
+}
+
+template MeshData<2> box_mesh<2>(const BoxMesh&);
+template MeshData<3> box_mesh<3>(const BoxMesh&);
+
+}  // namespace tribound

@@ -1,0 +1,18 @@
+#pragma once
+
+/// @file box.h
+/// Structured meshes of a rectangle or a cuboid.
+
+#include "tribound/case/config.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+/// Vertex (i, j) has number j (nx+1) + i; square (i, j) is cut from lower left to upper right into
+/// (v00, v10, v11), (v00, v11, v01). A cube is cut into 6 Kuhn tetrahedra around its diagonal v000 - v111.
+/// Boundary names: left right bottom top, in 3D also back (z = lower) and front (z = upper). Region: "box".
+template <int dim>
+[[nodiscard]] MeshData<dim> box_mesh(const BoxMesh& box);
+
+}  // namespace tribound

@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "tribound/mesh/describe.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/verify.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// Points closer to a facet than this multiple of its diameter lie on it.
+constexpr double coincidence = 1e-9;
+
+/// A facet with one cell, ready for being searched.
+template <int dim>
+struct OuterFacet
+{
+  std::array<Index, dim> vertices;
+  std::array<Point<dim>, dim> points;
+  double diameter;
+};
+
+template <int dim>
+std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topology<dim>& topology)
+{
+  std::vector<OuterFacet<dim>> outer;
+  for (std::size_t f = 0; f < topology.facets.size(); ++f)
+  {
+    if (topology.facet_cells[f][1] >= 0) continue;
+    const auto points = points_of<dim>(data.vertices, topology.facets[f]);
+    outer.push_back({topology.facets[f], points, diameter(points)});
+  }
+  return outer;
+}
+
+/// Boxes of facets, hashed into grids: a facet lives in the grid of spacing size / 2^level next above its
+/// diameter, in the few grid cells that its bounding box meets. A point looks into one cell per level in use.
+template <int dim>
+class FacetSearch
+{
+ public:
+  explicit FacetSearch(std::span<const OuterFacet<dim>> facets)
+  {
+    lower_.setConstant(std::numeric_limits<double>::max());
+    Point<dim> upper = -lower_;
+    for (const auto& facet : facets)
+      for (const auto& x : facet.points)
+      {
+        lower_ = lower_.cwiseMin(x);
+        upper = upper.cwiseMax(x);
+      }
+    size_ = (upper - lower_).maxCoeff();
+
+    std::size_t n_buckets = 1;
+    while (n_buckets < 2 * facets.size()) n_buckets *= 2;
+    begin_.assign(n_buckets + 1, 0);
+    for (const auto& facet : facets) for_each_bucket(facet, [&](std::size_t b) { ++begin_[b + 1]; });
+    for (std::size_t b = 0; b < n_buckets; ++b) begin_[b + 1] += begin_[b];
+    entries_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    for (std::size_t f = 0; f < facets.size(); ++f)
+      for_each_bucket(facets[f], [&](std::size_t b) { entries_[next[b]++] = static_cast<Index>(f); });
+    for (int level = 0; level < n_levels; ++level)
+      if (used_[level]) levels_.push_back(level);
+  }
+
+  /// Calls visit(f) for a superset of the facets near x.
+  template <class Visit>
+  void near(const Point<dim>& x, const Visit& visit) const
+  {
+    for (const int level : levels_)
+    {
+      const std::size_t b = bucket(level, grid_cell(level, x));
+      for (std::size_t k = begin_[b]; k < begin_[b + 1]; ++k) visit(entries_[k]);
+    }
+  }
+
+ private:
+  using GridCell = std::array<std::int64_t, dim>;
+  static constexpr int n_levels = 48;
+
+  GridCell grid_cell(int level, const Point<dim>& x) const
+  {
+    GridCell cell;
+    for (int i = 0; i < dim; ++i)
+      cell[i] = static_cast<std::int64_t>(std::floor(std::ldexp((x[i] - lower_[i]) / size_, level)));
+    return cell;
+  }
+
+  std::size_t bucket(int level, const GridCell& cell) const
+  {
+    auto hash = static_cast<std::uint64_t>(level);
+    for (const std::int64_t i : cell)
+    {
+      hash = (hash ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15U;
+      hash ^= hash >> 32;
+    }
+    return hash & (begin_.size() - 2);
+  }
+
+  template <class Visit>
+  void for_each_bucket(const OuterFacet<dim>& facet, const Visit& visit)
+  {
+    const int level = std::clamp(std::ilogb(size_ / facet.diameter), 0, n_levels - 1);
+    used_[level] = true;
+    Point<dim> low = facet.points[0];
+    Point<dim> high = low;
+    for (const auto& x : facet.points)
+    {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const auto margin = Point<dim>::Constant(2 * coincidence * facet.diameter);
+    const GridCell first = grid_cell(level, low - margin);
+    const GridCell last = grid_cell(level, high + margin);
+    for (GridCell cell = first;;)
+    {
+      visit(bucket(level, cell));
+      int i = 0;
+      while (i < dim && cell[i] == last[i])
+      {
+        cell[i] = first[i];
+        ++i;
+      }
+      if (i == dim) return;
+      ++cell[i];
+    }
+  }
+
+  Point<dim> lower_;
+  double size_ = 0.0;
+  std::vector<std::size_t> begin_;
+  std::vector<Index> entries_;
+  std::array<bool, n_levels> used_{};
+  std::vector<int> levels_;
+};
+
+/// Whether x lies on the facet, its ends included.
+template <int dim>
+bool lies_on(const Point<dim>& x, const OuterFacet<dim>& facet)
+{
+  const double tolerance = coincidence * facet.diameter;
+  const Point<dim> d = x - facet.points[0];
+  const Point<dim> a = facet.points[1] - facet.points[0];
+  if constexpr (dim == 2)
+  {
+    const double t = std::clamp(d.dot(a) / a.squaredNorm(), 0.0, 1.0);
+    return (d - t * a).squaredNorm() <= tolerance * tolerance;
+  }
+  else
+  {
+    const Point<dim> b = facet.points[2] - facet.points[0];
+    const Point<dim> normal = cross(a, b);
+    const double area = normal.squaredNorm();
+    const double height = d.dot(normal);
+    if (height * height > tolerance * tolerance * area) return false;
+    const double s = cross(d, b).dot(normal) / area;
+    const double t = cross(a, d).dot(normal) / area;
+    return s >= -coincidence && t >= -coincidence && s + t <= 1.0 + coincidence;
+  }
+}
+
+template <int dim>
+[[noreturn]] void throw_hanging(const MeshData<dim>& data, Index v, const OuterFacet<dim>& facet)
+{
+  for (const Index w : facet.vertices)
+    if ((data.vertices[w] - data.vertices[v]).norm() <= 2 * coincidence * facet.diameter)
+      throw InputError(
+          data.source,
+          fmt::format("the mesh is not conforming: vertices {} and {} are both at {}", std::min(v, w),
+                      std::max(v, w), describe(data.vertices[v])),
+          "merge coincident points and meshes: \"Coherence;\" in a .geo, or \"Coherence Mesh;\"");
+  throw InputError(data.source,
+                   fmt::format("the mesh is not conforming: {} lies on the {} without being a vertex of it",
+                               describe_vertex(data, v), describe_facet<dim>(data, facet.vertices)),
+                   "parts that touch must share their points, curves and surfaces before they are meshed: "
+                   "\"Coherence;\" or BooleanFragments in a .geo");
+}
+
+}  // namespace
+
+template <int dim>
+void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology)
+{
+  const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
+  if (facets.empty()) throw InputError(data.source, "the mesh has no boundary", "cells overlap");
+  const FacetSearch<dim> search(facets);
+
+  std::vector<Index> vertices;
+  for (const auto& facet : facets)
+    vertices.insert(vertices.end(), facet.vertices.begin(), facet.vertices.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const Index v : vertices)
+    search.near(data.vertices[v],
+                [&](Index f)
+                {
+                  const auto& corners = facets[f].vertices;
+                  if (std::find(corners.begin(), corners.end(), v) != corners.end()) return;
+                  if (lies_on(data.vertices[v], facets[f])) throw_hanging(data, v, facets[f]);
+                });
+
+  if constexpr (dim == 3)  // two triangulations with the same vertices: only the faces tell them apart
+    for (std::size_t g = 0; g < facets.size(); ++g)
+    {
+      const auto& [a, b, c] = facets[g].points;
+      const Point<dim> centre = (a + b + c) / 3.0;
+      search.near(centre,
+                  [&](Index f)
+                  {
+                    if (static_cast<std::size_t>(f) == g || !lies_on(centre, facets[f])) return;
+                    throw InputError(data.source,
+                                     fmt::format("the mesh is not conforming: {} and {} overlap",
+                                                 describe_facet<dim>(data, facets[f].vertices),
+                                                 describe_facet<dim>(data, facets[g].vertices)),
+                                     "the two sides of a surface must carry the same triangles");
+                  });
+    }
+}
+
+template void check_conformity<2>(const MeshData<2>&, const Topology<2>&);
+template void check_conformity<3>(const MeshData<3>&, const Topology<3>&);
+
+}  // namespace tribound

@@ -1,0 +1,55 @@
+#pragma once
+
+/// @file describe.h
+/// How messages name the parts of a mesh.
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+/// "(0.5, 1)".
+template <int dim>
+[[nodiscard]] std::string describe(const Point<dim>& x)
+{
+  std::string text = "(";
+  for (int i = 0; i < dim; ++i) text += fmt::format("{}{:.9g}", i > 0 ? ", " : "", x[i]);
+  return text + ")";
+}
+
+/// "vertex 3 at (0.5, 1)".
+template <int dim>
+[[nodiscard]] std::string describe_vertex(const MeshData<dim>& data, Index v)
+{
+  return fmt::format("vertex {} at {}", v, describe(data.vertices[v]));
+}
+
+/// "(0, 0), (1, 0)": the positions of the given vertices.
+template <int dim, std::size_t n>
+[[nodiscard]] std::string describe_corners(const MeshData<dim>& data, const std::array<Index, n>& vertices)
+{
+  std::string text;
+  for (const Index v : vertices) text += (text.empty() ? "" : ", ") + describe(data.vertices[v]);
+  return text;
+}
+
+/// "edge (0, 0), (1, 0)" in 2D, "face (...), (...), (...)" in 3D.
+template <int dim>
+[[nodiscard]] std::string describe_facet(const MeshData<dim>& data, const std::array<Index, dim>& vertices)
+{
+  return (dim == 2 ? "edge " : "face ") + describe_corners(data, vertices);
+}
+
+/// "triangle 7 of region "steel" with corners (0, 0), (1, 0), (0, 1)".
+template <int dim>
+[[nodiscard]] std::string describe_cell(const MeshData<dim>& data, Index c)
+{
+  return fmt::format("{} {} of region \"{}\" with corners {}", dim == 2 ? "triangle" : "tetrahedron", c,
+                     data.region_names[data.regions[c]], describe_corners(data, data.cells[c]));
+}
+
+}  // namespace tribound

@@ -1,0 +1,173 @@
+#pragma once
+
+/// @file geometry.h
+/// Affine geometry of simplices: reference map, measures, diameters, normals. Inline: the loops over cells of
+/// assembly call these.
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <span>
+
+#include "tribound/base/types.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+/// The map x = x_0 + J xhat from the reference simplex {xhat >= 0, sum <= 1} onto a cell.
+template <int dim>
+struct CellMap
+{
+  Point<dim> origin;              ///< x_0
+  Tensor<dim> jacobian;           ///< J; column j is x_{j+1} - x_0
+  Tensor<dim> inverse_transpose;  ///< J^{-T}: grad = J^{-T} grad_hat
+  double det;                     ///< det J = dim! |T| > 0
+
+  [[nodiscard]] Point<dim> operator()(const Point<dim>& xhat) const { return origin + jacobian * xhat; }
+};
+
+/// The map x = x_0 + J s from the reference facet onto a facet, from its own vertices: a coordinate that they
+/// share is that of every point to the last bit, wherever the vertex opposite is.
+template <int dim>
+struct FacetMap
+{
+  Point<dim> origin;                             ///< x_0
+  Eigen::Matrix<double, dim, dim - 1> jacobian;  ///< J; column j is x_{j+1} - x_0
+
+  [[nodiscard]] Point<dim> operator()(const Point<dim - 1>& s) const { return origin + jacobian * s; }
+};
+
+template <int dim>
+struct FacetGeometry
+{
+  Point<dim> normal;  ///< outward unit normal of the cell
+  double measure;     ///< length or area |F|
+  double diameter;    ///< h_F: the longest edge
+};
+
+/// a x b.
+[[nodiscard]] inline Point<3> cross(const Point<3>& a, const Point<3>& b)
+{
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// cof J = det(J) J^{-T}; its columns are orthogonal to the other columns of J.
+template <int dim>
+[[nodiscard]] Tensor<dim> cofactor(const Tensor<dim>& jacobian)
+{
+  Tensor<dim> result;
+  if constexpr (dim == 2)
+    result << jacobian(1, 1), -jacobian(1, 0), -jacobian(0, 1), jacobian(0, 0);
+  else
+    for (int j = 0; j < 3; ++j) result.col(j) = cross(jacobian.col((j + 1) % 3), jacobian.col((j + 2) % 3));
+  return result;
+}
+
+/// The longest distance between two of the points.
+template <int dim, std::size_t n>
+[[nodiscard]] double diameter(const std::array<Point<dim>, n>& points)
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j)
+      largest = std::max(largest, (points[j] - points[i]).squaredNorm());
+  return std::sqrt(largest);
+}
+
+/// The positions of the given vertices.
+template <int dim, std::size_t n>
+[[nodiscard]] std::array<Point<dim>, n> points_of(std::span<const Point<dim>> vertices,
+                                                  const std::array<Index, n>& numbers)
+{
+  std::array<Point<dim>, n> points;
+  for (std::size_t i = 0; i < n; ++i) points[i] = vertices[numbers[i]];
+  return points;
+}
+
+/// det (x_1 - x_0, ..., x_dim - x_0) = dim! times the signed measure of the simplex.
+template <int dim>
+[[nodiscard]] double determinant(const std::array<Point<dim>, dim + 1>& points)
+{
+  const Point<dim> a = points[1] - points[0];
+  const Point<dim> b = points[2] - points[0];
+  if constexpr (dim == 2)
+    return a[0] * b[1] - a[1] * b[0];
+  else
+    return a.dot(cross(b, points[3] - points[0]));
+}
+
+template <int dim>
+[[nodiscard]] CellMap<dim> cell_map(const Mesh<dim>& mesh, Index cell)
+{
+  const auto points = points_of(mesh.vertices(), mesh.cell(cell));
+  CellMap<dim> map;
+  map.origin = points[0];
+  for (int j = 0; j < dim; ++j) map.jacobian.col(j) = points[j + 1] - points[0];
+  const Tensor<dim> cof = cofactor<dim>(map.jacobian);
+  map.det = map.jacobian.col(0).dot(cof.col(0));
+  map.inverse_transpose = cof / map.det;
+  return map;
+}
+
+/// Of facet `local` of `cell`, its vertices in the order of facet_to_cell().
+template <int dim>
+[[nodiscard]] FacetMap<dim> facet_map(const Mesh<dim>& mesh, Index cell, int local)
+{
+  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local));
+  FacetMap<dim> map;
+  map.origin = points[0];
+  for (int j = 0; j < dim - 1; ++j) map.jacobian.col(j) = points[j + 1] - points[0];
+  return map;
+}
+
+/// h_T: the longest edge.
+template <int dim>
+[[nodiscard]] double cell_diameter(const Mesh<dim>& mesh, Index cell)
+{
+  return diameter(points_of(mesh.vertices(), mesh.cell(cell)));
+}
+
+/// Local facet `local` of `cell`, seen from that cell.
+template <int dim>
+[[nodiscard]] FacetGeometry<dim> facet_geometry(const Mesh<dim>& mesh, Index cell, int local)
+{
+  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local));
+  const Point<dim> edge = points[1] - points[0];
+  Point<dim> normal;  // outward for even `local`: the facet's vertices in ascending local order turn with it
+  if constexpr (dim == 2)
+    normal << edge[1], -edge[0];
+  else
+    normal = cross(edge, points[2] - points[0]);
+  const double length = normal.norm();
+  return {(local % 2 == 0 ? normal : -normal) / length, dim == 2 ? length : 0.5 * length, diameter(points)};
+}
+
+/// The reference coordinates in the cell of the point `s` of the reference facet: the facet's vertices are
+/// taken in ascending local order, s = 0 is the first of them.
+template <int dim>
+[[nodiscard]] Point<dim> facet_to_cell(int local, const Point<dim - 1>& s)
+{
+  assert(local >= 0 && local <= dim);
+  Point<dim> xhat = Point<dim>::Zero();
+  const int first = local == 0 ? 1 : 0;
+  if (first > 0) xhat[first - 1] = 1.0 - s.sum();
+  for (int k = 0, j = first + 1; k < dim - 1; ++k, ++j)
+  {
+    if (j == local) ++j;
+    xhat[j - 1] = s[k];
+  }
+  return xhat;
+}
+
+/// The inverse of facet_to_cell.
+template <int dim>
+[[nodiscard]] Point<dim - 1> cell_to_facet(int local, const Point<dim>& xhat)
+{
+  Point<dim - 1> s;
+  for (int k = 0; k < dim - 1; ++k) s[k] = xhat[k + 1 < local ? k : k + 1];
+  return s;
+}
+
+}  // namespace tribound

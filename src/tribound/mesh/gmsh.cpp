@@ -1,0 +1,190 @@
+#include "tribound/mesh/gmsh.h"
+
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <exception>
+#include <string_view>
+#include <utility>
+
+#include "tribound/base/apart.h"
+#include "tribound/base/memory.h"
+#include "tribound/mesh/box.h"
+#include "tribound/mesh/gmsh_load.h"
+#include "tribound/mesh/gmsh_session.h"
+#include "tribound/mesh/mesh_bytes.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using AnyMeshData = std::variant<MeshData<2>, MeshData<3>>;
+
+/// What the first number of a result says: the dimension of the mesh that follows, or
+enum Answer : std::size_t
+{
+  refused = 0,  ///< an InputError follows
+  no_memory = 1
+};
+
+std::string refusal(const InputError& error)
+{
+  ByteWriter bytes;
+  bytes.put(refused);
+  for (const std::string& text : {error.where().file, error.where().key, error.problem(), error.hint()})
+    bytes.put(std::string_view(text));
+  return bytes.take();
+}
+
+/// In the child: the mesh, or why there is none.
+std::string load_as_bytes(const std::filesystem::path& file)
+{
+  ByteWriter bytes;
+  try
+  {
+    std::visit(
+        [&]<int dim>(const MeshData<dim>& data)
+        {
+          bytes.put(dim);
+          put(bytes, data);
+        },
+        load_gmsh(file));
+    return bytes.take();
+  }
+  catch (const InputError& error)
+  {
+    return refusal(error);
+  }
+  catch (const std::bad_alloc&)
+  {
+    ByteWriter answer;
+    answer.put(no_memory);
+    return answer.take();
+  }
+  catch (const std::exception& error)
+  {
+    return refusal({{.file = file.string()}, fmt::format("Gmsh cannot read the file: {}", error.what())});
+  }
+  catch (...)  // Gmsh up to 4.8 throws strings, and integers
+  {
+    return refusal({{.file = file.string()}, "Gmsh cannot read the file: no reason given"});
+  }
+}
+
+[[noreturn]] void throw_refusal(ByteReader& bytes)
+{
+  Where where;
+  std::string problem;
+  std::string hint;
+  for (std::string* text : {&where.file, &where.key, &problem, &hint}) bytes.get(*text);
+  throw InputError(where, problem, hint);
+}
+
+AnyMeshData mesh_data(const std::filesystem::path& file, std::string_view result)
+{
+  ByteReader bytes(result);
+  std::size_t answer = refused;
+  bytes.get(answer);
+  if (answer == refused) throw_refusal(bytes);
+  if (answer == no_memory)
+    throw InputError(
+        {.file = file.string()},
+        fmt::format("Gmsh needs more than the {:.3g} GB of this machine for it", 1e-9 * machine_memory()),
+        "a coarser mesh; is a mesh size or a number of nodes absurd?");
+  const auto read = [&]<int dim>(MeshData<dim>&& data) -> AnyMeshData
+  {
+    data.source = {.file = file.string()};
+    get(bytes, data);
+    return std::move(data);
+  };
+  if (answer == 2) return read(MeshData<2>{});
+  return read(MeshData<3>{});
+}
+
+/// The last errors that Gmsh has printed ("Error   : text"), at most three.
+std::string printed_errors(std::string_view output)
+{
+  constexpr std::string_view prefix = "Error   : ";
+  std::string text;
+  for (int n = 0; n < 3; ++n)
+  {
+    const std::size_t begin = output.rfind(prefix);
+    if (begin == std::string_view::npos) break;
+    const std::string_view line = output.substr(begin + prefix.size());
+    if (!text.empty()) text.insert(0, "; ");
+    text.insert(0, line.substr(0, line.find('\n')));
+    output = output.substr(0, begin);
+  }
+  return text;
+}
+
+[[noreturn]] void throw_crashed(const std::filesystem::path& file, const ApartOutcome& outcome)
+{
+  const std::string errors = printed_errors(outcome.output);
+  const std::string name = file.filename().string();
+  throw InputError(
+      {.file = file.string()},
+      fmt::format("Gmsh cannot read the file: it {}{}{}", describe_end(outcome.status),
+                  errors.empty() ? "" : ": ", errors),
+      file.extension() == ".geo"
+          ? fmt::format(
+                "do curves or surfaces cross, or is a size absurd? gmsh itself may show more: gmsh {}", name)
+          : "the file is damaged, or has numbers that Gmsh cannot take, such as nodes or elements numbered "
+            "below "
+            "1 or above 2147483647: save the mesh again with Gmsh (Mesh.Renumber = 1)");
+}
+
+[[noreturn]] void throw_silent(const std::filesystem::path& file, double patience)
+{
+  throw InputError({.file = file.string()},
+                   fmt::format("Gmsh shows no progress for {:g} s and was ended", patience),
+                   "is a coordinate or a mesh size absurd? A geometry that takes so long can be meshed in "
+                   "advance (gmsh -2 "
+                   "or -3 with -save), and the case name the .msh");
+}
+
+AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* stop, double patience)
+{
+  constexpr double share_of_machine = 0.9;
+  const ApartOutcome outcome =
+      run_apart([&] { return load_as_bytes(file); },
+                {.silence = patience, .memory = share_of_machine * machine_memory(), .stop = stop});
+  switch (outcome.end)
+  {
+    case ApartEnd::stopped:
+      throw SolveError("interrupted while the mesh was read");
+    case ApartEnd::silent:
+      throw_silent(file, patience);
+    case ApartEnd::crashed:
+      throw_crashed(file, outcome);
+    default:
+      return mesh_data(file, outcome.result);
+  }
+}
+
+}  // namespace
+
+AnyMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, double patience)
+{
+  check_mesh_file(source.path, source.where);
+  return std::visit([]<int dim>(MeshData<dim>&& data) -> AnyMesh { return Mesh<dim>(std::move(data)); },
+                    load(source.path, stop, patience));
+}
+
+AnyMesh read_mesh(const MeshSource& source, const std::atomic<bool>* stop)
+{
+  if (const auto* file = std::get_if<MeshFile>(&source)) return read_gmsh(*file, stop);
+  const auto& box = std::get<BoxMesh>(source);
+  if (box.cells.size() == 3) return Mesh<3>(box_mesh<3>(box));
+  return Mesh<2>(box_mesh<2>(box));
+}
+
+std::string gmsh_version()
+{
+  return std::string(GMSH_API_VERSION) + " (API)";
+}
+
+}  // namespace tribound

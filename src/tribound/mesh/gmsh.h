@@ -1,0 +1,34 @@
+#pragma once
+
+/// @file gmsh.h
+/// Meshes from files, through Gmsh's own library.
+
+#include <atomic>
+#include <string>
+#include <variant>
+
+#include "tribound/case/config.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
+
+/// Reads any .msh version (ASCII, binary) or meshes a .geo. The dimension is that of the cells (2D needs z =
+/// 0). Physical groups of dimension dim are regions, of dimension dim-1 boundaries; without physical groups
+/// of dimension dim everything is one region.
+///
+/// Gmsh works in a copy of this process (base/apart.h): whatever it does with a file, crash, hang, use up
+/// memory, is answered by an InputError. It is given up after `patience` seconds without a sign of progress,
+/// or as soon as `stop` is true, which ends in a SolveError. Gmsh's state in this process is not touched.
+[[nodiscard]] AnyMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop = nullptr,
+                                double patience = 300);
+
+/// The version of Gmsh's library.
+[[nodiscard]] std::string gmsh_version();
+
+/// The mesh a case asks for; `stop` as above.
+[[nodiscard]] AnyMesh read_mesh(const MeshSource& source, const std::atomic<bool>* stop = nullptr);
+
+}  // namespace tribound

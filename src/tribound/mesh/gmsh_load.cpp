@@ -1,0 +1,372 @@
+#include "tribound/mesh/gmsh_load.h"
+
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "tribound/mesh/describe.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/gmsh_session.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+constexpr std::array<int, 4> simplex_type = {15, 1, 2, 4};  ///< Gmsh's numbers of first-order simplices
+
+/// Gmsh's entities of one dimension, in words.
+std::string_view entity_word(int dim)
+{
+  constexpr std::array<std::string_view, 4> words = {"point", "curve", "surface", "volume"};
+  return words[dim];
+}
+
+/// 3 if there are solids of any shape, else 2.
+int mesh_dimension(const Where& where)
+{
+  for (const int dim : {3, 2})
+  {
+    std::vector<int> types;
+    gmsh::model::mesh::getElementTypes(types, dim);
+    if (!types.empty()) return dim;
+  }
+  throw InputError(
+      where, "the mesh has neither triangles nor tetrahedra",
+      "mesh the surface (gmsh -2) or the volume (gmsh -3), and put it into a physical group if any "
+      "groups exist: Gmsh saves only what is in a group");
+}
+
+/// Cells and their facets must be straight-sided simplices.
+[[noreturn]] void reject_element_type(const Where& where, int type)
+{
+  std::string name;
+  int dim = 0;
+  int order = 0;
+  int n_nodes = 0;
+  int n_primary = 0;
+  std::vector<double> nodes;
+  gmsh::model::mesh::getElementProperties(type, name, dim, order, n_nodes, nodes, n_primary);
+  if (order != 1)
+    throw InputError(where, fmt::format("the mesh has elements of order {} ({})", order, name),
+                     "the geometry is straight-sided whatever the degree of the case; mesh with -order 1 "
+                     "(Mesh.ElementOrder=1)");
+  throw InputError(where, fmt::format("the mesh has elements that are not simplices ({})", name),
+                   "only triangles and tetrahedra; mesh with Mesh.RecombineAll=0 and without Recombine or "
+                   "Layers{...} with Recombine");
+}
+
+/// Gmsh's number of the type of an element; later versions than 4.8 also return where it is.
+template <class Tag>
+int element_type(Tag element)
+{
+  int type = 0;
+  std::vector<std::size_t> nodes;
+  if constexpr (requires { gmsh::model::mesh::getElement(element, type, nodes); })
+    gmsh::model::mesh::getElement(element, type, nodes);
+  else
+  {
+    int dim = 0;
+    int entity = 0;
+    gmsh::model::mesh::getElement(element, type, nodes, dim, entity);
+  }
+  return type;
+}
+
+/// Gmsh tells the type of the first element of an entity for all of that shape, and reading nodes by type
+/// overruns its arrays where a second-order element comes later: look at each element first.
+void check_element_types(const Where& where, int mesh_dim)
+{
+  for (const int dim : {mesh_dim, mesh_dim - 1})
+  {
+    std::vector<int> types;
+    gmsh::model::mesh::getElementTypes(types, dim);
+    for (const int type : types)
+      if (type != simplex_type[dim]) reject_element_type(where, type);
+
+    std::vector<std::size_t> elements;
+    std::vector<std::size_t> no_nodes;
+    gmsh::model::mesh::preallocateElementsByType(simplex_type[dim], true, false, elements, no_nodes);
+    if (elements.empty()) continue;
+    gmsh::model::mesh::getElementsByType(simplex_type[dim], elements, no_nodes);
+    for (const std::size_t element : elements)
+      if (const int type = element_type(element); type != simplex_type[dim]) reject_element_type(where, type);
+  }
+}
+
+/// The physical groups of one dimension: their names, and the group of every entity that is in one.
+struct Groups
+{
+  std::vector<std::string> names;
+  std::map<int, int> of_entity;  ///< entity tag -> position in names
+};
+
+Groups read_groups(const Where& where, int dim)
+{
+  Groups groups;
+  gmsh::vectorpair found;
+  gmsh::model::getPhysicalGroups(found, dim);
+  for (const auto& [group_dim, tag] : found)
+  {
+    std::string name;
+    gmsh::model::getPhysicalName(group_dim, tag, name);
+    if (name.empty()) name = std::to_string(tag);
+    const auto known = std::find(groups.names.begin(), groups.names.end(), name);
+    const int group = static_cast<int>(known - groups.names.begin());
+    if (known == groups.names.end()) groups.names.push_back(name);
+
+    std::vector<int> entities;
+    gmsh::model::getEntitiesForPhysicalGroup(group_dim, tag, entities);
+    for (const int entity : entities)
+    {
+      const auto [place, is_new] = groups.of_entity.try_emplace(std::abs(entity), group);
+      if (is_new || place->second == group) continue;
+      throw InputError(
+          where,
+          fmt::format("{} {} is in two physical groups, \"{}\" and \"{}\"", entity_word(dim),
+                      std::abs(entity), groups.names[place->second], name),
+          "every region and every part of the boundary has one name; in .msh files of version 1 and 2, "
+          "elements of different groups also need different elementary tags");
+    }
+  }
+  return groups;
+}
+
+std::vector<int> entities_of(int dim)
+{
+  gmsh::vectorpair found;
+  gmsh::model::getEntities(found, dim);
+  std::vector<int> tags;
+  for (const auto& entity : found) tags.push_back(entity.second);
+  return tags;
+}
+
+/// Simplices named by node tags, and the group of each.
+template <int n_corners>
+struct Simplices
+{
+  std::vector<std::array<std::size_t, n_corners>> nodes;
+  std::vector<int> groups;
+
+  /// Appends the simplices of one entity; returns how many there are.
+  std::size_t append(int entity, int group)
+  {
+    std::vector<std::size_t> elements;
+    std::vector<std::size_t> flat;
+    gmsh::model::mesh::getElementsByType(simplex_type[n_corners - 1], elements, flat, entity);
+    const std::size_t n_before = nodes.size();
+    const std::size_t n_new = flat.size() / n_corners;
+    nodes.resize(n_before + n_new);
+    for (std::size_t i = 0; i < n_new; ++i)
+      std::copy_n(flat.begin() + static_cast<std::ptrdiff_t>(i * n_corners), n_corners,
+                  nodes[n_before + i].begin());
+    groups.resize(nodes.size(), group);
+    return n_new;
+  }
+};
+
+/// Positions and new numbers of the nodes; both indexed by Gmsh's node tags.
+struct Nodes
+{
+  static constexpr Index absent = -3;  ///< no node has this tag
+  static constexpr Index unused = -2;  ///< in no cell and no boundary facet
+  static constexpr Index point = -1;   ///< unused as well, but the node of a point of the geometry
+
+  std::vector<Point<3>> positions;
+  std::vector<Index> numbers;
+};
+
+Nodes read_nodes()
+{
+  std::vector<std::size_t> tags;
+  std::vector<double> x;
+  std::vector<double> parameters;
+  gmsh::model::mesh::getNodes(tags, x, parameters, -1, -1, false, false);
+  const std::size_t largest = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+  if (largest > 16 * tags.size() + 1024)  // too sparse for tables indexed by tag
+  {
+    gmsh::model::mesh::renumberNodes();
+    return read_nodes();
+  }
+  Nodes nodes{std::vector<Point<3>>(largest + 1), std::vector<Index>(largest + 1, Nodes::absent)};
+  for (std::size_t i = 0; i < tags.size(); ++i)
+  {
+    nodes.positions[tags[i]] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
+    nodes.numbers[tags[i]] = Nodes::unused;
+  }
+  gmsh::model::mesh::getNodes(tags, x, parameters, 0, -1, false, false);
+  for (const std::size_t tag : tags) nodes.numbers[tag] = Nodes::point;
+  return nodes;
+}
+
+template <std::size_t n>
+std::string describe_nodes(const Nodes& nodes, const std::array<std::size_t, n>& simplex)
+{
+  std::string text;
+  for (const std::size_t tag : simplex) text += (text.empty() ? "" : ", ") + describe(nodes.positions[tag]);
+  return text;
+}
+
+/// Gmsh orients the surfaces of a plane geometry up or down: an entity whose cells are all negative is
+/// turned. Cells of both signs in one entity are left to the verification of the mesh.
+template <int dim>
+void orient(const Nodes& nodes, std::span<std::array<std::size_t, dim + 1>> cells)
+{
+  const auto is_negative = [&](const auto& cell)
+  {
+    std::array<Point<dim>, dim + 1> points;
+    for (int i = 0; i <= dim; ++i) points[i] = nodes.positions[cell[i]].template head<dim>();
+    return determinant(points) < 0.0;
+  };
+  if (std::all_of(cells.begin(), cells.end(), is_negative))
+    for (auto& cell : cells) std::swap(cell[dim - 1], cell[dim]);
+}
+
+void check_groups_filled(const Where& where, int dim, const Groups& groups, std::span<const int> in_use)
+{
+  for (std::size_t g = 0; g < groups.names.size(); ++g)
+    if (std::find(in_use.begin(), in_use.end(), static_cast<int>(g)) == in_use.end())
+      throw InputError(where,
+                       fmt::format("physical group \"{}\" has no {}", groups.names[g],
+                                   dim == 1   ? "edges"
+                                   : dim == 2 ? "triangles"
+                                              : "tetrahedra"),
+                       fmt::format("mesh the {}s of the group, or remove it", entity_word(dim)));
+}
+
+/// All cells, with the position of their region in groups.names.
+template <int dim>
+Simplices<dim + 1> read_cells(const Where& where, const Nodes& nodes, const Groups& groups)
+{
+  Simplices<dim + 1> cells;
+  std::size_t n_homeless = 0;
+  std::string example;
+  for (const int entity : entities_of(dim))
+  {
+    const auto group = groups.of_entity.find(entity);
+    const bool homeless = !groups.names.empty() && group == groups.of_entity.end();
+    const std::size_t n = cells.append(entity, group == groups.of_entity.end() ? 0 : group->second);
+    const auto added = std::span(cells.nodes).last(n);
+    orient<dim>(nodes, added);
+    if (homeless && n > 0 && n_homeless == 0)
+      example = fmt::format("{} {}, for example the one with corners {}", entity_word(dim), entity,
+                            describe_nodes(nodes, added[0]));
+    if (homeless) n_homeless += n;
+  }
+  if (n_homeless > 0)
+    throw InputError(where,
+                     fmt::format("{} of {} {} are in no physical group; first in {}", n_homeless,
+                                 cells.nodes.size(), dim == 2 ? "triangles" : "tetrahedra", example),
+                     fmt::format("put every {} into a physical group, or use no groups of {}s at all",
+                                 entity_word(dim), entity_word(dim)));
+  if (!groups.names.empty()) check_groups_filled(where, dim, groups, cells.groups);
+  return cells;
+}
+
+/// The facets of the boundary groups.
+template <int dim>
+Simplices<dim> read_facets(const Where& where, const Groups& groups)
+{
+  Simplices<dim> facets;
+  for (const auto& [entity, group] : groups.of_entity) facets.append(entity, group);
+  check_groups_filled(where, dim - 1, groups, facets.groups);
+  return facets;
+}
+
+/// Numbers the nodes of cells and facets in ascending order of their tags and returns their positions.
+/// Nodes beside them are dropped where they stem from points of the geometry, else they are an error.
+template <int dim>
+std::vector<Point<dim>> number_vertices(const Where& where, Nodes& nodes, const Simplices<dim + 1>& cells,
+                                        const Simplices<dim>& facets, bool is_geo)
+{
+  const auto mark = [&](const auto& simplices)
+  {
+    for (const auto& simplex : simplices)
+      for (const std::size_t tag : simplex) nodes.numbers[tag] = 0;
+  };
+  mark(cells.nodes);
+  mark(facets.nodes);
+
+  std::vector<Point<dim>> vertices;
+  for (std::size_t tag = 0; tag < nodes.numbers.size(); ++tag)
+  {
+    Index& number = nodes.numbers[tag];
+    if (number == Nodes::unused && !is_geo)
+      throw InputError(
+          where, fmt::format("node {} at {} belongs to no cell", tag, describe(nodes.positions[tag])),
+          "remove it, or save the mesh by physical groups (Mesh.SaveAll=0), which leaves such nodes out");
+    if (number < 0) continue;
+    number = static_cast<Index>(vertices.size());
+    vertices.push_back(nodes.positions[tag].template head<dim>());
+  }
+  return vertices;
+}
+
+/// A plane mesh lies in z = 0, to 1e-12 of its size.
+void check_plane(const Where& where, const Nodes& nodes, const Simplices<3>& cells)
+{
+  double size = 0.0;
+  for (const auto& cell : cells.nodes)
+    for (const std::size_t tag : cell) size = std::max(size, nodes.positions[tag].lpNorm<Eigen::Infinity>());
+  for (const auto& cell : cells.nodes)
+    for (const std::size_t tag : cell)
+      if (!(std::abs(nodes.positions[tag][2]) <= 1e-12 * size))
+        throw InputError(
+            where,
+            fmt::format("the mesh has triangles only, and node {} at {} is not in the plane z = 0", tag,
+                        describe(nodes.positions[tag])),
+            "2D meshes live in z = 0; for a 3D problem mesh the volume (gmsh -3)");
+}
+
+template <std::size_t n>
+std::array<Index, n> numbered(const Nodes& nodes, const std::array<std::size_t, n>& simplex)
+{
+  std::array<Index, n> numbers;
+  for (std::size_t i = 0; i < n; ++i) numbers[i] = nodes.numbers[simplex[i]];
+  return numbers;
+}
+
+/// The loaded model, group by group.
+template <int dim>
+MeshData<dim> mesh_data(const std::filesystem::path& file)
+{
+  MeshData<dim> data;
+  data.source = {.file = file.string()};
+  Groups regions = read_groups(data.source, dim);
+  Groups boundaries = read_groups(data.source, dim - 1);
+  Nodes nodes = read_nodes();
+  Simplices<dim + 1> cells = read_cells<dim>(data.source, nodes, regions);
+  const Simplices<dim> facets = read_facets<dim>(data.source, boundaries);
+  if constexpr (dim == 2) check_plane(data.source, nodes, cells);
+
+  data.vertices = number_vertices<dim>(data.source, nodes, cells, facets, file.extension() == ".geo");
+  data.cells.reserve(cells.nodes.size());
+  for (const auto& cell : cells.nodes) data.cells.push_back(numbered(nodes, cell));
+  data.facets.reserve(facets.nodes.size());
+  for (std::size_t f = 0; f < facets.nodes.size(); ++f)
+    data.facets.push_back({numbered(nodes, facets.nodes[f]), facets.groups[f]});
+  data.regions = std::move(cells.groups);
+  data.region_names = regions.names.empty() ? std::vector<std::string>{"domain"} : std::move(regions.names);
+  data.boundary_names = std::move(boundaries.names);
+  return data;
+}
+
+}  // namespace
+
+std::variant<MeshData<2>, MeshData<3>> load_gmsh(const std::filesystem::path& file)
+{
+  const GmshSession session(file);
+  const Where where{.file = file.string()};
+  const int dim = mesh_dimension(where);
+  check_element_types(where, dim);
+  if (dim == 2) return mesh_data<2>(file);
+  return mesh_data<3>(file);
+}
+
+}  // namespace tribound

@@ -1,0 +1,160 @@
+#include "tribound/mesh/gmsh_session.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tribound
+{
+
+namespace
+{
+
+/// The errors that Gmsh has logged, at most three of them.
+std::string logged_errors()
+{
+  constexpr std::string_view prefix = "Error: ";
+  std::vector<std::string> log;
+  gmsh::logger::get(log);
+  std::string text;
+  int n = 0;
+  for (const std::string& line : log)
+    if (line.starts_with(prefix) && ++n <= 3) text += (text.empty() ? "" : "; ") + line.substr(prefix.size());
+  return n > 3 ? fmt::format("{}; and {} more", text, n - 3) : text;
+}
+
+/// Runs one step of Gmsh, which reports failure by an exception, by a message, or by both.
+template <class Step>
+void attempt(const std::filesystem::path& file, const std::string& what, const std::string& hint,
+             const Step& step)
+{
+  bool failed = false;
+  try
+  {
+    step();
+  }
+  catch (const std::bad_alloc&)
+  {
+    throw;
+  }
+  catch (...)  // a std::string up to Gmsh 4.8, a std::runtime_error later; the log holds the text in any case
+  {
+    failed = true;
+  }
+  const std::string errors = logged_errors();
+  if (failed || !errors.empty())
+    throw InputError({.file = file.string()},
+                     fmt::format("Gmsh cannot {}: {}", what, errors.empty() ? "no reason given" : errors),
+                     hint);
+}
+
+/// The log outlives finalize() unless it is stopped.
+void stop_gmsh()
+{
+  gmsh::logger::stop();
+  gmsh::finalize();
+}
+
+/// Whether cells of this dimension have been read or made.
+bool has_cells(int dim)
+{
+  std::vector<int> types;
+  gmsh::model::mesh::getElementTypes(types, dim);
+  return !types.empty();
+}
+
+/// Coordinates beyond this have squares and volumes outside the range of a double.
+constexpr double largest_coordinate = 1e60;
+
+/// Gmsh does not end where a point of the geometry is not finite, or absurdly far away.
+void check_points(const std::filesystem::path& file)
+{
+  gmsh::vectorpair points;
+  gmsh::model::getEntities(points, 0);
+  for (const auto& [dim, tag] : points)
+  {
+    std::vector<double> x;
+    gmsh::model::getValue(dim, tag, {}, x);
+    if (std::ranges::all_of(x, [](double xi) { return std::abs(xi) <= largest_coordinate; })) continue;
+    const bool finite = std::ranges::all_of(x, [](double xi) { return std::isfinite(xi); });
+    throw InputError(
+        {.file = file.string()},
+        fmt::format("point {} of the geometry is at ({}), {}", tag, fmt::join(x, ", "),
+                    finite ? fmt::format("beyond {:g}", largest_coordinate) : "which are not finite numbers"),
+        "mend its coordinates");
+  }
+}
+
+}  // namespace
+
+GmshSession::GmshSession(const std::filesystem::path& file)
+{
+  gmsh::initialize(0, nullptr, false);
+  try
+  {
+    gmsh::option::setNumber("General.Terminal", 1);    // signs of progress for the process that waits
+    gmsh::option::setNumber("General.NumThreads", 1);  // a copied process has no team of threads
+    gmsh::logger::start();
+    attempt(file, "read the file", "is it complete? gmsh itself shows more: gmsh " + file.filename().string(),
+            [&] { gmsh::open(file.string()); });
+    if (file.extension() != ".geo") return;
+    const int dim = gmsh::model::getDimension();
+    check_points(file);
+    if (dim >= 2 && !has_cells(dim))
+    {
+      // Errors go to the log instead of being thrown, within a team of threads where nobody catches them.
+      gmsh::option::setNumber("General.AbortOnError", 0);
+      attempt(file, "mesh the geometry",
+              fmt::format("gmsh itself shows more: gmsh -{} {}", dim, file.filename().string()),
+              [&] { gmsh::model::mesh::generate(dim); });
+    }
+  }
+  catch (...)
+  {
+    stop_gmsh();
+    throw;
+  }
+}
+
+GmshSession::~GmshSession()
+{
+  gmsh::finalize();
+}
+
+void check_mesh_file(const std::filesystem::path& file, const Where& where)
+{
+  const auto fail = [&](const std::string& problem, const std::string& hint)
+  { throw InputError(where, fmt::format("mesh file \"{}\" {}", file.string(), problem), hint); };
+
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) fail("does not exist", "the path is relative to the case file");
+  const std::string suffix = file.extension().string();
+  if (suffix != ".msh" && suffix != ".geo")
+    fail("is neither a .msh nor a .geo",
+         "gmsh -save -o mesh.msh file converts .unv with its groups (.vtk, .bdf and .mesh lose their names); "
+         "a "
+         ".step or .iges is read by a .geo: Merge \"part.step\";");
+  if (std::filesystem::is_directory(file, error)) fail("is a directory", "name the .msh or .geo file in it");
+  if (std::filesystem::is_empty(file, error)) fail("is empty", "save the mesh again with Gmsh");
+  std::ifstream stream(file, std::ios::binary);
+  const int first = stream.get();
+  stream.seekg(-1, std::ios::end);
+  const int last = stream.get();
+  if (!std::filesystem::is_regular_file(file, error) || !stream)
+    fail("cannot be read", "check its permissions");
+  if (suffix == ".msh" && first != '$')
+    fail("is not a Gmsh mesh: it does not begin with a $ section such as $MeshFormat",
+         "save the mesh again with Gmsh");
+  if (suffix == ".geo" && last != '\n')  // Gmsh ignores the statement at the very end, without a word
+    fail("does not end with a newline, and Gmsh would ignore its last statement", "add a newline at the end");
+}
+
+}  // namespace tribound

@@ -1,0 +1,138 @@
+#pragma once
+
+/// @file mesh.h
+/// Simplicial meshes in flat arrays.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/base/error.h"
+#include "tribound/base/types.h"
+
+namespace tribound
+{
+
+/// Vertex numbers of a cell, positively oriented. Local facet i is opposite to local vertex i; its vertices
+/// are the others in ascending local order.
+template <int dim>
+using Cell = std::array<Index, dim + 1>;
+
+/// A facet named by its vertices, in a group; what a reader finds.
+template <int dim>
+struct TaggedFacet
+{
+  std::array<Index, dim> vertices;
+  int tag;  ///< position in MeshData::boundary_names
+};
+
+/// A facet of the boundary of Omega.
+struct BoundaryFacet
+{
+  Index cell;
+  int local;  ///< local facet of the cell
+  int tag;    ///< position in Mesh::boundary_names(), or -1 for a facet in no group
+};
+
+/// What a reader delivers, not yet verified. Messages about it count cells and vertices from 0.
+template <int dim>
+struct MeshData
+{
+  std::vector<Point<dim>> vertices;
+  std::vector<Cell<dim>> cells;
+  std::vector<int> regions;  ///< per cell: position in region_names
+  std::vector<TaggedFacet<dim>> facets;
+  std::vector<std::string> region_names;
+  std::vector<std::string> boundary_names;
+  Where source;  ///< for messages
+  /// Per cell: how bisect() goes on with it, see mesh/marked_cell.h. Empty for a mesh that does not come from
+  /// bisect(), which then starts from the longest edges.
+  std::vector<std::uint8_t> bisection_types{};
+};
+
+/// The vertices of a local facet: those of the cell but number `local`, in ascending local order.
+template <std::size_t n>
+[[nodiscard]] constexpr std::array<Index, n - 1> facet_vertices(const std::array<Index, n>& cell, int local)
+{
+  std::array<Index, n - 1> vertices{};
+  for (std::size_t j = 0; j < n - 1; ++j) vertices[j] = cell[j < static_cast<std::size_t>(local) ? j : j + 1];
+  return vertices;
+}
+
+/// Facets, edges and vertex -> cell incidence of a mesh. The vertices of a facet and of an edge ascend, and
+/// facets and edges are numbered in the lexicographic order of their vertices.
+template <int dim>
+struct Topology
+{
+  static constexpr int n_cell_edges = dim * (dim + 1) / 2;
+
+  std::vector<std::array<Index, dim>> facets;           ///< vertices
+  std::vector<std::array<Index, 2>> facet_cells;        ///< second is -1 on the boundary
+  std::vector<std::array<Index, dim + 1>> cell_facets;  ///< [cell][local facet]
+  std::vector<std::array<Index, 2>> edges;              ///< vertices; in 2D the facets again
+  /// [cell][local edge]; local edges join local vertices (0,1) (0,2) (1,2) in 2D and
+  /// (0,1) (0,2) (0,3) (1,2) (1,3) (2,3) in 3D.
+  std::vector<std::array<Index, n_cell_edges>> cell_edges;
+  std::vector<Index> vertex_cells_begin;  ///< CSR offsets, size n_vertices + 1
+  std::vector<Index> vertex_cells;        ///< cells around each vertex, ascending
+};
+
+/// The vertices of each local edge, see Topology::cell_edges.
+template <int dim>
+inline constexpr auto local_edges = []
+{
+  std::array<std::array<int, 2>, dim*(dim + 1) / 2> edges{};
+  int k = 0;
+  for (int i = 0; i <= dim; ++i)
+    for (int j = i + 1; j <= dim; ++j) edges[k++] = {i, j};
+  return edges;
+}();
+
+/// A conforming simplicial mesh of a polygon or polyhedron.
+template <int dim>
+class Mesh
+{
+ public:
+  /// Verifies `data` (see docs/case-format.md, "Mesh") and finds the boundary. Throws InputError: inverted,
+  /// degenerate or duplicate cells, unused vertices, a facet shared by more than two cells, hanging nodes,
+  /// cells that overlap across a facet, tagged facets that are not on the boundary or in two groups, a vertex
+  /// whose cells are not connected through facets.
+  explicit Mesh(MeshData<dim> data);
+
+  [[nodiscard]] Index n_vertices() const { return static_cast<Index>(vertices_.size()); }
+  [[nodiscard]] Index n_cells() const { return static_cast<Index>(cells_.size()); }
+  [[nodiscard]] const Point<dim>& vertex(Index v) const { return vertices_[v]; }
+  [[nodiscard]] const Cell<dim>& cell(Index c) const { return cells_[c]; }
+  [[nodiscard]] int region(Index c) const { return regions_[c]; }
+  [[nodiscard]] std::span<const Point<dim>> vertices() const { return vertices_; }
+  [[nodiscard]] std::span<const Cell<dim>> cells() const { return cells_; }
+  [[nodiscard]] std::span<const BoundaryFacet> boundary() const { return boundary_; }
+  [[nodiscard]] std::span<const std::string> region_names() const { return region_names_; }
+  [[nodiscard]] std::span<const std::string> boundary_names() const { return boundary_names_; }
+  [[nodiscard]] const Where& source() const { return source_; }
+  /// As in MeshData.
+  [[nodiscard]] std::span<const std::uint8_t> bisection_types() const { return bisection_types_; }
+
+  [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
+
+ private:
+  std::vector<Point<dim>> vertices_;
+  std::vector<Cell<dim>> cells_;
+  std::vector<int> regions_;
+  std::vector<BoundaryFacet> boundary_;
+  std::vector<std::string> region_names_;
+  std::vector<std::string> boundary_names_;
+  Where source_;
+  std::vector<std::uint8_t> bisection_types_;
+  std::unique_ptr<const Topology<dim>> topology_;
+};
+
+/// Facets, edges and incidence by counting sorts, O(n). The cells may be unverified: where more than two
+/// share a facet, facet_cells holds the first two.
+template <int dim>
+[[nodiscard]] Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells);
+
+}  // namespace tribound

@@ -1,0 +1,323 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tribound/mesh/describe.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/verify.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+/// What is nearer to a facet than this multiple of its diameter touches it and does not cross;
+/// check_conformity looks at that.
+constexpr double coincidence = 1e-9;
+
+template <int dim>
+struct Box
+{
+  Point<dim> lower = Point<dim>::Constant(HUGE_VAL);
+  Point<dim> upper = Point<dim>::Constant(-HUGE_VAL);
+
+  void add(const Point<dim>& x)
+  {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+};
+
+/// A facet with one cell, and the normal that points out of it (not of unit length).
+template <int dim>
+struct OuterFacet
+{
+  std::array<Index, dim> vertices;
+  std::array<Point<dim>, dim> points;
+  Point<dim> normal;
+  Box<dim> box;
+};
+
+template <int dim>
+Point<dim> normal_of(const std::array<Point<dim>, dim>& points)
+{
+  if constexpr (dim == 2)
+  {
+    const Point<2> tangent = points[1] - points[0];
+    return {tangent[1], -tangent[0]};
+  }
+  else
+    return cross(points[1] - points[0], points[2] - points[0]);
+}
+
+template <int dim>
+std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topology<dim>& topology)
+{
+  std::vector<OuterFacet<dim>> outer;
+  for (std::size_t c = 0; c < data.cells.size(); ++c)
+    for (int i = 0; i <= dim; ++i)
+    {
+      if (topology.facet_cells[topology.cell_facets[c][i]][1] >= 0) continue;
+      OuterFacet<dim>& facet = outer.emplace_back();
+      facet.vertices = facet_vertices(data.cells[c], i);
+      facet.points = points_of<dim>(data.vertices, facet.vertices);
+      facet.normal = normal_of<dim>(facet.points);
+      if (facet.normal.dot(data.vertices[data.cells[c][i]] - facet.points[0]) > 0) facet.normal *= -1;
+      for (const Point<dim>& x : facet.points) facet.box.add(x);
+    }
+  return outer;
+}
+
+/// A binary tree of boxes: O(n log n) to build, a visit goes into the boxes that it accepts.
+template <int dim>
+class BoxTree
+{
+ public:
+  explicit BoxTree(std::span<const OuterFacet<dim>> facets) : facets_(facets), order_(facets.size())
+  {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    build(0, order_.size());
+  }
+
+  /// Calls visit(f) for every facet in boxes that all satisfy accept(box).
+  template <class Accept, class Visit>
+  void traverse(const Accept& accept, const Visit& visit) const
+  {
+    std::vector<std::size_t> open = {0};
+    while (!open.empty())
+    {
+      const Node& node = nodes_[open.back()];
+      const std::size_t number = open.back();
+      open.pop_back();
+      if (!accept(node.box)) continue;
+      if (node.second == 0)
+        for (std::size_t k = node.begin; k < node.end; ++k) visit(order_[k]);
+      else
+      {
+        open.push_back(number + 1);
+        open.push_back(node.second);
+      }
+    }
+  }
+
+ private:
+  struct Node
+  {
+    Box<dim> box;
+    std::size_t begin;
+    std::size_t end;
+    std::size_t second;  ///< the first child is the next node; 0 for a leaf
+  };
+  static constexpr std::size_t leaf_size = 8;
+
+  std::size_t build(std::size_t begin, std::size_t end)
+  {
+    const std::size_t number = nodes_.size();
+    Node& node = nodes_.emplace_back(Node{{}, begin, end, 0});
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      node.box.add(facets_[order_[k]].box.lower);
+      node.box.add(facets_[order_[k]].box.upper);
+    }
+    if (end - begin <= leaf_size) return number;
+    int axis = 0;
+    (node.box.upper - node.box.lower).maxCoeff(&axis);
+    const auto centre = [&](std::size_t f)
+    { return facets_[f].box.lower[axis] + facets_[f].box.upper[axis]; };
+    const std::size_t middle = (begin + end) / 2;
+    const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::nth_element(at(begin), at(middle), at(end),
+                     [&](std::size_t a, std::size_t b) { return centre(a) < centre(b); });
+    build(begin, middle);
+    const std::size_t second = build(middle, end);
+    nodes_[number].second = second;
+    return number;
+  }
+
+  std::span<const OuterFacet<dim>> facets_;
+  std::vector<std::size_t> order_;
+  std::vector<Node> nodes_;
+};
+
+/// Barycentric coordinates in the facet of a point of its plane.
+template <int dim>
+std::array<double, dim> barycentric(const OuterFacet<dim>& facet, const Point<dim>& x)
+{
+  const Point<dim> d = x - facet.points[0];
+  const Point<dim> a = facet.points[1] - facet.points[0];
+  if constexpr (dim == 2)
+  {
+    const double t = d.dot(a) / a.squaredNorm();
+    return {1 - t, t};
+  }
+  else
+  {
+    const Point<dim> b = facet.points[2] - facet.points[0];
+    const Point<dim> normal = cross(a, b);
+    const double s = cross(d, b).dot(normal) / normal.squaredNorm();
+    const double t = cross(a, d).dot(normal) / normal.squaredNorm();
+    return {1 - s - t, s, t};
+  }
+}
+
+/// Where the segment from a to b crosses the facet, its ends clear of the facet's plane; nothing if it does
+/// not. A crossing on the rim of the facet counts.
+template <int dim>
+std::optional<Point<dim>> crossing(const Point<dim>& a, const Point<dim>& b, const OuterFacet<dim>& facet)
+{
+  const double height_a = facet.normal.dot(a - facet.points[0]);
+  const double height_b = facet.normal.dot(b - facet.points[0]);
+  const double clear =
+      coincidence * facet.normal.norm() * std::max((b - a).norm(), diameter<dim>(facet.points));
+  if (height_a * height_b >= 0 || std::min(std::abs(height_a), std::abs(height_b)) <= clear)
+    return std::nullopt;
+  const Point<dim> x = a + height_a / (height_a - height_b) * (b - a);
+  const auto coordinates = barycentric(facet, x);
+  if (*std::ranges::min_element(coordinates) < -coincidence) return std::nullopt;
+  return x;
+}
+
+/// Where an edge of `first` crosses `second`, edges that share a vertex with it excepted.
+template <int dim>
+std::optional<Point<dim>> crossing(const OuterFacet<dim>& first, const OuterFacet<dim>& second)
+{
+  const auto shared = [&](int i)
+  { return std::ranges::find(second.vertices, first.vertices[i]) != second.vertices.end(); };
+  for (int i = 0; i < dim; ++i)
+    for (int j = i + 1; j < dim; ++j)
+      if (!shared(i) && !shared(j))
+        if (auto x = crossing(first.points[i], first.points[j], second)) return x;
+  return std::nullopt;
+}
+
+constexpr auto hint =
+    "bodies must not intersect: move one of them, or make one of them (BooleanFragments, \"Coherence;\" in a "
+    ".geo)";
+
+template <int dim>
+void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
+                     const BoxTree<dim>& tree)
+{
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    tree.traverse(
+        [&](const Box<dim>& box)
+        {
+          return (box.lower.array() <= facets[f].box.upper.array()).all() &&
+                 (box.upper.array() >= facets[f].box.lower.array()).all();
+        },
+        [&](std::size_t g)
+        {
+          if (f == g) return;
+          if (const auto x = crossing(facets[f], facets[g]))
+            throw InputError(data.source,
+                             fmt::format("the mesh overlaps itself: {} and {} of its boundary cross at {}",
+                                         describe_facet<dim>(data, facets[f].vertices),
+                                         describe_facet<dim>(data, facets[g].vertices), describe(*x)),
+                             hint);
+        });
+}
+
+/// How many cells cover the points just outside the facet: a ray from there leaves as many cells more than it
+/// enters. Nothing where it meets the rim of a facet.
+template <int dim>
+std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<dim>& tree, std::size_t start,
+                         const Point<dim>& direction)
+{
+  Point<dim> from = Point<dim>::Zero();
+  for (const Point<dim>& x : facets[start].points) from += x / dim;
+  const auto meets = [&](const Box<dim>& box)
+  {
+    double first = 0;
+    double last = HUGE_VAL;
+    for (int i = 0; i < dim; ++i)
+    {
+      const double a = (box.lower[i] - from[i]) / direction[i];
+      const double b = (box.upper[i] - from[i]) / direction[i];
+      first = std::max(first, std::min(a, b));
+      last = std::min(last, std::max(a, b));
+    }
+    return first <= last * (1 + coincidence);
+  };
+  int sum = 0;
+  bool is_clear = true;
+  tree.traverse(meets,
+                [&](std::size_t f)
+                {
+                  const OuterFacet<dim>& facet = facets[f];
+                  const double slope = facet.normal.dot(direction);
+                  if (f == start) return;
+                  const double distance = facet.normal.dot(facet.points[0] - from);
+                  if (slope == 0 || distance / slope <= 0) return;
+                  const auto coordinates = barycentric<dim>(facet, from + distance / slope * direction);
+                  const double inside = *std::ranges::min_element(coordinates);
+                  if (std::abs(inside) < coincidence) is_clear = false;
+                  if (inside > 0) sum += slope > 0 ? 1 : -1;
+                });
+  return is_clear ? std::optional(sum) : std::nullopt;
+}
+
+/// The first facet of every connected part of the boundary.
+template <int dim>
+std::vector<std::size_t> parts(std::span<const OuterFacet<dim>> facets, std::size_t n_vertices)
+{
+  std::vector<Index> parent(n_vertices);
+  std::iota(parent.begin(), parent.end(), Index{0});
+  const auto root = [&](Index v)
+  {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& facet : facets)
+    for (int i = 1; i < dim; ++i) parent[root(facet.vertices[i])] = root(facet.vertices[0]);
+  std::vector<std::size_t> first;
+  std::vector<bool> seen(n_vertices, false);
+  for (std::size_t f = 0; f < facets.size(); ++f)
+  {
+    const Index r = root(facets[f].vertices[0]);
+    if (!seen[r]) first.push_back(f);
+    seen[r] = true;
+  }
+  return first;
+}
+
+/// Boundaries that do not cross are inside other cells as a whole, or not at all.
+template <int dim>
+void check_covers(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
+                  const BoxTree<dim>& tree)
+{
+  for (const std::size_t f : parts(facets, data.vertices.size()))
+    for (int attempt = 1; attempt <= 8; ++attempt)
+    {
+      // Outwards, and in no direction that a mesh has.
+      Point<dim> direction = facets[f].normal / facets[f].normal.norm();
+      for (int i = 0; i < dim; ++i) direction[i] += 0.2 * std::sin(attempt + 0.7 * i);
+      const std::optional<int> n = cover(facets, tree, f, direction);
+      if (!n) continue;
+      if (*n == 0) break;
+      throw InputError(data.source,
+                       fmt::format("the mesh overlaps itself: {} of its boundary lies inside other cells",
+                                   describe_facet<dim>(data, facets[f].vertices)),
+                       hint);
+    }
+}
+
+}  // namespace
+
+template <int dim>
+void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology)
+{
+  const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
+  const BoxTree<dim> tree(facets);
+  check_crossings<dim>(data, facets, tree);
+  check_covers<dim>(data, facets, tree);
+}
+
+template void check_overlap<2>(const MeshData<2>&, const Topology<2>&);
+template void check_overlap<3>(const MeshData<3>&, const Topology<3>&);
+
+}  // namespace tribound

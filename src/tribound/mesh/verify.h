@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file verify.h
+/// The steps of the verification of a mesh, in the order in which Mesh's constructor takes them: each relies
+/// on what the ones before it found in order. All throw InputError naming the place with its coordinates.
+
+#include <vector>
+
+#include "tribound/mesh/mesh.h"
+
+namespace tribound
+{
+
+/// There are cells; the arrays match; vertex, region and group numbers are in range; coordinates are finite.
+template <int dim>
+void check_arrays(const MeshData<dim>& data);
+
+/// No cell is inverted or degenerate: det J > 1e-12 h_T^dim.
+template <int dim>
+void check_shapes(const MeshData<dim>& data);
+
+/// No facet has more than two cells, no cell appears twice, and the two cells of a facet lie on its two
+/// sides.
+template <int dim>
+void check_facets(const MeshData<dim>& data, const Topology<dim>& topology);
+
+/// The cells meet in whole facets: no vertex and, in 3D, no face centre on a facet of the topological
+/// boundary that it does not belong to, and no two boundary vertices at one place. Only facets with one cell
+/// are looked at, because a hanging vertex leaves such facets on both sides.
+template <int dim>
+void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology);
+
+/// No two cells overlap: the boundary does not cross itself, and no part of it lies inside other cells.
+/// O(n log n) in the facets of the boundary.
+template <int dim>
+void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology);
+
+/// The facets with one cell, in the order of their numbers, with the tags of data.facets. Every tagged facet
+/// must be one of them, in one group only.
+template <int dim>
+[[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
+                                                       const Topology<dim>& topology);
+
+/// Every vertex has cells, and they are connected through facets that contain the vertex.
+template <int dim>
+void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology);
+
+}  // namespace tribound

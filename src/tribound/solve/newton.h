@@ -1,0 +1,83 @@
+#pragma once
+
+/// @file newton.h
+/// The generalised Newton method of section 2 with damping and running traction.
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/case/config.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound
+{
+
+struct NewtonStep
+{
+  int step = 0;               ///< 1-based
+  double residual = 0.0;      ///< relative, after the step
+  double damping = 1.0;       ///< alpha
+  int linear_iterations = 0;  ///< GMRES iterations; 0 for a direct solve
+  bool factorised = false;    ///< whether a new factorisation (or preconditioner) was made
+  double seconds = 0.0;
+  double delta = 0.0;                          ///< of T_delta, method section 7; 0 is the plain T
+  LinearMethod method = LinearMethod::direct;  ///< of the linear solver
+  bool fell_back = false;  ///< whether multigrid failed and the direct solver took its place
+};
+
+enum class NewtonStatus
+{
+  converged,
+  accepted,  ///< by the observer
+  diverged,
+  too_many_steps
+};
+
+template <int dim>
+struct NewtonResult
+{
+  NewtonStatus status = NewtonStatus::too_many_steps;
+  std::string message;               ///< what happened, at which step; empty when converged or accepted
+  std::vector<double> u;             ///< u^k, dofs of the space
+  std::vector<Point<dim>> traction;  ///< t^k at the contact points of the form
+  std::vector<NewtonStep> steps;
+};
+
+/// What an observer of the iteration sees after each step.
+template <int dim>
+struct NewtonIterate
+{
+  const NewtonStep& step;
+  std::span<const double> u;             ///< u^k
+  std::span<const Point<dim>> traction;  ///< t^k
+  bool converged;                        ///< the residual is below the tolerance, and t^k is T(u^k)
+};
+
+/// What an observer says about an iterate.
+struct NewtonAdvice
+{
+  /// Implicit: an observer that never changes delta just says yes or no.
+  NewtonAdvice(bool iterate_is_good_enough) : good_enough(iterate_is_good_enough) {}
+
+  bool good_enough;             ///< the iterate is the result
+  std::optional<double> delta;  ///< instead: go on from it, converged or not, with T_delta for this delta
+};
+
+template <int dim>
+using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
+
+/// Solves the discrete problem, with T_delta in the place of T for delta > 0. `start` is a solution carried
+/// from a coarser mesh (then the first step linearises there), or empty (then the first step is closed and
+/// sticking). `observer` is called after each step and says what to do with its iterate. t^k is in
+/// equilibrium with u^k whatever delta is, and goes on when delta changes. Throws SolveError when a matrix is
+/// singular.
+template <int dim>
+[[nodiscard]] NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
+                                      const NewtonConfig& newton, const SolverConfig& solver,
+                                      const NewtonObserver<dim>& observer = {}, double delta = 0);
+
+}  // namespace tribound

@@ -1,0 +1,196 @@
+/// @file linear_solver_test.cpp
+/// One system solved in every way; what is kept from one system to the next.
+
+#include "tribound/algebra/linear_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/discrete_case.h"
+#include "support/fields.h"
+#include "support/meshes.h"
+#include "tribound/base/error.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// The stiffness of a clamped block with a right-hand side of known solution.
+template <int dim>
+struct System
+{
+  System()
+      : c("degree = 2\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = " +
+              std::string(dim == 2 ? "[0, 0]" : "[0, 0, 0]"),
+          mesh()),
+        entries(stiffness(c.problem, c.space, c.form.constraints())),
+        nodes(c.space.node_points()),
+        x(random_free_vector(c.form.constraints(), 1.0, 1)),
+        b(multiply(entries, x))
+  {
+  }
+
+  static MeshData<dim> mesh()
+  {
+    if constexpr (dim == 2)
+      return box<2>({0, 0}, {2, 1}, {8, 4});
+    else
+      return box<3>({0, 0, 0}, {2, 1, 1}, {4, 2, 2});
+  }
+
+  [[nodiscard]] SparseMatrix matrix() const { return {c.space.n_dofs(), dim, entries}; }
+  [[nodiscard]] LinearSolver solver(const SolverConfig& config) const
+  {
+    return LinearSolver(config, std::span<const Point<dim>>(nodes));
+  }
+
+  DiscreteCase<dim> c;
+  Triplets entries;
+  std::vector<Point<dim>> nodes;
+  std::vector<double> x;
+  std::vector<double> b;
+};
+
+SolverConfig direct(DirectPackage package)
+{
+  return {.method = LinearMethod::direct, .package = package};
+}
+
+template <int dim>
+void expect_solved(const SolverConfig& config)
+{
+  const System<dim> system;
+  const SparseMatrix a = system.matrix();
+  LinearSolver solver = system.solver(config);
+  EXPECT_EQ(solver.method(), config.method);
+  std::vector<double> x(system.x.size(), 0.0);
+  const LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+  EXPECT_TRUE(solve.factorised);
+  EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
+  EXPECT_LE(distance(a.multiply(x), system.b), 1e-10 * norm(system.b));
+}
+
+TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
+{
+  const SolverConfig multigrid{.method = LinearMethod::iterative};
+  for (const SolverConfig& config : {direct(DirectPackage::mumps), direct(DirectPackage::umfpack),
+                                     direct(DirectPackage::automatic), multigrid})
+  {
+    expect_solved<2>(config);
+    expect_solved<3>(config);
+  }
+}
+
+TEST(LinearSolver, ADirectSolveTakesOneIteration)
+{
+  const System<2> system;
+  LinearSolver solver = system.solver(direct(DirectPackage::mumps));
+  std::vector<double> x(system.x.size(), 0.0);
+  EXPECT_LE(solver.solve(system.matrix(), system.b, 1e-10 * norm(system.b), x).iterations, 2);
+}
+
+TEST(LinearSolver, HalfTheFactorsOfAPositiveDefiniteMatrixWillDo)
+{
+  const System<3> system;
+  const SparseMatrix a = system.matrix();
+  const SolverConfig config = direct(DirectPackage::mumps);
+  LinearSolver solver(config, std::span<const Point<3>>(system.nodes), MatrixKind::positive_definite);
+  std::vector<double> x(system.x.size(), 0.0);
+  for (int i = 0; i < 2; ++i)
+  {
+    const LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+    EXPECT_EQ(solve.factorised, i == 0);
+    EXPECT_LE(solve.iterations, 2);
+    EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
+  }
+}
+
+/// Systems that change little are solved with old factors, and as exactly.
+TEST(LinearSolver, KeepsFactorsForSimilarSystems)
+{
+  const System<2> system;
+  SparseMatrix a = system.matrix();
+  LinearSolver solver = system.solver(direct(DirectPackage::mumps));
+  std::vector<double> x(system.x.size(), 0.0);
+  EXPECT_TRUE(solver.solve(a, system.b, 1e-11 * norm(system.b), x).factorised);
+
+  Triplets entries = system.entries;
+  for (double& value : entries.values) value *= 1.5;
+  a.set_values(entries.values);
+  const LinearSolve again = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+  EXPECT_FALSE(again.factorised);
+  EXPECT_GE(again.iterations, 1);
+  EXPECT_LE(norm(sum(x, -1 / 1.5, system.x)), 1e-8 * norm(system.x));
+}
+
+/// Factors of a very different matrix are given up, and the answer is right.
+TEST(LinearSolver, FactorsAnewWhereOldFactorsDoNotHelp)
+{
+  const System<2> system;
+  SparseMatrix a = system.matrix();
+  LinearSolver solver = system.solver(direct(DirectPackage::mumps));
+  std::vector<double> x(system.x.size(), 0.0);
+  (void)solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+
+  Triplets entries = system.entries;
+  for (std::size_t k = 0; k < entries.values.size(); ++k)
+    if (entries.rows[k] >= 0 && entries.rows[k] == entries.cols[k])
+      entries.values[k] *= entries.rows[k] % 7 == 0 ? 1e3 : 1 + entries.rows[k] % 5;
+  a.set_values(entries.values);
+  const std::vector<double> b = multiply(entries, system.x);
+  EXPECT_TRUE(solver.solve(a, b, 1e-11 * norm(b), x).factorised);
+  EXPECT_LE(distance(x, system.x), 1e-8 * norm(system.x));
+}
+
+TEST(LinearSolver, ASingularMatrixIsAnError)
+{
+  const DiscreteCase<2> floating("degree = 1\nmaterial = { E = 1, nu = 0.3 }",
+                                 box<2>({0, 0}, {1, 1}, {4, 4}));
+  const SparseMatrix a(floating.space.n_dofs(), 2,
+                       stiffness(floating.problem, floating.space, floating.form.constraints()));
+  const std::vector<Point<2>> nodes = floating.space.node_points();
+  const std::vector<double> b(a.size(), 1.0);  // not in the range
+  for (const DirectPackage package : {DirectPackage::mumps, DirectPackage::umfpack})
+  {
+    LinearSolver solver(direct(package), std::span<const Point<2>>(nodes));
+    std::vector<double> x(a.size(), 0.0);
+    EXPECT_THROW(solver.solve(a, b, 1e-10, x), SolveError);
+  }
+}
+
+/// One iteration is not enough for multigrid: who did not ask for it gets a factorisation, from then on.
+TEST(LinearSolver, FallsBackToAFactorisationUnlessToldOtherwise)
+{
+  const System<3> system;
+  const SparseMatrix a = system.matrix();
+  const std::span<const Point<3>> nodes(system.nodes);
+  std::vector<double> x(system.x.size(), 0.0);
+  LinearSolver automatic({.max_iterations = 1}, nodes, MatrixKind::general, 0);
+  EXPECT_EQ(automatic.method(), LinearMethod::iterative);
+  EXPECT_TRUE(automatic.solve(a, system.b, 1e-11 * norm(system.b), x).fell_back);
+  EXPECT_EQ(automatic.method(), LinearMethod::direct);
+  EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
+  const LinearSolve again = automatic.solve(a, system.b, 1e-11 * norm(system.b), x);
+  EXPECT_FALSE(again.fell_back);
+  EXPECT_FALSE(again.factorised);
+
+  LinearSolver told({.method = LinearMethod::iterative, .max_iterations = 1}, nodes);
+  EXPECT_THROW(told.solve(a, system.b, 1e-11 * norm(system.b), x), SolveError);
+}
+
+TEST(ChooseMethod, DirectUnlessLargeIn3DOrTold)
+{
+  const SolverConfig automatic;
+  EXPECT_EQ(choose_method(automatic, 2, 1'000'000), LinearMethod::direct);
+  EXPECT_EQ(choose_method(automatic, 3, 10'000), LinearMethod::direct);
+  EXPECT_EQ(choose_method(automatic, 3, 1'000'000), LinearMethod::iterative);
+  const SolverConfig told{.method = LinearMethod::iterative};
+  EXPECT_EQ(choose_method(told, 2, 100), LinearMethod::iterative);
+}
+
+}  // namespace
+
+}  // namespace tribound::test

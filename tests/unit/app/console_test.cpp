@@ -1,0 +1,200 @@
+#include "app/console/console.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/console/balance_text.h"
+
+namespace tribound
+{
+namespace
+{
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const CaseFacts facts{"Block", "case.toml", 2, 2, "tresca", 10.0};
+const MeshFacts mesh{15,
+                     16,
+                     80,
+                     0.5,
+                     0.75,
+                     {{"box", 16, 2.0, "E = 1, nu = 0.3, plane strain"}},
+                     {{"bottom", 4, 2.0, "contact, Tresca friction, threshold 0.03, gap 0"},
+                      {"top", 1, 2.0, "traction-free"}}};
+
+TEST(Console, Header)
+{
+  EXPECT_EQ(header_text(facts, mesh),
+            "case          Block\n"
+            "mesh          15 vertices, 16 cells, h from 0.5 to 0.75\n"
+            "method        2D, degree 2, 80 free degrees of freedom, gamma_0 = 10\n");
+}
+
+TEST(Console, CheckNamesRegionsAndBoundaries)
+{
+  EXPECT_EQ(check_text(facts, mesh, "direct (MUMPS)"),
+            header_text(facts, mesh) +
+                "solver        direct (MUMPS)\n"
+                "regions\n"
+                "  box  16 cells, area 2: E = 1, nu = 0.3, plane strain\n"
+                "boundaries\n"
+                "  bottom  4 facets, length 2: contact, Tresca friction, threshold 0.03, gap 0\n"
+                "  top     1 facet, length 2: traction-free\n");
+}
+
+TEST(Console, NewtonStep)
+{
+  EXPECT_EQ(newton_text({3, 1.3e-5, 1.0, 0, false, 0.125}), "  step  3  residual 1.3e-05  direct, 0.1 s\n");
+  EXPECT_EQ(newton_text({3, 1.3e-5, 1.0, 0, true, 0.125}, 0.025),
+            "  step  3  residual 1.3e-05  bound 2.50e-02  factorised, 0.1 s\n");
+  EXPECT_THAT(newton_text({1, 1.0, 0.5, 7, true, 0.0}), HasSubstr("  damping 0.5  GMRES 7, "));
+}
+
+TEST(Console, NewtonStepsFitATerminal)
+{
+  const NewtonStep longest = {50, 1.25e-5, 1.0 / 1024, 0, true, 999.94};
+  EXPECT_LE(newton_text(longest, 1.25e-5).size(), 80u + 1);  // with the newline
+}
+
+TEST(Console, CertificateGivesEveryComponentAndItsShare)
+{
+  RunRecord run;
+  run.facts.degree = 1;
+  LevelRecord level;
+  level.figures.sigma_norm = 2;
+  level.bound = Bound{{0, 3, 0, 0, 4, 0, 0, 0}, 0.5, 0.25};
+  level.identities = IdentityDefects{1e-13, 0, 0, 0, 1};  // no symmetry for p = 1
+  run.levels = {level};
+  run.statements = {{"the dual norm of the residual"}, "unique", {}, {}, {"the model"}};
+  EXPECT_EQ(certificate_text(run),
+            "bound         0.25, that is 12.5 % of ||sigma(u_h)|| (plain sums: 0.5)\n"
+            "              osc    data oscillation                       0    0.0 %\n"
+            "              str    stress                                 3   36.0 %\n"
+            "              neu    Neumann data                           0    0.0 %\n"
+            "              lin1   linearisation, in the body             0    0.0 %\n"
+            "              cnt    contact condition                      4   64.0 %\n"
+            "              frc    friction                               0    0.0 %\n"
+            "              lin2n  linearisation, normal                  0    0.0 %\n"
+            "              lin2t  linearisation, tangential              0    0.0 %\n"
+            "identities    hold to 1.0e-13 of ||sigma_h|| (limit 1e-08)\n"
+            "guaranteed    the dual norm of the residual\n"
+            "law           unique\n"
+            "outside       the model\n");
+}
+
+TEST(Console, NoCertificateWithoutABound)
+{
+  RunRecord run;
+  run.levels.resize(1);
+  EXPECT_EQ(certificate_text(run), "");
+}
+
+TEST(Console, Level)
+{
+  LevelRecord level;
+  level.level = 3;
+  level.cells = 1234;
+  level.dofs = 5678;
+  level.newton.resize(2);
+  level.figures.sigma_norm = 2;
+  level.bound = Bound{{}, 0.5, 0.25};
+  level.times.level = 1.25;
+  EXPECT_EQ(level_text(level),
+            "level 3           1234 cells      5678 dofs  newton  2  bound 12.5 %    1.25 s\n");
+}
+
+TEST(Console, SummaryOfAFailedRun)
+{
+  RunRecord run;
+  run.status = RunStatus::failed;
+  run.reason = "no convergence in 50 steps";
+  EXPECT_EQ(summary_text(run, ""), "status        failed: no convergence in 50 steps\n");
+}
+
+TEST(Console, SummaryOfACertifiedRunNamesTheTolerance)
+{
+  RunRecord run;
+  run.status = RunStatus::certified;
+  run.tolerance = 0.03;
+  EXPECT_EQ(summary_text(run, ""),
+            "status        certified: the bound is at most adapt.tolerance = 3 % of ||sigma(u_h)||\n");
+}
+
+TEST(Console, Summary)
+{
+  RunRecord run;
+  LevelRecord level;
+  level.newton.resize(5);
+  level.figures = {0.0137,
+                   0.116,
+                   0.084,
+                   {"", {-0.04, 0.11}, -0.11, -0.04, 0.05},
+                   {{"bottom", {-0.04, 0.11}, -0.11, -0.04, 0.05}}};
+  run.levels = {level};
+  EXPECT_EQ(summary_text(run, "out"),
+            "contact       bottom: normal -0.11, tangential -0.04, force (-0.04, 0.11)\n"
+            "max |u|       0.084\n"
+            "energy        a(u, u) = 0.0137, ||sigma|| = 0.116\n"
+            "status        uncertified\n"
+            "results       out\n");
+}
+
+TEST(Console, SummaryJudgesSliding)
+{
+  RunRecord run;
+  LevelRecord level;
+  level.figures.boundary_contact = {{"base", {-12.0, 32.0}, -32.0, 12.0, 12.0, 0.75},
+                                    {"pad", {0.0, 4.0}, -4.0, 0.0, 0.0, 0.5},
+                                    {"rail", {1.0, 4.0}, -4.0, 1.0, 1.0, {}}};
+  run.levels = {level};
+  EXPECT_THAT(
+      summary_text(run, ""),
+      AllOf(
+          HasSubstr(
+              "sliding       base: sliding factor H/N = 0.375, mu_F = 0.75: factor of safety mu_F N/H = 2\n"),
+          HasSubstr("sliding       pad: sliding factor H/N = 0, mu_F = 0.5: no sliding force\n"),
+          Not(HasSubstr("rail: sliding"))));
+}
+
+TEST(Console, BalanceShowsRoundingAsZero)
+{
+  const Balance plane = {{1, 0.5},
+                         {{BalanceKind::load, "box", "body force", {1e-15, -3}, {{1.5}}},
+                          {BalanceKind::reaction, "left", "displacement", {1.25, 0}, {{-1.5}}},
+                          {BalanceKind::contact, "bottom", "contact", {-1.25, 3}, {{0}}},
+                          {BalanceKind::sum, "", "", {0, -4e-16}, {{2e-16}}}}};
+  EXPECT_EQ(balance_text(plane),
+            "balance                                      force x      force y       moment\n"
+            "              load      box, body force            0           -3          1.5\n"
+            "              reaction  left                    1.25            0         -1.5\n"
+            "              contact   bottom                 -1.25            3            0\n"
+            "              sum                                  0            0            0\n"
+            "              on the body; moments about (1, 0.5)\n");
+}
+
+TEST(Console, BalanceOfDegreeOneLacksMoments)
+{
+  const Balance space = {{0, 0, 0},
+                         {{BalanceKind::reaction, "left", "displacement", {1, 2, 3}, {}},
+                          {BalanceKind::sum, "", "", {0, 0, 0}, {}}}};
+  EXPECT_THAT(balance_text(space), AllOf(HasSubstr("moment x     moment y     moment z\n"),
+                                         HasSubstr("3            -            -            -\n"),
+                                         HasSubstr("need degree 2 or more")));
+}
+
+TEST(Console, InfoLeavesOutWhatIsUnknown)
+{
+  BuildFacts build = build_facts();
+  build.blas = "OpenBLAS 0.3.21";
+  build.blas_threads = 1;
+  EXPECT_THAT(info_text(build), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
+                                      HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
+                                      HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
+  build.report_page = "/usr/share/tribound/report.html";
+  EXPECT_THAT(info_text(build), HasSubstr("report page   /usr/share/tribound/report.html\n"));
+}
+
+}  // namespace
+}  // namespace tribound

@@ -1,0 +1,47 @@
+#include "app/page/page_profile.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/io/constant_stress.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+TEST(PageProfile, ValuesAlongTheFloor)
+{
+  const BoxCase<2> box(constant_stress_case<2>(2, 4));
+  const std::vector<double> u = box.interpolate(constant_stress_displacement<2>);
+  const std::vector<ContactProfile> profiles = contact_profiles(box.form, u, 40);
+  ASSERT_EQ(profiles.size(), 1u);
+  const ContactProfile& profile = profiles[0];
+  EXPECT_EQ(box.mesh.boundary_names()[profile.tag], "bottom");
+  ASSERT_EQ(profile.arc.size(), 4u * 11);
+  EXPECT_EQ(profile.arc.front(), 0.0);
+  EXPECT_NEAR(profile.arc.back(), 2.0, 1e-14);
+  for (std::size_t i = 0; i < profile.arc.size(); ++i)
+  {
+    EXPECT_GE(profile.arc[i], profile.arc[i == 0 ? 0 : i - 1] - 1e-14);
+    EXPECT_NEAR(profile.points[2 * i], profile.arc[i], 1e-14);
+    EXPECT_NEAR(profile.points[2 * i + 1], 0.0, 1e-14);
+    EXPECT_NEAR(profile.displacement[2 * i], 0.1 * profile.arc[i], 1e-14);
+    EXPECT_NEAR(profile.normal[2 * i], 0.0, 1e-14);
+    EXPECT_NEAR(profile.normal[2 * i + 1], -1.0, 1e-14);
+    EXPECT_NEAR(profile.pressure[i], -constant_stress<2>()[1], 1e-12);
+    EXPECT_NEAR(profile.friction[i], 0.0, 1e-12);
+    EXPECT_NEAR(profile.gap[i], 0.0, 1e-14);
+    EXPECT_NEAR(profile.slip[i], 0.1 * profile.arc[i], 1e-14);
+    EXPECT_EQ(profile.status[i], static_cast<Index>(ContactStatus::slip));
+  }
+}
+
+TEST(PageProfile, FewPointsPerFacetOnLongBoundaries)
+{
+  const BoxCase<2> box(constant_stress_case<2>(2, 4));
+  const std::vector<double> u = box.interpolate(constant_stress_displacement<2>);
+  EXPECT_EQ(contact_profiles(box.form, u, 1)[0].arc.size(), 4u * 3);
+}
+
+}  // namespace
+}  // namespace tribound::test

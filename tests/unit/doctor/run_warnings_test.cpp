@@ -1,0 +1,142 @@
+/// @file run_warnings_test.cpp
+/// Which results deserve a warning.
+
+#include "tribound/doctor/run_warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tribound
+{
+namespace
+{
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+LevelRecord level(const BoundComponents& components)
+{
+  LevelRecord record;
+  record.figures.sigma_norm = 10;
+  record.figures.max_displacement = 1;
+  record.bound = Bound{components, components.total(), components.total_sharp()};
+  return record;
+}
+
+ContactOutcome closed_contact()
+{
+  ContactOutcome outcome;
+  outcome.boundary = "base";
+  outcome.facets = 20;
+  outcome.closed_facets = 10;
+  outcome.closed = 1;
+  outcome.slipping = 0.5;
+  outcome.has_friction = true;
+  outcome.coefficient = 0.3;
+  outcome.force = 1.5;  // a mean pressure of 1.5
+  outcome.largest_pressure = 2;
+  outcome.penetration = 1e-4;
+  outcome.zigzag = 1e-3;
+  return outcome;
+}
+
+std::vector<std::string> codes(const LevelRecord& record, const ContactOutcome& outcome)
+{
+  std::vector<std::string> result;
+  for (const RunWarning& warning : run_warnings(record, std::array{outcome})) result.push_back(warning.code);
+  return result;
+}
+
+const LevelRecord sound = level({.str = 1, .cnt = 0.5});
+
+TEST(RunWarnings, NoneForASoundResult)
+{
+  EXPECT_THAT(codes(sound, closed_contact()), IsEmpty());
+}
+
+TEST(RunWarnings, DataThatDominate)
+{
+  EXPECT_THAT(codes(level({.osc = 2, .str = 1}), closed_contact()), ElementsAre("body_force_oscillation"));
+  EXPECT_THAT(codes(level({.str = 1, .neu = 2}), closed_contact()), ElementsAre("traction_oscillation"));
+  EXPECT_THAT(codes(level({.osc = 1e-12, .str = 1e-14}), closed_contact()), IsEmpty());  // round-off
+  LevelRecord without_bound;
+  without_bound.figures.max_displacement = 1;
+  EXPECT_THAT(codes(without_bound, closed_contact()), IsEmpty());
+}
+
+TEST(RunWarnings, ContactThatIsNotResolved)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.closed_facets = 2;
+  EXPECT_THAT(codes(sound, outcome), ElementsAre("few_contact_facets"));
+  outcome.facets = 2;  // all of it is closed: nothing to resolve
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome = closed_contact();
+  outcome.closed = 0;
+  outcome.slipping = 0;
+  EXPECT_THAT(codes(sound, outcome), ElementsAre("no_contact"));
+}
+
+/// What is compared with a limit, from either side of it, and where it is.
+TEST(RunWarnings, Zigzag)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.zigzag = 0.035;
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome.zigzag = 0.06;
+  outcome.zigzag_at = {0.25, 0};
+  const auto warnings = run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].code, "pressure_zigzag");
+  EXPECT_EQ(warnings[0].value, 0.06);
+  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.25, 0)");
+  EXPECT_THAT(warnings[0].text, HasSubstr("goes up and down by 6 % of itself"));
+}
+
+TEST(RunWarnings, PressureAtKinks)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.kink = 0.5;
+  outcome.kink_pressure = 2;  // a Hertz contact on a fine polygon
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome.kink_pressure = 4.5;
+  outcome.kink_at = {0.5, 0};
+  const auto warnings = run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].code, "pressure_at_kinks");
+  EXPECT_DOUBLE_EQ(warnings[0].value, 3);
+  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.5, 0)");
+  EXPECT_THAT(warnings[0].text,
+              HasSubstr("reaches 4.5, 3 times its mean, where facets meet at an angle (up to 0.5"));
+}
+
+TEST(RunWarnings, Penetration)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.penetration = 0.015;
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome.penetration = 0.1;
+  outcome.penetration_at = {0.5, 0};
+  const auto warnings = run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].code, "penetration");
+  EXPECT_DOUBLE_EQ(warnings[0].value, 0.1);
+  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.5, 0)");
+  EXPECT_THAT(warnings[0].text, HasSubstr("by 0.1, 10 % of the largest displacement"));
+}
+
+TEST(RunWarnings, Friction)
+{
+  ContactOutcome outcome = closed_contact();
+  outcome.coefficient = 1.5;
+  EXPECT_THAT(codes(sound, outcome), ElementsAre("friction_coefficient"));
+  outcome = closed_contact();
+  outcome.slipping = outcome.closed;
+  EXPECT_THAT(codes(sound, outcome), ElementsAre("sliding"));
+  outcome.has_friction = false;  // without friction all slides always
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+}
+
+}  // namespace
+}  // namespace tribound

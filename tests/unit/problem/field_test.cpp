@@ -1,0 +1,172 @@
+#include "tribound/problem/field.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace tribound
+{
+namespace
+{
+
+using testing::HasSubstr;
+
+const Where in_case_file{"case.toml", "boundary.top.pressure", 12, 11};
+
+double at(const std::string& formula, const Point<3>& x)
+{
+  return Expression(formula, in_case_file)(x);
+}
+
+std::string message(const std::string& formula)
+{
+  try
+  {
+    const Expression expression(formula, in_case_file);
+  }
+  catch (const InputError& error)
+  {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Expression, EvaluatesFormulas)
+{
+  const Point<3> x(2, 3, 5);
+  EXPECT_DOUBLE_EQ(at("x + 10*y + 100*z", x), 532);
+  EXPECT_DOUBLE_EQ(at("9810*max(0, 9-y)", x), 9810 * 6);
+  EXPECT_DOUBLE_EQ(at("-x^2", x), -4);
+  EXPECT_DOUBLE_EQ(at("x^y^2", x), 512);
+  EXPECT_DOUBLE_EQ(at("x < 1 ? 7 : 8", x), 8);
+  EXPECT_DOUBLE_EQ(at("x == 2 && y >= 3 && z != 4", x), 1);
+  EXPECT_DOUBLE_EQ(at("sin(pi*x/4) + ln(e^y)", x), 4);
+  EXPECT_DOUBLE_EQ(at("log(x)", x), std::log(2.0));
+  EXPECT_DOUBLE_EQ(at("1.5e-3*x + 2.E+1 + .5", x), 20.503);
+  EXPECT_DOUBLE_EQ(at("x\n  + y", x), 5);
+}
+
+TEST(Expression, IsEvaluatedIn2DWithoutZ)
+{
+  const Expression formula("x - y", in_case_file);
+  EXPECT_EQ(formula(Point<2>(1, 2)), -1);
+  EXPECT_EQ(formula(Point<3>(1, 2, 3)), -1);
+}
+
+TEST(Expression, KnowsWhatItDependsOn)
+{
+  const Expression constant("2*pi", in_case_file);
+  EXPECT_TRUE(constant.is_constant());
+  EXPECT_FALSE(constant.is_zero());
+  EXPECT_DOUBLE_EQ(constant(Point<2>(9, 9)), 2 * std::numbers::pi);
+  EXPECT_TRUE(Expression("1 - 1", in_case_file).is_zero());
+  EXPECT_TRUE(Expression().is_zero());
+  EXPECT_FALSE(Expression(3.0).is_zero());
+  EXPECT_FALSE(Expression("0*x", in_case_file).is_constant());
+  EXPECT_TRUE(Expression("x + sin(z)", in_case_file).uses_z());
+  EXPECT_FALSE(Expression("x + y", in_case_file).uses_z());
+  EXPECT_FALSE(Expression(1.0).uses_z());
+  EXPECT_EQ(Expression(1.0, in_case_file).where().line, 12);
+}
+
+TEST(Expression, CopiesAreIndependent)
+{
+  const Point<2> a(1, 0);
+  const Point<2> b(2, 0);
+  Expression copy;
+  {
+    const Expression original("10*x", in_case_file);
+    copy = original;
+    EXPECT_EQ(original(a), 10);
+    EXPECT_EQ(copy(b), 20);
+    EXPECT_EQ(original(a), 10);
+  }
+  EXPECT_EQ(copy(a), 10);
+  const Expression moved = std::move(copy);
+  EXPECT_EQ(moved(b), 20);
+  std::vector<Expression> many(3, moved);
+  many.resize(100, Expression("y", in_case_file));
+  EXPECT_EQ(many[2](b), 20);
+  EXPECT_EQ(many[99](Point<2>(0, 4)), 4);
+}
+
+struct BadFormula
+{
+  std::string formula;
+  std::string problem;
+  std::string hint;
+};
+
+class BadExpression : public testing::TestWithParam<BadFormula>
+{
+};
+
+TEST_P(BadExpression, IsRejectedWithThePosition)
+{
+  const std::string text = message(GetParam().formula);
+  EXPECT_THAT(text, HasSubstr("case.toml:12:11: boundary.top.pressure: "));
+  EXPECT_THAT(text, HasSubstr(GetParam().problem));
+  EXPECT_THAT(text, HasSubstr(GetParam().hint));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Syntax, BadExpression,
+    testing::Values(BadFormula{"9810*mxx(0, 9-y)", "unknown name \"mxx\" at character 6",
+                               "did you mean \"max\"?"},
+                    BadFormula{"1 + X", "unknown name \"X\" at character 5",
+                               "allowed are x, y, z, pi, e and the functions"},
+                    BadFormula{"2*t", "unknown name \"t\" at character 3", "abs, acos"},
+                    BadFormula{"_pi", "unknown name \"_pi\" at character 1", "did you mean \"pi\"?"},
+                    BadFormula{"1e", "unexpected \"1e\" at character 1", ""},
+                    BadFormula{"1+", "something is missing at character 3", ""},
+                    BadFormula{"(x", "\")\" is missing at character", ""},
+                    BadFormula{"x)", "unexpected \")\" at character 2", ""},
+                    BadFormula{"2 x", "unexpected \"x\" at character 3", "operators are"},
+                    BadFormula{"x*/y", "unexpected \"/\" at character 3", "operators are"},
+                    BadFormula{"x # y", "at character 3", "operators are"},
+                    BadFormula{"sin x", "unexpected \"sin\" at character 1", "arguments in parentheses"},
+                    BadFormula{"sin(1, x)", "too many arguments of \"sin\"", ""},
+                    BadFormula{"atan2(x)", "too few arguments of \"atan2\"", ""},
+                    BadFormula{"x ? 1", "\":\" is missing at character 6", ""},
+                    BadFormula{"1,5", "\"1,5\" has 2 results", "the decimal sign is a point"},
+                    BadFormula{"x, y", "\"x, y\" has 2 results", "the decimal sign is a point"},
+                    BadFormula{"x = 3", "an assignment at character 3", "to compare, write =="},
+                    BadFormula{"", "is an empty formula", ""}, BadFormula{"   ", "is an empty formula", ""},
+                    BadFormula{"1/0", "\"1/0\" is inf", ""},
+                    BadFormula{"sqrt(-1)", "\"sqrt(-1)\" is undefined", "defined"}));
+
+TEST(Expression, PointsAtTheMistake)
+{
+  EXPECT_THAT(message("9810*mxx(0, 9-y)"), HasSubstr("\n    9810*mxx(0, 9-y)\n         ^"));
+}
+
+TEST(Expression, ShowsTheSurroundingsOfAMistakeInALongFormula)
+{
+  const std::string text = message(std::string(5000, ' ') + "xx" + std::string(4000, ' '));
+  EXPECT_THAT(text, HasSubstr("at character 5001 of the formula\n"));
+  EXPECT_LT(text.size(), 1000u);
+}
+
+TEST(Expression, NamesThePointWhereItIsNotFinite)
+{
+  const Expression formula("1/x", in_case_file);
+  EXPECT_EQ(formula(Point<2>(0.5, 0)), 2);
+  try
+  {
+    (void)formula(Point<2>(0, 0.25));
+    FAIL() << "accepted";
+  }
+  catch (const InputError& error)
+  {
+    EXPECT_THAT(error.what(),
+                HasSubstr("boundary.top.pressure: the formula \"1/x\" is inf at the point (0, 0.25)"));
+  }
+  EXPECT_THROW((void)Expression("sqrt(z)", in_case_file)(Point<3>(0, 0, -1)), InputError);
+}
+
+}  // namespace
+}  // namespace tribound
