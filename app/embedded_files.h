@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace tribound
+namespace tribound::app
 {
 
 struct EmbeddedFile
@@ -18,4 +18,4 @@ struct EmbeddedFile
 /// The files of app/templates.
 [[nodiscard]] std::span<const EmbeddedFile> embedded_files();
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -10,7 +10,7 @@
 
 #include "tribound/base/memory.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -57,4 +57,4 @@ std::string date_and_time()
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc)};
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// What could not be found out is empty or 0.
@@ -23,4 +23,4 @@ struct MachineFacts
 /// Now, as in "2024-05-17 09:30 UTC".
 [[nodiscard]] std::string date_and_time();
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -37,6 +37,7 @@ namespace
 {
 
 using namespace tribound;
+using namespace tribound::app;
 
 struct Arguments
 {
@@ -80,35 +81,35 @@ void add_case_arguments(CLI::App& command, Arguments& arguments)
 ExitCode run_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
-  const Config config = read_config(arguments.case_file, arguments.overrides);
-  AnyMesh mesh = read_mesh(config.mesh, &stop_on_signals());
-  const Environment environment;  // behind the input: bad input then fails at once
+  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
+  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, &stop_on_signals());
+  const algebra::Environment environment;  // behind the input: bad input then fails at once
   return std::visit([&](auto& m) { return run(config, std::move(m), progress); }, mesh);
 }
 
 void check_command(const Arguments& arguments)
 {
-  const Config config = read_config(arguments.case_file, arguments.overrides);
-  const AnyMesh mesh = read_mesh(config.mesh);
-  const Environment environment;
-  std::visit([&](const auto& m) { check(config, m, arguments.json); }, mesh);
+  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
+  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh);
+  const algebra::Environment environment;
+  std::visit([&](const auto& m) { app::check(config, m, arguments.json); }, mesh);
 }
 
 ExitCode verify_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
-  const Config config = read_config(arguments.case_file, arguments.overrides);
-  const AnyMesh mesh = read_mesh(config.mesh);
-  const Environment environment;
+  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
+  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh);
+  const algebra::Environment environment;
   return std::visit([&](const auto& m) { return verify(config, m, arguments.refinements, progress); }, mesh);
 }
 
 ExitCode study_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
-  const Config config = read_config(arguments.case_file, arguments.overrides);
-  AnyMesh mesh = read_mesh(config.mesh, &stop_on_signals());
-  const Environment environment;
+  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
+  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, &stop_on_signals());
+  const algebra::Environment environment;
   return std::visit([&](auto& m) { return study(config, std::move(m), progress); }, mesh);
 }
 
@@ -117,15 +118,15 @@ ExitCode sweep_command(const Arguments& arguments)
   if (arguments.swept.empty() == arguments.table.empty())
     throw InputError({}, "tribound sweep takes either keys with values or a table",
                      "tribound sweep case.toml 'degree=[1, 2]', or --table runs.csv");
-  const SweepTable table = arguments.table.empty()
-                               ? sweep_grid(arguments.swept)
-                               : sweep_rows(read_input_file(arguments.table), arguments.table);
+  const case_file::SweepTable table =
+      arguments.table.empty() ? case_file::sweep_grid(arguments.swept)
+                              : case_file::sweep_rows(read_input_file(arguments.table), arguments.table);
   return sweep({arguments.case_file, arguments.overrides, arguments.jobs, arguments.resume}, table);
 }
 
 void info_command()
 {
-  const Environment environment;
+  const algebra::Environment environment;
   print_info(library_facts());
 }
 

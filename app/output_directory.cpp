@@ -20,7 +20,7 @@
 #include "tribound/base/error.h"
 #include "tribound/io/file/atomic_file.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -63,15 +63,15 @@ void create_and_try(const std::filesystem::path& directory)
   {
     remove_all_of(missing);
     throw InputError(place(directory), "cannot create this directory: " + error.message(),
-                     hint_for_writing(error.value()));
+                     io::hint_for_writing(error.value()));
   }
   try
   {
-    AtomicFile probe(directory / "probe");
+    io::AtomicFile probe(directory / "probe");
     probe.write("probe");
     probe.flush();
   }
-  catch (const WriteError& failure)
+  catch (const io::WriteError& failure)
   {
     remove_all_of(missing);
     throw InputError(place(directory), "cannot write to this directory: " + failure.problem(),
@@ -136,7 +136,7 @@ int open_lock(const std::filesystem::path& directory, const std::filesystem::pat
   if (file >= 0) return file;
   const int error = errno;
   throw InputError(place(directory), fmt::format("cannot lock this directory: {}", std::strerror(error)),
-                   hint_for_writing(error));
+                   io::hint_for_writing(error));
 }
 
 /// Locks the file and writes into it who has done so; -1 where the file system has no locks.
@@ -188,9 +188,9 @@ void try_output_directory(const std::filesystem::path& path)
   remove_all_of(missing);
 }
 
-void require_mesh_elsewhere(const Config& config)
+void require_mesh_elsewhere(const case_file::Config& config)
 {
-  const auto* mesh = std::get_if<MeshFile>(&config.mesh);
+  const auto* mesh = std::get_if<case_file::MeshFile>(&config.mesh);
   std::error_code none;
   if (mesh != nullptr &&
       std::filesystem::equivalent(mesh->path, config.output.directory / "adapted.msh", none))
@@ -213,7 +213,7 @@ void remove_results(const std::filesystem::path& directory, std::initializer_lis
   }
 }
 
-std::string effective_file_name(const Config& config)
+std::string effective_file_name(const case_file::Config& config)
 {
   const std::filesystem::path file = config.output.directory / "case.toml";
   std::error_code none;
@@ -221,4 +221,4 @@ std::string effective_file_name(const Config& config)
   return read_text(file) == config.effective.text ? "case.toml" : "case_effective.toml";
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -9,7 +9,7 @@
 
 #include "tribound/case/config.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// A directory that belongs to this process until destroyed.
@@ -34,7 +34,7 @@ class OutputDirectory
 void try_output_directory(const std::filesystem::path& path);
 
 /// Throws InputError where the mesh of the case is adapted.msh in output.directory, which a run removes.
-void require_mesh_elsewhere(const Config& config);
+void require_mesh_elsewhere(const case_file::Config& config);
 
 /// Removes the named files of an earlier run, in this order; those that do not exist are no error. Throws
 /// InputError when one cannot be removed.
@@ -42,6 +42,6 @@ void remove_results(const std::filesystem::path& directory, std::initializer_lis
 
 /// case.toml; case_effective.toml where the former is the file that was read and holds something else:
 /// it is not replaced.
-[[nodiscard]] std::string effective_file_name(const Config& config);
+[[nodiscard]] std::string effective_file_name(const case_file::Config& config);
 
-}  // namespace tribound
+}  // namespace tribound::app

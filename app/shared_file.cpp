@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -42,4 +42,4 @@ std::filesystem::path guide_directory()
   return std::filesystem::path(TRIBOUND_DOC) / "docs";
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The file of this name: in share/tribound of the installation the program belongs to, which may have been
@@ -18,4 +18,4 @@ namespace tribound
 /// sources.
 [[nodiscard]] std::filesystem::path guide_directory();
 
-}  // namespace tribound
+}  // namespace tribound::app

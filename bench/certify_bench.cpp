@@ -36,7 +36,7 @@ int cells_across(int degree)
 
 /// Moves the vertices inside the box by up to a fifth of the mesh size: no two cells keep the same shape.
 template <int dim>
-void distort(MeshData<dim>& data, int n)
+void distort(mesh::MeshData<dim>& data, int n)
 {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> shift(-0.2 / n, 0.2 / n);
@@ -52,17 +52,17 @@ void distort(MeshData<dim>& data, int n)
 }
 
 template <int dim>
-Mesh<dim> block_mesh(int degree, bool distorted)
+mesh::Mesh<dim> block_mesh(int degree, bool distorted)
 {
   const int n = cells_across<dim>(degree);
-  BoxMesh box{{0, 0}, {2, 1}, {2 * n, n}, {}};
+  case_file::BoxMesh box{{0, 0}, {2, 1}, {2 * n, n}, {}};
   if constexpr (dim == 3) box = {{0, 0, 0}, {2, 1, 1}, {2 * n, n, n}, {}};
-  MeshData<dim> data = box_mesh<dim>(box);
+  mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);
   if (distorted) distort<dim>(data, n);
-  return Mesh<dim>(std::move(data));
+  return mesh::Mesh<dim>(std::move(data));
 }
 
-Config block_config(int dim, int degree)
+case_file::Config block_config(int dim, int degree)
 {
   const std::string sides = dim == 2 ? "boundary.left.displacement = [0, 0]\n"
                                        "boundary.top.traction = [0, -0.1]\n"
@@ -70,9 +70,9 @@ Config block_config(int dim, int degree)
                                        "boundary.top.traction = [0, -0.1, 0]\n";
   const std::string box = dim == 2 ? "{ lower = [0, 0], upper = [2, 1], cells = [1, 1] }"
                                    : "{ lower = [0, 0, 0], upper = [2, 1, 1], cells = [1, 1, 1] }";
-  return parse_config("degree = " + std::to_string(degree) + "\nmesh.box = " + box +
-                      "\nmaterial = { E = 1.0, nu = 0.3 }\n" + sides +
-                      "boundary.bottom.contact = { friction = \"tresca\", threshold = 0.03 }\n");
+  return case_file::parse_config("degree = " + std::to_string(degree) + "\nmesh.box = " + box +
+                                 "\nmaterial = { E = 1.0, nu = 0.3 }\n" + sides +
+                                 "boundary.bottom.contact = { friction = \"tresca\", threshold = 0.03 }\n");
 }
 
 /// A smooth displacement and a traction that is not its own: what equilibrate() costs does not depend on
@@ -96,11 +96,11 @@ struct Block
   Block(const Block&) = delete;
   Block& operator=(const Block&) = delete;
 
-  Config config;
-  Mesh<dim> mesh;
-  Problem<dim> problem;
-  LagrangeSpace<dim> space;
-  NitscheForm<dim> form;
+  case_file::Config config;
+  mesh::Mesh<dim> mesh;
+  problem::Problem<dim> problem;
+  fem::LagrangeSpace<dim> space;
+  contact::NitscheForm<dim> form;
   std::vector<double> u;
   std::vector<Point<dim>> t;
 };
@@ -163,10 +163,10 @@ void equilibration(benchmark::State& state)
   const double peak = peak_growth(
       [&]
       {
-        const Stress<dim> stress = equilibrate<dim>(b.form, b.u, b.t, threads);
+        const certify::Stress<dim> stress = certify::equilibrate<dim>(b.form, b.u, b.t, threads);
         stress_bytes = 8.0 * (stress.dis.size() + stress.lin.size());
       });
-  for (auto _ : state) benchmark::DoNotOptimize(equilibrate<dim>(b.form, b.u, b.t, threads));
+  for (auto _ : state) benchmark::DoNotOptimize(certify::equilibrate<dim>(b.form, b.u, b.t, threads));
   count_per_cell(state, b.mesh.n_cells());
   state.counters["bytes"] = (peak - stress_bytes) / b.mesh.n_cells();
 }
@@ -175,8 +175,8 @@ template <int dim>
 void estimation(benchmark::State& state)
 {
   const Block<dim>& b = block<dim>(state);
-  const Stress<dim> stress = equilibrate<dim>(b.form, b.u, b.t);
-  for (auto _ : state) benchmark::DoNotOptimize(estimate<dim>(b.form, b.u, stress));
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(b.form, b.u, b.t);
+  for (auto _ : state) benchmark::DoNotOptimize(certify::estimate<dim>(b.form, b.u, stress));
   count_per_cell(state, b.mesh.n_cells());
 }
 
@@ -185,7 +185,8 @@ void both(benchmark::State& state)
 {
   const Block<dim>& b = block<dim>(state);
   for (auto _ : state)
-    benchmark::DoNotOptimize(estimate<dim>(b.form, b.u, equilibrate<dim>(b.form, b.u, b.t, 1)));
+    benchmark::DoNotOptimize(
+        certify::estimate<dim>(b.form, b.u, certify::equilibrate<dim>(b.form, b.u, b.t, 1)));
   count_per_cell(state, b.mesh.n_cells());
 }
 

@@ -19,7 +19,7 @@ using namespace tribound;
 
 /// 1 002 528 triangles or 511 104 tetrahedra.
 template <int dim>
-BoxMesh large_box()
+case_file::BoxMesh large_box()
 {
   if constexpr (dim == 2) return {{0, 0}, {2, 1}, {708, 708}, {}};
   return {{0, 0, 0}, {2, 1, 1}, {44, 44, 44}, {}};
@@ -28,9 +28,9 @@ BoxMesh large_box()
 template <int dim>
 void topology(benchmark::State& state)
 {
-  const MeshData<dim> data = box_mesh<dim>(large_box<dim>());
+  const mesh::MeshData<dim> data = mesh::box_mesh<dim>(large_box<dim>());
   for (auto _ : state)
-    benchmark::DoNotOptimize(build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells));
+    benchmark::DoNotOptimize(mesh::build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells));
   state.counters["cells"] = static_cast<double>(data.cells.size());
 }
 
@@ -38,13 +38,13 @@ void topology(benchmark::State& state)
 template <int dim>
 void verified_mesh(benchmark::State& state)
 {
-  const MeshData<dim> data = box_mesh<dim>(large_box<dim>());
+  const mesh::MeshData<dim> data = mesh::box_mesh<dim>(large_box<dim>());
   for (auto _ : state)
   {
     state.PauseTiming();
-    MeshData<dim> copy = data;
+    mesh::MeshData<dim> copy = data;
     state.ResumeTiming();
-    benchmark::DoNotOptimize(Mesh<dim>(std::move(copy)));
+    benchmark::DoNotOptimize(mesh::Mesh<dim>(std::move(copy)));
   }
   state.counters["cells"] = static_cast<double>(data.cells.size());
 }
@@ -54,15 +54,16 @@ void verified_mesh(benchmark::State& state)
 template <int dim>
 void bisection(benchmark::State& state)
 {
-  Mesh<dim> mesh(box_mesh<dim>(large_box<dim>()));
-  if (state.range(1) != 0) mesh = bisect<dim>(mesh, std::array<Index, 1>{0}).mesh;
+  mesh::Mesh<dim> mesh(mesh::box_mesh<dim>(large_box<dim>()));
+  if (state.range(1) != 0) mesh = mesh::bisect<dim>(mesh, std::array<Index, 1>{0}).mesh;
   std::mt19937 random(1);
   std::bernoulli_distribution chosen(0.3);
   std::vector<Index> marked;
   for (Index c = 0; c < mesh.n_cells(); ++c)
     if (chosen(random)) marked.push_back(c);
   Index n_cells = 0;
-  for (auto _ : state) n_cells = bisect<dim>(mesh, marked, static_cast<int>(state.range(0))).mesh.n_cells();
+  for (auto _ : state)
+    n_cells = mesh::bisect<dim>(mesh, marked, static_cast<int>(state.range(0))).mesh.n_cells();
   state.counters["cells"] = mesh.n_cells();
   state.counters["bisected"] = n_cells;
 }
@@ -70,7 +71,7 @@ void bisection(benchmark::State& state)
 /// The large box as Gmsh would save it, with irregular coordinates so that ASCII files have all digits.
 std::filesystem::path write_large_file(double version, bool binary)
 {
-  const MeshData<2> data = box_mesh<2>(large_box<2>());
+  const mesh::MeshData<2> data = mesh::box_mesh<2>(large_box<2>());
   std::vector<std::size_t> tags;
   std::vector<double> x;
   for (const Point<2>& p : data.vertices)
@@ -97,9 +98,10 @@ std::filesystem::path write_large_file(double version, bool binary)
 
 void read_file(benchmark::State& state)
 {
-  const MeshFile source{write_large_file(static_cast<double>(state.range(0)) / 10, state.range(1) != 0), {}};
+  const case_file::MeshFile source{
+      write_large_file(static_cast<double>(state.range(0)) / 10, state.range(1) != 0), {}};
   Index n_cells = 0;
-  for (auto _ : state) n_cells = std::get<Mesh<2>>(read_gmsh(source)).n_cells();
+  for (auto _ : state) n_cells = std::get<mesh::Mesh<2>>(mesh::read_gmsh(source)).n_cells();
   state.counters["cells"] = n_cells;
   std::filesystem::remove(source.path);
 }

@@ -66,7 +66,7 @@ int cells_across(int dim, int degree, double n_dofs)
 
 /// A block on a rigid floor, held on the left, pressed down and pulled to the right: T2D and its 3D sibling,
 /// pulled obliquely.
-Config block(const Arguments& a)
+case_file::Config block(const Arguments& a)
 {
   const int n = cells_across(a.dim, a.degree, 1e3 * a.thousand_dofs);
   const std::string friction = "boundary.bottom.contact = { " + a.friction + " }\n";
@@ -75,28 +75,28 @@ Config block(const Arguments& a)
                   a.method) +
       fmt::format("solver.package = \"{}\"\n", a.package);
   if (a.dim == 2)
-    return parse_config(common +
-                        fmt::format(R"(
+    return case_file::parse_config(common +
+                                   fmt::format(R"(
 mesh.box = {{ lower = [0, 0], upper = [2, 1], cells = [{}, {}] }}
 boundary.left.displacement = [0, 0]
 boundary.top.traction = [0, -0.1]
 boundary.right.traction = [0.04, 0.06]
 )",
-                                    2 * n, n) +
-                        friction);
-  return parse_config(common +
-                      fmt::format(R"(
+                                               2 * n, n) +
+                                   friction);
+  return case_file::parse_config(common +
+                                 fmt::format(R"(
 mesh.box = {{ lower = [0, 0, 0], upper = [2, 1, 1], cells = [{}, {}, {}] }}
 boundary.left.displacement = [0, 0, 0]
 boundary.top.traction = [0, -0.1, 0]
 boundary.right.traction = [0.04, 0.06, 0.02]
 )",
-                                  2 * n, n, n) +
-                      friction);
+                                             2 * n, n, n) +
+                                 friction);
 }
 
 /// MUMPS through PETSc and nothing else: what one system costs at least.
-void bare_mumps(const SparseMatrix& matrix, std::span<const double> rhs)
+void bare_mumps(const algebra::SparseMatrix& matrix, std::span<const double> rhs)
 {
   const Mat a = matrix.handle();
   Mat factors = nullptr;
@@ -127,16 +127,16 @@ void bare_mumps(const SparseMatrix& matrix, std::span<const double> rhs)
 
 /// The whole Newton loop, step by step.
 template <int dim>
-void newton(const NitscheForm<dim>& form, const Config& config)
+void newton(const contact::NitscheForm<dim>& form, const case_file::Config& config)
 {
   fmt::print("\n{:<34}{:>9}  {:>6} {:>9} {:>8} {:>9}\n", "Newton loop", "CPU s", "GMRES", "residual",
              "damping", "new factors");
   const double begin = cpu_seconds();
   double before = begin;
   int factorisations = 0;
-  const auto report = [&](const NewtonIterate<dim>& iterate)
+  const auto report = [&](const solve::NewtonIterate<dim>& iterate)
   {
-    const NewtonStep& step = iterate.step;
+    const solve::NewtonStep& step = iterate.step;
     const double now = cpu_seconds();
     print(fmt::format("  step {}{}", step.step, step.step == 1 ? " with all that is made once" : ""),
           now - before,
@@ -146,33 +146,35 @@ void newton(const NitscheForm<dim>& form, const Config& config)
     factorisations += step.factorised ? 1 : 0;
     return false;
   };
-  const NewtonResult<dim> result = solve<dim>(form, {}, config.newton, config.solver, report);
+  const solve::NewtonResult<dim> result = solve::solve<dim>(form, {}, config.newton, config.solver, report);
   print("  all", cpu_seconds() - begin,
         fmt::format("{} steps, {} new factors{}", result.steps.size(), factorisations,
-                    result.status == NewtonStatus::converged ? "" : ", FAILED"));
+                    result.status == solve::NewtonStatus::converged ? "" : ", FAILED"));
 }
 
 template <int dim>
-void run(const Config& config, const Mesh<dim>& mesh, bool bare)
+void run(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool bare)
 {
-  timed("  topology alone", [&] { return build_topology<dim>(mesh.n_vertices(), mesh.cells()); });
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  const auto space = timed("space", [&] { return LagrangeSpace<dim>(mesh, config.degree); });
-  const auto form =
-      timed("form: load, contact points", [&] { return NitscheForm<dim>(problem, space, config.gamma0()); });
+  timed("  topology alone", [&] { return mesh::build_topology<dim>(mesh.n_vertices(), mesh.cells()); });
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const auto space = timed("space", [&] { return fem::LagrangeSpace<dim>(mesh, config.degree); });
+  const auto form = timed("form: load, contact points",
+                          [&] { return contact::NitscheForm<dim>(problem, space, config.gamma0()); });
   fmt::print("    {} cells, {} dofs, {} contact facets\n", mesh.n_cells(), space.n_dofs(),
              form.contact_facets().size());
 
-  const auto entries = [&] { return stiffness(problem, space, form.constraints()); };
-  Triplets triplets = timed("stiffness: entries", entries);
-  const auto assemble = [&] { return SparseMatrix(space.n_dofs(), dim, std::move(triplets)); };
+  const auto entries = [&] { return contact::stiffness(problem, space, form.constraints()); };
+  contact::Triplets triplets = timed("stiffness: entries", entries);
+  const auto assemble = [&] { return algebra::SparseMatrix(space.n_dofs(), dim, std::move(triplets)); };
   const auto matrix = timed("stiffness: COO assembly", assemble);
   auto tangent = timed("stiffness: copy", [&] { return matrix.duplicate(); });
   const std::vector<double> u(space.n_dofs(), 0.0);
-  const auto contact_entries = [&] { return form.contact_tangent(Linearisation::closed_sticking, u); };
-  Triplets contact_triplets = contact_entries();
-  SparseMatrix contact = timed("contact: pattern, once", [&]
-                               { return SparseMatrix(space.n_dofs(), dim, std::move(contact_triplets)); });
+  const auto contact_entries = [&]
+  { return form.contact_tangent(contact::Linearisation::closed_sticking, u); };
+  contact::Triplets contact_triplets = contact_entries();
+  algebra::SparseMatrix contact =
+      timed("contact: pattern, once",
+            [&] { return algebra::SparseMatrix(space.n_dofs(), dim, std::move(contact_triplets)); });
   timed("contact: entries, each step",
         [&]
         {
@@ -211,13 +213,15 @@ int main(int argc, char** argv)
   app.add_flag("--bare", arguments.bare, "Also time MUMPS alone");
   CLI11_PARSE(app, argc, argv);
 
-  const Environment environment;
+  const algebra::Environment environment;
   try
   {
-    const Config config = arguments.case_file.empty() ? block(arguments) : read_config(arguments.case_file);
+    const case_file::Config config =
+        arguments.case_file.empty() ? block(arguments) : case_file::read_config(arguments.case_file);
     fmt::print("{:<34}{:>9}\n", "Stage", "CPU s");
-    const auto any_mesh = timed("mesh: reading, verification", [&] { return read_mesh(config.mesh); });
-    std::visit([&]<int dim>(const Mesh<dim>& mesh) { run<dim>(config, mesh, arguments.bare); }, any_mesh);
+    const auto any_mesh = timed("mesh: reading, verification", [&] { return mesh::read_mesh(config.mesh); });
+    std::visit([&]<int dim>(const mesh::Mesh<dim>& mesh) { run<dim>(config, mesh, arguments.bare); },
+               any_mesh);
   }
   catch (const std::exception& error)
   {

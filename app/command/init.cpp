@@ -11,7 +11,7 @@
 #include "tribound/base/error.h"
 #include "tribound/io/file/atomic_file.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -40,9 +40,9 @@ void write(const std::filesystem::path& path, std::string_view text)
 {
   try
   {
-    write_file(path, text);
+    io::write_file(path, text);
   }
-  catch (const WriteError& error)
+  catch (const io::WriteError& error)
   {
     throw InputError({.file = path.string()}, error.problem(), "choose another --directory");
   }
@@ -83,4 +83,4 @@ void init(const std::string& name, const std::filesystem::path& directory)
   print(fmt::format("next: tribound check {0}; tribound run {0}\n", case_file));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

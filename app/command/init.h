@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The cases that `init` knows, in the order of app/templates.
@@ -18,4 +18,4 @@ namespace tribound
 /// and when a file cannot be written.
 void init(const std::string& name, const std::filesystem::path& directory);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -8,7 +8,7 @@
 
 #include "app/command/run.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -66,4 +66,4 @@ const std::atomic<bool>& stop_on_signals()
   return stop_requested;
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

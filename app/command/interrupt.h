@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// To be called first of all: writing to a pipe that nobody reads is no reason to end, children can be waited
@@ -17,4 +17,4 @@ void prepare_signals();
 /// its last complete level. A second signal ends the program at once.
 [[nodiscard]] const std::atomic<bool>& stop_on_signals();
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -16,30 +16,30 @@
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 template <int dim>
-ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress)
+ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
 {
   const Clock::time_point begin = Clock::now();
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  auto first = std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config);
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config);
   const std::atomic<bool>& stop = stop_on_signals();
   if (stop) throw SolveError("interrupted before anything was solved; nothing is written");
   RunReport<dim> report(config, problem, *first, begin,
                         progress.quiet() ? Printed::verdict : Printed::everything);
-  const LoopObserver<dim> observer = {[&](const CertifiedStep& step) { progress(step.step, step.relative); },
-                                      [&](const LevelView<dim>& view)
-                                      {
-                                        report.add(view);
-                                        const std::string forecast =
-                                            forecast_text(report.record(), config.adapt.max_dofs);
-                                        if (!forecast.empty()) progress.stage(forecast);
-                                      }};
+  const adapt::LoopObserver<dim> observer = {
+      [&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
+      [&](const adapt::LevelView<dim>& view)
+      {
+        report.add(view);
+        const std::string forecast = forecast_text(report.record(), config.adapt.max_dofs);
+        if (!forecast.empty()) progress.stage(forecast);
+      }};
   try
   {
-    return report.close(adapt<dim>(problem, config, std::move(first), observer, stop));
+    return report.close(adapt::adapt<dim>(problem, config, std::move(first), observer, stop));
   }
   catch (const SolveError& error)
   {
@@ -49,23 +49,23 @@ ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress)
 }
 
 template <int dim>
-void check(const Config& config, const Mesh<dim>& mesh, bool as_json)
+void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json)
 {
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
-  const LagrangeSpace<dim> space(mesh, config.degree);
-  const NitscheForm<dim> form(problem, space, config.gamma0());
-  check_rigid_motions<dim>(problem, space, form.data(), form.load());
+  const fem::LagrangeSpace<dim> space(mesh, config.degree);
+  const contact::NitscheForm<dim> form(problem, space, config.gamma0());
+  contact::check_rigid_motions<dim>(problem, space, form.data(), form.load());
   require_mesh_elsewhere(config);
   try_output_directory(config.output.directory);
-  print_check(case_facts(config, dim), mesh_facts<dim>(problem, space, form.constraints()),
-              describe_solver(choose_method(config.solver, dim, space.n_dofs())),
-              findings(diagnose(config, form)), as_json);
+  print_check(io::case_facts(config, dim), io::mesh_facts<dim>(problem, space, form.constraints()),
+              describe_solver(algebra::choose_method(config.solver, dim, space.n_dofs())),
+              doctor::findings(doctor::diagnose(config, form)), as_json);
 }
 
-template ExitCode run(const Config&, Mesh<2>, const Progress&);
-template ExitCode run(const Config&, Mesh<3>, const Progress&);
-template void check(const Config&, const Mesh<2>&, bool);
-template void check(const Config&, const Mesh<3>&, bool);
+template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&);
+template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&);
+template void check(const case_file::Config&, const mesh::Mesh<2>&, bool);
+template void check(const case_file::Config&, const mesh::Mesh<3>&, bool);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -7,7 +7,7 @@
 #include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Exit codes, a contract with scripts.
@@ -22,11 +22,11 @@ enum class ExitCode
 /// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError,
 /// SolveError and WriteError.
 template <int dim>
-[[nodiscard]] ExitCode run(const Config& config, Mesh<dim> mesh, const Progress& progress);
+[[nodiscard]] ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress);
 
 /// Reads and verifies everything `run` would, and prints a summary with what the doctor finds, for people or
 /// as JSON.
 template <int dim>
-void check(const Config& config, const Mesh<dim>& mesh, bool as_json);
+void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -22,19 +22,19 @@
 #include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/gmsh_text.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
 {
 
-ExitCode exit_code(RunStatus status)
+ExitCode exit_code(certify::RunStatus status)
 {
   switch (status)
   {
-    case RunStatus::certified:
+    case certify::RunStatus::certified:
       return ExitCode::success;
-    case RunStatus::budget:
+    case certify::RunStatus::budget:
       return ExitCode::budget_used_up;
     default:
       return ExitCode::failed;
@@ -45,29 +45,29 @@ ExitCode exit_code(RunStatus status)
 class CellComponents
 {
  public:
-  CellComponents(const Estimate& estimate, bool regularised)
+  CellComponents(const certify::Estimate& estimate, bool regularised)
   {
-    add("eta_tot", estimate, [](const BoundComponents& cell) { return cell.total_sharp(); });
-    for (const auto& [name, member] : names_of_components(regularised))
-      if (is_of_cells(member))
+    add("eta_tot", estimate, [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
+    for (const auto& [name, member] : certify::names_of_components(regularised))
+      if (certify::is_of_cells(member))
         add(std::string("eta_") + name, estimate,
-            [m = member](const BoundComponents& cell) { return cell.*m; });
+            [m = member](const certify::BoundComponents& cell) { return cell.*m; });
   }
 
-  [[nodiscard]] std::vector<CellField> fields() const
+  [[nodiscard]] std::vector<io::CellField> fields() const
   {
-    std::vector<CellField> result;
+    std::vector<io::CellField> result;
     for (const auto& [name, values] : columns_) result.push_back({name, values});
     return result;
   }
 
  private:
   template <typename Value>
-  void add(std::string name, const Estimate& estimate, const Value& value)
+  void add(std::string name, const certify::Estimate& estimate, const Value& value)
   {
     std::vector<double>& column = columns_.emplace_back(std::move(name), std::vector<double>{}).second;
     column.reserve(estimate.cells.size());
-    for (const BoundComponents& cell : estimate.cells) column.push_back(value(cell));
+    for (const certify::BoundComponents& cell : estimate.cells) column.push_back(value(cell));
   }
 
   std::vector<std::pair<std::string, std::vector<double>>> columns_;
@@ -81,7 +81,7 @@ std::exception_ptr failure_of(const Write& write)
   {
     write();
   }
-  catch (const WriteError&)
+  catch (const io::WriteError&)
   {
     return std::current_exception();
   }
@@ -90,27 +90,27 @@ std::exception_ptr failure_of(const Write& write)
 
 }  // namespace
 
-BuildFacts library_facts()
+io::BuildFacts library_facts()
 {
-  const AlgebraVersions algebra = algebra_versions();
-  BuildFacts build = build_facts();
+  const algebra::AlgebraVersions algebra = algebra::algebra_versions();
+  io::BuildFacts build = io::build_facts();
   build.petsc = algebra.petsc;
   build.mumps = algebra.mumps;
   build.mpi = algebra.mpi;
   build.blas = algebra.blas;
   build.blas_threads = algebra.blas_threads;
-  build.gmsh = gmsh_version();
+  build.gmsh = mesh::gmsh_version();
   build.features = {"2D", "3D", "degrees 1-4", "friction: none, Tresca, Coulomb"};
   build.report_page = find_shared_file("report.html").string();
   return build;
 }
 
-std::string describe_solver(LinearMethod method)
+std::string describe_solver(case_file::LinearMethod method)
 {
-  return method == LinearMethod::direct ? "direct" : "GMRES with multigrid";
+  return method == case_file::LinearMethod::direct ? "direct" : "GMRES with multigrid";
 }
 
-std::string describe_solver(std::span<const CertifiedStep> steps)
+std::string describe_solver(std::span<const adapt::CertifiedStep> steps)
 {
   const bool fell_back = std::ranges::any_of(steps, [](const auto& s) { return s.step.fell_back; });
   return describe_solver(steps.back().step.method) +
@@ -119,45 +119,46 @@ std::string describe_solver(std::span<const CertifiedStep> steps)
 
 template <int dim>
 void write_level_fields(const std::filesystem::path& directory, int number,
-                        const Discretisation<dim>& discrete, const CertifiedLevel<dim>& level,
-                        std::span<const CellField> further)
+                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
+                        std::span<const io::CellField> further)
 {
   const CellComponents components(level.estimate, level.delta_updates.has_value());
-  std::vector<CellField> fields = components.fields();
+  std::vector<io::CellField> fields = components.fields();
   fields.insert(fields.end(), further.begin(), further.end());
-  const std::array tensors = {equilibrated_stress_field(discrete.space, level.stress)};
-  write_level_vtu<dim>(directory / level_file_name("level", number), number, discrete.form.problem(),
-                       discrete.space, level.u, fields, tensors);
+  const std::array tensors = {io::equilibrated_stress_field(discrete.space, level.stress)};
+  io::write_level_vtu<dim>(directory / io::level_file_name("level", number), number, discrete.form.problem(),
+                           discrete.space, level.u, fields, tensors);
 }
 
 template <int dim>
-RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
-                          Clock::time_point begin, Printed printed)
+RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
+                          const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed)
     : output_(config.output),
       contact_rule_(config.certify.contact_rule),
       printed_(printed),
       page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
       moment_about_(moment_point<dim>(config.output, first.mesh))
 {
-  const LagrangeSpace<dim>& space = first.space;
-  const NitscheForm<dim>& form = first.form;
-  check_rigid_motions<dim>(problem, space, form.data(), form.load());
+  const fem::LagrangeSpace<dim>& space = first.space;
+  const contact::NitscheForm<dim>& form = first.form;
+  contact::check_rigid_motions<dim>(problem, space, form.data(), form.load());
   require_mesh_elsewhere(config);
   directory_.emplace(output_.directory);
   remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
                                      "contact.csv", "adapted.msh"});
-  remove_series(output_.directory);
-  record_.facts = case_facts(config, dim);
-  record_.mesh = mesh_facts<dim>(problem, space, form.constraints());
+  io::remove_series(output_.directory);
+  record_.facts = io::case_facts(config, dim);
+  record_.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   record_.build = library_facts();
   for (const std::string& name : first.mesh.boundary_names())
-    if (std::ranges::count(config.boundaries, name, &BoundaryConfig::name) == 0) free_sides_.push_back(name);
+    if (std::ranges::count(config.boundaries, name, &case_file::BoundaryConfig::name) == 0)
+      free_sides_.push_back(name);
   record_.effective = config.effective;
   record_.case_file = effective_file_name(config);
   record_.tolerance = config.adapt.tolerance;
-  record_.statements = statements(form, config.certify.contact_rule);
+  record_.statements = certify::statements(form, config.certify.contact_rule);
   record_.statements.assumptions.emplace_back(
-      "linear_solver", describe_solver(choose_method(config.solver, dim, space.n_dofs())));
+      "linear_solver", describe_solver(algebra::choose_method(config.solver, dim, space.n_dofs())));
   record_.times = {{"setup", seconds_since(begin)},
                    {"solve", 0},
                    {"certify", 0},
@@ -169,22 +170,23 @@ RunReport<dim>::RunReport(const Config& config, const Problem<dim>& problem, con
 }
 
 template <int dim>
-void RunReport<dim>::write_fields(const LevelView<dim>& view) const
+void RunReport<dim>::write_fields(const adapt::LevelView<dim>& view) const
 {
-  const NitscheForm<dim>& form = view.discrete.form;
-  if (output_.mesh) write_file(output_.directory / "adapted.msh", gmsh_text(view.discrete.mesh, free_sides_));
-  write_contact_csv(output_.directory / "contact.csv", form, view.level.u, view.number);
+  const contact::NitscheForm<dim>& form = view.discrete.form;
+  if (output_.mesh)
+    io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(view.discrete.mesh, free_sides_));
+  io::write_contact_csv(output_.directory / "contact.csv", form, view.level.u, view.number);
   if (!output_.vtu) return;
   write_level_fields<dim>(output_.directory, view.number, view.discrete, view.level);
-  write_contact_vtu<dim>(output_.directory / level_file_name("contact", view.number), view.number, form,
-                         view.level.u);
-  write_series(output_.directory, view.number + 1);
+  io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", view.number), view.number,
+                             form, view.level.u);
+  io::write_series(output_.directory, view.number + 1);
 }
 
 template <int dim>
 void RunReport<dim>::write_record() const
 {
-  write_report(output_.directory, record_);
+  io::write_report(output_.directory, record_);
   page_.write(output_.directory, record_);
 }
 
@@ -192,9 +194,9 @@ template <int dim>
 void RunReport<dim>::add_up_times()
 {
   for (std::size_t i = 1; i < record_.times.size(); ++i) record_.times[i].second = 0;
-  for (const LevelRecord& level : record_.levels)
+  for (const io::LevelRecord& level : record_.levels)
   {
-    const LevelTimes& times = level.times;
+    const io::LevelTimes& times = level.times;
     const std::array of_level = {times.solve,
                                  times.certify.value_or(0),
                                  times.refinement.bisect,
@@ -206,10 +208,10 @@ void RunReport<dim>::add_up_times()
 }
 
 template <int dim>
-void RunReport<dim>::update_statements(const LevelView<dim>& view)
+void RunReport<dim>::update_statements(const adapt::LevelView<dim>& view)
 {
   if (view.level.steps.empty()) return;
-  record_.statements = statements(view.discrete.form, contact_rule_, view.level.friedrichs);
+  record_.statements = certify::statements(view.discrete.form, contact_rule_, view.level.friedrichs);
   if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))
     record_.statements.assumptions.emplace_back(
         "stress",
@@ -223,28 +225,28 @@ void RunReport<dim>::update_statements(const LevelView<dim>& view)
 }
 
 template <int dim>
-LevelTimes RunReport<dim>::take_back(int number)
+io::LevelTimes RunReport<dim>::take_back(int number)
 {
   if (record_.levels.empty() || record_.levels.back().level != number) return {};
-  const LevelTimes times = record_.levels.back().times;
+  const io::LevelTimes times = record_.levels.back().times;
   record_.levels.pop_back();
   return times;
 }
 
 template <int dim>
-void RunReport<dim>::add(const LevelView<dim>& view)
+void RunReport<dim>::add(const adapt::LevelView<dim>& view)
 {
-  const NitscheForm<dim>& form = view.discrete.form;
-  const LevelTimes before = take_back(view.number);
+  const contact::NitscheForm<dim>& form = view.discrete.form;
+  const io::LevelTimes before = take_back(view.number);
   const bool again = before.level > 0;
-  LevelRecord& level = record_.levels.emplace_back();
+  io::LevelRecord& level = record_.levels.emplace_back();
   level.level = view.number;
   level.cells = view.discrete.mesh.n_cells();
   level.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
   level.newton = view.level.steps;
   level.finishing_steps = view.level.finishing_steps;
   level.delta_updates = view.level.delta_updates;
-  level.figures = solution_figures(form, view.level);
+  level.figures = io::solution_figures(form, view.level);
   level.times.solve = view.level.solve_seconds;
   level.times.certify = view.level.certify_seconds;
   if (view.level.solved() && !is_round_off(view.level.estimate, view.level.norms))
@@ -252,10 +254,11 @@ void RunReport<dim>::add(const LevelView<dim>& view)
 
   const Clock::time_point before_output = Clock::now();
   std::exception_ptr failure;
-  if (view.verdict.status == RunStatus::certified || view.verdict.status == RunStatus::budget)
+  if (view.verdict.status == certify::RunStatus::certified ||
+      view.verdict.status == certify::RunStatus::budget)
   {
     level.bound = view.level.estimate;
-    level.balance = balance<dim>(form, view.level.stress, moment_about_);
+    level.balance = certify::balance<dim>(form, view.level.stress, moment_about_);
     failure = failure_of(
         [&]
         {
@@ -264,7 +267,7 @@ void RunReport<dim>::add(const LevelView<dim>& view)
         });
   }
   else  // what violates an identity is no bound, and is not shown as one
-    for (CertifiedStep& step : level.newton) step.bound = {}, step.linearisation = {};
+    for (adapt::CertifiedStep& step : level.newton) step.bound = {}, step.linearisation = {};
   level.times.output = before.output + seconds_since(before_output);
   level.times.refinement = view.level.refinement;
   level.times.solve_cpu = view.level.solve_cpu;
@@ -276,15 +279,16 @@ void RunReport<dim>::add(const LevelView<dim>& view)
   update_statements(view);
   record_.status = view.verdict.status;
   record_.reason = view.verdict.reason;
-  record_.warnings = view.level.solved() ? run_warnings(level, contact_outcomes<dim>(form, view.level.u))
-                                         : std::vector<RunWarning>{};
+  record_.warnings = view.level.solved()
+                         ? doctor::run_warnings(level, doctor::contact_outcomes<dim>(form, view.level.u))
+                         : std::vector<io::RunWarning>{};
   if (!failure) failure = failure_of([&] { write_record(); });
   if (printed_ != Printed::verdict && !again) print_level(level);
   if (failure) std::rethrow_exception(failure);
 }
 
 template <int dim>
-ExitCode RunReport<dim>::close(const Verdict& verdict)
+ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
 {
   // A certified run has been written with its last level.
   if (record_.status != verdict.status || record_.reason != verdict.reason)
@@ -301,16 +305,16 @@ ExitCode RunReport<dim>::close(const Verdict& verdict)
 template <int dim>
 void RunReport<dim>::fail(const std::string& reason)
 {
-  record_.status = RunStatus::failed;
+  record_.status = certify::RunStatus::failed;
   record_.reason = reason;
   write_record();
 }
 
-template void write_level_fields(const std::filesystem::path&, int, const Discretisation<2>&,
-                                 const CertifiedLevel<2>&, std::span<const CellField>);
-template void write_level_fields(const std::filesystem::path&, int, const Discretisation<3>&,
-                                 const CertifiedLevel<3>&, std::span<const CellField>);
+template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<2>&,
+                                 const adapt::CertifiedLevel<2>&, std::span<const io::CellField>);
+template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<3>&,
+                                 const adapt::CertifiedLevel<3>&, std::span<const io::CellField>);
 template class RunReport<2>;
 template class RunReport<3>;
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -19,22 +19,22 @@
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/report.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Versions of the program and of the libraries it runs with.
-[[nodiscard]] BuildFacts library_facts();
+[[nodiscard]] io::BuildFacts library_facts();
 
 /// "direct", "GMRES with multigrid": for people.
-[[nodiscard]] std::string describe_solver(LinearMethod method);
+[[nodiscard]] std::string describe_solver(case_file::LinearMethod method);
 /// The same of the steps on a mesh, at least one.
-[[nodiscard]] std::string describe_solver(std::span<const CertifiedStep> steps);
+[[nodiscard]] std::string describe_solver(std::span<const adapt::CertifiedStep> steps);
 
 /// Writes level_NNN.vtu: the fields of a level with the bound of every cell, and `further` numbers per cell.
 template <int dim>
 void write_level_fields(const std::filesystem::path& directory, int number,
-                        const Discretisation<dim>& discrete, const CertifiedLevel<dim>& level,
-                        std::span<const CellField> further = {});
+                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
+                        std::span<const io::CellField> further = {});
 
 /// What a run says on stdout.
 enum class Printed
@@ -51,39 +51,40 @@ class RunReport
  public:
   /// On the first mesh; the run began at `begin`. Removes what an earlier run has left in the directory, the
   /// certificate first. Throws InputError for a body that can move rigidly, and where nothing can be written.
-  RunReport(const Config& config, const Problem<dim>& problem, const Discretisation<dim>& first,
-            Clock::time_point begin, Printed printed = Printed::everything);
+  RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
+            const adapt::Discretisation<dim>& first, Clock::time_point begin,
+            Printed printed = Printed::everything);
 
   /// After every level, and once more for the last one if Newton's method has converged on it later: fields,
   /// tables and a certificate that holds should the program be killed. Throws WriteError, the level being
   /// printed.
-  void add(const LevelView<dim>& view);
+  void add(const adapt::LevelView<dim>& view);
   /// The last word.
-  [[nodiscard]] ExitCode close(const Verdict& verdict);
+  [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
   /// The same where there is no level at all: leaves a certificate of the failure behind.
   void fail(const std::string& reason);
 
-  [[nodiscard]] const RunRecord& record() const { return record_; }
+  [[nodiscard]] const io::RunRecord& record() const { return record_; }
 
  private:
-  void write_fields(const LevelView<dim>& view) const;
+  void write_fields(const adapt::LevelView<dim>& view) const;
   /// Removes the record of the level, if it is the last, and returns its times.
-  LevelTimes take_back(int number);
+  io::LevelTimes take_back(int number);
   void add_up_times();  ///< of the levels, into those of the run
   /// What the certificate says about the level: its data, and how its systems were solved.
-  void update_statements(const LevelView<dim>& view);
+  void update_statements(const adapt::LevelView<dim>& view);
 
   void write_record() const;
 
-  const OutputConfig& output_;
-  ContactRule contact_rule_;
+  const case_file::OutputConfig& output_;
+  case_file::ContactRule contact_rule_;
   Printed printed_;
   std::optional<OutputDirectory> directory_;
-  RunRecord record_;
+  io::RunRecord record_;
   ReportPage page_;
   Point<dim> moment_about_;
   std::vector<std::string> free_sides_;  ///< boundaries that the case does not mention
   double cpu_before_ = cpu_seconds();    ///< CPU time up to the level in work
 };
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -24,7 +24,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/bisect.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -34,16 +34,16 @@ namespace
 template <int dim>
 struct KeptLevel
 {
-  std::shared_ptr<const Discretisation<dim>> discrete;
-  CertifiedLevel<dim> level;
+  std::shared_ptr<const adapt::Discretisation<dim>> discrete;
+  adapt::CertifiedLevel<dim> level;
 };
 
 /// A run that is over.
 template <int dim>
 struct FinishedRun
 {
-  Verdict verdict{RunStatus::failed, {}};
-  std::vector<LevelRecord> records;
+  certify::Verdict verdict{certify::RunStatus::failed, {}};
+  std::vector<io::LevelRecord> records;
   std::vector<KeptLevel<dim>> levels;  ///< as many as asked for
 };
 
@@ -57,15 +57,15 @@ enum class Keep
 constexpr double resolution = 1e-10;
 
 /// The case as variant `name` of the study.
-Config variant_config(const Config& config, const std::string& name)
+case_file::Config variant_config(const case_file::Config& config, const std::string& name)
 {
-  Config variant = config;
+  case_file::Config variant = config;
   const bool converged = name.ends_with("_converged");
   if (converged)
-    variant.newton.stopping = Stopping::tolerance;
-  else if (config.newton.stopping == Stopping::tolerance)
-    variant.newton.stopping = Stopping::adaptive;
-  if (name.starts_with("uniform")) variant.adapt.marking = Marking::uniform;
+    variant.newton.stopping = case_file::Stopping::tolerance;
+  else if (config.newton.stopping == case_file::Stopping::tolerance)
+    variant.newton.stopping = case_file::Stopping::adaptive;
+  if (name.starts_with("uniform")) variant.adapt.marking = case_file::Marking::uniform;
   variant.newton.finish = false;  // stopping criteria are what is compared
   variant.output.directory /= name;
   variant.effective = {};  // that of the study stands beside its tables
@@ -76,11 +76,11 @@ Config variant_config(const Config& config, const std::string& name)
 
 /// The case of the reference solution, its bound to be at most `required` of ||sigma||. Its Newton iterates
 /// are ten times closer to convergence than those it is to measure.
-Config reference_config(const Config& config, double required)
+case_file::Config reference_config(const case_file::Config& config, double required)
 {
-  Config reference = config;
+  case_file::Config reference = config;
   reference.degree = config.study.reference_degree.value_or(std::min(config.degree + 1, 4));
-  reference.newton.stopping = Stopping::adaptive;
+  reference.newton.stopping = case_file::Stopping::adaptive;
   reference.newton.gamma_lin = 0.1 * config.newton.gamma_lin;
   reference.newton.damping = true;
   reference.newton.finish = false;
@@ -97,13 +97,13 @@ Config reference_config(const Config& config, double required)
 
 /// The richest space within the budget in which the dual norm can be looked for, if there is one.
 template <int dim>
-std::optional<RicherSpace> dual_space(const LagrangeSpace<dim>& space, long max_dofs)
+std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<dim>& space, long max_dofs)
 {
   for (const int refinements : {2, 1})
     for (const int further : {2, 1})
     {
-      const RicherSpace richer = {.refinements = refinements, .degree = space.degree() + further};
-      if (count_dofs(space.mesh(), richer) <= static_cast<double>(max_dofs)) return richer;
+      const certify::RicherSpace richer = {.refinements = refinements, .degree = space.degree() + further};
+      if (certify::count_dofs(space.mesh(), richer) <= static_cast<double>(max_dofs)) return richer;
     }
   return std::nullopt;
 }
@@ -112,17 +112,17 @@ template <int dim>
 class StudyCommand
 {
  public:
-  StudyCommand(const Config& config, Mesh<dim> mesh, const Progress& progress)
+  StudyCommand(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
       : config_(config),
         mesh_(std::move(mesh)),
         problem_(config, mesh_.region_names(), mesh_.boundary_names()),
         progress_(progress),
         stop_(stop_on_signals())
   {
-    study_.facts = case_facts(config, dim);
+    study_.facts = io::case_facts(config, dim);
     study_.build = library_facts();
     study_.gamma_lin = config.newton.gamma_lin;
-    study_.marking = config.adapt.marking == Marking::doerfler ? "doerfler" : "maximum";
+    study_.marking = config.adapt.marking == case_file::Marking::doerfler ? "doerfler" : "maximum";
     study_.theta = config.adapt.theta;
   }
 
@@ -152,16 +152,17 @@ class StudyCommand
   /// Adds them to the report page of the variant.
   void show_errors(const StudyVariant& variant) const;
   /// `own_limit`: how the reason ends for a limit that is not of the case.
-  FinishedRun<dim> adapt_and_report(const Config& config, Keep keep, const std::string& own_limit = {});
+  FinishedRun<dim> adapt_and_report(const case_file::Config& config, Keep keep,
+                                    const std::string& own_limit = {});
   [[nodiscard]] double smallest_relative_bound() const;
   [[nodiscard]] ExitCode exit_code() const;
   /// What is complete so far.
   void write() const;
   void write_page() const;
 
-  const Config& config_;
-  Mesh<dim> mesh_;
-  Problem<dim> problem_;
+  const case_file::Config& config_;
+  mesh::Mesh<dim> mesh_;
+  problem::Problem<dim> problem_;
   const Progress& progress_;
   const std::atomic<bool>& stop_;
   Clock::time_point begin_ = Clock::now();
@@ -172,24 +173,27 @@ class StudyCommand
 
 /// As `tribound run` does it, from the mesh of the case.
 template <int dim>
-FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep keep,
+FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& config, Keep keep,
                                                      const std::string& own_limit)
 {
   FinishedRun<dim> finished;
   // Bisected nowhere, the mesh is copied.
-  auto first = std::make_unique<Discretisation<dim>>(bisect<dim>(mesh_, {}).mesh, problem_, config);
+  auto first =
+      std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_, config);
   RunReport<dim> report(config, problem_, *first, Clock::now(), Printed::levels);
-  const LoopObserver<dim> observer = {[&](const CertifiedStep& step) { progress_(step.step, step.relative); },
-                                      [&](const LevelView<dim>& view)
-                                      {
-                                        report.add(view);
-                                        if (keep == Keep::last) finished.levels.clear();
-                                        finished.levels.push_back({view.owner, view.level});
-                                        if (!config.output.vtu) finished.levels.back().level.stress = {};
-                                      }};
+  const adapt::LoopObserver<dim> observer = {[&](const adapt::CertifiedStep& step)
+                                             { progress_(step.step, step.relative); },
+                                             [&](const adapt::LevelView<dim>& view)
+                                             {
+                                               report.add(view);
+                                               if (keep == Keep::last) finished.levels.clear();
+                                               finished.levels.push_back({view.owner, view.level});
+                                               if (!config.output.vtu)
+                                                 finished.levels.back().level.stress = {};
+                                             }};
   try
   {
-    finished.verdict = adapt<dim>(problem_, config, std::move(first), observer, stop_);
+    finished.verdict = adapt::adapt<dim>(problem_, config, std::move(first), observer, stop_);
     if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
       finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
     (void)report.close(finished.verdict);
@@ -197,7 +201,7 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep 
   catch (const SolveError& error)
   {
     report.fail(error.what());
-    finished.verdict = {RunStatus::failed, error.what()};
+    finished.verdict = {certify::RunStatus::failed, error.what()};
   }
   finished.records = report.record().levels;
   return finished;
@@ -206,10 +210,10 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const Config& config, Keep 
 template <int dim>
 void StudyCommand<dim>::solve_variant(const std::string& name)
 {
-  Config variant = variant_config(config_, name);
+  case_file::Config variant = variant_config(config_, name);
   print_stage("variant", name);
   std::string own_limit;
-  if (variant.adapt.marking == Marking::uniform && !study_.variants[0].levels.empty())
+  if (variant.adapt.marking == case_file::Marking::uniform && !study_.variants[0].levels.empty())
   {
     // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times larger.
     const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
@@ -224,7 +228,7 @@ void StudyCommand<dim>::solve_variant(const std::string& name)
   result.name = name;
   result.status = finished.verdict.status;
   result.reason = finished.verdict.reason;
-  for (LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
+  for (io::LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
   levels_.push_back(std::move(finished.levels));
   write();
 }
@@ -235,7 +239,7 @@ double StudyCommand<dim>::smallest_relative_bound() const
   double smallest = std::numeric_limits<double>::infinity();
   for (const StudyVariant& variant : study_.variants)
     for (const StudiedLevel& level : variant.levels)
-      smallest = std::min(smallest, relative_bound(level.record).value_or(smallest));
+      smallest = std::min(smallest, io::relative_bound(level.record).value_or(smallest));
   return smallest;
 }
 
@@ -245,20 +249,20 @@ void StudyCommand<dim>::solve_reference()
   const double smallest = smallest_relative_bound();
   if (!std::isfinite(smallest)) return;
   const double required = std::max(config_.study.reference_factor * smallest, resolution);
-  const Config config = reference_config(config_, required);
+  const case_file::Config config = reference_config(config_, required);
   print_stage("reference",
               fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.degree, required));
   const Clock::time_point begin = Clock::now();
   FinishedRun<dim> finished = adapt_and_report(config, Keep::last);
   study_.times.emplace_back("reference", seconds_since(begin));
-  const bool holds =
-      finished.verdict.status == RunStatus::certified || finished.verdict.status == RunStatus::budget;
+  const bool holds = finished.verdict.status == certify::RunStatus::certified ||
+                     finished.verdict.status == certify::RunStatus::budget;
   if (stop_ || !holds) return;
   StudyReference& reference = study_.reference.emplace();
   reference.degree = config.degree;
   reference.level = finished.records.back();
   reference.required = required;
-  reference.fine_enough = finished.verdict.status == RunStatus::certified;
+  reference.fine_enough = finished.verdict.status == certify::RunStatus::certified;
   reference.reason = finished.verdict.reason;
   reference_ = std::move(finished.levels.back());
 }
@@ -296,12 +300,12 @@ void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
   StudiedLevel& result = study_.variants[variant].levels[number];
   if (!result.record.bound) return;
   if (const auto space = dual_space(discrete->space, config_.study.dual_norm_dofs))
-    result.dual_norm = DualNorm<dim>(discrete->form, *space)(level.u);
+    result.dual_norm = certify::DualNorm<dim>(discrete->form, *space)(level.u);
   if (!reference_) return;
-  const LocalError error = solution_error<dim>(problem_, discrete->space, level.u,
-                                               reference_->discrete->space, reference_->level.u);
+  const certify::LocalError error = certify::solution_error<dim>(
+      problem_, discrete->space, level.u, reference_->discrete->space, reference_->level.u);
   result.error = error.global;
-  const Config config = variant_config(config_, study_.variants[variant].name);
+  const case_file::Config config = variant_config(config_, study_.variants[variant].name);
   if (config.output.vtu)
     write_level_fields<dim>(config.output.directory, static_cast<int>(number), *discrete, level,
                             {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
@@ -310,7 +314,7 @@ void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
 template <int dim>
 void StudyCommand<dim>::write() const
 {
-  write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
+  io::write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
   write_study(config_.output.directory, study_);
   write_page();
 }
@@ -325,14 +329,17 @@ void StudyCommand<dim>::write_page() const
 template <int dim>
 ExitCode StudyCommand<dim>::exit_code() const
 {
-  const bool failed = std::ranges::any_of(
-      study_.variants, [](const StudyVariant& variant)
-      { return variant.status == RunStatus::failed || variant.status == RunStatus::not_certified; });
+  const bool failed = std::ranges::any_of(study_.variants,
+                                          [](const StudyVariant& variant)
+                                          {
+                                            return variant.status == certify::RunStatus::failed ||
+                                                   variant.status == certify::RunStatus::not_certified;
+                                          });
   if (failed || !violation(study_).empty()) return ExitCode::failed;
   const bool reached = !stop_ && std::ranges::all_of(study_.variants,
                                                      [](const StudyVariant& variant) {
                                                        return variant.name.starts_with("uniform") ||
-                                                              variant.status == RunStatus::certified;
+                                                              variant.status == certify::RunStatus::certified;
                                                      });
   return reached ? ExitCode::success : ExitCode::budget_used_up;
 }
@@ -340,15 +347,15 @@ ExitCode StudyCommand<dim>::exit_code() const
 }  // namespace
 
 template <int dim>
-ExitCode study(const Config& config, Mesh<dim> mesh, const Progress& progress)
+ExitCode study(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
 {
-  if (config.adapt.marking == Marking::uniform)
+  if (config.adapt.marking == case_file::Marking::uniform)
     throw InputError({.file = config.file, .key = "adapt.marking"}, "is \"uniform\"",
                      "the study compares an adaptive marking, such as \"doerfler\", with uniform refinement");
   return StudyCommand<dim>(config, std::move(mesh), progress).run();
 }
 
-template ExitCode study(const Config&, Mesh<2>, const Progress&);
-template ExitCode study(const Config&, Mesh<3>, const Progress&);
+template ExitCode study(const case_file::Config&, mesh::Mesh<2>, const Progress&);
+template ExitCode study(const case_file::Config&, mesh::Mesh<3>, const Progress&);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -8,7 +8,7 @@
 #include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Solves the case adaptively and with uniform refinement, each with Newton's method stopped by the bound and
@@ -20,6 +20,6 @@ namespace tribound
 /// interruption; failed when an effectivity is below 1 or a variant has no solution. Throws InputError and
 /// SolveError.
 template <int dim>
-[[nodiscard]] ExitCode study(const Config& config, Mesh<dim> mesh, const Progress& progress);
+[[nodiscard]] ExitCode study(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -30,7 +30,7 @@
 
 extern char** environ;
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -75,9 +75,9 @@ class MeshHashes
 {
  public:
   /// Empty without a file, or where it cannot be read, which its run will say.
-  const std::string& operator()(const MeshSource& source)
+  const std::string& operator()(const case_file::MeshSource& source)
   {
-    const auto* file = std::get_if<MeshFile>(&source);
+    const auto* file = std::get_if<case_file::MeshFile>(&source);
     const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
     if (is_new && file != nullptr)
       if (const std::string content = read_text(file->path); !content.empty())
@@ -92,7 +92,7 @@ class MeshHashes
 class Sweep
 {
  public:
-  Sweep(const SweepOptions& options, const SweepTable& table);
+  Sweep(const SweepOptions& options, const case_file::SweepTable& table);
   /// Ends the runs that an exception would leave alone.
   ~Sweep();
   Sweep(const Sweep&) = delete;
@@ -116,9 +116,9 @@ class Sweep
   bool interrupted_ = false;
 };
 
-Sweep::Sweep(const SweepOptions& options, const SweepTable& table) : options_(options)
+Sweep::Sweep(const SweepOptions& options, const case_file::SweepTable& table) : options_(options)
 {
-  const Config config = read_config(options.case_file, options.overrides);
+  const case_file::Config config = case_file::read_config(options.case_file, options.overrides);
   directory_ = config.output.directory / "sweep";
   record_ = {config.title, options.case_file, table.keys, {}};
   MeshHashes mesh_hash;
@@ -128,7 +128,7 @@ Sweep::Sweep(const SweepOptions& options, const SweepTable& table) : options_(op
     run.name = fmt::format("{:04}", record_.runs.size());
     run.values = values;
     run.status = "not run";
-    const Config its_config = read_config(options.case_file, overrides(run));
+    const case_file::Config its_config = case_file::read_config(options.case_file, overrides(run));
     run.sha256 = sha256(its_config.effective.text);
     run.mesh_sha256 = mesh_hash(its_config.mesh);
   }
@@ -145,7 +145,7 @@ std::vector<std::string> Sweep::overrides(const SweepRun& run) const
   std::vector<std::string> result(options_.overrides.begin(), options_.overrides.end());
   for (std::size_t i = 0; i < record_.keys.size(); ++i)
     result.push_back(record_.keys[i] + "=" + run.values[i]);
-  result.push_back("output.directory=" + to_inline_toml({(directory_ / run.name).string(), {}}));
+  result.push_back("output.directory=" + case_file::to_inline_toml({(directory_ / run.name).string(), {}}));
   return result;
 }
 
@@ -238,9 +238,9 @@ ExitCode Sweep::run()
 
 }  // namespace
 
-ExitCode sweep(const SweepOptions& options, const SweepTable& table)
+ExitCode sweep(const SweepOptions& options, const case_file::SweepTable& table)
 {
   return Sweep(options, table).run();
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

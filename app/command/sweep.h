@@ -9,7 +9,7 @@
 #include "app/command/run.h"
 #include "tribound/case/sweep_values.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 struct SweepOptions
@@ -24,6 +24,6 @@ struct SweepOptions
 /// InputError for a value that no case takes, before anything is solved.
 /// Success: all certified; budget_used_up: some not, or interrupted; failed: some failed; bad_input: some
 /// were refused.
-[[nodiscard]] ExitCode sweep(const SweepOptions& options, const SweepTable& table);
+[[nodiscard]] ExitCode sweep(const SweepOptions& options, const case_file::SweepTable& table);
 
-}  // namespace tribound
+}  // namespace tribound::app

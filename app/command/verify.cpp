@@ -17,19 +17,19 @@
 #include "tribound/io/record/facts.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
 {
 
 /// The dual norm is looked for in degree p + 2, the reference solution in p + 1 (no solver goes beyond 4).
-RicherSpace dual_space(const Config& config, int refinements)
+certify::RicherSpace dual_space(const case_file::Config& config, int refinements)
 {
   return {.refinements = refinements, .degree = config.degree + 2};
 }
 
-RicherSpace solution_space(const Config& config, int refinements)
+certify::RicherSpace solution_space(const case_file::Config& config, int refinements)
 {
   return {.refinements = refinements, .degree = std::min(config.degree + 1, 4)};
 }
@@ -40,9 +40,9 @@ template <int dim>
 constexpr double largest_problem = dim == 2 ? 3e6 : 1e6;
 
 template <int dim>
-void check_size(const Config& config, const Mesh<dim>& mesh, int refinements)
+void check_size(const case_file::Config& config, const mesh::Mesh<dim>& mesh, int refinements)
 {
-  const auto n_dofs = [&](int times) { return count_dofs(mesh, dual_space(config, times)); };
+  const auto n_dofs = [&](int times) { return certify::count_dofs(mesh, dual_space(config, times)); };
   if (n_dofs(refinements) <= largest_problem<dim>) return;
   int fewer = refinements - 1;
   while (fewer > 0 && n_dofs(fewer) > largest_problem<dim>) --fewer;
@@ -81,71 +81,76 @@ class Stages
 };
 
 template <int dim>
-VerifiedIterate verified_iterate(const NitscheForm<dim>& form, const NewtonIterate<dim>& newton,
-                                 const Stress<dim>& stress, const Bound& eta, DualNorm<dim>& dual_norm)
+VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
+                                 const solve::NewtonIterate<dim>& newton, const certify::Stress<dim>& stress,
+                                 const certify::Bound& eta, certify::DualNorm<dim>& dual_norm)
 {
   VerifiedIterate iterate;
   iterate.step = newton.step;
   iterate.bound = eta.total_sharp;
   iterate.bound_plain = eta.total;
   iterate.dual_norm = dual_norm(newton.u);
-  iterate.norms = stress_norms<dim>(form.problem(), form.space(), newton.u);
-  iterate.identities = check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
+  iterate.norms = contact::stress_norms<dim>(form.problem(), form.space(), newton.u);
+  iterate.identities =
+      certify::check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
   return iterate;
 }
 
 template <int dim>
-RicherSolution richer_solution(const NitscheForm<dim>& form, std::span<const double> u, const Config& config,
-                               int refinements)
+certify::RicherSolution richer_solution(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                        const case_file::Config& config, int refinements)
 {
-  const RicherSpace richer = solution_space(config, refinements);
-  const double gamma0 = config.nitsche.gamma0.value_or(default_gamma0(richer.degree));
-  NewtonConfig newton = config.newton;
+  const certify::RicherSpace richer = solution_space(config, refinements);
+  const double gamma0 = config.nitsche.gamma0.value_or(case_file::default_gamma0(richer.degree));
+  case_file::NewtonConfig newton = config.newton;
   newton.damping = true;  // undamped steps may cycle; they are not what is verified here
-  return compare_with_richer<dim>(form, u, richer, gamma0, newton, config.solver);
+  return certify::compare_with_richer<dim>(form, u, richer, gamma0, newton, config.solver);
 }
 
 }  // namespace
 
 template <int dim>
-ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, const Progress& progress)
+ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, int refinements,
+                const Progress& progress)
 {
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  const LagrangeSpace<dim> space(mesh, config.degree);
-  const NitscheForm<dim> form(problem, space, config.gamma0());
-  check_rigid_motions<dim>(problem, space, form.data(), form.load());
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const fem::LagrangeSpace<dim> space(mesh, config.degree);
+  const contact::NitscheForm<dim> form(problem, space, config.gamma0());
+  contact::check_rigid_motions<dim>(problem, space, form.data(), form.load());
   check_size(config, mesh, refinements);
   const OutputDirectory directory(config.output.directory);
   remove_results(config.output.directory, {"verify.json"});
 
   Verification result;
-  result.facts = case_facts(config, dim);
-  result.mesh = mesh_facts<dim>(problem, space, form.constraints());
+  result.facts = io::case_facts(config, dim);
+  result.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   result.refinements = refinements;
   print_header(result.facts, result.mesh);
 
   Stages stages(progress);
-  DualNorm<dim> dual_norm(form, dual_space(config, refinements));
+  certify::DualNorm<dim> dual_norm(form, dual_space(config, refinements));
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
                        dual_norm.space().n_dofs()};
-  const Estimator<dim> estimator(form, config.certify.contact_rule);
-  std::optional<DeltaUpdates> regularisation;
-  if (config.regularisation) regularisation = DeltaUpdates{*config.regularisation};
-  const NewtonObserver<dim> observer = [&](const NewtonIterate<dim>& iterate) -> NewtonAdvice
+  const certify::Estimator<dim> estimator(form, config.certify.contact_rule);
+  std::optional<adapt::DeltaUpdates> regularisation;
+  if (config.regularisation) regularisation = adapt::DeltaUpdates{*config.regularisation};
+  const solve::NewtonObserver<dim> observer =
+      [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
   {
-    const Stress<dim> stress = equilibrate<dim>(form, iterate.u, iterate.traction, 0, iterate.step.delta);
-    const Estimate eta = estimator(iterate.u, stress);
+    const certify::Stress<dim> stress =
+        certify::equilibrate<dim>(form, iterate.u, iterate.traction, 0, iterate.step.delta);
+    const certify::Estimate eta = estimator(iterate.u, stress);
     result.iterates.push_back(verified_iterate(form, iterate, stress, eta, dual_norm));
     progress(iterate.step);
     if (!regularisation) return false;
     return regularisation->advise(form, iterate, eta.global, iterate.converged);
   };
-  SolverConfig solver = config.solver;
+  case_file::SolverConfig solver = config.solver;
   solver.tolerance = 0;  // as far as rounding lets it be: the identities are not what is to fail
-  const NewtonResult<dim> newton =
+  const solve::NewtonResult<dim> newton =
       stages.time("iterates", "solving, with bound and dual norm of every iterate",
-                  [&] { return solve<dim>(form, {}, config.newton, solver, observer); });
-  result.converged = newton.status == NewtonStatus::converged;
+                  [&] { return solve::solve<dim>(form, {}, config.newton, solver, observer); });
+  result.converged = newton.status == solve::NewtonStatus::converged;
 
   result.richer_degree = solution_space(config, refinements).degree;
   if (result.converged)
@@ -162,7 +167,7 @@ ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements, co
   return ExitCode::success;
 }
 
-template ExitCode verify(const Config&, const Mesh<2>&, int, const Progress&);
-template ExitCode verify(const Config&, const Mesh<3>&, int, const Progress&);
+template ExitCode verify(const case_file::Config&, const mesh::Mesh<2>&, int, const Progress&);
+template ExitCode verify(const case_file::Config&, const mesh::Mesh<3>&, int, const Progress&);
 
-}  // namespace tribound
+}  // namespace tribound::app

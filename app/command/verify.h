@@ -8,7 +8,7 @@
 #include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Solves the case on its mesh without adaptation, and computes for every Newton iterate the bound and the
@@ -17,7 +17,7 @@ namespace tribound
 /// when the spaces would be too large, and SolveError, also when the bound is below the dual norm of any
 /// iterate or when Newton's method does not converge; verify.json is written before.
 template <int dim>
-[[nodiscard]] ExitCode verify(const Config& config, const Mesh<dim>& mesh, int refinements,
+[[nodiscard]] ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, int refinements,
                               const Progress& progress);
 
-}  // namespace tribound
+}  // namespace tribound::app

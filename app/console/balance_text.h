@@ -10,14 +10,14 @@
 #include "tribound/certify/bound/balance.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// A table, for the screen. What is below 1e-9 of the largest number of its kind is shown as 0.
-[[nodiscard]] std::string balance_text(const Balance& balance);
+[[nodiscard]] std::string balance_text(const certify::Balance& balance);
 
 /// output.moment_about, by default the centroid. Throws InputError where it has not one number per dimension.
 template <int dim>
-[[nodiscard]] Point<dim> moment_point(const OutputConfig& output, const Mesh<dim>& mesh);
+[[nodiscard]] Point<dim> moment_point(const case_file::OutputConfig& output, const mesh::Mesh<dim>& mesh);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -13,7 +13,7 @@
 #include "app/console/text.h"
 #include "app/result/check_json.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -39,29 +39,29 @@ std::size_t name_width(const Parts& parts)
   return width;
 }
 
-std::string mesh_line(const MeshFacts& mesh)
+std::string mesh_line(const io::MeshFacts& mesh)
 {
   return line("mesh",
               fmt::format("{}, {}, h from {:.4g} to {:.4g}", count(mesh.vertices, "vertex", "vertices"),
                           count(mesh.cells, "cell", "cells"), mesh.smallest_cell, mesh.largest_cell));
 }
 
-std::string method_line(const CaseFacts& facts, const MeshFacts& mesh)
+std::string method_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 {
   return line("method", fmt::format("{}D, degree {}, {} free degrees of freedom, gamma_0 = {:g}",
                                     facts.dimension, facts.degree, mesh.free_dofs, facts.gamma0));
 }
 
-std::string resultants_line(std::string_view caption, std::string_view boundary, const Resultants& r)
+std::string resultants_line(std::string_view caption, std::string_view boundary, const io::Resultants& r)
 {
   return line(caption, fmt::format("{}: normal {:.8g}, tangential {:.8g}, force ({:.8g})", boundary, r.normal,
                                    r.tangential, fmt::join(r.force, ", ")));
 }
 
 /// For a boundary with Coulomb friction: N and H are the normal and the tangential resultant.
-std::string sliding_line(const Resultants& r)
+std::string sliding_line(const io::Resultants& r)
 {
-  const std::optional<Sliding> state = sliding(r);
+  const std::optional<io::Sliding> state = io::sliding(r);
   if (!state) return {};
   const std::string safety = state->safety_factor
                                  ? fmt::format("factor of safety mu_F N/H = {:.4g}", *state->safety_factor)
@@ -90,7 +90,7 @@ std::string paragraph(std::string_view caption, std::string_view text)
 }
 
 /// What each component measures, in the order of all_component_names.
-constexpr std::array<std::string_view, all_component_names.size()> component_meaning = {
+constexpr std::array<std::string_view, certify::all_component_names.size()> component_meaning = {
     "data oscillation",
     "stress",
     "Neumann data",
@@ -105,10 +105,10 @@ constexpr std::array<std::string_view, all_component_names.size()> component_mea
     "regularisation, tangential"};
 
 /// Component by component with its share of the sum of squares.
-std::string component_lines(const BoundComponents& components, bool regularised)
+std::string component_lines(const certify::BoundComponents& components, bool regularised)
 {
   constexpr double round_off = 1e-12;
-  const std::span<const NamedComponent> names = names_of_components(regularised);
+  const std::span<const certify::NamedComponent> names = certify::names_of_components(regularised);
   double squares = 0;
   for (const auto& [name, member] : names) squares += components.*member * components.*member;
   std::string text;
@@ -116,7 +116,7 @@ std::string component_lines(const BoundComponents& components, bool regularised)
   {
     double value = components.*names[i].second;
     if (value <= round_off * std::sqrt(squares)) value = 0;
-    if (value == 0 && !is_of_cells(names[i].second)) continue;
+    if (value == 0 && !certify::is_of_cells(names[i].second)) continue;
     const double share = squares > 0 ? 100 * value * value / squares : 0;
     text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", names[i].first, component_meaning[i],
                                  value, share));
@@ -126,13 +126,13 @@ std::string component_lines(const BoundComponents& components, bool regularised)
 
 }  // namespace
 
-std::string header_text(const CaseFacts& facts, const MeshFacts& mesh)
+std::string header_text(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 {
   return line("case", facts.title.empty() ? facts.file : facts.title) + mesh_line(mesh) +
          method_line(facts, mesh);
 }
 
-std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound)
+std::string newton_text(const solve::NewtonStep& step, std::optional<double> relative_bound)
 {
   const std::string bound = relative_bound ? fmt::format("bound {:.2e}  ", *relative_bound) : std::string{};
   const std::string damping =
@@ -143,58 +143,60 @@ std::string newton_text(const NewtonStep& step, std::optional<double> relative_b
                      damping, step.linear_iterations == 0 ? direct : iterations, step.seconds);
 }
 
-std::string level_text(const LevelRecord& level)
+std::string level_text(const io::LevelRecord& level)
 {
-  const std::string bound = relative_bound(level) ? fmt::format("{:.4g} %", 100 * *relative_bound(level))
-                            : !level.bound        ? std::string("none")
-                            : is_round_off(level) ? std::string("rounding")
-                                                  : fmt::format("{:.4g}", level.bound->total_sharp);
+  const std::string bound = io::relative_bound(level)
+                                ? fmt::format("{:.4g} %", 100 * *io::relative_bound(level))
+                            : !level.bound            ? std::string("none")
+                            : io::is_round_off(level) ? std::string("rounding")
+                                                      : fmt::format("{:.4g}", level.bound->total_sharp);
   return line(fmt::format("level {}", level.level),
               fmt::format("{:>8} cells  {:>8} dofs  newton {:>2}  bound {:<8}  {:.2f} s", level.cells,
-                          level.dofs, newton_steps(level), bound, level.times.level));
+                          level.dofs, io::newton_steps(level), bound, level.times.level));
 }
 
-std::string certificate_text(const RunRecord& run)
+std::string certificate_text(const io::RunRecord& run)
 {
   if (run.levels.empty() || !run.levels.back().bound) return {};
-  const LevelRecord& level = run.levels.back();
-  const Bound& bound = *level.bound;
-  const std::optional<double> relative = relative_bound(level);
+  const io::LevelRecord& level = run.levels.back();
+  const certify::Bound& bound = *level.bound;
+  const std::optional<double> relative = io::relative_bound(level);
   std::string text =
       line("bound", fmt::format("{:.6g}, {} (plain sums: {:.6g})", bound.total_sharp,
                                 relative ? fmt::format("that is {:.4g} % of ||sigma(u_h)||", 100 * *relative)
-                                : is_round_off(level) ? std::string("rounding, as the stress is")
-                                                      : std::string("of a stress that is zero"),
+                                : io::is_round_off(level) ? std::string("rounding, as the stress is")
+                                                          : std::string("of a stress that is zero"),
                                 bound.total));
   text += component_lines(bound.global, level.delta_updates.has_value());
   if (level.identities)
-    text += line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
-                                           level.identities->largest(run.facts.degree), identity_limit));
+    text +=
+        line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
+                                       level.identities->largest(run.facts.degree), certify::identity_limit));
   for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
   text += paragraph("law", run.statements.law);
   for (const std::string& outside : run.statements.not_covered) text += paragraph("outside", outside);
   return text;
 }
 
-std::string warnings_text(std::span<const RunWarning> warnings)
+std::string warnings_text(std::span<const io::RunWarning> warnings)
 {
   std::string text;
-  for (const RunWarning& warning : warnings)
+  for (const io::RunWarning& warning : warnings)
     text += paragraph(
         "warning", warning.where.empty() ? warning.text : fmt::format("{}: {}", warning.where, warning.text));
   return text;
 }
 
-std::string summary_text(const RunRecord& run, const std::string& directory)
+std::string summary_text(const io::RunRecord& run, const std::string& directory)
 {
   std::string text;
   if (!run.levels.empty())
   {
-    const LevelRecord& last = run.levels.back();
-    for (const Resultants& part : last.figures.boundary_contact)
+    const io::LevelRecord& last = run.levels.back();
+    for (const io::Resultants& part : last.figures.boundary_contact)
       text += resultants_line("contact", part.boundary, part);
     if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
-    for (const Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
+    for (const io::Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
     if (last.balance) text += balance_text(*last.balance);
     text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
     text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
@@ -205,51 +207,51 @@ std::string summary_text(const RunRecord& run, const std::string& directory)
   return text + verdict_text(run, directory);
 }
 
-std::string verdict_text(const RunRecord& run, const std::string& directory)
+std::string verdict_text(const io::RunRecord& run, const std::string& directory)
 {
   std::string reason = run.reason;
-  if (run.status == RunStatus::certified)
-    reason = run.levels.empty() || !is_round_off(run.levels.back())
+  if (run.status == certify::RunStatus::certified)
+    reason = run.levels.empty() || !io::is_round_off(run.levels.back())
                  ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
                                100 * run.tolerance)
                  : std::string("the stress is zero up to rounding, and so is the bound of its error");
-  return line("status", to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
+  return line("status", certify::to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
          line_if_any("results", directory);
 }
 
-std::string check_text(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver)
+std::string check_text(const io::CaseFacts& facts, const io::MeshFacts& mesh, const std::string& solver)
 {
   const char* unit = facts.dimension == 2 ? "area" : "volume";
   std::string text = header_text(facts, mesh);
   text += line_if_any("solver", solver);
   text += "regions\n";
-  for (const RegionFacts& region : mesh.regions)
+  for (const io::RegionFacts& region : mesh.regions)
     text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", region.name, name_width(mesh.regions),
                         count(region.cells, "cell", "cells"), unit, region.measure, region.material);
   text += "boundaries\n";
-  for (const BoundaryFacts& boundary : mesh.boundaries)
+  for (const io::BoundaryFacts& boundary : mesh.boundaries)
     text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", boundary.name, name_width(mesh.boundaries),
                         count(boundary.facets, "facet", "facets"), facts.dimension == 2 ? "length" : "area",
                         boundary.measure, boundary.condition);
   return text;
 }
 
-std::string findings_text(std::span<const Finding> findings)
+std::string findings_text(std::span<const doctor::Finding> findings)
 {
   std::string text = "findings\n";
-  for (const Finding& finding : findings)
+  for (const doctor::Finding& finding : findings)
   {
-    text += paragraph(fmt::format("  {}", to_string(finding.severity)), finding.text);
+    text += paragraph(fmt::format("  {}", doctor::to_string(finding.severity)), finding.text);
     if (!finding.advice.empty()) text += paragraph("", "-> " + finding.advice);
   }
-  const auto how_many = [&](Severity severity)
-  { return std::ranges::count(findings, severity, &Finding::severity); };
-  return text +
-         line("in all", fmt::format("{}, {}", count(how_many(Severity::warning), "warning", "warnings"),
-                                    count(how_many(Severity::note), "note", "notes")));
+  const auto how_many = [&](doctor::Severity severity)
+  { return std::ranges::count(findings, severity, &doctor::Finding::severity); };
+  return text + line("in all",
+                     fmt::format("{}, {}", count(how_many(doctor::Severity::warning), "warning", "warnings"),
+                                 count(how_many(doctor::Severity::note), "note", "notes")));
 }
 
-std::string info_text(const BuildFacts& build)
+std::string info_text(const io::BuildFacts& build)
 {
   const std::string threads =
       build.blas_threads > 0 ? ", " + count(build.blas_threads, "thread", "threads") : std::string{};
@@ -263,41 +265,41 @@ std::string info_text(const BuildFacts& build)
                                                        : build.report_page);
 }
 
-void print_header(const CaseFacts& facts, const MeshFacts& mesh)
+void print_header(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 {
   print(header_text(facts, mesh));
 }
 
-void print_level(const LevelRecord& level)
+void print_level(const io::LevelRecord& level)
 {
   print(level_text(level));
 }
 
-void print_summary(const RunRecord& run, const std::string& directory)
+void print_summary(const io::RunRecord& run, const std::string& directory)
 {
   print(summary_text(run, directory));
 }
 
-void print_verdict(const RunRecord& run, const std::string& directory)
+void print_verdict(const io::RunRecord& run, const std::string& directory)
 {
   print(warnings_text(run.warnings) + verdict_text(run, directory));
 }
 
-void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
-                 std::span<const Finding> findings, bool as_json)
+void print_check(const io::CaseFacts& facts, const io::MeshFacts& mesh, const std::string& solver,
+                 std::span<const doctor::Finding> findings, bool as_json)
 {
   print(as_json ? check_json(facts, mesh, solver, findings)
                 : check_text(facts, mesh, solver) + findings_text(findings));
 }
 
-void print_info(const BuildFacts& build)
+void print_info(const io::BuildFacts& build)
 {
   print(info_text(build));
 }
 
 Progress::Progress(bool quiet) : quiet_(quiet), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
-void Progress::operator()(const NewtonStep& step, std::optional<double> relative_bound) const
+void Progress::operator()(const solve::NewtonStep& step, std::optional<double> relative_bound) const
 {
   show(newton_text(step, relative_bound));
 }
@@ -312,4 +314,4 @@ void Progress::show(const std::string& text) const
   if (shown_) (void)std::fputs(text.c_str(), stderr);
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

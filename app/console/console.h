@@ -12,39 +12,40 @@
 #include "tribound/io/record/report.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The texts of the program; each ends with a newline.
-[[nodiscard]] std::string header_text(const CaseFacts& facts, const MeshFacts& mesh);
+[[nodiscard]] std::string header_text(const io::CaseFacts& facts, const io::MeshFacts& mesh);
 /// A step, with the relative bound after it where that is known.
-[[nodiscard]] std::string newton_text(const NewtonStep& step, std::optional<double> relative_bound = {});
+[[nodiscard]] std::string newton_text(const solve::NewtonStep& step,
+                                      std::optional<double> relative_bound = {});
 /// One line on a level: its size, Newton steps, bound and time.
-[[nodiscard]] std::string level_text(const LevelRecord& level);
+[[nodiscard]] std::string level_text(const io::LevelRecord& level);
 /// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
-[[nodiscard]] std::string certificate_text(const RunRecord& run);
+[[nodiscard]] std::string certificate_text(const io::RunRecord& run);
 /// A paragraph for each warning; nothing without any.
-[[nodiscard]] std::string warnings_text(std::span<const RunWarning> warnings);
+[[nodiscard]] std::string warnings_text(std::span<const io::RunWarning> warnings);
 /// Resultants, largest displacement, the certificate, warnings, status, and where the files are.
-[[nodiscard]] std::string summary_text(const RunRecord& run, const std::string& directory);
+[[nodiscard]] std::string summary_text(const io::RunRecord& run, const std::string& directory);
 /// The end of the summary: status, and where the files are.
-[[nodiscard]] std::string verdict_text(const RunRecord& run, const std::string& directory);
+[[nodiscard]] std::string verdict_text(const io::RunRecord& run, const std::string& directory);
 /// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
-[[nodiscard]] std::string check_text(const CaseFacts& facts, const MeshFacts& mesh,
+[[nodiscard]] std::string check_text(const io::CaseFacts& facts, const io::MeshFacts& mesh,
                                      const std::string& solver);
 /// What the doctor found, with advice, and how many warnings and notes there are.
-[[nodiscard]] std::string findings_text(std::span<const Finding> findings);
+[[nodiscard]] std::string findings_text(std::span<const doctor::Finding> findings);
 /// `tribound info`.
-[[nodiscard]] std::string info_text(const BuildFacts& build);
+[[nodiscard]] std::string info_text(const io::BuildFacts& build);
 
-void print_header(const CaseFacts& facts, const MeshFacts& mesh);
-void print_level(const LevelRecord& level);
-void print_summary(const RunRecord& run, const std::string& directory);
+void print_header(const io::CaseFacts& facts, const io::MeshFacts& mesh);
+void print_level(const io::LevelRecord& level);
+void print_summary(const io::RunRecord& run, const std::string& directory);
 /// Warnings and status only.
-void print_verdict(const RunRecord& run, const std::string& directory);
-void print_check(const CaseFacts& facts, const MeshFacts& mesh, const std::string& solver,
-                 std::span<const Finding> findings, bool as_json);
-void print_info(const BuildFacts& build);
+void print_verdict(const io::RunRecord& run, const std::string& directory);
+void print_check(const io::CaseFacts& facts, const io::MeshFacts& mesh, const std::string& solver,
+                 std::span<const doctor::Finding> findings, bool as_json);
+void print_info(const io::BuildFacts& build);
 
 /// One line per Newton step on stderr, where somebody can be watching: stderr is a terminal and the user has
 /// not asked for quiet.
@@ -53,7 +54,7 @@ class Progress
  public:
   explicit Progress(bool quiet);
 
-  void operator()(const NewtonStep& step, std::optional<double> relative_bound = {}) const;
+  void operator()(const solve::NewtonStep& step, std::optional<double> relative_bound = {}) const;
   /// Whether the user has asked for quiet.
   [[nodiscard]] bool quiet() const { return quiet_; }
   /// A line about a stage, such as "reading block.msh".
@@ -66,4 +67,4 @@ class Progress
   bool shown_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -7,7 +7,7 @@
 
 #include "tribound/adapt/rate.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -29,14 +29,14 @@ std::string count_in_words(double n)
 
 }  // namespace
 
-std::string forecast_text(const RunRecord& run, long max_dofs)
+std::string forecast_text(const io::RunRecord& run, long max_dofs)
 {
-  std::vector<RatePoint> points;
-  for (const LevelRecord& level : run.levels)
-    if (const auto relative = relative_bound(level))
+  std::vector<adapt::RatePoint> points;
+  for (const io::LevelRecord& level : run.levels)
+    if (const auto relative = io::relative_bound(level))
       points.push_back({static_cast<double>(level.dofs), *relative});
   if (points.size() < fewest_levels || points.back().value <= run.tolerance) return {};
-  const std::optional<double> rate = fitted_rate(points);
+  const std::optional<double> rate = adapt::fitted_rate(points);
   if (!rate) return {};
   if (*rate > slowest_rate) return "  the bound hardly decreases";
   const double needed = points.back().dofs * std::pow(run.tolerance / points.back().value, 1 / *rate);
@@ -44,4 +44,4 @@ std::string forecast_text(const RunRecord& run, long max_dofs)
                      needed > static_cast<double>(max_dofs) ? ", above adapt.max_dofs" : "");
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -7,11 +7,11 @@
 
 #include "tribound/io/record/report.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// "at this rate 1 % needs 1.2 million unknowns": the rate is fitted to the last half of the levels. Empty
 /// where the tolerance is reached, or less than three levels have a bound.
-[[nodiscard]] std::string forecast_text(const RunRecord& run, long max_dofs);
+[[nodiscard]] std::string forecast_text(const io::RunRecord& run, long max_dofs);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace tribound
+namespace tribound::app
 {
 
 constexpr std::size_t caption_width = 14;
@@ -28,4 +28,4 @@ inline void print(std::string_view text)
   std::fflush(stdout);
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

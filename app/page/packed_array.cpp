@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -125,4 +125,4 @@ std::string pack_text(std::string_view text)
   return fmt::format(R"({{"text":"{}"}})", deflated(bytes));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

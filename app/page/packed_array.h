@@ -13,7 +13,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Base64 of RFC 4648, with padding.
@@ -33,4 +33,4 @@ namespace tribound
 /// Text, compressed: its bytes in UTF-8.
 [[nodiscard]] std::string pack_text(std::string_view text);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -8,7 +8,7 @@
 
 #include "app/page/page_surface.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -115,4 +115,4 @@ void merge_details(Surface& surface, int dim, std::size_t max_triangles)
   surface.merged_below = coarse;
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -4,7 +4,7 @@
 
 #include "tribound/io/fields/contact_line.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -18,7 +18,7 @@ std::vector<Point<1>> even_points(std::size_t n)
   return points;
 }
 
-void add_point(ContactProfile& profile, const ContactState<2>& state, const Point<2>& u, double arc)
+void add_point(ContactProfile& profile, const contact::ContactState<2>& state, const Point<2>& u, double arc)
 {
   const Point<2> tangent(-state.normal[1], state.normal[0]);
   profile.arc.push_back(arc);
@@ -33,25 +33,26 @@ void add_point(ContactProfile& profile, const ContactState<2>& state, const Poin
   profile.status.push_back(static_cast<Index>(state.status));
 }
 
-ContactProfile contact_profile(const NitscheForm<2>& form, std::span<const double> u, int tag,
+ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<const double> u, int tag,
                                std::size_t n_points)
 {
   ContactProfile profile;
   profile.tag = tag;
-  const std::vector<ChainLink> links = contact_chains(form, tag);
+  const std::vector<io::ChainLink> links = io::contact_chains(form, tag);
   if (links.empty()) return profile;
   const std::size_t n = std::clamp<std::size_t>(n_points / links.size(), form.space().degree(), 24);
   const std::vector<Point<1>> points = even_points(n);
-  const FacetTabulation<2> table = tabulate_on_facets<2>(form.space().basis(), points);
-  for (const ChainLink& link : links)
+  const fem::FacetTabulation<2> table = fem::tabulate_on_facets<2>(form.space().basis(), points);
+  for (const io::ChainLink& link : links)
   {
-    const ContactFacet<2>& facet = form.contact_facets()[link.facet];
-    const std::vector<ContactState<2>> states = form.contact_states(u, link.facet, table);
+    const contact::ContactFacet<2>& facet = form.contact_facets()[link.facet];
+    const std::vector<contact::ContactState<2>> states = form.contact_states(u, link.facet, table);
     for (std::size_t i = 0; i <= n; ++i)
     {
       const std::size_t q = link.reversed ? n - i : i;
       const auto values = table.on_facet[facet.facet.local].values_at(static_cast<int>(q));
-      add_point(profile, states[q], value_at<2>(form.space().cell_nodes(facet.facet.cell), u, values),
+      add_point(profile, states[q],
+                contact::value_at<2>(form.space().cell_nodes(facet.facet.cell), u, values),
                 link.arc + facet.geometry.measure * points[i][0]);
     }
   }
@@ -60,7 +61,7 @@ ContactProfile contact_profile(const NitscheForm<2>& form, std::span<const doubl
 
 }  // namespace
 
-std::vector<ContactProfile> contact_profiles(const NitscheForm<2>& form, std::span<const double> u,
+std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form, std::span<const double> u,
                                              std::size_t n_points)
 {
   std::vector<ContactProfile> profiles;
@@ -70,4 +71,4 @@ std::vector<ContactProfile> contact_profiles(const NitscheForm<2>& form, std::sp
   return profiles;
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -10,7 +10,7 @@
 
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The state along the contact boundary number `tag`; entry i of every column belongs to point i. The points
@@ -32,8 +32,8 @@ struct ContactProfile
 };
 
 /// The profile of every boundary with contact, of about `n_points` points each, at least p + 1 per facet.
-[[nodiscard]] std::vector<ContactProfile> contact_profiles(const NitscheForm<2>& form,
+[[nodiscard]] std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form,
                                                            std::span<const double> u,
                                                            std::size_t n_points = 3000);
 
-}  // namespace tribound
+}  // namespace tribound::app

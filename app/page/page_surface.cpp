@@ -9,7 +9,7 @@
 
 #include "tribound/io/fields/vtu.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -23,25 +23,25 @@ struct Face
 };
 
 template <int dim>
-std::vector<Face> contact_faces(const NitscheForm<dim>& form)
+std::vector<Face> contact_faces(const contact::NitscheForm<dim>& form)
 {
   std::vector<Face> faces;
   if constexpr (dim == 3)
-    for (const ContactFacet<3>& contact : form.contact_facets())
+    for (const contact::ContactFacet<3>& contact : form.contact_facets())
       faces.push_back({contact.facet.cell, contact.facet.local});
   return faces;
 }
 
 /// All of them, those of contact_faces() first.
 template <int dim>
-std::vector<Face> all_faces(const NitscheForm<dim>& form)
+std::vector<Face> all_faces(const contact::NitscheForm<dim>& form)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::vector<Face> faces = contact_faces(form);
   if constexpr (dim == 2)
     for (Index c = 0; c < mesh.n_cells(); ++c) faces.push_back({c, 0});
   else
-    for (const BoundaryFacet& facet : mesh.boundary())
+    for (const mesh::BoundaryFacet& facet : mesh.boundary())
       if (!form.problem().boundary(facet.tag).contact) faces.push_back({facet.cell, facet.local});
   return faces;
 }
@@ -58,13 +58,13 @@ template <int dim>
 std::array<int, 3> corners(int local)
 {
   if constexpr (dim == 2) return {0, 1, 2};
-  std::array<int, 3> vertices = facet_vertices(std::array<Index, 4>{0, 1, 2, 3}, local);
+  std::array<int, 3> vertices = mesh::facet_vertices(std::array<Index, 4>{0, 1, 2, 3}, local);
   if (local % 2 == 1) std::swap(vertices[1], vertices[2]);  // see facet_geometry()
   return vertices;
 }
 
 template <int dim>
-FaceLattice face_lattice(const LagrangeBasis<dim>& basis, int local)
+FaceLattice face_lattice(const fem::LagrangeBasis<dim>& basis, int local)
 {
   const int k = basis.degree();
   const std::array<int, 3> corner = corners<dim>(local);
@@ -115,12 +115,12 @@ template <int dim>
 class SurfaceSampler
 {
  public:
-  SurfaceSampler(const NitscheForm<dim>& form, std::span<const double> u, const Stress<dim>& stress,
-                 int subdivision)
+  SurfaceSampler(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                 const certify::Stress<dim>& stress, int subdivision)
       : form_(form),
         u_(u),
         space_(form.space().mesh(), subdivision),
-        stress_(equilibrated_stress_field(space_, stress)),
+        stress_(io::equilibrated_stress_field(space_, stress)),
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
@@ -134,14 +134,14 @@ class SurfaceSampler
   void add(const Face& face)
   {
     const FaceLattice& lattice = lattices_[face.local];
-    const CellMap<dim> map = cell_map(space_.mesh(), face.cell);
+    const mesh::CellMap<dim> map = mesh::cell_map(space_.mesh(), face.cell);
     stress_.at_nodes(face.cell, values_);
     for (const int node : lattice.nodes)
     {
       Index& vertex = vertex_of_node_[space_.cell_nodes(face.cell)[node]];
       if (vertex < 0) vertex = add_vertex(face.cell, node, map);
       surface_.faces.push_back(vertex);
-      const std::array<double, 6> sigma = symmetric_part<dim>(values_[node], 0.0);
+      const std::array<double, 6> sigma = io::symmetric_part<dim>(values_[node], 0.0);
       for (std::size_t i = 0; i < surface_.stress.size(); ++i)
         surface_.stress[i].push_back(sigma[stress_entries<dim>[i]]);
     }
@@ -151,20 +151,21 @@ class SurfaceSampler
   [[nodiscard]] Surface take() && { return std::move(surface_); }
 
  private:
-  Index add_vertex(Index cell, int node, const CellMap<dim>& map)
+  Index add_vertex(Index cell, int node, const mesh::CellMap<dim>& map)
   {
     const Point<dim> x = map(space_.basis().node_point(node));
-    const Point<dim> u = value_at<dim>(form_.space().cell_nodes(cell), u_, at_nodes_.values_at(node));
+    const Point<dim> u =
+        contact::value_at<dim>(form_.space().cell_nodes(cell), u_, at_nodes_.values_at(node));
     surface_.points.insert(surface_.points.end(), x.begin(), x.end());
     surface_.displacement.insert(surface_.displacement.end(), u.begin(), u.end());
     return static_cast<Index>(surface_.points.size() / dim) - 1;
   }
 
-  const NitscheForm<dim>& form_;
+  const contact::NitscheForm<dim>& form_;
   std::span<const double> u_;
-  LagrangeSpace<dim> space_;  ///< of degree k: its nodes are the vertices of the lattices
-  TensorField<dim> stress_;
-  Tabulation<dim> at_nodes_;         ///< the basis of u at these nodes
+  fem::LagrangeSpace<dim> space_;  ///< of degree k: its nodes are the vertices of the lattices
+  io::TensorField<dim> stress_;
+  fem::Tabulation<dim> at_nodes_;    ///< the basis of u at these nodes
   std::vector<Tensor<dim>> values_;  ///< sigma_h at the nodes of a cell
   std::vector<FaceLattice> lattices_;
   std::vector<Index> vertex_of_node_;
@@ -186,17 +187,17 @@ void average_stress(Surface& surface)
   }
 }
 
-SurfaceContact sample_contact(const NitscheForm<3>& form, std::span<const double> u, int k)
+SurfaceContact sample_contact(const contact::NitscheForm<3>& form, std::span<const double> u, int k)
 {
-  const LagrangeBasis<3> lattice(k);
+  const fem::LagrangeBasis<3> lattice(k);
   SurfaceContact contact;
   for (int local = 0; local <= 3; ++local)
   {
     // Facets with the same local number share their tables; they are put in their places afterwards.
-    const FacetTabulation<3> at_points =
-        tabulate_on_facets<3>(form.space().basis(), face_lattice<3>(lattice, local).on_face);
-    const FacetTabulation<3> at_middles =
-        tabulate_on_facets<3>(form.space().basis(), triangle_middles(k, local % 2 == 1));
+    const fem::FacetTabulation<3> at_points =
+        fem::tabulate_on_facets<3>(form.space().basis(), face_lattice<3>(lattice, local).on_face);
+    const fem::FacetTabulation<3> at_middles =
+        fem::tabulate_on_facets<3>(form.space().basis(), triangle_middles(k, local % 2 == 1));
     const std::size_t n = at_points.points.size();
     const std::size_t n_middles = at_middles.points.size();
     for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})
@@ -207,7 +208,7 @@ SurfaceContact sample_contact(const NitscheForm<3>& form, std::span<const double
     {
       if (form.contact_facets()[facet].facet.local != local) continue;
       std::size_t place = facet * n;
-      for (const ContactState<3>& state : form.contact_states(u, facet, at_points))
+      for (const contact::ContactState<3>& state : form.contact_states(u, facet, at_points))
       {
         contact.pressure[place] = state.pressure;
         contact.friction[place] = (state.traction + state.pressure * state.normal).norm();
@@ -217,7 +218,7 @@ SurfaceContact sample_contact(const NitscheForm<3>& form, std::span<const double
         contact.slip[place++] = state.slip.norm();
       }
       place = facet * n_middles;
-      for (const ContactState<3>& state : form.contact_states(u, facet, at_middles))
+      for (const contact::ContactState<3>& state : form.contact_states(u, facet, at_middles))
         contact.status[place++] = static_cast<Index>(state.status);
     }
   }
@@ -227,8 +228,8 @@ SurfaceContact sample_contact(const NitscheForm<3>& form, std::span<const double
 }  // namespace
 
 template <int dim>
-Surface sample_surface(const NitscheForm<dim>& form, std::span<const double> u, const Stress<dim>& stress,
-                       const PageLimits& limits)
+Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                       const certify::Stress<dim>& stress, const PageLimits& limits)
 {
   const std::vector<Face> faces = all_faces(form);
   const int k = subdivision(faces.size(), form.space().degree(), limits.subdivided);
@@ -241,9 +242,9 @@ Surface sample_surface(const NitscheForm<dim>& form, std::span<const double> u, 
   return surface;
 }
 
-template Surface sample_surface(const NitscheForm<2>&, std::span<const double>, const Stress<2>&,
-                                const PageLimits&);
-template Surface sample_surface(const NitscheForm<3>&, std::span<const double>, const Stress<3>&,
-                                const PageLimits&);
+template Surface sample_surface(const contact::NitscheForm<2>&, std::span<const double>,
+                                const certify::Stress<2>&, const PageLimits&);
+template Surface sample_surface(const contact::NitscheForm<3>&, std::span<const double>,
+                                const certify::Stress<3>&, const PageLimits&);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -12,7 +12,7 @@
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Sizes up to which the page shows a mesh as it is.
@@ -65,12 +65,12 @@ inline constexpr std::array<int, 3> stress_entries<2> = {0, 1, 3};
 
 /// The surface of the body on one level.
 template <int dim>
-[[nodiscard]] Surface sample_surface(const NitscheForm<dim>& form, std::span<const double> u,
-                                     const Stress<dim>& stress, const PageLimits& limits = {});
+[[nodiscard]] Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                     const certify::Stress<dim>& stress, const PageLimits& limits = {});
 
 /// Merges the vertices that lie in the same square or cube of a grid and drops the faces that vanish thereby,
 /// with the smallest grid width for which at most `max_triangles` remain (to within 20 %). Faces keep their
 /// values. For k = 1 only.
 void merge_details(Surface& surface, int dim, std::size_t max_triangles);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -8,7 +8,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 std::string script_safe(std::string_view json)
@@ -36,7 +36,7 @@ void PageTemplate::write(const std::filesystem::path& page, std::string_view id,
                          std::span<const std::string_view> json) const
 {
   if (empty()) return;
-  AtomicFile file(page);
+  io::AtomicFile file(page);
   file.write(head_);
   file.write(R"(<script type="application/json" id=")");
   file.write(id);
@@ -56,20 +56,20 @@ std::string read_text(const std::filesystem::path& path)
 std::string machine_json()
 {
   const MachineFacts machine = machine_facts();
-  return Json{{"processor", machine.processor},
-              {"processors", machine.n_processors},
-              {"memory", machine.memory},
-              {"system", machine.system},
-              {"written", date_and_time()}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return io::Json{{"processor", machine.processor},
+                  {"processors", machine.n_processors},
+                  {"memory", machine.memory},
+                  {"system", machine.system},
+                  {"written", date_and_time()}}
+      .dump(-1, ' ', false, io::Json::error_handler_t::replace);
 }
 
 std::string files_json(const std::filesystem::path& directory, std::span<const std::string> names)
 {
-  Json existing = Json::array();
+  io::Json existing = io::Json::array();
   for (const std::string& name : names)
     if (std::filesystem::exists(directory / name)) existing.push_back(name);
-  return existing.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return existing.dump(-1, ' ', false, io::Json::error_handler_t::replace);
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

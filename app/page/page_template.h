@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The comment in the template which the data replace.
@@ -46,4 +46,4 @@ class PageTemplate
 [[nodiscard]] std::string files_json(const std::filesystem::path& directory,
                                      std::span<const std::string> names);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -6,15 +6,16 @@
 #include "tribound/io/fields/vtu.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::app
 {
 
-Volume sample_volume(const NitscheForm<3>& form, std::span<const double> u, const Stress<3>& stress)
+Volume sample_volume(const contact::NitscheForm<3>& form, std::span<const double> u,
+                     const certify::Stress<3>& stress)
 {
-  const Mesh<3>& mesh = form.space().mesh();
-  const LagrangeSpace<3> corners(mesh, 1);
-  const Tabulation<3> at_corners = form.space().basis().tabulate(corners.basis().node_points());
-  const TensorField<3> sigma = equilibrated_stress_field(corners, stress);
+  const mesh::Mesh<3>& mesh = form.space().mesh();
+  const fem::LagrangeSpace<3> corners(mesh, 1);
+  const fem::Tabulation<3> at_corners = form.space().basis().tabulate(corners.basis().node_points());
+  const io::TensorField<3> sigma = io::equilibrated_stress_field(corners, stress);
   const std::size_t n = corners.n_nodes();
   Volume volume;
   volume.displacement.resize(3 * n);
@@ -26,15 +27,16 @@ Volume sample_volume(const NitscheForm<3>& form, std::span<const double> u, cons
   for (Index cell = 0; cell < mesh.n_cells(); ++cell)
   {
     sigma.at_nodes(cell, values);
-    const double det = cell_map(mesh, cell).det;
+    const double det = mesh::cell_map(mesh, cell).det;
     for (int i = 0; i < 4; ++i)
     {
       const Index vertex = corners.cell_nodes(cell)[i];
       volume.cells.push_back(vertex);
       weight[vertex] += det;
-      const std::array<double, 6> components = symmetric_part<3>(values[i], 0.0);
+      const std::array<double, 6> components = io::symmetric_part<3>(values[i], 0.0);
       for (std::size_t s = 0; s < components.size(); ++s) volume.stress[s][vertex] += det * components[s];
-      const Point<3> at_vertex = value_at<3>(form.space().cell_nodes(cell), u, at_corners.values_at(i));
+      const Point<3> at_vertex =
+          contact::value_at<3>(form.space().cell_nodes(cell), u, at_corners.values_at(i));
       for (int c = 0; c < 3; ++c) volume.displacement[3 * vertex + c] = at_vertex[c];
     }
   }
@@ -43,4 +45,4 @@ Volume sample_volume(const NitscheForm<3>& form, std::span<const double> u, cons
   return volume;
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -11,7 +11,7 @@
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Tetrahedra with values at their vertices; stresses, which jump, are averaged there by volume.
@@ -26,7 +26,7 @@ struct Volume
 /// Cells up to which a page has them; beyond, it shows the surface alone.
 inline constexpr std::size_t max_volume_cells = 40'000;
 
-[[nodiscard]] Volume sample_volume(const NitscheForm<3>& form, std::span<const double> u,
-                                   const Stress<3>& stress);
+[[nodiscard]] Volume sample_volume(const contact::NitscheForm<3>& form, std::span<const double> u,
+                                   const certify::Stress<3>& stress);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -15,7 +15,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/facts_json.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -67,7 +67,7 @@ std::string stress_member(std::span<const std::vector<double>> stress)
 }
 
 /// eta_tot and the components, one number per face; what is zero everywhere is left out.
-std::string component_members(const Surface& surface, const Estimate& estimate)
+std::string component_members(const Surface& surface, const certify::Estimate& estimate)
 {
   std::string members;
   std::vector<double> values(surface.n_faces());
@@ -79,26 +79,27 @@ std::string component_members(const Surface& surface, const Estimate& estimate)
     members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", name,
                            pack_logarithmic(values, component_bits, component_decades));
   };
-  add("tot", [](const BoundComponents& cell) { return cell.total_sharp(); });
-  for (const auto& [name, component] : all_component_names)
-    add(name, [c = component](const BoundComponents& cell) { return cell.*c; });
+  add("tot", [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
+  for (const auto& [name, component] : certify::all_component_names)
+    add(name, [c = component](const certify::BoundComponents& cell) { return cell.*c; });
   return members;
 }
 
 /// In 2D sigma_zz / (sigma_xx + sigma_yy), region by region.
 template <int dim>
-std::string out_of_plane_member(const Problem<dim>& problem, const Mesh<dim>& mesh)
+std::string out_of_plane_member(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   if constexpr (dim == 3) return {};
   std::string ratios;
   for (int region = 0; region < static_cast<int>(mesh.region_names().size()); ++region)
-    ratios += fmt::format("{}{}", ratios.empty() ? "" : ",", out_of_plane_ratio(problem.material(region)));
+    ratios +=
+        fmt::format("{}{}", ratios.empty() ? "" : ",", io::out_of_plane_ratio(problem.material(region)));
   return member("out_of_plane", "[" + ratios + "]");
 }
 
 /// Which region a face lies in, where there are several.
 template <int dim>
-std::string region_member(const Surface& surface, const Mesh<dim>& mesh)
+std::string region_member(const Surface& surface, const mesh::Mesh<dim>& mesh)
 {
   if (mesh.region_names().size() < 2) return {};
   std::vector<Index> regions;
@@ -139,7 +140,7 @@ std::string json(const ContactProfile& profile, const std::string& boundary)
 }
 
 template <int dim>
-std::string profiles_member(const NitscheForm<dim>& form, std::span<const double> u)
+std::string profiles_member(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   std::string profiles;
   if constexpr (dim == 2)
@@ -156,28 +157,28 @@ std::string table(std::string_view text)
 }
 
 /// The effective case with its text.
-std::string case_json(const RunRecord& run)
+std::string case_json(const io::RunRecord& run)
 {
-  Json object = effective_case_json(run);
+  io::Json object = io::effective_case_json(run);
   if (!object.is_null()) object["text"] = run.effective.text;
-  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return object.dump(-1, ' ', false, io::Json::error_handler_t::replace);
 }
 
 /// The files of a run, in the order in which a reader wants them.
-std::vector<std::string> run_files(const RunRecord& run)
+std::vector<std::string> run_files(const io::RunRecord& run)
 {
   std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv", "newton.csv",
                                     "contact.csv",      "adapted.msh", "series.pvd"};
-  for (const LevelRecord& level : run.levels)
-    for (const char* stem : {"level", "contact"}) names.push_back(level_file_name(stem, level.level));
+  for (const io::LevelRecord& level : run.levels)
+    for (const char* stem : {"level", "contact"}) names.push_back(io::level_file_name(stem, level.level));
   return names;
 }
 
 }  // namespace
 
 template <int dim>
-PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
-                     const PageLimits& limits)
+PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
+                     const adapt::CertifiedLevel<dim>& level, const PageLimits& limits)
 {
   const Surface surface = sample_surface(form, level.u, level.stress, limits);
   PageLevel result{number, surface.n_triangles(), {}};
@@ -194,7 +195,7 @@ PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLe
 }
 
 template <int dim>
-std::string page_volume(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
+std::string page_volume(const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level)
 {
   if constexpr (dim == 3)
     if (std::cmp_less_equal(form.space().mesh().n_cells(), max_volume_cells))
@@ -234,13 +235,14 @@ void add_true_errors(const std::filesystem::path& page, std::span<const TrueErro
   }
   text.replace(marker, true_errors_marker.size(),
                R"(<script type="application/json" id="true-errors">)" + rows.dump() + "</script>");
-  write_file(page, text);
+  io::write_file(page, text);
 }
 
 ReportPage::ReportPage(const std::filesystem::path& page_template) : template_(page_template) {}
 
 template <int dim>
-void ReportPage::add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
+void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
+                     const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
   if (!levels_.empty() && levels_.back().number == number) levels_.pop_back();
@@ -249,15 +251,16 @@ void ReportPage::add(int number, const NitscheForm<dim>& form, const CertifiedLe
   drop_levels(levels_, {});
 }
 
-void ReportPage::write(const std::filesystem::path& directory, const RunRecord& run) const
+void ReportPage::write(const std::filesystem::path& directory, const io::RunRecord& run) const
 {
   if (template_.empty()) return;
   const std::string contact = levels_.empty() ? "null" : table(read_text(directory / "contact.csv"));
   const std::string head = fmt::format(
       R"({{"certificate":{},"case":{},"newton":{},"tables":{{"convergence.csv":{},"contact.csv":{}}},"machine":{},)"
       R"("files":{},"volume":{},"fields":[)",
-      certificate_json(run), case_json(run), nlohmann::json(newton_csv(run)).dump(),
-      table(convergence_csv(run)), contact, machine_json(), files_json(directory, run_files(run)), volume_);
+      io::certificate_json(run), case_json(run), nlohmann::json(io::newton_csv(run)).dump(),
+      table(io::convergence_csv(run)), contact, machine_json(), files_json(directory, run_files(run)),
+      volume_);
   std::vector<std::string_view> json = {head};
   for (const PageLevel& level : levels_)
   {
@@ -268,11 +271,13 @@ void ReportPage::write(const std::filesystem::path& directory, const RunRecord& 
   template_.write(directory / "report.html", "run-data", json);
 }
 
-template std::string page_volume(const NitscheForm<2>&, const CertifiedLevel<2>&);
-template std::string page_volume(const NitscheForm<3>&, const CertifiedLevel<3>&);
-template PageLevel page_level(int, const NitscheForm<2>&, const CertifiedLevel<2>&, const PageLimits&);
-template PageLevel page_level(int, const NitscheForm<3>&, const CertifiedLevel<3>&, const PageLimits&);
-template void ReportPage::add(int, const NitscheForm<2>&, const CertifiedLevel<2>&);
-template void ReportPage::add(int, const NitscheForm<3>&, const CertifiedLevel<3>&);
+template std::string page_volume(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
+template std::string page_volume(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
+template PageLevel page_level(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&,
+                              const PageLimits&);
+template PageLevel page_level(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&,
+                              const PageLimits&);
+template void ReportPage::add(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
+template void ReportPage::add(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -16,7 +16,7 @@
 #include "tribound/adapt/level.h"
 #include "tribound/io/record/report.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The fields of a level, as JSON.
@@ -28,12 +28,13 @@ struct PageLevel
 };
 
 template <int dim>
-[[nodiscard]] PageLevel page_level(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
-                                   const PageLimits& limits = {});
+[[nodiscard]] PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
+                                   const adapt::CertifiedLevel<dim>& level, const PageLimits& limits = {});
 
 /// The inside of a body in 3D, as JSON; "null" in 2D, and beyond max_volume_cells.
 template <int dim>
-[[nodiscard]] std::string page_volume(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
+[[nodiscard]] std::string page_volume(const contact::NitscheForm<dim>& form,
+                                      const adapt::CertifiedLevel<dim>& level);
 
 /// Leaves out levels between the first and the last, the largest first, until all have at most
 /// limits.all_levels triangles together.
@@ -63,11 +64,11 @@ class ReportPage
 
   /// In the place of the level with this number, if it is the last.
   template <int dim>
-  void add(int number, const NitscheForm<dim>& form, const CertifiedLevel<dim>& level);
+  void add(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
 
   /// Writes report.html into the directory, with links to those results that are there. Throws WriteError
   /// when the file cannot be written.
-  void write(const std::filesystem::path& directory, const RunRecord& run) const;
+  void write(const std::filesystem::path& directory, const io::RunRecord& run) const;
 
  private:
   PageTemplate template_;
@@ -75,4 +76,4 @@ class ReportPage
   std::string volume_ = "null";  ///< of the last level
 };
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -10,7 +10,7 @@
 
 #include "app/page/page_template.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -51,4 +51,4 @@ void write_study_page(const std::filesystem::path& page_template, const std::fil
   page.write(directory / "report.html", "study-data", std::vector<std::string_view>{json});
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -7,7 +7,7 @@
 
 #include "app/result/study.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// Writes report.html into the directory, with links to the tables, the figures and the pages of the variants
@@ -15,4 +15,4 @@ namespace tribound
 void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
                       const Study& study);
 
-}  // namespace tribound
+}  // namespace tribound::app

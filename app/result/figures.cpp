@@ -16,7 +16,7 @@
 
 extern char** environ;
 
-namespace tribound
+namespace tribound::app
 {
 
 std::optional<std::filesystem::path> find_figure_script()
@@ -53,4 +53,4 @@ void draw_figures(const std::filesystem::path& directory)
                             : fmt::format("not drawn: {}{}", script ? script->string() + " " : "", problem)));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// The script study_figures, see find_shared_file(); nothing where there is none that may be run.
@@ -21,4 +21,4 @@ namespace tribound
 /// Draws the figures of the study in `directory` and says on stdout where they are or why there are none.
 void draw_figures(const std::filesystem::path& directory);
 
-}  // namespace tribound
+}  // namespace tribound::app

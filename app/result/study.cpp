@@ -10,7 +10,7 @@
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/facts_json.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -41,9 +41,9 @@ std::optional<double> plain_bound_of(const StudiedLevel& level)
 using LevelValue = std::optional<double> (*)(const StudiedLevel&);
 
 /// The quantity at the levels where it is known.
-std::vector<RatePoint> rate_points(std::span<const StudiedLevel> levels, LevelValue value)
+std::vector<adapt::RatePoint> rate_points(std::span<const StudiedLevel> levels, LevelValue value)
 {
-  std::vector<RatePoint> points;
+  std::vector<adapt::RatePoint> points;
   for (const StudiedLevel& level : levels)
     if (const auto known = value(level)) points.push_back({static_cast<double>(level.record.dofs), *known});
   return points;
@@ -65,13 +65,13 @@ std::vector<Column> columns(const StudyVariant& variant, std::size_t number)
   std::vector<Column> row = {{"level", level.record.level, true},
                              {"cells", static_cast<double>(level.record.cells), true},
                              {"dofs", static_cast<double>(level.record.dofs), true},
-                             {"newton_steps", static_cast<double>(newton_steps(level.record)), true}};
-  const std::optional<Bound>& bound = level.record.bound;
-  for (const auto& [name, member] : component_names)
+                             {"newton_steps", static_cast<double>(io::newton_steps(level.record)), true}};
+  const std::optional<certify::Bound>& bound = level.record.bound;
+  for (const auto& [name, member] : certify::component_names)
     row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
   const std::vector<Column> rest = {{"total", plain_bound_of(level)},
                                     {"total_sharp", bound_of(level)},
-                                    {"relative", relative_bound(level.record)},
+                                    {"relative", io::relative_bound(level.record)},
                                     {"energy_error", energy_error(level)},
                                     {"stress_error", stress_error(level)},
                                     {"dual_norm", level.dual_norm},
@@ -83,50 +83,50 @@ std::vector<Column> columns(const StudyVariant& variant, std::size_t number)
                                     {"t_certify", level.record.times.certify},
                                     {"t_level", level.record.times.level}};
   row.insert(row.end(), rest.begin(), rest.end());
-  if (!is_regularised(level.record)) return row;
-  for (const auto& [name, member] : regularisation_names)
+  if (!io::is_regularised(level.record)) return row;
+  for (const auto& [name, member] : certify::regularisation_names)
     row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
-  row.push_back({"delta", last_delta(level.record)});
+  row.push_back({"delta", io::last_delta(level.record)});
   row.push_back({"delta_updates", *level.record.delta_updates, true});
   return row;
 }
 
-Json json(const std::vector<std::optional<double>>& values)
+io::Json json(const std::vector<std::optional<double>>& values)
 {
-  Json array = Json::array();
-  for (const auto& value : values) array.push_back(number_or_null(value));
+  io::Json array = io::Json::array();
+  for (const auto& value : values) array.push_back(io::number_or_null(value));
   return array;
 }
 
-Json json(const StudyVariant& variant)
+io::Json json(const StudyVariant& variant)
 {
-  Json levels = Json::array();
+  io::Json levels = io::Json::array();
   for (std::size_t i = 0; i < variant.levels.size(); ++i)
   {
-    Json object;
+    io::Json object;
     for (const auto& [name, value, is_count] : columns(variant, i))
-      object[name] = is_count ? Json(static_cast<long>(*value)) : number_or_null(value);
+      object[name] = is_count ? io::Json(static_cast<long>(*value)) : io::number_or_null(value);
     levels.push_back(object);
   }
   const Rates rates = fitted_rates(variant);
-  return {{"status", to_string(variant.status)},
-          {"reason", text_or_null(variant.reason)},
-          {"rates", {{"error", number_or_null(rates.error)}, {"bound", number_or_null(rates.bound)}}},
+  return {{"status", certify::to_string(variant.status)},
+          {"reason", io::text_or_null(variant.reason)},
+          {"rates", {{"error", io::number_or_null(rates.error)}, {"bound", io::number_or_null(rates.bound)}}},
           {"levels", levels}};
 }
 
-Json json(const std::optional<StudyReference>& reference)
+io::Json json(const std::optional<StudyReference>& reference)
 {
   if (!reference) return nullptr;
-  const LevelRecord& level = reference->level;
+  const io::LevelRecord& level = reference->level;
   return {{"degree", reference->degree},
           {"cells", level.cells},
           {"dofs", level.dofs},
-          {"bound", level.bound ? Json(level.bound->total_sharp) : Json(nullptr)},
-          {"relative", number_or_null(relative_bound(level))},
+          {"bound", level.bound ? io::Json(level.bound->total_sharp) : io::Json(nullptr)},
+          {"relative", io::number_or_null(io::relative_bound(level))},
           {"required", reference->required},
           {"fine_enough", reference->fine_enough},
-          {"reason", text_or_null(reference->reason)},
+          {"reason", io::text_or_null(reference->reason)},
           {"energy", level.figures.energy},
           {"contact_normal", level.figures.contact.normal},
           {"contact_tangential", level.figures.contact.tangential},
@@ -134,20 +134,20 @@ Json json(const std::optional<StudyReference>& reference)
 }
 
 /// Newton steps per level, a column per variant.
-Json newton_json(const Study& study)
+io::Json newton_json(const Study& study)
 {
   std::size_t n_levels = 0;
   for (const StudyVariant& variant : study.variants) n_levels = std::max(n_levels, variant.levels.size());
-  Json table = Json::array();
+  io::Json table = io::Json::array();
   for (std::size_t level = 0; level < n_levels; ++level)
   {
-    Json row{{"level", level}};
+    io::Json row{{"level", level}};
     for (const char* name : variant_names)
     {
       const StudyVariant* variant = find_variant(study, name);
       row[name] = variant != nullptr && level < variant->levels.size()
-                      ? Json(newton_steps(variant->levels[level].record))
-                      : Json(nullptr);
+                      ? io::Json(io::newton_steps(variant->levels[level].record))
+                      : io::Json(nullptr);
     }
     table.push_back(row);
   }
@@ -155,20 +155,20 @@ Json newton_json(const Study& study)
 }
 
 /// With the stopping criterion against without.
-Json differences(const Study& study)
+io::Json differences(const Study& study)
 {
-  Json object = Json::object();
+  io::Json object = io::Json::object();
   for (const char* name : {"adaptive", "uniform"})
   {
     const StudyVariant* with = find_variant(study, name);
     const StudyVariant* without = find_variant(study, std::string(name) + "_converged");
     object[name] =
-        with != nullptr && without != nullptr ? json(error_differences(*with, *without)) : Json(nullptr);
+        with != nullptr && without != nullptr ? json(error_differences(*with, *without)) : io::Json(nullptr);
   }
   return object;
 }
 
-StressNorms norms_of(const LevelRecord& record)
+contact::StressNorms norms_of(const io::LevelRecord& record)
 {
   return {.energy = record.figures.energy,
           .sigma = record.figures.sigma_norm,
@@ -181,14 +181,14 @@ std::optional<double> StudiedLevel::effectivity() const
 {
   const auto bound = bound_of(*this);
   if (!bound || !dual_norm) return std::nullopt;
-  return tribound::effectivity(*bound, *dual_norm, norms_of(record));
+  return tribound::certify::effectivity(*bound, *dual_norm, norms_of(record));
 }
 
 std::optional<double> StudiedLevel::stress_effectivity() const
 {
   const auto bound = bound_of(*this);
   if (!bound || !error) return std::nullopt;
-  return tribound::effectivity(*bound, error->stress, norms_of(record));
+  return tribound::certify::effectivity(*bound, error->stress, norms_of(record));
 }
 
 const StudyVariant* find_variant(const Study& study, std::string_view name)
@@ -203,26 +203,26 @@ Rates level_rates(const StudyVariant& variant, std::size_t number)
   const std::span<const StudiedLevel> both = std::span(variant.levels).subspan(number - 1, 2);
   const auto rate = [&](LevelValue value) -> std::optional<double>
   {
-    const std::vector<RatePoint> points = rate_points(both, value);
-    return points.size() == 2 ? rate_between(points[0], points[1]) : std::nullopt;
+    const std::vector<adapt::RatePoint> points = rate_points(both, value);
+    return points.size() == 2 ? adapt::rate_between(points[0], points[1]) : std::nullopt;
   };
   return {rate(energy_error), rate(bound_of)};
 }
 
 Rates fitted_rates(const StudyVariant& variant)
 {
-  return {fitted_rate(rate_points(variant.levels, energy_error)),
-          fitted_rate(rate_points(variant.levels, bound_of))};
+  return {adapt::fitted_rate(rate_points(variant.levels, energy_error)),
+          adapt::fitted_rate(rate_points(variant.levels, bound_of))};
 }
 
 std::vector<std::optional<double>> error_differences(const StudyVariant& with, const StudyVariant& without)
 {
-  const std::vector<RatePoint> converged = rate_points(without.levels, energy_error);
+  const std::vector<adapt::RatePoint> converged = rate_points(without.levels, energy_error);
   std::vector<std::optional<double>> result(with.levels.size());
   for (std::size_t i = 0; i < result.size(); ++i)
   {
     const auto early = energy_error(with.levels[i]);
-    const auto other = value_at(converged, static_cast<double>(with.levels[i].record.dofs));
+    const auto other = adapt::value_at(converged, static_cast<double>(with.levels[i].record.dofs));
     if (early && other && *other > 0) result[i] = (*early - *other) / *other;
   }
   return result;
@@ -244,13 +244,13 @@ std::string violation(const Study& study)
 std::string study_csv(const Study& study)
 {
   const auto regularised = [](const StudyVariant& variant)
-  { return std::ranges::any_of(variant.levels, is_regularised, &StudiedLevel::record); };
-  CsvTable table(
+  { return std::ranges::any_of(variant.levels, io::is_regularised, &StudiedLevel::record); };
+  io::CsvTable table(
       "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
       "relative,"
       "energy_error,stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,"
       "t_certify,t_level" +
-      (std::ranges::any_of(study.variants, regularised) ? regularisation_columns() + ",delta_updates"
+      (std::ranges::any_of(study.variants, regularised) ? io::regularisation_columns() + ",delta_updates"
                                                         : std::string{}));
   for (const StudyVariant& variant : study.variants)
     for (std::size_t i = 0; i < variant.levels.size(); ++i)
@@ -265,33 +265,33 @@ std::string study_csv(const Study& study)
 
 std::string study_json(const Study& study)
 {
-  Json object{{"schema", study_schema},
-              {"program", program_json(study.build)},
-              {"title", study.facts.title},
-              {"file", study.facts.file},
-              {"d", study.facts.dimension},
-              {"p", study.facts.degree},
-              {"friction", study.facts.friction},
-              {"gamma_lin", study.gamma_lin},
-              {"marking", study.marking},
-              {"theta", study.theta},
-              {"guarantee", violation(study).empty() ? "holds" : "violated"},
-              {"interrupted", text_or_null(study.interruption)},
-              {"reference", json(study.reference)},
-              {"variants", Json::object()}};
+  io::Json object{{"schema", study_schema},
+                  {"program", io::program_json(study.build)},
+                  {"title", study.facts.title},
+                  {"file", study.facts.file},
+                  {"d", study.facts.dimension},
+                  {"p", study.facts.degree},
+                  {"friction", study.facts.friction},
+                  {"gamma_lin", study.gamma_lin},
+                  {"marking", study.marking},
+                  {"theta", study.theta},
+                  {"guarantee", violation(study).empty() ? "holds" : "violated"},
+                  {"interrupted", io::text_or_null(study.interruption)},
+                  {"reference", json(study.reference)},
+                  {"variants", io::Json::object()}};
   for (const StudyVariant& variant : study.variants) object["variants"][variant.name] = json(variant);
   object["newton_table"] = newton_json(study);
   object["difference"] = differences(study);
-  object["times"] = Json::object();
+  object["times"] = io::Json::object();
   for (const auto& [stage, seconds] : study.times) object["times"][stage] = seconds;
   // Names from a file need not be UTF-8.
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return object.dump(2, ' ', false, io::Json::error_handler_t::replace) + "\n";
 }
 
 void write_study(const std::filesystem::path& directory, const Study& study)
 {
-  write_file(directory / "study.csv", study_csv(study));
-  write_file(directory / "study.json", study_json(study));
+  io::write_file(directory / "study.csv", study_csv(study));
+  io::write_file(directory / "study.json", study_json(study));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

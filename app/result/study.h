@@ -14,15 +14,15 @@
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/io/record/report.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// A level with the true errors of its solution.
 struct StudiedLevel
 {
-  LevelRecord record;
-  std::optional<SolutionError> error;  ///< against the reference
-  std::optional<double> dual_norm;     ///< of the residual, from below
+  io::LevelRecord record;
+  std::optional<certify::SolutionError> error;  ///< against the reference
+  std::optional<double> dual_norm;              ///< of the residual, from below
 
   /// bound / dual norm: at least 1.
   [[nodiscard]] std::optional<double> effectivity() const;
@@ -40,7 +40,7 @@ inline constexpr std::array<const char*, 4> variant_names = {"adaptive", "adapti
 struct StudyVariant
 {
   std::string name;
-  RunStatus status = RunStatus::uncertified;
+  certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why it is not certified; empty when it is
   std::vector<StudiedLevel> levels;
 };
@@ -49,7 +49,7 @@ struct StudyVariant
 struct StudyReference
 {
   int degree = 0;
-  LevelRecord level;         ///< the mesh, the bound and the figures
+  io::LevelRecord level;     ///< the mesh, the bound and the figures
   double required = 0;       ///< what its relative bound should be at most
   bool fine_enough = false;  ///< whether it is
   std::string reason;        ///< why it is not
@@ -57,8 +57,8 @@ struct StudyReference
 
 struct Study
 {
-  CaseFacts facts;
-  BuildFacts build;
+  io::CaseFacts facts;
+  io::BuildFacts build;
   double gamma_lin = 0;
   std::string marking;
   double theta = 0;
@@ -109,4 +109,4 @@ void print_study(const Study& study, const std::string& directory);
 /// A line on stdout about what comes next.
 void print_stage(const std::string& name, const std::string& text);
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -6,7 +6,7 @@
 #include "app/console/text.h"
 #include "app/result/study.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -22,10 +22,11 @@ std::string level_line(const StudyVariant& variant, std::size_t i)
 {
   const StudiedLevel& level = variant.levels[i];
   const Rates rates = level_rates(variant, i);
-  const auto relative = relative_bound(level.record);
+  const auto relative = io::relative_bound(level.record);
   const auto error = level.error ? std::optional(level.error->energy) : std::nullopt;
   return fmt::format("{:>5}  {:>8}  {:>8}  {:>6}  {:>9}  {:>6}  {:>10}  {:>6}  {:>11}  {:>14}\n",
-                     level.record.level, level.record.cells, level.record.dofs, newton_steps(level.record),
+                     level.record.level, level.record.cells, level.record.dofs,
+                     io::newton_steps(level.record),
                      number("{:.4g} %", relative ? std::optional(100 * *relative) : relative),
                      number("{:.2f}", rates.bound), number("{:.4e}", error), number("{:.2f}", rates.error),
                      number("{:.3f}", level.effectivity()), number("{:.3f}", level.stress_effectivity()));
@@ -33,7 +34,7 @@ std::string level_line(const StudyVariant& variant, std::size_t i)
 
 std::string variant_table(const StudyVariant& variant)
 {
-  std::string text = fmt::format("\n{}: {}{}\n", variant.name, to_string(variant.status),
+  std::string text = fmt::format("\n{}: {}{}\n", variant.name, certify::to_string(variant.status),
                                  variant.reason.empty() ? "" : ", " + variant.reason);
   text += fmt::format("{:>5}  {:>8}  {:>8}  {:>6}  {:>9}  {:>6}  {:>10}  {:>6}  {:>11}  {:>14}\n", "level",
                       "cells", "dofs", "newton", "bound", "rate", "error", "rate", "effectivity",
@@ -57,7 +58,7 @@ std::string newton_table(const Study& study)
     text += fmt::format("{:>5}", level);
     for (const StudyVariant& variant : study.variants)
       text += level < variant.levels.size()
-                  ? fmt::format("  {:>18}", newton_steps(variant.levels[level].record))
+                  ? fmt::format("  {:>18}", io::newton_steps(variant.levels[level].record))
                   : fmt::format("  {:>18}", "-");
     text += "\n";
   }
@@ -99,7 +100,7 @@ std::string reference_text(const Study& study)
       line("reference",
            fmt::format("degree {} on {} cells, {} degrees of freedom; its own bound is {} of ||sigma||",
                        reference.degree, reference.level.cells, reference.level.dofs,
-                       number("{:.3g}", relative_bound(reference.level))));
+                       number("{:.3g}", io::relative_bound(reference.level))));
   if (!reference.fine_enough)
     text +=
         line("", fmt::format("coarser than asked for ({:.3g}): errors near its bound are not reliable; {}",
@@ -144,4 +145,4 @@ void print_stage(const std::string& name, const std::string& text)
   print(line(name, text));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

@@ -14,7 +14,7 @@
 #include "tribound/io/file/csv.h"
 #include "tribound/io/file/json.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -25,34 +25,34 @@ using Figures = std::vector<std::pair<std::string, std::optional<double>>>;
 constexpr const char* sweep_schema = "1";
 
 /// Null where the file is missing or not whole.
-Json read_json(const std::filesystem::path& file)
+io::Json read_json(const std::filesystem::path& file)
 {
   std::ifstream stream(file, std::ios::binary);
-  return stream ? Json::parse(stream, nullptr, false) : Json(nullptr);
+  return stream ? io::Json::parse(stream, nullptr, false) : io::Json(nullptr);
 }
 
-std::optional<double> number(const Json& object, const char* key)
+std::optional<double> number(const io::Json& object, const char* key)
 {
   const auto value = object.is_object() ? object.find(key) : object.end();
   if (!object.is_object() || value == object.end() || !value->is_number()) return std::nullopt;
   return value->get<double>();
 }
 
-std::string text(const Json& object, const char* key)
+std::string text(const io::Json& object, const char* key)
 {
   const auto value = object.find(key);
   return value != object.end() && value->is_string() ? value->get<std::string>() : std::string{};
 }
 
-void add_contact(const Json& certificate, Figures& figures)
+void add_contact(const io::Json& certificate, Figures& figures)
 {
-  const Json contact = certificate.value("contact", Json(nullptr));
+  const io::Json contact = certificate.value("contact", io::Json(nullptr));
   if (!contact.is_object()) return;
   figures.emplace_back("contact_normal", number(contact, "normal"));
   figures.emplace_back("contact_tangential", number(contact, "tangential"));
   if (!contact.contains("boundaries")) return;
   for (const auto& [name, part] : contact["boundaries"].items())
-    if (const Json sliding = part.value("sliding", Json(nullptr)); sliding.is_object())
+    if (const io::Json sliding = part.value("sliding", io::Json(nullptr)); sliding.is_object())
       figures.emplace_back("sliding_factor." + name, number(sliding, "sliding_factor"));
 }
 
@@ -61,7 +61,7 @@ void add_contact_line(const std::filesystem::path& file, Figures& figures)
 {
   std::ifstream stream(file, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  const std::vector<std::vector<std::string>> rows = parse_csv(content, file.string());
+  const std::vector<std::vector<std::string>> rows = case_file::parse_csv(content, file.string());
   if (rows.empty()) return;
   const auto column = [&](const char* name) { return std::ranges::find(rows[0], name) - rows[0].begin(); };
   const std::array places = {column("pressure"), column("status"), column("weight")};
@@ -77,12 +77,12 @@ void add_contact_line(const std::filesystem::path& file, Figures& figures)
   figures.emplace_back("opened", open);
 }
 
-void add_reactions(const Json& certificate, Figures& figures)
+void add_reactions(const io::Json& certificate, Figures& figures)
 {
-  const Json balance = certificate.value("balance", Json(nullptr));
+  const io::Json balance = certificate.value("balance", io::Json(nullptr));
   if (!balance.is_object()) return;
   constexpr std::array axes = {"x", "y", "z"};
-  for (const Json& row : balance["rows"])
+  for (const io::Json& row : balance["rows"])
     if (text(row, "kind") == "reaction")
       for (std::size_t i = 0; i < row["force"].size(); ++i)
         figures.emplace_back(fmt::format("reaction_{}.{}", axes[i], text(row, "name")),
@@ -90,17 +90,18 @@ void add_reactions(const Json& certificate, Figures& figures)
 }
 
 /// The certificate of a run; null where there is none of this case.
-Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
+io::Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
 {
-  Json certificate = read_json(directory / "certificate.json");
-  const Json effective = certificate.is_object() ? certificate.value("case", Json(nullptr)) : Json(nullptr);
+  io::Json certificate = read_json(directory / "certificate.json");
+  const io::Json effective =
+      certificate.is_object() ? certificate.value("case", io::Json(nullptr)) : io::Json(nullptr);
   const bool its_own = effective.is_object() && text(effective, "sha256") == run.sha256;
-  return its_own ? certificate : Json(nullptr);
+  return its_own ? certificate : io::Json(nullptr);
 }
 
 /// Whether a run that ended with this exit code has left the certificate at its end. After a crash or on a
 /// full disk it is that of an earlier level.
-bool is_final(const Json& certificate, int exit_code)
+bool is_final(const io::Json& certificate, int exit_code)
 {
   if (!certificate.is_object()) return false;
   const std::string status = text(certificate, "status");
@@ -137,7 +138,7 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
 {
   run.figures.clear();
   run.reason.clear();
-  const Json certificate = certificate_of(directory, run);
+  const io::Json certificate = certificate_of(directory, run);
   if (!is_final(certificate, run.exit_code.value()))
   {
     run.status = status_without_certificate(run);
@@ -155,7 +156,7 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
     add_reactions(certificate, run.figures);
   }
   double seconds = 0;
-  const Json times = certificate.value("times", Json::object());
+  const io::Json times = certificate.value("times", io::Json::object());
   for (const auto& [stage, value] : times.items()) seconds += value.get<double>();
   run.figures.emplace_back("seconds", seconds);
 }
@@ -163,9 +164,9 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
 std::map<std::string, int> complete_runs(const std::filesystem::path& directory, const SweepRecord& sweep)
 {
   std::map<std::string, int> complete;
-  const Json before = read_json(directory / "sweep.json");
+  const io::Json before = read_json(directory / "sweep.json");
   if (!before.is_object()) return complete;
-  for (const Json& old : before.value("runs", Json::array()))
+  for (const io::Json& old : before.value("runs", io::Json::array()))
   {
     const std::string name = text(old, "run");
     const auto run = std::ranges::find(sweep.runs, name, &SweepRun::name);
@@ -173,7 +174,7 @@ std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
     if (run == sweep.runs.end() || !code || text(old, "sha256") != run->sha256 ||
         text(old, "mesh_sha256") != run->mesh_sha256)
       continue;
-    const Json certificate = certificate_of(directory / name, *run);
+    const io::Json certificate = certificate_of(directory / name, *run);
     const bool complete_before = is_final(certificate, static_cast<int>(*code)) &&
                                  text(certificate, "reason").find("interrupted") == std::string::npos;
     if (complete_before) complete[name] = static_cast<int>(*code);
@@ -185,10 +186,10 @@ std::string sweep_csv(const SweepRecord& sweep)
 {
   const std::vector<std::string> names = figure_names(sweep);
   std::string columns = "run";
-  for (const std::string& key : sweep.keys) columns += "," + csv_cell(key);
+  for (const std::string& key : sweep.keys) columns += "," + io::csv_cell(key);
   columns += ",status,reason";
-  for (const std::string& name : names) columns += "," + csv_cell(name);
-  CsvTable table(columns);
+  for (const std::string& name : names) columns += "," + io::csv_cell(name);
+  io::CsvTable table(columns);
   for (const SweepRun& run : sweep.runs)
   {
     table.add(run.name);
@@ -203,27 +204,28 @@ std::string sweep_csv(const SweepRecord& sweep)
 
 std::string sweep_json(const SweepRecord& sweep)
 {
-  Json object{{"schema", sweep_schema}, {"title", sweep.title}, {"file", sweep.file}, {"keys", sweep.keys}};
-  object["runs"] = Json::array();
+  io::Json object{
+      {"schema", sweep_schema}, {"title", sweep.title}, {"file", sweep.file}, {"keys", sweep.keys}};
+  object["runs"] = io::Json::array();
   for (const SweepRun& run : sweep.runs)
   {
-    Json row{{"run", run.name}, {"values", Json::object()}};
+    io::Json row{{"run", run.name}, {"values", io::Json::object()}};
     for (std::size_t i = 0; i < sweep.keys.size(); ++i) row["values"][sweep.keys[i]] = run.values[i];
     row["sha256"] = run.sha256;
-    row["mesh_sha256"] = text_or_null(run.mesh_sha256);
-    row["exit_code"] = run.exit_code ? Json(*run.exit_code) : Json(nullptr);
+    row["mesh_sha256"] = io::text_or_null(run.mesh_sha256);
+    row["exit_code"] = run.exit_code ? io::Json(*run.exit_code) : io::Json(nullptr);
     row["status"] = run.status;
-    row["reason"] = text_or_null(run.reason);
-    for (const auto& [name, value] : run.figures) row[name] = number_or_null(value);
+    row["reason"] = io::text_or_null(run.reason);
+    for (const auto& [name, value] : run.figures) row[name] = io::number_or_null(value);
     object["runs"].push_back(row);
   }
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return object.dump(2, ' ', false, io::Json::error_handler_t::replace) + "\n";
 }
 
 void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep)
 {
-  write_file(directory / "sweep.csv", sweep_csv(sweep));
-  write_file(directory / "sweep.json", sweep_json(sweep));
+  io::write_file(directory / "sweep.csv", sweep_csv(sweep));
+  io::write_file(directory / "sweep.json", sweep_json(sweep));
 }
 
 std::string sweep_line(const SweepRecord& sweep, const SweepRun& run)
@@ -236,4 +238,4 @@ std::string sweep_line(const SweepRecord& sweep, const SweepRun& run)
   return line("run " + run.name, fmt::format("{}: {}{}", values, run.status, bound));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

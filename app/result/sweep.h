@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace tribound
+namespace tribound::app
 {
 
 /// One run of a sweep. Numbers that are not known are absent.
@@ -55,4 +55,4 @@ void write_sweep(const std::filesystem::path& directory, const SweepRecord& swee
 /// A line on a run that has ended.
 [[nodiscard]] std::string sweep_line(const SweepRecord& sweep, const SweepRun& run);
 
-}  // namespace tribound
+}  // namespace tribound::app

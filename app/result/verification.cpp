@@ -10,7 +10,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 namespace
@@ -63,7 +63,7 @@ std::string status_text(const Verification& v)
                                     smallest, largest);
 }
 
-Json json(const VerifiedIterate& iterate)
+io::Json json(const VerifiedIterate& iterate)
 {
   return {{"step", iterate.step.step},
           {"residual", iterate.step.residual},
@@ -72,19 +72,19 @@ Json json(const VerifiedIterate& iterate)
           {"bound", iterate.bound},
           {"bound_plain", iterate.bound_plain},
           {"dual_norm", iterate.dual_norm},
-          {"effectivity", number_or_null(iterate.effectivity())},
+          {"effectivity", io::number_or_null(iterate.effectivity())},
           {"sigma_norm", iterate.norms.sigma},
           {"identities", iterate.identities}};
 }
 
-Json json(const std::optional<RicherSolution>& solution, int degree)
+io::Json json(const std::optional<certify::RicherSolution>& solution, int degree)
 {
   if (!solution) return nullptr;
-  const RicherSolution& richer = *solution;
-  Json object{{"degree", degree},         {"cells", richer.cells},
-              {"dofs", richer.dofs},      {"newton_steps", richer.newton_steps},
-              {"energy_error", nullptr},  {"stress_error", nullptr},
-              {"failure", richer.failure}};
+  const certify::RicherSolution& richer = *solution;
+  io::Json object{{"degree", degree},         {"cells", richer.cells},
+                  {"dofs", richer.dofs},      {"newton_steps", richer.newton_steps},
+                  {"energy_error", nullptr},  {"stress_error", nullptr},
+                  {"failure", richer.failure}};
   if (!richer.error) return object;
   object["energy_error"] = richer.error->energy;
   object["stress_error"] = richer.error->stress;
@@ -96,7 +96,7 @@ Json json(const std::optional<RicherSolution>& solution, int degree)
 std::string VerifiedIterate::refusal() const
 {
   if (std::max(bound, norms.sigma) <= norms.round_off) return {};
-  return identity_violation(identities);
+  return certify::identity_violation(identities);
 }
 
 std::string violation(const Verification& verification)
@@ -143,28 +143,29 @@ const char* guarantee(const Verification& v)
 std::string verification_json(const Verification& v)
 {
   const VerifiedIterate& last = v.iterates.back();
-  Json object{{"schema", verification_schema},
-              {"title", v.facts.title},
-              {"file", v.facts.file},
-              {"d", v.facts.dimension},
-              {"p", v.facts.degree},
-              {"friction", v.facts.friction},
-              {"gamma0", v.facts.gamma0},
-              {"cells", v.mesh.cells},
-              {"dofs", v.mesh.free_dofs},
-              {"guarantee", guarantee(v)},
-              {"converged", v.converged},
-              {"bound", last.bound},
-              {"bound_plain", last.bound_plain},
-              {"dual_norm", last.dual_norm},
-              {"effectivity", number_or_null(last.effectivity())},
-              {"sigma_norm", last.norms.sigma},
-              {"refinements", v.refinements},
-              {"dual_space",
-               {{"degree", v.dual_space.degree}, {"cells", v.dual_space.cells}, {"dofs", v.dual_space.dofs}}},
-              {"richer_solution", json(v.richer, v.richer_degree)},
-              {"iterates", Json::array()},
-              {"times", Json::object()}};
+  io::Json object{
+      {"schema", verification_schema},
+      {"title", v.facts.title},
+      {"file", v.facts.file},
+      {"d", v.facts.dimension},
+      {"p", v.facts.degree},
+      {"friction", v.facts.friction},
+      {"gamma0", v.facts.gamma0},
+      {"cells", v.mesh.cells},
+      {"dofs", v.mesh.free_dofs},
+      {"guarantee", guarantee(v)},
+      {"converged", v.converged},
+      {"bound", last.bound},
+      {"bound_plain", last.bound_plain},
+      {"dual_norm", last.dual_norm},
+      {"effectivity", io::number_or_null(last.effectivity())},
+      {"sigma_norm", last.norms.sigma},
+      {"refinements", v.refinements},
+      {"dual_space",
+       {{"degree", v.dual_space.degree}, {"cells", v.dual_space.cells}, {"dofs", v.dual_space.dofs}}},
+      {"richer_solution", json(v.richer, v.richer_degree)},
+      {"iterates", io::Json::array()},
+      {"times", io::Json::object()}};
   for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(iterate));
   for (const auto& [stage, seconds] : v.times) object["times"][stage] = seconds;
   return object.dump(2) + "\n";
@@ -172,7 +173,7 @@ std::string verification_json(const Verification& v)
 
 void write_verification(const std::filesystem::path& directory, const Verification& verification)
 {
-  write_file(directory / "verify.json", verification_json(verification));
+  io::write_file(directory / "verify.json", verification_json(verification));
 }
 
 void print_verification(const Verification& verification, const std::string& directory)
@@ -180,4 +181,4 @@ void print_verification(const Verification& verification, const std::string& dir
   print(verification_text(verification, directory));
 }
 
-}  // namespace tribound
+}  // namespace tribound::app

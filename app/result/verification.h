@@ -14,23 +14,23 @@
 #include "tribound/io/record/facts.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::app
 {
 
 /// One Newton iterate: its bound and the dual norm of its residual from below, stress units times
 /// length^(dim/2).
 struct VerifiedIterate
 {
-  NewtonStep step;
+  solve::NewtonStep step;
   double bound = 0;        ///< the certificate's bound (total_sharp)
   double bound_plain = 0;  ///< with plain sums, as in the paper
   double dual_norm = 0;
-  StressNorms norms;      ///< of u^k
-  double identities = 0;  ///< the largest defect, relative to the stress
+  contact::StressNorms norms;  ///< of u^k
+  double identities = 0;       ///< the largest defect, relative to the stress
 
   [[nodiscard]] std::optional<double> effectivity() const
   {
-    return tribound::effectivity(bound, dual_norm, norms);
+    return tribound::certify::effectivity(bound, dual_norm, norms);
   }
   /// Whether an identity is violated and not by rounding alone, so that `bound` need not be one.
   [[nodiscard]] std::string refusal() const;
@@ -46,14 +46,14 @@ struct RicherSpaceFacts
 
 struct Verification
 {
-  CaseFacts facts;
-  MeshFacts mesh;
+  io::CaseFacts facts;
+  io::MeshFacts mesh;
   int refinements = 0;
   RicherSpaceFacts dual_space;
   std::vector<VerifiedIterate> iterates;  ///< k = 1, 2, ...; the last is the solution
   bool converged = false;
   int richer_degree = 0;
-  std::optional<RicherSolution> richer;  ///< what the solution was measured against, if it is one
+  std::optional<certify::RicherSolution> richer;  ///< what the solution was measured against, if it is one
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
 };
 
@@ -73,4 +73,4 @@ void write_verification(const std::filesystem::path& directory, const Verificati
 /// The text on stdout.
 void print_verification(const Verification& verification, const std::string& directory);
 
-}  // namespace tribound
+}  // namespace tribound::app

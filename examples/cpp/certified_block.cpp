@@ -18,7 +18,7 @@ namespace
 constexpr double load = 0.1 * 2 - 0.06 * 1;  // pressed down on the top, lifted on the right side
 
 /// The vertical force of the floor on the body: (T, (0, 1))_C.
-double lift(const NitscheForm<2>& form, const std::vector<double>& u)
+double lift(const contact::NitscheForm<2>& form, const std::vector<double>& u)
 {
   std::vector<double> contact_load(form.space().n_dofs(), 0.0);
   form.add_contact_load(form.traction(u), contact_load);
@@ -28,56 +28,60 @@ double lift(const NitscheForm<2>& form, const std::vector<double>& u)
 }
 
 /// Solves and certifies on one mesh; true if the bound is one.
-bool certify_on_one_mesh(const Config& config, const Mesh<2>& mesh, const Problem<2>& problem)
+bool certify_on_one_mesh(const case_file::Config& config, const mesh::Mesh<2>& mesh,
+                         const problem::Problem<2>& problem)
 {
   // The discrete problem: a(u, v) - (T(u), v)_C = L(v) in the Lagrange elements of the degree.
-  const LagrangeSpace<2> space(mesh, config.degree);
-  const NitscheForm<2> form(problem, space, config.gamma0());
-  check_rigid_motions<2>(problem, space, form.data(), form.load());
+  const fem::LagrangeSpace<2> space(mesh, config.degree);
+  const contact::NitscheForm<2> form(problem, space, config.gamma0());
+  contact::check_rigid_motions<2>(problem, space, form.data(), form.load());
 
   // Its solution u^k by Newton's method, from scratch, with the traction t^k in equilibrium with it.
-  const NewtonResult<2> newton = solve(form, {}, config.newton, config.solver);
-  if (newton.status != NewtonStatus::converged) return false;
+  const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, config.newton, config.solver);
+  if (newton.status != solve::NewtonStatus::converged) return false;
 
   // The equilibrated stress, the identities that make it one, and the bound.
-  const Stress<2> stress = equilibrate<2>(form, newton.u, newton.traction);
-  const IdentityDefects identities = check_identities<2>(form, newton.traction, stress);
-  const Estimate eta = estimate(form, newton.u, stress);
-  const StressNorms norms = stress_norms(problem, space, newton.u);
-  const Verdict verdict = judge(eta, identities, config.degree, norms, config.adapt.tolerance);
+  const certify::Stress<2> stress = certify::equilibrate<2>(form, newton.u, newton.traction);
+  const certify::IdentityDefects identities = certify::check_identities<2>(form, newton.traction, stress);
+  const certify::Estimate eta = certify::estimate(form, newton.u, stress);
+  const contact::StressNorms norms = contact::stress_norms(problem, space, newton.u);
+  const certify::Verdict verdict =
+      certify::judge(eta, identities, config.degree, norms, config.adapt.tolerance);
 
   std::printf("one mesh: %zu Newton steps, bound %.4g, that is %.3g %% of ||sigma(u_h)||: %s\n",
               newton.steps.size(), eta.total_sharp, 100 * eta.total_sharp / norms.sigma,
               to_string(verdict.status));
-  return verdict.status != RunStatus::not_certified && std::abs(lift(form, newton.u) - load) < 1e-8;
+  return verdict.status != certify::RunStatus::not_certified && std::abs(lift(form, newton.u) - load) < 1e-8;
 }
 
 /// Refines where the bound asks for it, until it is below the tolerance.
-bool adapt_until_certified(const Config& config, Mesh<2> mesh, const Problem<2>& problem)
+bool adapt_until_certified(const case_file::Config& config, mesh::Mesh<2> mesh,
+                           const problem::Problem<2>& problem)
 {
-  const LoopObserver<2> observer = {
+  const adapt::LoopObserver<2> observer = {
       .step = {},
-      .level = [](const LevelView<2>& view)
+      .level = [](const adapt::LevelView<2>& view)
       {
         std::printf("level %2d: %4d cells, bound %6.3f %%\n", view.number, view.discrete.mesh.n_cells(),
                     100 * view.level.estimate.total_sharp / view.level.norms.sigma);
       }};
   const std::atomic<bool> stop = false;
-  const Verdict verdict = adapt<2>(
-      problem, config, std::make_unique<Discretisation<2>>(std::move(mesh), problem, config), observer, stop);
+  const certify::Verdict verdict = adapt::adapt<2>(
+      problem, config, std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, config), observer,
+      stop);
   std::printf("%s %s\n", to_string(verdict.status), verdict.reason.c_str());
-  return verdict.status == RunStatus::certified;
+  return verdict.status == certify::RunStatus::certified;
 }
 
 }  // namespace
 
 int main()
 {
-  const Environment environment;  // MPI and PETSc
+  const algebra::Environment environment;  // MPI and PETSc
   try
   {
     // The case, here from text; read_config("case.toml") reads a file.
-    const Config config = parse_config(R"(
+    const case_file::Config config = case_file::parse_config(R"(
       degree = 2
       mesh.box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] }
       material = { E = 1.0, nu = 0.3 }
@@ -90,8 +94,8 @@ int main()
     )");
 
     // The mesh, and the problem on it: data, material and friction by the names of regions and boundaries.
-    Mesh<2> mesh(box_mesh<2>(std::get<BoxMesh>(config.mesh)));
-    const Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
+    mesh::Mesh<2> mesh(mesh::box_mesh<2>(std::get<case_file::BoxMesh>(config.mesh)));
+    const problem::Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
 
     std::printf("tribound %s\n", version());
     const bool certified = certify_on_one_mesh(config, mesh, problem);

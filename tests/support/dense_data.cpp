@@ -11,10 +11,10 @@ namespace
 {
 
 template <int dim>
-DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u, Index c)
+DenseCell<dim> make_cell(const contact::NitscheForm<dim>& form, std::span<const double> u, Index c)
 {
-  const LagrangeSpace<dim>& space = form.space();
-  const Mesh<dim>& mesh = space.mesh();
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   DenseCell<dim> cell;
   cell.vertices = mesh.cell(c);
   std::ranges::sort(cell.vertices);
@@ -31,10 +31,10 @@ DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u
   }
 
   const int p = space.degree();
-  const int n = polynomial_dimension(dim, p);
-  const Quadrature<dim> rule = quadrature<dim>(data_quadrature_degree(p));
-  const Tabulation<dim> table = space.basis().tabulate(rule.points);
-  const CellMap<dim> map = cell_map(mesh, c);
+  const int n = fem::polynomial_dimension(dim, p);
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(fem::data_quadrature_degree(p));
+  const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
+  const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
   std::vector<double> values(n);
   std::vector<Point<dim>> gradients(n);
   cell.f.resize(rule.size());
@@ -44,10 +44,10 @@ DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u
     const Point<dim> x = map(rule.points[q]);
     cell.x.push_back(x);
     cell.weight.push_back(rule.weights[q] * map.det);
-    cell.sigma.push_back(
-        sigma<dim>(form.problem().material(mesh.region(c)),
-                   gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose)));
-    orthonormal_gradients<dim>(p, cell.reference(x), values, gradients);
+    cell.sigma.push_back(contact::sigma<dim>(
+        form.problem().material(mesh.region(c)),
+        contact::gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose)));
+    fem::orthonormal_gradients<dim>(p, cell.reference(x), values, gradients);
     cell.phi.push_back(cell.basis(p, x));
     auto& dphi = cell.dphi.emplace_back();
     for (const Point<dim>& g : gradients) dphi.push_back(cell.inverse.transpose() * g / std::sqrt(cell.det));
@@ -57,39 +57,39 @@ DenseCell<dim> make_cell(const NitscheForm<dim>& form, std::span<const double> u
 
 /// The points of a rule on local facet `local`; moments of theta do not depend on its numbering.
 template <int dim>
-std::vector<FacetPoint<dim>> points_on(const Mesh<dim>& mesh, Index cell, int local, int p,
-                                       const Quadrature<dim - 1>& rule)
+std::vector<FacetPoint<dim>> points_on(const mesh::Mesh<dim>& mesh, Index cell, int local, int p,
+                                       const fem::Quadrature<dim - 1>& rule)
 {
-  const CellMap<dim> map = cell_map(mesh, cell);
-  const double scale = facet_geometry(mesh, cell, local).measure * (dim - 1);
+  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
+  const double scale = mesh::facet_geometry(mesh, cell, local).measure * (dim - 1);
   std::vector<FacetPoint<dim>> points;
   for (int q = 0; q < rule.size(); ++q)
   {
-    Eigen::VectorXd theta(polynomial_dimension(dim - 1, p));
-    orthonormal_values<dim - 1>(p, rule.points[q], std::span(theta.data(), theta.size()));
-    points.push_back(
-        {map(facet_to_cell<dim>(local, rule.points[q])), rule.weights[q] * scale, theta / std::sqrt(scale)});
+    Eigen::VectorXd theta(fem::polynomial_dimension(dim - 1, p));
+    fem::orthonormal_values<dim - 1>(p, rule.points[q], std::span(theta.data(), theta.size()));
+    points.push_back({map(mesh::facet_to_cell<dim>(local, rule.points[q])), rule.weights[q] * scale,
+                      theta / std::sqrt(scale)});
   }
   return points;
 }
 
 /// T(u) enters t with another rule; t^k - T(u) does not change.
 template <int dim>
-void coarsen(const NitscheForm<dim>& form, const BoundaryFacet& boundary, std::span<const double> u,
-             int contact, DenseFacet<dim>& facet)
+void coarsen(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& boundary,
+             std::span<const double> u, int contact, DenseFacet<dim>& facet)
 {
   const int p = form.space().degree();
-  const Quadrature<dim - 1> wrong = quadrature<dim - 1>(p);
-  const auto table = tabulate_on_facets<dim>(form.space().basis(), wrong.points);
+  const fem::Quadrature<dim - 1> wrong = fem::quadrature<dim - 1>(p);
+  const auto table = fem::tabulate_on_facets<dim>(form.space().basis(), wrong.points);
   const auto points = points_on(form.space().mesh(), boundary.cell, boundary.local, p, wrong);
-  const std::vector<ContactState<dim>> states = form.contact_states(u, contact, table);
+  const std::vector<contact::ContactState<dim>> states = form.contact_states(u, contact, table);
   for (DataPoint<dim>& point : facet.data) point.traction[0].setZero();
   for (std::size_t q = 0; q < points.size(); ++q)
     facet.data.push_back({points[q], {states[q].traction, Point<dim>::Zero()}});
 }
 
 template <int dim>
-std::vector<DenseCell<dim>> dense_cells(const NitscheForm<dim>& form, std::span<const double> u)
+std::vector<DenseCell<dim>> dense_cells(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   std::vector<DenseCell<dim>> cells;
   for (Index c = 0; c < form.space().mesh().n_cells(); ++c) cells.push_back(make_cell(form, u, c));
@@ -97,13 +97,13 @@ std::vector<DenseCell<dim>> dense_cells(const NitscheForm<dim>& form, std::span<
 }
 
 template <int dim>
-std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form, std::span<const double> u,
+std::vector<DenseFacet<dim>> dense_facets(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                           std::span<const Point<dim>> t, Mutation mutation)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   const int p = form.space().degree();
   std::vector<DenseFacet<dim>> facets(mesh.topology().facets.size());
-  const Topology<dim>& topology = mesh.topology();
+  const mesh::Topology<dim>& topology = mesh.topology();
   for (std::size_t f = 0; f < facets.size(); ++f)
   {
     DenseFacet<dim>& facet = facets[f];
@@ -111,7 +111,7 @@ std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form, std::spa
     facet.cells = topology.facet_cells[f];
     const auto& of_cell = topology.cell_facets[facet.cells[0]];
     const auto local = static_cast<int>(std::ranges::find(of_cell, static_cast<Index>(f)) - of_cell.begin());
-    facet.normal = facet_geometry(mesh, facet.cells[0], local).normal;
+    facet.normal = mesh::facet_geometry(mesh, facet.cells[0], local).normal;
     facet.points = points_on(mesh, facet.cells[0], local, p, form.facet_rule());
   }
   const std::vector<Point<dim>> T = form.traction(u);
@@ -119,7 +119,7 @@ std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form, std::spa
   std::vector<Point<dim>> load(form.n_facet_points());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
-    const BoundaryFacet& boundary = mesh.boundary()[number];
+    const mesh::BoundaryFacet& boundary = mesh.boundary()[number];
     form.data().traction(number, load);
     DenseFacet<dim>& facet = facets[topology.cell_facets[boundary.cell][boundary.local]];
     facet.condition = &form.problem().boundary(boundary.tag);
@@ -141,13 +141,13 @@ std::vector<DenseFacet<dim>> dense_facets(const NitscheForm<dim>& form, std::spa
 }  // namespace
 
 template <int dim>
-DenseData<dim>::DenseData(const NitscheForm<dim>& form, std::span<const double> u,
+DenseData<dim>::DenseData(const contact::NitscheForm<dim>& form, std::span<const double> u,
                           std::span<const Point<dim>> t, Mutation mistake)
     : mesh(form.space().mesh()),
       mutation(mistake),
       p(form.space().degree()),
-      n(polynomial_dimension(dim, p)),
-      m(polynomial_dimension(dim, p - 1)),
+      n(fem::polynomial_dimension(dim, p)),
+      m(fem::polynomial_dimension(dim, p - 1)),
       cells(dense_cells(form, u)),
       facets(dense_facets(form, u, t, mutation))
 {

@@ -23,7 +23,7 @@ namespace tribound::test
 template <int dim>
 struct DenseCell
 {
-  Cell<dim> vertices;  ///< ascending
+  mesh::Cell<dim> vertices;  ///< ascending
   Point<dim> origin;
   Tensor<dim> inverse;                           ///< xhat = inverse (x - origin)
   double det;                                    ///< dim! |T|
@@ -50,8 +50,8 @@ struct DenseCell
   }
   [[nodiscard]] Eigen::VectorXd basis(int p, const Point<dim>& point) const
   {
-    Eigen::VectorXd values(polynomial_dimension(dim, p));
-    orthonormal_values<dim>(p, reference(point), std::span(values.data(), values.size()));
+    Eigen::VectorXd values(fem::polynomial_dimension(dim, p));
+    fem::orthonormal_values<dim>(p, reference(point), std::span(values.data(), values.size()));
     return values / std::sqrt(det);
   }
 };
@@ -81,9 +81,9 @@ struct DenseFacet
   std::array<Index, 2> cells;
   Point<dim> normal;  ///< out of cells[0]
   std::vector<FacetPoint<dim>> points;
-  const BoundaryCondition<dim>* condition = nullptr;  ///< null inside
-  std::vector<Point<dim>> traction;                   ///< g_N or T(u) at the points
-  std::vector<DataPoint<dim>> data;                   ///< what t of the patches is integrated from
+  const problem::BoundaryCondition<dim>* condition = nullptr;  ///< null inside
+  std::vector<Point<dim>> traction;                            ///< g_N or T(u) at the points
+  std::vector<DataPoint<dim>> data;                            ///< what t of the patches is integrated from
 
   [[nodiscard]] bool contains(Index v) const { return std::ranges::find(vertices, v) != vertices.end(); }
 };
@@ -92,10 +92,10 @@ struct DenseFacet
 template <int dim>
 struct DenseData
 {
-  DenseData(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
+  DenseData(const contact::NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
             Mutation mutation);
 
-  const Mesh<dim>& mesh;
+  const mesh::Mesh<dim>& mesh;
   Mutation mutation;
   int p;
   int n;  ///< dim P^p(T)

@@ -93,7 +93,7 @@ void add_trace(const DenseData<dim>& given, const DensePatch<dim>& patch, const 
 template <int dim>
 void add_facets(const DenseData<dim>& given, const DensePatch<dim>& patch, System& system)
 {
-  const int n = polynomial_dimension(dim - 1, given.p);
+  const int n = fem::polynomial_dimension(dim - 1, given.p);
   for (const int f : patch.outer)
     for (int r = 0; r < dim; ++r)
       for (int i = 0; i < n; ++i, system.close_row()) add_trace(given, patch, given.facets[f], r, i, system);
@@ -143,7 +143,7 @@ MatrixXd solve(const DenseData<dim>& given, const DensePatch<dim>& patch)
   const MatrixXd goal = target(given, patch);
   const auto n_rows =
       patch.cells.size() * given.m * (dim + dim * (dim - 1) / 2) +
-      (patch.facets.size() + patch.outer.size()) * dim * polynomial_dimension(dim - 1, given.p);
+      (patch.facets.size() + patch.outer.size()) * dim * fem::polynomial_dimension(dim - 1, given.p);
   System system{MatrixXd::Zero(n_rows, goal.rows()), MatrixXd::Zero(n_rows, 2)};
   add_divergence(given, patch, system);
   add_symmetry(given, patch, system);
@@ -165,17 +165,17 @@ MatrixXd solve(const DenseData<dim>& given, const DensePatch<dim>& patch)
 }  // namespace
 
 template <int dim>
-Stress<dim> dense_equilibrate(const NitscheForm<dim>& form, std::span<const double> u,
-                              std::span<const Point<dim>> t, Mutation mutation)
+certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                       std::span<const Point<dim>> t, Mutation mutation)
 {
   const DenseData<dim> given(form, u, t, mutation);
-  Stress<dim> stress;
+  certify::Stress<dim> stress;
   stress.degree = given.p;
   stress.n = given.n;
   stress.dis.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   for (Index c = 0; c < given.mesh.n_cells(); ++c) stress.lin_place.push_back(c);
-  const BoundaryFacet& first = form.contact_facets().front().facet;
+  const mesh::BoundaryFacet& first = form.contact_facets().front().facet;
   const Index left_out = given.mesh.cell(first.cell)[(first.local + 1) % (dim + 1)];
   for (Index a = 0; a < given.mesh.n_vertices(); ++a)
   {
@@ -193,9 +193,9 @@ Stress<dim> dense_equilibrate(const NitscheForm<dim>& form, std::span<const doub
   return stress;
 }
 
-template Stress<2> dense_equilibrate(const NitscheForm<2>&, std::span<const double>,
-                                     std::span<const Point<2>>, Mutation);
-template Stress<3> dense_equilibrate(const NitscheForm<3>&, std::span<const double>,
-                                     std::span<const Point<3>>, Mutation);
+template certify::Stress<2> dense_equilibrate(const contact::NitscheForm<2>&, std::span<const double>,
+                                              std::span<const Point<2>>, Mutation);
+template certify::Stress<3> dense_equilibrate(const contact::NitscheForm<3>&, std::span<const double>,
+                                              std::span<const Point<3>>, Mutation);
 
 }  // namespace tribound::test

@@ -29,8 +29,8 @@ enum class Mutation
 /// sigma_dis and sigma_lin of the iterate u^k with running traction t^k, method section 4. The integrals are
 /// those of the form: the same rules in the same order of the vertices.
 template <int dim>
-[[nodiscard]] Stress<dim> dense_equilibrate(const NitscheForm<dim>& form, std::span<const double> u,
-                                            std::span<const Point<dim>> t,
-                                            Mutation mutation = Mutation::none);
+[[nodiscard]] certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form,
+                                                     std::span<const double> u, std::span<const Point<dim>> t,
+                                                     Mutation mutation = Mutation::none);
 
 }  // namespace tribound::test

@@ -18,7 +18,7 @@ std::vector<Motion<dim>> admissible(const DenseData<dim>& given, const DensePatc
                                     bool translations, bool rotations)
 {
   const Point<dim>& a = given.mesh.vertex(patch.vertex);
-  const double size = cell_diameter(given.mesh, patch.cells[0]);
+  const double size = mesh::cell_diameter(given.mesh, patch.cells[0]);
   std::vector<Motion<dim>> all;
   for (int i = 0; i < dim && translations; ++i) all.push_back({Point<dim>::Unit(i), Tensor<dim>::Zero(), a});
   for (int r = 0; r < dim && rotations; ++r)

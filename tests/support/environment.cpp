@@ -13,11 +13,11 @@ namespace
 class PetscEnvironment : public ::testing::Environment
 {
  public:
-  void SetUp() override { environment_ = std::make_unique<tribound::Environment>(); }
+  void SetUp() override { environment_ = std::make_unique<tribound::algebra::Environment>(); }
   void TearDown() override { environment_.reset(); }
 
  private:
-  std::unique_ptr<tribound::Environment> environment_;
+  std::unique_ptr<tribound::algebra::Environment> environment_;
 };
 
 // GoogleTest owns it.

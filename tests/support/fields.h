@@ -16,7 +16,7 @@ namespace tribound::test
 
 /// The nodal interpolant of a vector field.
 template <int dim, class Field>
-std::vector<double> interpolate(const LagrangeSpace<dim>& space, Field field)
+std::vector<double> interpolate(const fem::LagrangeSpace<dim>& space, Field field)
 {
   std::vector<double> u;
   for (const Point<dim>& x : space.node_points())
@@ -28,7 +28,7 @@ std::vector<double> interpolate(const LagrangeSpace<dim>& space, Field field)
 }
 
 /// v with fixed entries set to 0.
-inline std::vector<double> free_part(const Constraints& constraints, std::span<const double> v)
+inline std::vector<double> free_part(const fem::Constraints& constraints, std::span<const double> v)
 {
   std::vector<double> result(v.begin(), v.end());
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -37,7 +37,7 @@ inline std::vector<double> free_part(const Constraints& constraints, std::span<c
 }
 
 /// Uniform in [-size, size], 0 at fixed degrees of freedom.
-inline std::vector<double> random_free_vector(const Constraints& constraints, double size, unsigned seed)
+inline std::vector<double> random_free_vector(const fem::Constraints& constraints, double size, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-size, size);
@@ -67,7 +67,7 @@ inline double distance(std::span<const double> x, std::span<const double> y)
 }
 
 /// A x.
-inline std::vector<double> multiply(const Triplets& a, std::span<const double> x)
+inline std::vector<double> multiply(const contact::Triplets& a, std::span<const double> x)
 {
   std::vector<double> y(x.size(), 0.0);
   for (std::size_t k = 0; k < a.values.size(); ++k)

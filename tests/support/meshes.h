@@ -20,17 +20,17 @@ namespace tribound::test
 
 /// The structured box between two corners.
 template <int dim>
-MeshData<dim> box(const Point<dim>& lower, const Point<dim>& upper, const std::array<int, dim>& cells)
+mesh::MeshData<dim> box(const Point<dim>& lower, const Point<dim>& upper, const std::array<int, dim>& cells)
 {
-  return box_mesh<dim>({.lower = {lower.data(), lower.data() + dim},
-                        .upper = {upper.data(), upper.data() + dim},
-                        .cells = {cells.begin(), cells.end()},
-                        .where = {}});
+  return mesh::box_mesh<dim>({.lower = {lower.data(), lower.data() + dim},
+                              .upper = {upper.data(), upper.data() + dim},
+                              .cells = {cells.begin(), cells.end()},
+                              .where = {}});
 }
 
 /// The mesh with every vertex x at map(x).
 template <int dim, class Map>
-MeshData<dim> mapped(MeshData<dim> data, Map map)
+mesh::MeshData<dim> mapped(mesh::MeshData<dim> data, Map map)
 {
   for (Point<dim>& x : data.vertices) x = map(x);
   return data;
@@ -39,7 +39,7 @@ MeshData<dim> mapped(MeshData<dim> data, Map map)
 /// The same mesh with vertices and cells in random order and the vertices of each cell in a random order of
 /// positive orientation.
 template <int dim>
-MeshData<dim> renumbered(MeshData<dim> data, unsigned seed)
+mesh::MeshData<dim> renumbered(mesh::MeshData<dim> data, unsigned seed)
 {
   std::mt19937 random(seed);
   std::vector<Index> number(data.vertices.size());  // new number of each vertex
@@ -48,17 +48,17 @@ MeshData<dim> renumbered(MeshData<dim> data, unsigned seed)
   std::vector<Point<dim>> vertices(data.vertices.size());
   for (std::size_t v = 0; v < number.size(); ++v) vertices[number[v]] = data.vertices[v];
   data.vertices = std::move(vertices);
-  for (TaggedFacet<dim>& facet : data.facets)
+  for (mesh::TaggedFacet<dim>& facet : data.facets)
     for (Index& v : facet.vertices) v = number[v];
 
   std::vector<std::size_t> order(data.cells.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::shuffle(order, random);
-  std::vector<Cell<dim>> cells;
+  std::vector<mesh::Cell<dim>> cells;
   std::vector<int> regions;
   for (const std::size_t c : order)
   {
-    Cell<dim> cell = data.cells[c];
+    mesh::Cell<dim> cell = data.cells[c];
     for (Index& v : cell) v = number[v];
     for (int i = 0, n = static_cast<int>(random() % 12); i < n; ++i)  // three-cycles keep the orientation
     {
@@ -75,7 +75,7 @@ MeshData<dim> renumbered(MeshData<dim> data, unsigned seed)
 
 /// The mesh with bent sides and cells that all differ, numbered at random.
 template <int dim>
-MeshData<dim> distorted(MeshData<dim> data, unsigned seed)
+mesh::MeshData<dim> distorted(mesh::MeshData<dim> data, unsigned seed)
 {
   const auto bend = [](const Point<dim>& x) -> Point<dim>
   {
@@ -88,19 +88,20 @@ MeshData<dim> distorted(MeshData<dim> data, unsigned seed)
 
 /// Both meshes side by side, not connected; boundaries and regions of `b` get names with `suffix` behind.
 template <int dim>
-MeshData<dim> side_by_side(MeshData<dim> a, const MeshData<dim>& b, const std::string& suffix)
+mesh::MeshData<dim> side_by_side(mesh::MeshData<dim> a, const mesh::MeshData<dim>& b,
+                                 const std::string& suffix)
 {
   const auto first_vertex = static_cast<Index>(a.vertices.size());
   const auto first_region = static_cast<int>(a.region_names.size());
   const auto first_boundary = static_cast<int>(a.boundary_names.size());
   a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (Cell<dim> cell : b.cells)
+  for (mesh::Cell<dim> cell : b.cells)
   {
     for (Index& v : cell) v += first_vertex;
     a.cells.push_back(cell);
   }
   for (const int region : b.regions) a.regions.push_back(region + first_region);
-  for (TaggedFacet<dim> facet : b.facets)
+  for (mesh::TaggedFacet<dim> facet : b.facets)
   {
     for (Index& v : facet.vertices) v += first_vertex;
     facet.tag += first_boundary;
@@ -113,10 +114,10 @@ MeshData<dim> side_by_side(MeshData<dim> a, const MeshData<dim>& b, const std::s
 
 /// The mesh without the cells whose centre is in a region, and without the vertices that only they have.
 template <int dim, class Inside>
-MeshData<dim> without(MeshData<dim> data, const Inside& inside)
+mesh::MeshData<dim> without(mesh::MeshData<dim> data, const Inside& inside)
 {
-  std::vector<Cell<dim>> kept;
-  for (const Cell<dim>& cell : data.cells)
+  std::vector<mesh::Cell<dim>> kept;
+  for (const mesh::Cell<dim>& cell : data.cells)
   {
     Point<dim> centre = Point<dim>::Zero();
     for (const Index v : cell) centre += data.vertices[v] / (dim + 1);
@@ -124,7 +125,7 @@ MeshData<dim> without(MeshData<dim> data, const Inside& inside)
   }
   std::vector<Index> number(data.vertices.size(), -1);
   std::vector<Point<dim>> vertices;
-  for (Cell<dim>& cell : kept)
+  for (mesh::Cell<dim>& cell : kept)
     for (Index& v : cell)
     {
       if (number[v] < 0)
@@ -135,14 +136,14 @@ MeshData<dim> without(MeshData<dim> data, const Inside& inside)
       v = number[v];
     }
   std::set<std::set<Index>> facets;
-  for (const Cell<dim>& cell : kept)
+  for (const mesh::Cell<dim>& cell : kept)
     for (int i = 0; i <= dim; ++i)
     {
-      const auto facet = facet_vertices(cell, i);
+      const auto facet = mesh::facet_vertices(cell, i);
       facets.emplace(facet.begin(), facet.end());
     }
   std::erase_if(data.facets,
-                [&](TaggedFacet<dim>& facet)
+                [&](mesh::TaggedFacet<dim>& facet)
                 {
                   for (Index& v : facet.vertices) v = number[v];
                   return !facets.contains(std::set<Index>(facet.vertices.begin(), facet.vertices.end()));

@@ -31,7 +31,7 @@ struct Level
 /// An L-shaped profile 2 x 2, 1 deep: a wall with an arm that is lifted, pressed on the floor.
 std::vector<Level> run(int p, double theta, int max_dofs)
 {
-  const Config config = parse_config(fmt::format(R"(degree = {}
+  const case_file::Config config = case_file::parse_config(fmt::format(R"(degree = {}
 mesh.box = {{ lower = [0, 0, 0], upper = [1, 1, 1], cells = [1, 1, 1] }}
 material = {{ E = 1.0, nu = 0.3 }}
 boundary.left.displacement = [0, "free", "free"]
@@ -42,25 +42,26 @@ boundary.bottom.contact = {{ friction = "tresca", threshold = 0.03 }}
 newton.finish = false
 adapt = {{ theta = {}, tolerance = 1e-9, max_levels = 60, max_dofs = {} }}
 )",
-                                                 p, theta, max_dofs));
-  Mesh<3> mesh(without<3>(box<3>({0, 0, 0}, {2, 2, 1}, {2, 2, 1}),
-                          [](const Point<3>& x) { return x[0] > 1 && x[1] > 1; }));
-  const Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
+                                                                       p, theta, max_dofs));
+  mesh::Mesh<3> mesh(without<3>(box<3>({0, 0, 0}, {2, 2, 1}, {2, 2, 1}),
+                                [](const Point<3>& x) { return x[0] > 1 && x[1] > 1; }));
+  const problem::Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
   std::vector<Level> levels;
-  const LoopObserver<3> observer = {{},
-                                    [&](const LevelView<3>& view)
-                                    {
-                                      const int free = view.discrete.space.n_dofs() -
-                                                       view.discrete.form.constraints().n_fixed();
-                                      levels.push_back({double(free), view.level.estimate.total_sharp});
-                                      std::cout << fmt::format("p = {} theta = {:<3} {:6} dofs  bound {:.4e}",
-                                                               p, theta, free, levels.back().bound)
-                                                << std::endl;
-                                    }};
+  const adapt::LoopObserver<3> observer = {
+      {},
+      [&](const adapt::LevelView<3>& view)
+      {
+        const int free = view.discrete.space.n_dofs() - view.discrete.form.constraints().n_fixed();
+        levels.push_back({double(free), view.level.estimate.total_sharp});
+        std::cout << fmt::format("p = {} theta = {:<3} {:6} dofs  bound {:.4e}", p, theta, free,
+                                 levels.back().bound)
+                  << std::endl;
+      }};
   const std::atomic<bool> stop = false;
-  const Verdict verdict = adapt<3>(
-      problem, config, std::make_unique<Discretisation<3>>(std::move(mesh), problem, config), observer, stop);
-  EXPECT_EQ(verdict.status, RunStatus::budget) << verdict.reason;  // the tolerance is out of reach
+  const certify::Verdict verdict = adapt::adapt<3>(
+      problem, config, std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config), observer,
+      stop);
+  EXPECT_EQ(verdict.status, certify::RunStatus::budget) << verdict.reason;  // the tolerance is out of reach
   return levels;
 }
 

@@ -36,16 +36,17 @@ struct Extremes
 template <int dim>
 Extremes effectivities(const std::string& text)
 {
-  Config config = parse_config(text);
+  case_file::Config config = case_file::parse_config(text);
   config.newton.damping = true;  // full steps cycle on some of the meshes
-  auto mesh = std::get<Mesh<dim>>(read_mesh(config.mesh));
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  auto mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
   Extremes found;
-  const LoopObserver<dim> observer = {
+  const adapt::LoopObserver<dim> observer = {
       {},
-      [&](const LevelView<dim>& view)
+      [&](const adapt::LevelView<dim>& view)
       {
-        DualNorm<dim> dual_norm(view.discrete.form, {.refinements = 4 - dim, .degree = config.degree + 2});
+        certify::DualNorm<dim> dual_norm(view.discrete.form,
+                                         {.refinements = 4 - dim, .degree = config.degree + 2});
         const double bound = view.level.estimate.total_sharp;
         const double below = dual_norm(view.level.u);
         std::cout << fmt::format("{}D p = {}  {:5} cells  {:.4e} / {:.4e} = {:.4f}", dim, config.degree,
@@ -56,9 +57,9 @@ Extremes effectivities(const std::string& text)
         ++found.levels;
       }};
   const std::atomic<bool> stop = false;
-  const Verdict verdict =
-      adapt<dim>(problem, config, std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config),
-                 observer, stop);
+  const certify::Verdict verdict = adapt::adapt<dim>(
+      problem, config, std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config),
+      observer, stop);
   EXPECT_THAT(verdict.reason, ::testing::HasSubstr("adapt.max_dofs"));
   return found;
 }

@@ -31,8 +31,8 @@ struct Row
   double dofs;
   double bound;
   std::size_t newton;
-  RunStatus status;
-  BoundComponents eta;
+  certify::RunStatus status;
+  certify::BoundComponents eta;
   std::optional<int> delta_updates;
   double delta;
 };
@@ -40,26 +40,27 @@ struct Row
 struct History
 {
   std::vector<Row> levels;
-  Verdict verdict;
+  certify::Verdict verdict;
 };
 
 /// Runs T2D from the 4 x 2 mesh; `on_step` is called after every Newton step.
-History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop, const StepObserver& on_step = {},
-                  int max_steps = 50, Stopping stopping = Stopping::adaptive)
+History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop,
+                  const adapt::StepObserver& on_step = {}, int max_steps = 50,
+                  case_file::Stopping stopping = case_file::Stopping::adaptive)
 {
-  Config config = parse_config(t2d_toml(p, 4, 2) + keys);
+  case_file::Config config = case_file::parse_config(t2d_toml(p, 4, 2) + keys);
   config.newton.damping = true;
   config.newton.max_steps = max_steps;
   config.newton.stopping = stopping;
   config.newton.finish = false;  // the criterion is what is tested
-  auto mesh = std::get<Mesh<2>>(read_mesh(config.mesh));
-  const Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
+  auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(config.mesh));
+  const problem::Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
   History history;
-  const LoopObserver<2> observer = {
-      on_step, [&](const LevelView<2>& view)
+  const adapt::LoopObserver<2> observer = {
+      on_step, [&](const adapt::LevelView<2>& view)
       {
-        const Discretisation<2>& discrete = view.discrete;
-        const CertifiedLevel<2>& level = view.level;
+        const adapt::Discretisation<2>& discrete = view.discrete;
+        const adapt::CertifiedLevel<2>& level = view.level;
         EXPECT_EQ(view.number, history.levels.size());
         const int fixed = discrete.form.constraints().n_fixed();
         history.levels.push_back({discrete.mesh.n_cells(), double(discrete.space.n_dofs() - fixed),
@@ -67,8 +68,9 @@ History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop, const
                                   level.estimate.global, level.delta_updates, level.steps.back().step.delta});
         EXPECT_LE(level.identities.largest(p), 1e-10);
       }};
-  history.verdict = adapt<2>(
-      problem, config, std::make_unique<Discretisation<2>>(std::move(mesh), problem, config), observer, stop);
+  history.verdict = adapt::adapt<2>(
+      problem, config, std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, config), observer,
+      stop);
   return history;
 }
 
@@ -101,7 +103,7 @@ TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
   {
     const History history = adapt_t2d(
         p, "adapt = { theta = 0.6, max_levels = 60, tolerance = " + std::to_string(tolerances[p - 1]) + " }");
-    EXPECT_EQ(history.verdict.status, RunStatus::certified) << history.verdict.reason;
+    EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
     const double rate = slope(history.levels, p == 1 ? 1000 : 500);
     EXPECT_NEAR(rate, -p / 2.0, deviations[p - 1]) << "p = " << p;
     // From the carried solution; the first mesh starts from scratch, from a closed and sticking contact.
@@ -113,9 +115,9 @@ TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
 }
 
 /// The bound of every step of the levels of a block in 3D.
-std::vector<std::vector<CertifiedStep>> steps_in_3d(const std::string& keys)
+std::vector<std::vector<adapt::CertifiedStep>> steps_in_3d(const std::string& keys)
 {
-  const Config config = parse_config(R"(
+  const case_file::Config config = case_file::parse_config(R"(
 degree = 1
 mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [4, 2, 2] }
 material = { E = 1.0, nu = 0.3 }
@@ -126,23 +128,25 @@ boundary.bottom.contact = { friction = "tresca", threshold = 0.03 }
 adapt = { theta = 0.6, max_levels = 3 }
 newton.finish = false
 )" + keys);
-  auto mesh = std::get<Mesh<3>>(read_mesh(config.mesh));
-  const Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
-  std::vector<std::vector<CertifiedStep>> steps;
-  const LoopObserver<3> observer = {{},
-                                    [&](const LevelView<3>& view)
-                                    {
-                                      const CertifiedLevel<3>& level = view.level;
-                                      steps.push_back(level.steps);
-                                      EXPECT_LE(level.identities.largest(1), 1e-10);
-                                      ASSERT_TRUE(level.steps.back().bound);
-                                      const Stress<3> own = level.stress;
-                                      const Estimate eta = estimate<3>(view.discrete.form, level.u, own);
-                                      EXPECT_EQ(level.steps.back().bound->total_sharp, eta.total_sharp);
-                                    }};
+  auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(config.mesh));
+  const problem::Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
+  std::vector<std::vector<adapt::CertifiedStep>> steps;
+  const adapt::LoopObserver<3> observer = {
+      {},
+      [&](const adapt::LevelView<3>& view)
+      {
+        const adapt::CertifiedLevel<3>& level = view.level;
+        steps.push_back(level.steps);
+        EXPECT_LE(level.identities.largest(1), 1e-10);
+        ASSERT_TRUE(level.steps.back().bound);
+        const certify::Stress<3> own = level.stress;
+        const certify::Estimate eta = certify::estimate<3>(view.discrete.form, level.u, own);
+        EXPECT_EQ(level.steps.back().bound->total_sharp, eta.total_sharp);
+      }};
   const std::atomic<bool> stop = false;
-  (void)adapt<3>(problem, config, std::make_unique<Discretisation<3>>(std::move(mesh), problem, config),
-                 observer, stop);
+  (void)adapt::adapt<3>(problem, config,
+                        std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config),
+                        observer, stop);
   return steps;
 }
 
@@ -152,7 +156,7 @@ TEST(Adapt, In3DOnlyIteratesThatMayBeKeptGetTheCompleteBound)
 {
   int without = 0;
   for (const auto& level : steps_in_3d(""))
-    for (const CertifiedStep& step : level)
+    for (const adapt::CertifiedStep& step : level)
     {
       ASSERT_TRUE(step.linearisation);
       EXPECT_TRUE(step.bound || !step.accepted);
@@ -160,7 +164,7 @@ TEST(Adapt, In3DOnlyIteratesThatMayBeKeptGetTheCompleteBound)
     }
   EXPECT_GT(without, 2);
   for (const auto& level : steps_in_3d("newton.stopping = \"tolerance\"\n"))
-    for (const CertifiedStep& step : level) EXPECT_TRUE(step.bound);
+    for (const adapt::CertifiedStep& step : level) EXPECT_TRUE(step.bound);
 }
 
 /// Prints the table of the regularised variant: delta updates and Newton steps per level.
@@ -188,13 +192,13 @@ TEST(Adapt, TheRegularisedVariantHasTheRateOfThePlainMethod)
     const History plain = adapt_t2d(p, keys);
     const History history = adapt_t2d(p, keys + "[regularisation]\n");
     print_regularised(p, history);
-    EXPECT_EQ(history.verdict.status, RunStatus::certified) << history.verdict.reason;
+    EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
     const double first = p == 1 ? 1000 : 500;
     EXPECT_NEAR(slope(history.levels, first), slope(plain.levels, first), deviations[p - 1]) << "p = " << p;
     for (const Row& row : history.levels)
     {
       EXPECT_LE(row.eta.regularisation(), 0.1 * row.eta.discretisation());
-      EXPECT_TRUE(linearisation_is_negligible(row.eta, 0.1));
+      EXPECT_TRUE(adapt::linearisation_is_negligible(row.eta, 0.1));
     }
     EXPECT_NEAR(history.levels.back().dofs, plain.levels.back().dofs, 0.3 * plain.levels.back().dofs);
   }
@@ -204,7 +208,7 @@ TEST(Adapt, OnTheGivenMeshOnlyItCertifiesAndStops)
 {
   const History history = adapt_t2d(2, "adapt.max_levels = 0\n");
   EXPECT_EQ(history.levels.size(), 1u);
-  EXPECT_EQ(history.verdict.status, RunStatus::budget);
+  EXPECT_EQ(history.verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(history.verdict.reason, HasSubstr("adapt.max_levels = 0 is reached"));
 }
 
@@ -223,14 +227,14 @@ TEST(Adapt, KeepsToEveryLimit)
   EXPECT_EQ(memory.levels.size(), 1u);
   EXPECT_THAT(memory.verdict.reason, HasSubstr("more than adapt.max_memory = 1e-06 GB"));
   for (const History* history : {&cells, &dofs, &time, &memory})
-    EXPECT_EQ(history->verdict.status, RunStatus::budget);
+    EXPECT_EQ(history->verdict.status, certify::RunStatus::budget);
 }
 
 TEST(Adapt, MaximumMarkingReachesTheToleranceToo)
 {
   const History history =
       adapt_t2d(2, "adapt = { marking = \"maximum\", theta = 0.5, tolerance = 0.02, max_levels = 60 }");
-  EXPECT_EQ(history.verdict.status, RunStatus::certified) << history.verdict.reason;
+  EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
 }
 
 /// The contact part is a tenth to a half of the bound here: its facets are refined for its own sake.
@@ -239,7 +243,7 @@ TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
   const std::string keys = "adapt = { tolerance = 0.02, max_levels = 60, separate_contact = ";
   const History together = adapt_t2d(2, keys + "false }");
   const History separate = adapt_t2d(2, keys + "true }");
-  EXPECT_EQ(separate.verdict.status, RunStatus::certified) << separate.verdict.reason;
+  EXPECT_EQ(separate.verdict.status, certify::RunStatus::certified) << separate.verdict.reason;
   EXPECT_LE(separate.levels.size(), together.levels.size());
   EXPECT_LE(separate.levels.back().dofs, 1.5 * together.levels.back().dofs);
 }
@@ -247,19 +251,19 @@ TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
 /// On every cell is more than on the whole, less than to the last digit.
 TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
 {
-  const auto steps = [](Stopping stopping)
+  const auto steps = [](case_file::Stopping stopping)
   {
     std::atomic<bool> stop = false;
     const History history =
         adapt_t2d(1, "adapt = { tolerance = 0.05, max_levels = 60 }", stop, {}, 50, stopping);
-    EXPECT_EQ(history.verdict.status, RunStatus::certified);
+    EXPECT_EQ(history.verdict.status, certify::RunStatus::certified);
     std::size_t sum = 0;
     for (const Row& row : history.levels) sum += row.newton;
     return double(sum) / double(history.levels.size());
   };
-  const double global = steps(Stopping::adaptive);
-  const double local = steps(Stopping::adaptive_local);
-  const double converged = steps(Stopping::tolerance);
+  const double global = steps(case_file::Stopping::adaptive);
+  const double local = steps(case_file::Stopping::adaptive_local);
+  const double converged = steps(case_file::Stopping::tolerance);
   EXPECT_LE(global, local);
   EXPECT_LT(local, converged);
   EXPECT_LT(global, converged);
@@ -267,19 +271,20 @@ TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
 
 TEST(Adapt, ExpectedMemoryGrowsFasterThanTheUnknowns)
 {
-  EXPECT_EQ(expected_memory(100, 100, 3, 2), 100);
-  EXPECT_DOUBLE_EQ(expected_memory(100, 300, 1, 3), 300);
-  EXPECT_GT(expected_memory(100, 300, 2, 2), 500);
-  EXPECT_DOUBLE_EQ(expected_memory(100, 300, 8, 3), 100 + 200 * 16);
+  EXPECT_EQ(adapt::expected_memory(100, 100, 3, 2), 100);
+  EXPECT_DOUBLE_EQ(adapt::expected_memory(100, 300, 1, 3), 300);
+  EXPECT_GT(adapt::expected_memory(100, 300, 2, 2), 500);
+  EXPECT_DOUBLE_EQ(adapt::expected_memory(100, 300, 8, 3), 100 + 200 * 16);
 }
 
 TEST(Adapt, InterruptedItKeepsTheLastCompleteLevel)
 {
   std::atomic<bool> stop = false;
   int steps_in_all = 0;
-  const History history = adapt_t2d(1, "", stop, [&](const CertifiedStep&) { stop = ++steps_in_all > 12; });
+  const History history =
+      adapt_t2d(1, "", stop, [&](const adapt::CertifiedStep&) { stop = ++steps_in_all > 12; });
   EXPECT_FALSE(history.levels.empty());
-  EXPECT_EQ(history.verdict.status, RunStatus::budget);
+  EXPECT_EQ(history.verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(history.verdict.reason, HasSubstr("interrupted"));
 }
 
@@ -288,49 +293,51 @@ TEST(Adapt, ALaterLevelThatFailsLeavesTheCertificateOfTheOneBefore)
   std::atomic<bool> stop = false;
   int first_steps = 0;
   const History history = adapt_t2d(1, "", stop,
-                                    [&](const CertifiedStep& step)
+                                    [&](const adapt::CertifiedStep& step)
                                     {
                                       first_steps += step.step.step == 1 ? 1 : 0;
                                       if (first_steps == 3) throw SolveError("the matrix is singular");
                                     });
   EXPECT_EQ(history.levels.size(), 2u);
-  EXPECT_EQ(history.verdict.status, RunStatus::budget);
+  EXPECT_EQ(history.verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(history.verdict.reason, HasSubstr("this is level 1, level 2 failed: the matrix is singular"));
 }
 
 TEST(Adapt, WithoutTheFirstLevelThereIsNoCertificate)
 {
   std::atomic<bool> stop = false;
-  EXPECT_THROW(adapt_t2d(1, "", stop, [](const CertifiedStep&) { throw SolveError("singular"); }),
+  EXPECT_THROW(adapt_t2d(1, "", stop, [](const adapt::CertifiedStep&) { throw SolveError("singular"); }),
                SolveError);
   const History history = adapt_t2d(1, "", stop, {}, 1);  // one step leaves a linearisation error
   EXPECT_EQ(history.levels.size(), 1u);
-  EXPECT_EQ(history.verdict.status, RunStatus::failed);
+  EXPECT_EQ(history.verdict.status, certify::RunStatus::failed);
 }
 
 TEST(Adapt, LinearisationIsNegligibleOnTheWholeOrOnEveryCell)
 {
-  Estimate estimate;
+  certify::Estimate estimate;
   estimate.cells.resize(2);
   estimate.cells[0].str = estimate.global.str = 1;
   estimate.cells[1].lin1 = estimate.global.lin1 = 0.05;
-  EXPECT_TRUE(linearisation_is_negligible(estimate, {.stopping = Stopping::adaptive}));
-  EXPECT_FALSE(linearisation_is_negligible(estimate, {.stopping = Stopping::adaptive_local}));
-  EXPECT_FALSE(linearisation_is_negligible(estimate, {.stopping = Stopping::tolerance}));
+  EXPECT_TRUE(adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::adaptive}));
+  EXPECT_FALSE(
+      adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::adaptive_local}));
+  EXPECT_FALSE(adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::tolerance}));
   estimate.cells[1].cnt = 0.5;
-  EXPECT_TRUE(linearisation_is_negligible(estimate, {.stopping = Stopping::adaptive_local}));
+  EXPECT_TRUE(
+      adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::adaptive_local}));
 }
 
 TEST(Adapt, LinearisationIsNegligibleWhenItsPartsAre)
 {
-  BoundComponents eta;
+  certify::BoundComponents eta;
   eta.str = 0.6;
   eta.cnt = 0.4;
-  EXPECT_TRUE(linearisation_is_negligible(eta, 0.1));
+  EXPECT_TRUE(adapt::linearisation_is_negligible(eta, 0.1));
   eta.lin1 = eta.lin2n = eta.lin2t = 0.033;
-  EXPECT_TRUE(linearisation_is_negligible(eta, 0.1));
+  EXPECT_TRUE(adapt::linearisation_is_negligible(eta, 0.1));
   eta.lin2n = 0.035;
-  EXPECT_FALSE(linearisation_is_negligible(eta, 0.1));
+  EXPECT_FALSE(adapt::linearisation_is_negligible(eta, 0.1));
 }
 
 }  // namespace

@@ -24,10 +24,10 @@ struct AffineCase
   Tensor<dim> gradient;
   Point<dim> offset;
   std::string contact;  ///< TOML
-  ContactStatus status;
+  contact::ContactStatus status;
 };
 
-inline const Material affine_material = lame(1.0, 0.3, PlaneModel::strain);
+inline const problem::Material affine_material = problem::lame(1.0, 0.3, case_file::PlaneModel::strain);
 
 inline std::string tresca(double s)
 {
@@ -55,7 +55,7 @@ std::vector<AffineCase<dim>> affine_cases()
   const Point<dim> y = Point<dim>::Unit(1);
   const auto field = [&](double slip, double shear, double stretch) -> Tensor<dim>
   { return slip * d * k.transpose() + shear * d * y.transpose() + stretch * y * y.transpose(); };
-  const auto pressure = [&](const Tensor<dim>& g) { return -sigma<dim>(affine_material, g)(1, 1); };
+  const auto pressure = [&](const Tensor<dim>& g) { return -contact::sigma<dim>(affine_material, g)(1, 1); };
   const Tensor<dim> slip = field(1, 0.2, -0.3);
   const Tensor<dim> stick = field(0, 0.2, -0.3);
   const Tensor<dim> smooth = field(1, 0, -0.3);
@@ -66,16 +66,16 @@ std::vector<AffineCase<dim>> affine_cases()
   const Point<dim> none = Point<dim>::Zero();
   const double shear = 0.2 * affine_material.mu;
   return {
-      {"slip, Tresca", slip, offset, tresca(shear), ContactStatus::slip},
-      {"slip, Coulomb", slip, offset, coulomb(shear / pressure(slip)), ContactStatus::slip},
-      {"stick, Tresca", stick, none, tresca(2 * shear), ContactStatus::stick},
-      {"stick, Coulomb", stick, none, coulomb(2 * shear / pressure(stick)), ContactStatus::stick},
-      {"frictionless", smooth, offset, "{ friction = \"none\" }", ContactStatus::slip},
-      {"open, frictionless", open, offset, "{ friction = \"none\", gap = 1 }", ContactStatus::open},
+      {"slip, Tresca", slip, offset, tresca(shear), contact::ContactStatus::slip},
+      {"slip, Coulomb", slip, offset, coulomb(shear / pressure(slip)), contact::ContactStatus::slip},
+      {"stick, Tresca", stick, none, tresca(2 * shear), contact::ContactStatus::stick},
+      {"stick, Coulomb", stick, none, coulomb(2 * shear / pressure(stick)), contact::ContactStatus::stick},
+      {"frictionless", smooth, offset, "{ friction = \"none\" }", contact::ContactStatus::slip},
+      {"open, frictionless", open, offset, "{ friction = \"none\", gap = 1 }", contact::ContactStatus::open},
       {"open, Tresca", open, offset, "{ friction = \"tresca\", threshold = 0, gap = 1 }",
-       ContactStatus::open},
+       contact::ContactStatus::open},
       {"open, Coulomb", open, offset, "{ friction = \"coulomb\", coefficient = 0.5, gap = 1 }",
-       ContactStatus::open},
+       contact::ContactStatus::open},
   };
 }
 
@@ -112,7 +112,7 @@ std::string affine_toml(const AffineCase<dim>& c, int p, const Point<dim>& right
       p, c.contact);
   std::string displacement;
   std::string traction;
-  const Point<dim> t = sigma<dim>(affine_material, c.gradient) * right_normal;
+  const Point<dim> t = contact::sigma<dim>(affine_material, c.gradient) * right_normal;
   for (int a = 0; a < dim; ++a)
   {
     displacement += fmt::format("\"{:.17g}", c.offset[a]);
@@ -139,7 +139,7 @@ void for_all_states(const Tensor<dim>& frame, const Check& check)
 }
 
 template <int dim>
-MeshData<dim> structured()
+mesh::MeshData<dim> structured()
 {
   if constexpr (dim == 2)
     return box<2>({0, 0}, {2, 1}, {4, 2});

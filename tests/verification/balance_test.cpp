@@ -33,31 +33,32 @@ struct Defect
   double moment = 0;
 };
 
-Defect defect(const Balance& balance)
+Defect defect(const certify::Balance& balance)
 {
   double force = 0;
   double moment = 0;
-  for (const BalanceRow& row : balance.rows)
+  for (const certify::BalanceRow& row : balance.rows)
   {
-    if (row.kind == BalanceKind::sum) continue;
+    if (row.kind == certify::BalanceKind::sum) continue;
     force = std::max(force, largest(row.force));
     if (row.moment) moment = std::max(moment, largest(*row.moment));
   }
-  const BalanceRow& sum = balance.rows.back();
+  const certify::BalanceRow& sum = balance.rows.back();
   return {largest(sum.force) / force, sum.moment ? largest(*sum.moment) / moment : 0};
 }
 
 template <int dim>
-Balance balance_of(const DiscreteCase<dim>& c, const Point<dim>& about)
+certify::Balance balance_of(const DiscreteCase<dim>& c, const Point<dim>& about)
 {
-  const NewtonResult<dim> result = c.solve();
-  return balance<dim>(c.form, equilibrate<dim>(c.form, result.u, result.traction), about);
+  const solve::NewtonResult<dim> result = c.solve();
+  return certify::balance<dim>(c.form, certify::equilibrate<dim>(c.form, result.u, result.traction), about);
 }
 
-const BalanceRow& find(const Balance& balance, BalanceKind kind, const std::string& name)
+const certify::BalanceRow& find(const certify::Balance& balance, certify::BalanceKind kind,
+                                const std::string& name)
 {
   const auto row = std::ranges::find_if(
-      balance.rows, [&](const BalanceRow& r) { return r.kind == kind && r.name == name; });
+      balance.rows, [&](const certify::BalanceRow& r) { return r.kind == kind && r.name == name; });
   EXPECT_NE(row, balance.rows.end()) << name;
   return *row;
 }
@@ -105,18 +106,19 @@ void every_iterate(int p)
   {
     SCOPED_TRACE(law.name);
     const DiscreteCase<dim> c(block(dim, p, law.contact));
-    const auto examine = [&](const NewtonIterate<dim>& iterate)
+    const auto examine = [&](const solve::NewtonIterate<dim>& iterate)
     {
-      const Balance b = balance<dim>(c.form, equilibrate<dim>(c.form, iterate.u, iterate.traction), about);
+      const certify::Balance b = certify::balance<dim>(
+          c.form, certify::equilibrate<dim>(c.form, iterate.u, iterate.traction), about);
       EXPECT_EQ(b.rows.back().moment.has_value(), p > 1);
       const Defect d = defect(b);
       ++iterates;
       EXPECT_LE(d.force, 1e-11) << "iterate " << iterates;
       EXPECT_LE(d.moment, 1e-11);
       worst = {std::max(worst.force, d.force), std::max(worst.moment, d.moment)};
-      return NewtonAdvice(false);
+      return solve::NewtonAdvice(false);
     };
-    (void)solve<dim>(c.form, {}, c.config.newton, c.config.solver, examine);
+    (void)solve::solve<dim>(c.form, {}, c.config.newton, c.config.solver, examine);
   }
   EXPECT_GT(iterates, 5) << "too easy to tell iterates apart";
   fmt::print("{}D, p = {}: the sum is {:.1e} of the largest force, {:.1e} of the largest moment\n", dim, p,
@@ -150,21 +152,21 @@ TEST(Balance, StaticallyDeterminateCantilever)
       "mesh.box = { lower = [0, 0], upper = [3, 2], cells = [3, 2] }\n"
       "load.body = [0, -0.5]\nboundary.left.displacement = [0, 0]\n"
       "boundary.top = { pressure = \"x\", traction = [0.25, 0] }\nboundary.right.traction = [0, 0.1]\n");
-  const Balance b = balance_of<2>(c, {0, 1});
-  const auto expect = [&](BalanceKind kind, const std::string& name, const std::string& source,
+  const certify::Balance b = balance_of<2>(c, {0, 1});
+  const auto expect = [&](certify::BalanceKind kind, const std::string& name, const std::string& source,
                           std::vector<double> force, double moment)
   {
     SCOPED_TRACE(name);
-    const BalanceRow& row = find(b, kind, name);
+    const certify::BalanceRow& row = find(b, kind, name);
     EXPECT_EQ(row.source, source);
     for (int i = 0; i < 2; ++i) EXPECT_NEAR(row.force[i], force[i], 1e-11);
     EXPECT_NEAR((*row.moment)[0], moment, 1e-11);
   };
-  expect(BalanceKind::load, "box", "body force", {0, -3}, -3 * 1.5);
+  expect(certify::BalanceKind::load, "box", "body force", {0, -3}, -3 * 1.5);
   // pressure: 9/2 at x = 2; traction: 3/4 at height 1 above the point
-  expect(BalanceKind::load, "top", "traction and pressure", {0.75, -4.5}, -4.5 * 2 - 0.75);
-  expect(BalanceKind::load, "right", "traction", {0, 0.2}, 0.2 * 3);
-  expect(BalanceKind::reaction, "left", "displacement", {-0.75, 7.3}, 4.5 + 9 + 0.75 - 0.6);
+  expect(certify::BalanceKind::load, "top", "traction and pressure", {0.75, -4.5}, -4.5 * 2 - 0.75);
+  expect(certify::BalanceKind::load, "right", "traction", {0, 0.2}, 0.2 * 3);
+  expect(certify::BalanceKind::reaction, "left", "displacement", {-0.75, 7.3}, 4.5 + 9 + 0.75 - 0.6);
   EXPECT_EQ(b.rows.size(), 5u);
 }
 
@@ -178,20 +180,21 @@ TEST(Balance, ContactAndRollersIn3D)
       "load.body = [0, -0.3, 0]\nboundary.left.displacement = [0, \"free\", \"free\"]\n"
       "boundary.back.displacement = [\"free\", \"free\", 0]\nboundary.right.traction = [-0.1, 0, 0]\n"
       "boundary.front.pressure = 0.2\nboundary.bottom.contact = {}\n");
-  const Balance b = balance_of<3>(c, centroid<3>(c.mesh));
+  const certify::Balance b = balance_of<3>(c, certify::centroid<3>(c.mesh));
   EXPECT_EQ(b.about, (std::vector<double>{1, 0.5, 0.5}));
-  const auto expect = [&](BalanceKind kind, const std::string& name, const std::vector<double>& force)
+  const auto expect =
+      [&](certify::BalanceKind kind, const std::string& name, const std::vector<double>& force)
   {
     SCOPED_TRACE(name);
-    const BalanceRow& row = find(b, kind, name);
+    const certify::BalanceRow& row = find(b, kind, name);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(row.force[i], force[i], 1e-11);
   };
-  expect(BalanceKind::load, "front", {0, 0, -0.4});
-  expect(BalanceKind::reaction, "left", {0.1, 0, 0});
-  expect(BalanceKind::reaction, "back", {0, 0, 0.4});
-  expect(BalanceKind::contact, "bottom", {0, 0.6, 0});
+  expect(certify::BalanceKind::load, "front", {0, 0, -0.4});
+  expect(certify::BalanceKind::reaction, "left", {0.1, 0, 0});
+  expect(certify::BalanceKind::reaction, "back", {0, 0, 0.4});
+  expect(certify::BalanceKind::contact, "bottom", {0, 0.6, 0});
   // A component that is not fixed has no reaction at all.
-  EXPECT_EQ(find(b, BalanceKind::reaction, "left").force[1], 0);
+  EXPECT_EQ(find(b, certify::BalanceKind::reaction, "left").force[1], 0);
 }
 
 /// In 3D the moment is r x f: one force along each axis on a face of its own.
@@ -202,11 +205,11 @@ TEST(Balance, MomentsIn3D)
       "mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [2, 1, 1] }\n"
       "boundary.left.displacement = [0, 0, 0]\nboundary.right.traction = [0, 0.3, -0.2]\n"
       "boundary.top.traction = [0.1, 0, 0]\n");
-  const Balance b = balance_of<3>(c, {0, 0, 0});
+  const certify::Balance b = balance_of<3>(c, {0, 0, 0});
   // right: at (2, 1/2, 1/2) the force (0, 0.3, -0.2); top: at (1, 1, 1/2) the force (0.2, 0, 0)
   const std::vector<double> moment = {0.5 * -0.2 - 0.5 * 0.3, 2 * 0.2 + 0.5 * 0.2, 2 * 0.3 - 0.2};
   for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR((*find(b, BalanceKind::reaction, "left").moment)[i], -moment[i], 1e-11);
+    EXPECT_NEAR((*find(b, certify::BalanceKind::reaction, "left").moment)[i], -moment[i], 1e-11);
 }
 
 }  // namespace

@@ -33,9 +33,10 @@ TEST_P(Components, AgreeWithTheReferenceAtEveryIterate)
   {
     DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
     if (k > 0) c.config.newton.max_steps = k;
-    const NewtonResult<2> result = c.solve();
-    const Stress<2> stress = equilibrate<2>(c.form, result.u, result.traction);
-    const Estimate eta = estimate<2>(c.form, result.u, stress, ContactRule::reference);
+    const solve::NewtonResult<2> result = c.solve();
+    const certify::Stress<2> stress = certify::equilibrate<2>(c.form, result.u, result.traction);
+    const certify::Estimate eta =
+        certify::estimate<2>(c.form, result.u, stress, case_file::ContactRule::reference);
     const json& e = expected[k == 0 ? "converged_est" : "iterate" + std::to_string(k) + "_est"];
     const double tolerance = 1e-7 * e["eta_tot"].get<double>();
     const auto expect = [&](double value, const char* name) {
@@ -59,9 +60,9 @@ INSTANTIATE_TEST_SUITE_P(T2D, Components, ::testing::Range(0, 8));
 TEST(Equilibrate, DoesNotDependOnTheNumberOfThreads)
 {
   const DiscreteCase<2> c(t2d_toml(2, 8, 4));
-  const NewtonResult<2> result = c.solve();
-  const Stress<2> one = equilibrate<2>(c.form, result.u, result.traction, 1);
-  const Stress<2> three = equilibrate<2>(c.form, result.u, result.traction, 3);
+  const solve::NewtonResult<2> result = c.solve();
+  const certify::Stress<2> one = certify::equilibrate<2>(c.form, result.u, result.traction, 1);
+  const certify::Stress<2> three = certify::equilibrate<2>(c.form, result.u, result.traction, 3);
   EXPECT_EQ(one.dis, three.dis);
   EXPECT_EQ(one.lin, three.lin);
 }
@@ -72,21 +73,21 @@ template <int dim>
 void expect_the_same_in_parts(const std::string& toml)
 {
   DiscreteCase<dim> c(toml);
-  Equilibrator<dim> equilibrator(c.form, 2);
-  const Estimator<dim> estimator(c.form);
+  certify::Equilibrator<dim> equilibrator(c.form, 2);
+  const certify::Estimator<dim> estimator(c.form);
   for (const int k : {1, 2, 3})
   {
     c.config.newton.max_steps = k;
-    const NewtonResult<dim> newton = c.solve();
-    const Stress<dim> whole = equilibrate<dim>(c.form, newton.u, newton.traction, 1);
-    const Stress<dim> lin = equilibrator.linearisation(newton.u, newton.traction);
+    const solve::NewtonResult<dim> newton = c.solve();
+    const certify::Stress<dim> whole = certify::equilibrate<dim>(c.form, newton.u, newton.traction, 1);
+    const certify::Stress<dim> lin = equilibrator.linearisation(newton.u, newton.traction);
     EXPECT_EQ(equilibrator(newton.u, newton.traction).dis, whole.dis);
     EXPECT_TRUE(lin.dis.empty());
     EXPECT_EQ(lin.lin_place, whole.lin_place);
     EXPECT_EQ(lin.lin, whole.lin);
 
-    const BoundComponents eta = estimator(newton.u, whole).global;
-    const BoundComponents part = estimator.linearisation(lin);
+    const certify::BoundComponents eta = estimator(newton.u, whole).global;
+    const certify::BoundComponents part = estimator.linearisation(lin);
     EXPECT_GT(part.lin1, 0) << "iterate " << k;
     EXPECT_NEAR(part.lin1, eta.lin1, 1e-13 * eta.lin1);
     EXPECT_NEAR(part.lin2n, eta.lin2n, 1e-13 * eta.lin2n);
@@ -125,9 +126,10 @@ TEST(Estimate, VanishesForAConstantStress)
                              "\nboundary.right.traction = [\"(1+2)*0.1 - 0.3\", 0.2]\n"
                              "boundary.bottom.contact = { friction = \"tresca\", threshold = 0.2 }\n";
     const DiscreteCase<2> c(toml);
-    const NewtonResult<2> result = c.solve();
-    ASSERT_EQ(result.status, NewtonStatus::converged);
-    const Estimate eta = estimate<2>(c.form, result.u, equilibrate<2>(c.form, result.u, result.traction));
+    const solve::NewtonResult<2> result = c.solve();
+    ASSERT_EQ(result.status, solve::NewtonStatus::converged);
+    const certify::Estimate eta =
+        certify::estimate<2>(c.form, result.u, certify::equilibrate<2>(c.form, result.u, result.traction));
     EXPECT_LE(eta.total, 1e-11) << "p = " << p;
   }
 }

@@ -30,7 +30,7 @@ template <int dim>
 struct NamedMesh
 {
   std::string name;
-  MeshData<dim> data;
+  mesh::MeshData<dim> data;
 };
 
 /// What makes one case: its line in the table.
@@ -56,7 +56,7 @@ template <int dim>
 Effectivities effectivities(const EffectivityCase<dim>& which, double delta = 0)
 {
   DiscreteCase<dim> c(fmt::format("degree = {}\n", which.degree) + which.problem.text, which.mesh.data);
-  DualNorm<dim> dual_norm(c.form, {.refinements = 2, .degree = which.degree + 2});
+  certify::DualNorm<dim> dual_norm(c.form, {.refinements = 2, .degree = which.degree + 2});
   Effectivities result;
   std::string line =
       fmt::format("{}D p = {}  {:<22} {:<12}", dim, which.degree, which.problem.name, which.mesh.name);
@@ -64,12 +64,12 @@ Effectivities effectivities(const EffectivityCase<dim>& which, double delta = 0)
   for (const int k : {1, 2, all_steps})
   {
     c.config.newton.max_steps = k;
-    const NewtonResult<dim> newton = c.solve(delta);
-    const Estimate eta =
-        estimate<dim>(c.form, newton.u, equilibrate<dim>(c.form, newton.u, newton.traction, 0, delta));
+    const solve::NewtonResult<dim> newton = c.solve(delta);
+    const certify::Estimate eta = certify::estimate<dim>(
+        c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction, 0, delta));
     const double below = dual_norm(newton.u);
     result.of_iterates.push_back(eta.total_sharp / below);
-    result.converged = newton.status == NewtonStatus::converged;
+    result.converged = newton.status == solve::NewtonStatus::converged;
     line += fmt::format("  k = {:<2} {:.4e} / {:.4e} = {:.4f}", newton.steps.size(), eta.total_sharp, below,
                         result.last());
   }

@@ -36,15 +36,16 @@ BoundRates finest_rates(const Manufactured<dim>& solution, int p, int first, int
 {
   fmt::print("{}, p = {}\n{:>8} {:>10} {:>12} {:>6} {:>12} {:>6}\n", solution.name, p, "n", "cells",
              "eta_tot", "rate", "eta_osc", "rate");
-  BoundComponents last;
+  certify::BoundComponents last;
   double last_total = 0;
   BoundRates rates{0, 0};
   for (int level = 0, n = first; level < levels; ++level, n *= 2)
   {
     const DiscreteCase<dim> c(manufactured_case(solution, p, n));
-    const NewtonResult<dim> newton = c.solve();
-    EXPECT_EQ(newton.status, NewtonStatus::converged) << newton.message;
-    const Estimate eta = estimate<dim>(c.form, newton.u, equilibrate<dim>(c.form, newton.u, newton.traction));
+    const solve::NewtonResult<dim> newton = c.solve();
+    EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
+    const certify::Estimate eta = certify::estimate<dim>(
+        c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction));
     if (level > 0) rates = {std::log2(last_total / eta.total_sharp), std::log2(last.osc / eta.global.osc)};
     last = eta.global;
     last_total = eta.total_sharp;
@@ -92,7 +93,7 @@ TEST(BoundRates3D, TurningSlip)
 
 /// Cells of all shapes in the box (0,2) x (0,1) (x (0,1)) turned by `frame`; its sides stay flat.
 template <int dim>
-MeshData<dim> irregular_box(const Tensor<dim>& frame)
+mesh::MeshData<dim> irregular_box(const Tensor<dim>& frame)
 {
   const auto map = [&](const Point<dim>& x) -> Point<dim>
   {
@@ -105,7 +106,7 @@ MeshData<dim> irregular_box(const Tensor<dim>& frame)
 }
 
 /// Every component, not only the bound, is at round-off.
-void expect_nothing(const BoundComponents& eta)
+void expect_nothing(const certify::BoundComponents& eta)
 {
   constexpr double tolerance = 1e-11;
   EXPECT_LE(eta.osc, tolerance);
@@ -121,18 +122,18 @@ void expect_nothing(const BoundComponents& eta)
 template <int dim>
 void constant_stress(const Tensor<dim>& frame, int p)
 {
-  for_all_states<dim>(
-      frame,
-      [&](const AffineCase<dim>& exact, const Point<dim>& right, const Point<dim>&)
-      {
-        const DiscreteCase<dim> c(affine_toml<dim>(exact, p, right), irregular_box<dim>(frame));
-        const NewtonResult<dim> newton = c.solve();
-        ASSERT_EQ(newton.status, NewtonStatus::converged) << newton.message;
-        const Estimate eta =
-            estimate<dim>(c.form, newton.u, equilibrate<dim>(c.form, newton.u, newton.traction));
-        fmt::print("{:<20} {}D, p = {}: eta_tot {:.1e}\n", exact.name, dim, p, eta.total);
-        expect_nothing(eta.global);
-      });
+  for_all_states<dim>(frame,
+                      [&](const AffineCase<dim>& exact, const Point<dim>& right, const Point<dim>&)
+                      {
+                        const DiscreteCase<dim> c(affine_toml<dim>(exact, p, right),
+                                                  irregular_box<dim>(frame));
+                        const solve::NewtonResult<dim> newton = c.solve();
+                        ASSERT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
+                        const certify::Estimate eta = certify::estimate<dim>(
+                            c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction));
+                        fmt::print("{:<20} {}D, p = {}: eta_tot {:.1e}\n", exact.name, dim, p, eta.total);
+                        expect_nothing(eta.global);
+                      });
 }
 
 class ConstantStress2D : public ::testing::TestWithParam<int>

@@ -24,34 +24,34 @@ template <int dim>
 struct Told
 {
   std::vector<int> numbers;
-  std::vector<CertifiedLevel<dim>> levels;
+  std::vector<adapt::CertifiedLevel<dim>> levels;
   double unsettled = 0;  ///< |integral of T(u) - t^k| on the last level
-  Verdict verdict;
+  certify::Verdict verdict;
 };
 
 template <int dim>
 Told<dim> run(const std::string& toml)
 {
-  const Config config = parse_config(toml);
-  auto mesh = std::get<Mesh<dim>>(read_mesh(config.mesh));
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const case_file::Config config = case_file::parse_config(toml);
+  auto mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
   Told<dim> told;
-  const LoopObserver<dim> observer = {
+  const adapt::LoopObserver<dim> observer = {
       {},
-      [&](const LevelView<dim>& view)
+      [&](const adapt::LevelView<dim>& view)
       {
         told.numbers.push_back(view.number);
         told.levels.push_back(view.level);
-        const NitscheForm<dim>& form = view.discrete.form;
+        const contact::NitscheForm<dim>& form = view.discrete.form;
         told.unsettled =
-            (contact_resultants<dim>(form, form.traction(view.level.u)).force -
-             contact_resultants<dim>(form, std::span<const Point<dim>>(view.level.traction)).force)
+            (contact::contact_resultants<dim>(form, form.traction(view.level.u)).force -
+             contact::contact_resultants<dim>(form, std::span<const Point<dim>>(view.level.traction)).force)
                 .norm();
       }};
   const std::atomic<bool> stop = false;
-  told.verdict =
-      adapt<dim>(problem, config, std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config),
-                 observer, stop);
+  told.verdict = adapt::adapt<dim>(
+      problem, config, std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config),
+      observer, stop);
   return told;
 }
 
@@ -80,7 +80,7 @@ TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
   const Told<2> early = run<2>(block(1, adapt + "newton.finish = false\n"));
   const Told<2> late = run<2>(block(1, adapt));
   ASSERT_EQ(early.numbers, late.numbers);
-  EXPECT_EQ(late.verdict.status, RunStatus::certified);
+  EXPECT_EQ(late.verdict.status, certify::RunStatus::certified);
   EXPECT_FALSE(early.levels.back().converged);
   EXPECT_TRUE(late.levels.back().converged);
   EXPECT_GT(early.unsettled, 1e-6);
@@ -98,7 +98,7 @@ TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
 TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
 {
   const Told<2> told = run<2>(block(2, elastic + "adapt = { tolerance = 1e-6, max_dofs = 1200 }\n"));
-  EXPECT_EQ(told.verdict.status, RunStatus::budget);
+  EXPECT_EQ(told.verdict.status, certify::RunStatus::budget);
   ASSERT_GE(told.numbers.size(), 3u);
   EXPECT_EQ(told.numbers.back(), told.numbers[told.numbers.size() - 2]);
   EXPECT_FALSE(told.levels[told.levels.size() - 2].converged);
@@ -113,7 +113,7 @@ TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
   const Told<2> early = run<2>(block(1, keys + "newton.finish = false\n"));
   const std::size_t steps = early.levels.back().steps.size();
   const Told<2> late = run<2>(block(1, keys + "newton.max_steps = " + std::to_string(steps) + "\n"));
-  EXPECT_EQ(late.verdict.status, RunStatus::certified) << late.verdict.reason;
+  EXPECT_EQ(late.verdict.status, certify::RunStatus::certified) << late.verdict.reason;
   EXPECT_EQ(late.levels.back().u == early.levels.back().u, !late.levels.back().converged);
 }
 
@@ -123,9 +123,9 @@ TEST(Finish, SystemsAreSolvedAnewWhereAnIdentityIsViolated)
   const Told<2> told = run<2>(
       block(1, elastic + "solver = { method = \"iterative\", tolerance = 1e-3 }\nnewton.tolerance = 1e-3\n"
                          "adapt = { tolerance = 0.9, max_levels = 0 }\n"));
-  EXPECT_EQ(told.verdict.status, RunStatus::certified) << told.verdict.reason;
+  EXPECT_EQ(told.verdict.status, certify::RunStatus::certified) << told.verdict.reason;
   EXPECT_TRUE(told.levels.back().tightened);
-  EXPECT_LE(told.levels.back().identities.largest(1), identity_limit);
+  EXPECT_LE(told.levels.back().identities.largest(1), certify::identity_limit);
 }
 
 /// A body that is carried away as a whole has no stress: rounding is compared with rounding.
@@ -144,9 +144,9 @@ boundary.right.displacement = {}
 boundary.bottom.contact = {{ friction = "coulomb", coefficient = 0.3, gap = 1 }}
 )",
                                                 p, nu, u, u));
-        EXPECT_EQ(told.verdict.status, RunStatus::certified)
+        EXPECT_EQ(told.verdict.status, certify::RunStatus::certified)
             << "p = " << p << ", u = " << u << ", nu = " << nu << ": " << told.verdict.reason;
-        EXPECT_TRUE(is_round_off(told.levels.back().estimate, told.levels.back().norms));
+        EXPECT_TRUE(certify::is_round_off(told.levels.back().estimate, told.levels.back().norms));
       }
 }
 
@@ -161,7 +161,7 @@ boundary.left.displacement = [0, -1.948e-06]
 boundary.bottom.contact = { gap = "0.03639*abs(x/0.958-0.178)" }
 adapt = { tolerance = 0.0256, max_levels = 0 }
 )toml");
-  EXPECT_NE(told.verdict.status, RunStatus::certified);
+  EXPECT_NE(told.verdict.status, certify::RunStatus::certified);
   EXPECT_GE(told.levels.back().estimate.total_sharp, 1.32859e-9);  // the dual norm, computed elsewhere
 }
 
@@ -169,7 +169,7 @@ adapt = { tolerance = 0.0256, max_levels = 0 }
 TEST(Finish, AStressDrownedInRoundingIsNotZero)
 {
   const std::string rubber = "material = { E = 1, nu = 0.499999999999 }\n";
-  EXPECT_EQ(run<2>(block(2, rubber)).verdict.status, RunStatus::not_certified);
+  EXPECT_EQ(run<2>(block(2, rubber)).verdict.status, certify::RunStatus::not_certified);
   EXPECT_EQ(run<2>(std::string(R"(
 degree = 2
 mesh.box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] }
@@ -177,7 +177,7 @@ boundary.left.displacement = [0, 0]
 boundary.right.displacement = [0.1, 0]
 )") + rubber + coulomb)
                 .verdict.status,
-            RunStatus::not_certified);
+            certify::RunStatus::not_certified);
 }
 
 }  // namespace

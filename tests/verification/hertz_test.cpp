@@ -33,9 +33,9 @@ constexpr double E = 200000;  ///< MPa, as in both Hertz examples
 constexpr double nu = 0.3;
 constexpr double R = 10;  ///< mm
 
-Config example(const std::string& name)
+case_file::Config example(const std::string& name)
 {
-  return read_config(std::filesystem::path(EXAMPLES) / name / "case.toml");
+  return case_file::read_config(std::filesystem::path(EXAMPLES) / name / "case.toml");
 }
 
 /// Hertz's pressure p(r) = p0 (1 - (r/a)^2)^(1/2) for r < a.
@@ -71,10 +71,10 @@ struct Sample
 /// At the quadrature points of the contact boundary, r the distance from the axis x = 0 (2D) or x = z = 0
 /// (3D).
 template <int dim>
-std::vector<Sample> pressure_samples(const NitscheForm<dim>& form, std::span<const double> u)
+std::vector<Sample> pressure_samples(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const Quadrature<dim - 1>& rule = form.facet_rule();
-  const auto table = tabulate_on_facets<dim>(form.space().basis(), rule.points);
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
+  const auto table = fem::tabulate_on_facets<dim>(form.space().basis(), rule.points);
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
   {
@@ -92,13 +92,13 @@ std::vector<Sample> pressure_samples(const NitscheForm<dim>& form, std::span<con
 
 /// The largest contact facet with a point at r < r_max.
 template <int dim>
-double largest_facet(const NitscheForm<dim>& form, double r_max)
+double largest_facet(const contact::NitscheForm<dim>& form, double r_max)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   double largest = 0;
-  for (const ContactFacet<dim>& facet : form.contact_facets())
+  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
   {
-    const auto vertices = facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local);
+    const auto vertices = mesh::facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local);
     if (std::ranges::any_of(vertices, [&](Index v) { return mesh.vertex(v).norm() < r_max; }))
       largest = std::max(largest, facet.geometry.diameter);
   }
@@ -107,20 +107,21 @@ double largest_facet(const NitscheForm<dim>& form, double r_max)
 
 /// Runs the example as the program does; `look` is shown every level, the last one last.
 template <int dim>
-void run_example(const Config& config, const std::function<void(const LevelView<dim>&)>& look)
+void run_example(const case_file::Config& config,
+                 const std::function<void(const adapt::LevelView<dim>&)>& look)
 {
-  Mesh<dim> mesh = std::get<Mesh<dim>>(read_mesh(config.mesh));
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  auto first = std::make_unique<Discretisation<dim>>(std::move(mesh), problem, config);
-  const auto show = [&](const LevelView<dim>& view)
+  mesh::Mesh<dim> mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config);
+  const auto show = [&](const adapt::LevelView<dim>& view)
   {
     fmt::print("level {}: {} cells, {} contact facets, {} Newton steps, bound {:.3g} %\n", view.number,
                view.discrete.mesh.n_cells(), view.discrete.form.contact_facets().size(),
                view.level.steps.size(), 100 * view.level.estimate.total_sharp / view.level.norms.sigma);
     look(view);
   };
-  const Verdict verdict = adapt<dim>(problem, config, std::move(first), {{}, show}, false);
-  EXPECT_EQ(verdict.status, RunStatus::certified) << verdict.reason;
+  const certify::Verdict verdict = adapt::adapt<dim>(problem, config, std::move(first), {{}, show}, false);
+  EXPECT_EQ(verdict.status, certify::RunStatus::certified) << verdict.reason;
 }
 
 /// The contact boundary of the last level.
@@ -132,15 +133,15 @@ struct ContactZone
 };
 
 template <int dim>
-ContactZone contact_zone(const Config& config, double a)
+ContactZone contact_zone(const case_file::Config& config, double a)
 {
   ContactZone zone;
   run_example<dim>(config,
-                   [&](const LevelView<dim>& view)
+                   [&](const adapt::LevelView<dim>& view)
                    {
-                     const NitscheForm<dim>& form = view.discrete.form;
+                     const contact::NitscheForm<dim>& form = view.discrete.form;
                      const auto t = form.traction(view.level.u);
-                     zone = {-contact_resultants<dim>(form, t).normal, largest_facet(form, a),
+                     zone = {-contact::contact_resultants<dim>(form, t).normal, largest_facet(form, a),
                              pressure_samples(form, view.level.u)};
                    });
   return zone;
@@ -252,12 +253,12 @@ TEST(Hertz, Sphere)
 }
 
 /// u_x on the base y = 0, piecewise linear between the quadrature points (and beyond the outermost ones).
-double base_displacement(const NitscheForm<2>& form, std::span<const double> u, double x)
+double base_displacement(const contact::NitscheForm<2>& form, std::span<const double> u, double x)
 {
-  const auto table = tabulate_on_facets<2>(form.space().basis(), form.facet_rule().points);
+  const auto table = fem::tabulate_on_facets<2>(form.space().basis(), form.facet_rule().points);
   std::vector<std::pair<double, double>> points;
   for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
-    for (const ContactState<2>& state : form.contact_states(u, static_cast<int>(k), table))
+    for (const contact::ContactState<2>& state : form.contact_states(u, static_cast<int>(k), table))
       points.emplace_back(state.point[0], state.slip[0]);
   std::ranges::sort(points);
   const auto after = std::ranges::upper_bound(points, std::pair(x, 0.0));
@@ -273,7 +274,7 @@ TEST(Ssnv128, HorizontalDisplacementOfTheBase)
   constexpr std::array<double, 5> published = {2.86, 2.72, 2.28, 1.98, 1.5};  // 1e-5 m
   std::array<double, 5> computed{};
   run_example<2>(example("04_ssnv128"),
-                 [&](const LevelView<2>& view)
+                 [&](const adapt::LevelView<2>& view)
                  {
                    for (std::size_t i = 0; i < x.size(); ++i)
                      computed[i] = 1e5 * base_displacement(view.discrete.form, view.level.u, 1e-3 * x[i]);

@@ -88,7 +88,7 @@ Profile random_profile(Random& random, char variable, double length, double top,
 class BruteForce
 {
  public:
-  explicit BruteForce(const LagrangeSpace<2>& space) : space_(space) {}
+  explicit BruteForce(const fem::LagrangeSpace<2>& space) : space_(space) {}
 
   /// Every cell is cut into 4^5 parts.
   void add_body(const Function& f, std::vector<double>& load) const
@@ -102,10 +102,10 @@ class BruteForce
         points.push_back({(i + 1.0 / 3) * h, (j + 1.0 / 3) * h});
         if (i + j < cuts - 1) points.push_back({(i + 2.0 / 3) * h, (j + 2.0 / 3) * h});
       }
-    const Tabulation<2> table = space_.basis().tabulate(points);
+    const fem::Tabulation<2> table = space_.basis().tabulate(points);
     for (Index c = 0; c < space_.mesh().n_cells(); ++c)
     {
-      const CellMap<2> map = cell_map(space_.mesh(), c);
+      const mesh::CellMap<2> map = mesh::cell_map(space_.mesh(), c);
       for (std::size_t q = 0; q < points.size(); ++q)
       {
         const double weighted = map.det * h * h / 2 * f(map(points[q])[0]);
@@ -119,13 +119,13 @@ class BruteForce
   /// Facets of boundary `tag`, cut at the breaks and into 32 parts.
   void add_traction(int tag, const Profile& g, std::vector<double>& load) const
   {
-    const Quadrature<1> rule = quadrature<1>(2 * space_.degree() + 4);
-    for (const BoundaryFacet& facet : space_.mesh().boundary())
+    const fem::Quadrature<1> rule = fem::quadrature<1>(2 * space_.degree() + 4);
+    for (const mesh::BoundaryFacet& facet : space_.mesh().boundary())
     {
       if (facet.tag != tag) continue;
-      const CellMap<2> map = cell_map(space_.mesh(), facet.cell);
-      const auto at = [&](double s) { return map(facet_to_cell<2>(facet.local, Point<1>(s))); };
-      const double measure = facet_geometry(space_.mesh(), facet.cell, facet.local).measure;
+      const mesh::CellMap<2> map = mesh::cell_map(space_.mesh(), facet.cell);
+      const auto at = [&](double s) { return map(mesh::facet_to_cell<2>(facet.local, Point<1>(s))); };
+      const double measure = mesh::facet_geometry(space_.mesh(), facet.cell, facet.local).measure;
       std::vector<double> ends;
       for (int i = 0; i <= 32; ++i) ends.push_back(i / 32.0);
       for (const double b : g.breaks)
@@ -140,10 +140,10 @@ class BruteForce
         for (int q = 0; q < rule.size(); ++q)
         {
           const double s = ends[k] + (ends[k + 1] - ends[k]) * rule.points[q][0];
-          points.push_back(facet_to_cell<2>(facet.local, Point<1>(s)));
+          points.push_back(mesh::facet_to_cell<2>(facet.local, Point<1>(s)));
           weighted.push_back((ends[k + 1] - ends[k]) * rule.weights[q] * measure * g.value(at(s)[0]));
         }
-      const Tabulation<2> table = space_.basis().tabulate(points);
+      const fem::Tabulation<2> table = space_.basis().tabulate(points);
       for (std::size_t q = 0; q < points.size(); ++q)
       {
         const auto phi = table.values_at(static_cast<int>(q));
@@ -154,7 +154,7 @@ class BruteForce
   }
 
  private:
-  const LagrangeSpace<2>& space_;
+  const fem::LagrangeSpace<2>& space_;
 };
 
 /// A block, held at the left, loaded in its body and from above, on a floor; one of the data is hard to see.
@@ -199,12 +199,12 @@ double random_effectivity(Random& random, const std::string& seed)
   const RandomCase c = random_case(random);
   const int nx = 2 + random.of(3);
   const DiscreteCase<2> problem(c.toml, box<2>({0, 0}, {2, 1}, {nx, 1 + random.of(2)}));
-  const NewtonResult<2> newton = problem.solve();
-  const Estimate eta =
-      estimate<2>(problem.form, newton.u, equilibrate<2>(problem.form, newton.u, newton.traction));
+  const solve::NewtonResult<2> newton = problem.solve();
+  const certify::Estimate eta = certify::estimate<2>(
+      problem.form, newton.u, certify::equilibrate<2>(problem.form, newton.u, newton.traction));
 
-  DualNorm<2> dual_norm(problem.form, {.refinements = 1, .degree = c.degree + 1});
-  const LagrangeSpace<2>& space = dual_norm.space();
+  certify::DualNorm<2> dual_norm(problem.form, {.refinements = 1, .degree = c.degree + 1});
+  const fem::LagrangeSpace<2>& space = dual_norm.space();
   std::vector<double> exact(space.n_dofs(), 0.0);
   const BruteForce brute(space);
   if (c.body.formula != "0") brute.add_body(c.body.value, exact);
@@ -212,8 +212,8 @@ double random_effectivity(Random& random, const std::string& seed)
   const int top = static_cast<int>(std::ranges::find(names, "top") - names.begin());
   if (c.traction.formula != "0") brute.add_traction(top, c.traction, exact);
   const double below = dual_norm.of(dual_norm.residual(newton.u, exact));
-  const std::optional<double> found =
-      effectivity(eta.total_sharp, below, stress_norms(problem.problem, problem.space, newton.u));
+  const std::optional<double> found = certify::effectivity(
+      eta.total_sharp, below, contact::stress_norms(problem.problem, problem.space, newton.u));
   if (!found) return 1;  // no load reaches the body
   EXPECT_GE(*found, 1) << seed << "\n" << c.toml;
   return *found;
@@ -253,10 +253,11 @@ TEST(HiddenData, TheBoundIsAboveTheDualNormIn3D)
         "boundary.bottom.contact = {{ friction = \"tresca\", threshold = \"{} ? 0.05 : 0.01\" }}\n",
         1 + seed % 2, plane(), a, a + random.size(1e-3, 0.2), plane());
     const DiscreteCase<3> c(toml, box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 1}));
-    const NewtonResult<3> newton = c.solve();
-    const Estimate eta = estimate<3>(c.form, newton.u, equilibrate<3>(c.form, newton.u, newton.traction));
+    const solve::NewtonResult<3> newton = c.solve();
+    const certify::Estimate eta =
+        certify::estimate<3>(c.form, newton.u, certify::equilibrate<3>(c.form, newton.u, newton.traction));
     EXPECT_LE(eta.global.quad, 1e-12) << toml;  // planes are cut exactly
-    DualNorm<3> dual_norm(c.form, {.refinements = 1, .degree = 3});
+    certify::DualNorm<3> dual_norm(c.form, {.refinements = 1, .degree = 3});
     EXPECT_GE(eta.total_sharp, dual_norm(newton.u)) << toml;
   }
 }

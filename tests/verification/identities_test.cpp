@@ -42,9 +42,9 @@ double expect_identities(DiscreteCase<dim>& c)
   for (const int k : {1, 2, 30})
   {
     c.config.newton.max_steps = k;
-    const NewtonResult<dim> result = c.solve();
-    const Stress<dim> stress = equilibrate<dim>(c.form, result.u, result.traction);
-    const IdentityDefects defects = check_identities<dim>(c.form, result.traction, stress);
+    const solve::NewtonResult<dim> result = c.solve();
+    const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, result.u, result.traction);
+    const certify::IdentityDefects defects = certify::check_identities<dim>(c.form, result.traction, stress);
     EXPECT_LE(defects.divergence, bound) << "iterate " << k;
     EXPECT_LE(defects.jump, bound) << "iterate " << k;
     EXPECT_LE(defects.neumann, bound) << "iterate " << k;
@@ -68,7 +68,7 @@ std::string matter(int p)
 }
 
 template <int dim>
-MeshData<dim> block()
+mesh::MeshData<dim> block()
 {
   if constexpr (dim == 2)
     return box<2>({0, 0}, {2, 1}, {4, 3});
@@ -213,9 +213,9 @@ std::string data_file(const std::string& name, int dim)
 
 /// The block bisected towards the corner where two contact boundaries meet.
 template <int dim>
-Mesh<dim> graded_block()
+mesh::Mesh<dim> graded_block()
 {
-  Mesh<dim> mesh(distorted<dim>(block<dim>(), 3));
+  mesh::Mesh<dim> mesh(distorted<dim>(block<dim>(), 3));
   for (int level = 0; level < (dim == 2 ? 6 : 3); ++level)
   {
     const auto vertices = mesh.vertices();
@@ -223,7 +223,8 @@ Mesh<dim> graded_block()
         std::ranges::max_element(vertices, {}, [](const Point<dim>& x) { return x[0] - x[1]; });
     const auto& topology = mesh.topology();
     const auto* first = &topology.vertex_cells_begin[corner - vertices.begin()];
-    mesh = bisect<dim>(mesh, std::span(topology.vertex_cells).subspan(first[0], first[1] - first[0]), 1).mesh;
+    mesh = mesh::bisect<dim>(mesh, std::span(topology.vertex_cells).subspan(first[0], first[1] - first[0]), 1)
+               .mesh;
   }
   return mesh;
 }

@@ -33,7 +33,7 @@ class Draw
 };
 
 /// Flat at the bottom, leaning sides, a sloping top.
-MeshData<2> quadrilateral(Draw& draw)
+mesh::MeshData<2> quadrilateral(Draw& draw)
 {
   const int n = 2 + draw.among(6);
   const double left = draw(-0.3, 0.3);
@@ -77,9 +77,9 @@ TEST(Incompressible, NewtonConverges)
       Draw draw(i);
       const std::string toml = random_case(draw, nu);
       const DiscreteCase<2> c(toml, quadrilateral(draw));
-      const NewtonResult<2> result = c.solve();
+      const solve::NewtonResult<2> result = c.solve();
       steps += result.steps.size();
-      if (result.status == NewtonStatus::converged) continue;
+      if (result.status == solve::NewtonStatus::converged) continue;
       ++failed;
       fmt::print("case {}\n{}{}\n", i, toml, result.message);
     }

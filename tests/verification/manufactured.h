@@ -23,7 +23,7 @@ template <int dim>
 struct Manufactured
 {
   std::string name;
-  Material material;
+  problem::Material material;
   std::array<double, dim> upper;
   std::array<std::string, dim> u;
   std::array<std::string, dim * dim> gradient;  ///< row by row
@@ -58,8 +58,8 @@ class ExactField
   }
 
  private:
-  std::vector<Expression> u_;
-  std::vector<Expression> gradient_;
+  std::vector<problem::Expression> u_;
+  std::vector<problem::Expression> gradient_;
 };
 
 /// The case with degree p on a uniform mesh, n cells along y.
@@ -92,18 +92,19 @@ struct EnergyError
 template <int dim>
 EnergyError energy_error(const DiscreteCase<dim>& c, std::span<const double> u, const ExactField<dim>& exact)
 {
-  const Quadrature<dim> rule = quadrature<dim>(2 * c.space.degree() + 6);
-  const Tabulation<dim> table = c.space.basis().tabulate(rule.points);
-  const Material& material = c.problem.material(0);
-  const auto density = [&](const Tensor<dim>& g) { return sigma<dim>(material, g).cwiseProduct(g).sum(); };
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * c.space.degree() + 6);
+  const fem::Tabulation<dim> table = c.space.basis().tabulate(rule.points);
+  const problem::Material& material = c.problem.material(0);
+  const auto density = [&](const Tensor<dim>& g)
+  { return contact::sigma<dim>(material, g).cwiseProduct(g).sum(); };
   EnergyError sum{0, 0};
   for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
   {
-    const CellMap<dim> map = cell_map(c.mesh, cell);
+    const mesh::CellMap<dim> map = mesh::cell_map(c.mesh, cell);
     for (int q = 0; q < rule.size(); ++q)
     {
-      const Tensor<dim> discrete =
-          gradient_at<dim>(c.space.cell_nodes(cell), u, table.gradients_at(q), map.inverse_transpose);
+      const Tensor<dim> discrete = contact::gradient_at<dim>(c.space.cell_nodes(cell), u,
+                                                             table.gradients_at(q), map.inverse_transpose);
       const Tensor<dim> g = exact.gradient(map(rule.points[q]));
       sum.error += rule.weights[q] * map.det * density(g - discrete);
       sum.exact += rule.weights[q] * map.det * density(g);

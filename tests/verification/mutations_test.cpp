@@ -30,7 +30,7 @@ namespace
 /// but not quite, along a fixed component the patch problem is almost incompatible: its stress grows like the
 /// inverse of the angle, and rounding with it.)
 template <int dim>
-MeshData<dim> skewed(MeshData<dim> data)
+mesh::MeshData<dim> skewed(mesh::MeshData<dim> data)
 {
   const auto map = [](const Point<dim>& x) -> Point<dim>
   {
@@ -62,7 +62,7 @@ constexpr auto tresca = "{ friction = \"tresca\", threshold = 0.03 }";
 constexpr auto coulomb = "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.01*x\" }";
 
 template <int dim>
-MeshData<dim> block()
+mesh::MeshData<dim> block()
 {
   if constexpr (dim == 2)
     return box<2>({0, 0}, {2, 1}, {4, 2});
@@ -71,7 +71,7 @@ MeshData<dim> block()
 }
 
 template <int dim>
-NewtonResult<dim> iterate(DiscreteCase<dim>& c, int k)
+solve::NewtonResult<dim> iterate(DiscreteCase<dim>& c, int k)
 {
   c.config.newton.max_steps = k;
   return c.solve();
@@ -79,7 +79,7 @@ NewtonResult<dim> iterate(DiscreteCase<dim>& c, int k)
 
 /// sigma_lin of a cell, zeros where it is not stored.
 template <int dim>
-std::vector<double> lin_of(const Stress<dim>& stress, Index cell)
+std::vector<double> lin_of(const certify::Stress<dim>& stress, Index cell)
 {
   std::vector<double> result(stress.block_size(), 0.0);
   std::ranges::copy(stress.lin_in(cell), result.begin());
@@ -88,7 +88,7 @@ std::vector<double> lin_of(const Stress<dim>& stress, Index cell)
 
 /// ||a - b|| / ||sigma_dis|| for dis and lin, the larger.
 template <int dim>
-double difference(const Stress<dim>& a, const Stress<dim>& b)
+double difference(const certify::Stress<dim>& a, const certify::Stress<dim>& b)
 {
   double dis = 0;
   double lin = 0;
@@ -108,14 +108,14 @@ double difference(const Stress<dim>& a, const Stress<dim>& b)
 }
 
 template <int dim>
-void expect_agreement(const std::string& name, const std::string& contact, int p, MeshData<dim> mesh)
+void expect_agreement(const std::string& name, const std::string& contact, int p, mesh::MeshData<dim> mesh)
 {
   SCOPED_TRACE(name);
   DiscreteCase<dim> c(toml<dim>(p, contact), std::move(mesh));
   for (const int k : {1, 2, 30})
   {
-    const NewtonResult<dim> result = iterate(c, k);
-    const double d = difference(equilibrate<dim>(c.form, result.u, result.traction),
+    const solve::NewtonResult<dim> result = iterate(c, k);
+    const double d = difference(certify::equilibrate<dim>(c.form, result.u, result.traction),
                                 dense_equilibrate<dim>(c.form, result.u, result.traction));
     fmt::print("{}, {}D, p = {}, iterate {}: difference {:.1e}\n", name, dim, p, k, d);
     EXPECT_LE(d, 1e-10) << "iterate " << k;
@@ -155,10 +155,10 @@ double distance_from_reference(int p, int k, Mutation mutation)
   {
     if (expected["p"] != p || expected["nx"] != 4) continue;
     DiscreteCase<2> c(t2d_toml(p, expected["nx"], expected["ny"]));
-    const NewtonResult<2> result = iterate(c, k);
-    const Estimate eta =
-        estimate<2>(c.form, result.u, dense_equilibrate<2>(c.form, result.u, result.traction, mutation),
-                    ContactRule::reference);
+    const solve::NewtonResult<2> result = iterate(c, k);
+    const certify::Estimate eta = certify::estimate<2>(
+        c.form, result.u, dense_equilibrate<2>(c.form, result.u, result.traction, mutation),
+        case_file::ContactRule::reference);
     const nlohmann::json& e = expected[fmt::format("iterate{}_est", k)];
     const double total = e["eta_tot"];
     const auto compare = [&](double value, const char* name)
@@ -188,24 +188,24 @@ struct Mistake
 {
   Mutation mutation;
   const char* name;
-  double IdentityDefects::*identity;
+  double certify::IdentityDefects::*identity;
   bool components;
 };
 
 // y_a enters dis and lin with opposite signs: dropped from both it cancels in sigma_h, whose identities hold,
 // and the bound with them. The parts are then wrong and the components say so. T2D has no body force.
 constexpr std::array mistakes{
-    Mistake{Mutation::sign_of_f, "sign of f", &IdentityDefects::divergence, false},
-    Mistake{Mutation::sign_of_t, "sign of t", &IdentityDefects::neumann, true},
+    Mistake{Mutation::sign_of_f, "sign of f", &certify::IdentityDefects::divergence, false},
+    Mistake{Mutation::sign_of_t, "sign of t", &certify::IdentityDefects::neumann, true},
     Mistake{Mutation::no_y, "no y_a", nullptr, true},
-    Mistake{Mutation::no_y_in_lin, "no y_a in lin", &IdentityDefects::divergence, true},
-    Mistake{Mutation::coarse_rule_for_t, "coarse rule for t", &IdentityDefects::contact, true},
-    Mistake{Mutation::one_patch_left_out, "one patch left out", &IdentityDefects::divergence, true},
-    Mistake{Mutation::t_replaced_by_T, "T for t^k", &IdentityDefects::contact, true},
-    Mistake{Mutation::no_lin, "no sigma_lin", &IdentityDefects::contact, true},
+    Mistake{Mutation::no_y_in_lin, "no y_a in lin", &certify::IdentityDefects::divergence, true},
+    Mistake{Mutation::coarse_rule_for_t, "coarse rule for t", &certify::IdentityDefects::contact, true},
+    Mistake{Mutation::one_patch_left_out, "one patch left out", &certify::IdentityDefects::divergence, true},
+    Mistake{Mutation::t_replaced_by_T, "T for t^k", &certify::IdentityDefects::contact, true},
+    Mistake{Mutation::no_lin, "no sigma_lin", &certify::IdentityDefects::contact, true},
 };
 
-std::string summary(const IdentityDefects& d)
+std::string summary(const certify::IdentityDefects& d)
 {
   return fmt::format("divergence {:.1e}  jump {:.1e}  neumann {:.1e}  contact {:.1e}  symmetry {:.1e}",
                      d.divergence, d.jump, d.neumann, d.contact, d.symmetry);
@@ -219,19 +219,19 @@ template <int dim>
 void expect_noticed(int p)
 {
   DiscreteCase<dim> c(toml<dim>(p, tresca), block<dim>());
-  const NewtonResult<dim> result = iterate(c, 2);
-  ASSERT_NE(result.status, NewtonStatus::converged) << "sigma_lin would vanish";
+  const solve::NewtonResult<dim> result = iterate(c, 2);
+  ASSERT_NE(result.status, solve::NewtonStatus::converged) << "sigma_lin would vanish";
   const auto defects = [&](Mutation mutation)
   {
-    return check_identities<dim>(c.form, result.traction,
-                                 dense_equilibrate<dim>(c.form, result.u, result.traction, mutation));
+    return certify::check_identities<dim>(
+        c.form, result.traction, dense_equilibrate<dim>(c.form, result.u, result.traction, mutation));
   };
-  const IdentityDefects right = defects(Mutation::none);
+  const certify::IdentityDefects right = defects(Mutation::none);
   fmt::print("{}D, p = {}\n{:<20} {}\n", dim, p, "none", summary(right));
   EXPECT_LE(right.largest(p), 1e-11);
   for (const auto& [mutation, name, identity, components] : mistakes)
   {
-    const IdentityDefects wrong = defects(mutation);
+    const certify::IdentityDefects wrong = defects(mutation);
     fmt::print("{:<20} {}\n", name, summary(wrong));
     if (identity)
     {

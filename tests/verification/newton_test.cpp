@@ -40,11 +40,11 @@ void check_steps(const std::string& name, const std::string& contact)
     {
       SCOPED_TRACE(fmt::format("{}, p = {}, {} x {}", name, p, 2 * ny, ny));
       const DiscreteCase<2> c(block(p, ny, contact));
-      const NewtonResult<2> newton = c.solve();
-      EXPECT_EQ(newton.status, NewtonStatus::converged) << newton.message;
+      const solve::NewtonResult<2> newton = c.solve();
+      EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
       EXPECT_LE(newton.steps.size(), most_steps);
       const auto damped =
-          std::ranges::count_if(newton.steps, [](const NewtonStep& step) { return step.damping < 1; });
+          std::ranges::count_if(newton.steps, [](const solve::NewtonStep& step) { return step.damping < 1; });
       fmt::print(" {:>6} ({:>2})", newton.steps.size(), damped);
     }
   fmt::print("\n");

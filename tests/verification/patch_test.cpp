@@ -43,28 +43,29 @@ void expect_exact(const DiscreteCase<dim>& d, const AffineCase<dim>& exact, cons
   constexpr double volume = 2;
   constexpr double contact_measure = 2;
   constexpr double tolerance = 1e-11;
-  const NewtonResult<dim> newton = d.solve();
-  ASSERT_EQ(newton.status, NewtonStatus::converged) << newton.message;
+  const solve::NewtonResult<dim> newton = d.solve();
+  ASSERT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
   const double error = displacement_error<dim>(d, newton.u, exact);
   fmt::print("{:<20} {:>5} dofs {:>3} steps   error {:.1e}\n", exact.name, d.space.n_dofs(),
              newton.steps.size(), error);
   EXPECT_LE(error, tolerance);
 
-  const Tensor<dim> stress = sigma<dim>(affine_material, exact.gradient);
-  const StressNorms norms = stress_norms<dim>(d.problem, d.space, newton.u);
+  const Tensor<dim> stress = contact::sigma<dim>(affine_material, exact.gradient);
+  const contact::StressNorms norms = contact::stress_norms<dim>(d.problem, d.space, newton.u);
   const double energy = volume * stress.cwiseProduct(exact.gradient).sum();
   EXPECT_NEAR(norms.energy, energy, tolerance * energy);
   EXPECT_NEAR(norms.sigma, std::sqrt(volume) * stress.norm(), tolerance * stress.norm());
 
-  const ContactResultants<dim> contact = contact_resultants<dim>(d.form, newton.traction);
+  const contact::ContactResultants<dim> contact = contact::contact_resultants<dim>(d.form, newton.traction);
   const Point<dim> force = contact_measure * stress * normal;
   EXPECT_LE((contact.force - force).norm(), tolerance * stress.norm());
   EXPECT_NEAR(contact.normal, force.dot(normal), tolerance * stress.norm());
   EXPECT_NEAR(contact.abs_tangential, (force - force.dot(normal) * normal).norm(), tolerance * stress.norm());
 
-  const auto table = tabulate_on_facets<dim>(d.space.basis(), d.form.facet_rule().points);
+  const auto table = fem::tabulate_on_facets<dim>(d.space.basis(), d.form.facet_rule().points);
   for (std::size_t k = 0; k < d.form.contact_facets().size(); ++k)
-    for (const ContactState<dim>& state : d.form.contact_states(newton.u, static_cast<int>(k), table))
+    for (const contact::ContactState<dim>& state :
+         d.form.contact_states(newton.u, static_cast<int>(k), table))
       EXPECT_EQ(state.status, exact.status) << "at " << state.point.transpose();
 }
 
@@ -88,7 +89,7 @@ void turned_patch(int p)
   for_all_states<dim>(frame,
                       [&](const AffineCase<dim>& c, const Point<dim>& right, const Point<dim>& bottom)
                       {
-                        MeshData<dim> mesh = renumbered<dim>(mapped<dim>(structured<dim>(), turn), 7);
+                        mesh::MeshData<dim> mesh = renumbered<dim>(mapped<dim>(structured<dim>(), turn), 7);
                         const DiscreteCase<dim> d(affine_toml<dim>(c, p, right), std::move(mesh));
                         expect_exact<dim>(d, c, bottom);
                       });

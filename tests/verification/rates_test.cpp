@@ -37,8 +37,8 @@ template <int dim>
 void check_formulas(const DiscreteCase<dim>& c, const Manufactured<dim>& solution)
 {
   const ExactField<dim> exact(solution);
-  const Material& material = c.problem.material(0);
-  const auto stress = [&](const Point<dim>& y) { return sigma<dim>(material, exact.gradient(y)); };
+  const problem::Material& material = c.problem.material(0);
+  const auto stress = [&](const Point<dim>& y) { return contact::sigma<dim>(material, exact.gradient(y)); };
   std::mt19937 random(1);
   for (int i = 0; i < 20; ++i)
   {
@@ -59,7 +59,7 @@ template <int dim>
 void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution)
 {
   const ExactField<dim> exact(solution);
-  const ContactFacet<dim>& facet = c.form.contact_facets().front();
+  const contact::ContactFacet<dim>& facet = c.form.contact_facets().front();
   const Point<dim> n = facet.geometry.normal;
   std::mt19937 random(2);
   for (int i = 0; i < 20; ++i)
@@ -67,12 +67,13 @@ void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution
     Point<dim> x = random_point(solution, random);
     x[1] = 0;
     const Point<dim> u = exact.value(x);
-    const Point<dim> traction = sigma<dim>(c.problem.material(0), exact.gradient(x)) * n;
+    const Point<dim> traction = contact::sigma<dim>(c.problem.material(0), exact.gradient(x)) * n;
     const double sigma_n = traction.dot(n);
     const Point<dim> sigma_t = traction - sigma_n * n;
-    const auto* tresca = std::get_if<Tresca>(&facet.contact->friction);
-    const double limit = tresca ? threshold_at<dim>(*tresca, x)
-                                : -std::get<Coulomb>(facet.contact->friction).coefficient * sigma_n;
+    const auto* tresca = std::get_if<case_file::Tresca>(&facet.contact->friction);
+    const double limit = tresca
+                             ? problem::threshold_at<dim>(*tresca, x)
+                             : -std::get<case_file::Coulomb>(facet.contact->friction).coefficient * sigma_n;
     EXPECT_LT(sigma_n, 0);
     EXPECT_EQ(u.dot(n), 0);
     EXPECT_LE(sigma_t.norm(), limit * (1 + 1e-10));
@@ -92,8 +93,8 @@ double finest_rate(const Manufactured<dim>& solution, int p, int first, int leve
   for (int level = 0, n = first; level < levels; ++level, n *= 2)
   {
     const DiscreteCase<dim> c(manufactured_case(solution, p, n));
-    const NewtonResult<dim> newton = c.solve();
-    EXPECT_EQ(newton.status, NewtonStatus::converged) << newton.message;
+    const solve::NewtonResult<dim> newton = c.solve();
+    EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
     const EnergyError energy = energy_error<dim>(c, newton.u, exact);
     rate = level > 0 ? std::log2(last / energy.error) : 0;
     last = energy.error;

@@ -40,7 +40,7 @@ std::vector<NamedText> problems()
 }
 
 template <int dim>
-MeshData<dim> bent_block()
+mesh::MeshData<dim> bent_block()
 {
   if constexpr (dim == 2)
     return distorted(box<2>({0, 0}, {2, 1}, {4, 2}), 1);
@@ -64,19 +64,20 @@ double largest_defect(int p, const NamedText& problem)
   const DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
   double largest = 0;
   int n_converged = 0;
-  const auto observer = [&](const NewtonIterate<dim>& iterate) -> NewtonAdvice
+  const auto observer = [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
   {
     const double delta = iterate.step.delta;
-    const Stress<dim> stress = equilibrate<dim>(c.form, iterate.u, iterate.traction, 0, delta);
+    const certify::Stress<dim> stress =
+        certify::equilibrate<dim>(c.form, iterate.u, iterate.traction, 0, delta);
     EXPECT_FALSE(stress.reg.empty());
-    largest = std::max(largest, check_identities<dim>(c.form, iterate.traction, stress).largest(p));
-    NewtonAdvice advice = false;
+    largest = std::max(largest, certify::check_identities<dim>(c.form, iterate.traction, stress).largest(p));
+    solve::NewtonAdvice advice = false;
     if (iterate.converged && ++n_converged < 3) advice.delta = delta / 4;
     return advice;
   };
-  const NewtonResult<dim> result =
-      solve<dim>(c.form, {}, c.config.newton, c.config.solver, observer, large_delta);
-  EXPECT_EQ(result.status, NewtonStatus::converged) << result.message;
+  const solve::NewtonResult<dim> result =
+      solve::solve<dim>(c.form, {}, c.config.newton, c.config.solver, observer, large_delta);
+  EXPECT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_EQ(result.steps.front().delta, large_delta);
   EXPECT_EQ(result.steps.back().delta, large_delta / 16);
   return largest;
@@ -127,15 +128,16 @@ void expect_parts_to_add_up(int p)
     SCOPED_TRACE(problem.name);
     DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
     c.config.newton.max_steps = 2;
-    const NewtonResult<dim> result = c.solve(large_delta);
-    const Stress<dim> plain = equilibrate<dim>(c.form, result.u, result.traction);
-    Stress<dim> stress = equilibrate<dim>(c.form, result.u, result.traction, 0, large_delta);
+    const solve::NewtonResult<dim> result = c.solve(large_delta);
+    const certify::Stress<dim> plain = certify::equilibrate<dim>(c.form, result.u, result.traction);
+    certify::Stress<dim> stress =
+        certify::equilibrate<dim>(c.form, result.u, result.traction, 0, large_delta);
     EXPECT_TRUE(plain.reg.empty());
     EXPECT_LE(distance(stress.dis, plain.dis, {}, plain.dis), 1e-12);
     EXPECT_LE(distance(plain.lin, stress.lin, stress.reg, plain.dis), 1e-12);
     EXPECT_GT(norm(stress.reg), 1e-4 * norm(plain.dis));
     stress.reg.clear();
-    EXPECT_GT(check_identities<dim>(c.form, result.traction, stress).contact, 1e-6);
+    EXPECT_GT(certify::check_identities<dim>(c.form, result.traction, stress).contact, 1e-6);
   }
 }
 
@@ -170,14 +172,15 @@ TEST(Regularisation3D, TheBoundHoldsForLargeDelta)
 struct Converged
 {
   std::vector<double> u;
-  Estimate eta;
+  certify::Estimate eta;
 };
 
 Converged converged(const DiscreteCase<2>& c, double delta)
 {
-  NewtonResult<2> result = c.solve(delta);
-  EXPECT_EQ(result.status, NewtonStatus::converged) << "delta = " << delta;
-  Estimate eta = estimate<2>(c.form, result.u, equilibrate<2>(c.form, result.u, result.traction, 0, delta));
+  solve::NewtonResult<2> result = c.solve(delta);
+  EXPECT_EQ(result.status, solve::NewtonStatus::converged) << "delta = " << delta;
+  certify::Estimate eta = certify::estimate<2>(
+      c.form, result.u, certify::equilibrate<2>(c.form, result.u, result.traction, 0, delta));
   return {std::move(result.u), std::move(eta)};
 }
 
@@ -218,10 +221,10 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
     const DiscreteCase<2> c(toml<2>(2, problems<2>()[1]) + "newton.stopping = \"" + stopping +
                                 "\"\nregularisation = { delta = 2, factor = 0.5, gamma_reg = 0.01 }\n",
                             bent_block<2>());
-    const CertifiedLevel<2> level = solve_and_certify<2>(c.form, {}, c.config);
+    const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config);
     ASSERT_TRUE(level.solved()) << level.failure;
-    EXPECT_TRUE(regularisation_is_negligible(level.estimate.global, 0.01));
-    EXPECT_TRUE(linearisation_is_negligible(level.estimate.global, 0.1));
+    EXPECT_TRUE(adapt::regularisation_is_negligible(level.estimate.global, 0.01));
+    EXPECT_TRUE(adapt::linearisation_is_negligible(level.estimate.global, 0.1));
     EXPECT_LE(level.identities.largest(2), 1e-10);
     EXPECT_GT(*level.delta_updates, 0);
     int n_updates = 0;
@@ -236,7 +239,8 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
     }
     EXPECT_EQ(n_updates, *level.delta_updates);
     EXPECT_EQ(level.delta, delta) << "carried to the next mesh";
-    const CertifiedLevel<2> again = solve_and_certify<2>(c.form, level.u, c.config, {}, level.delta);
+    const adapt::CertifiedLevel<2> again =
+        adapt::solve_and_certify<2>(c.form, level.u, c.config, {}, level.delta);
     EXPECT_EQ(again.steps[0].step.delta, delta);
     EXPECT_EQ(again.delta_updates, 0);
   }
@@ -247,7 +251,7 @@ TEST(RegularisedLevel, KeepsToTheLimitOfUpdates)
   const DiscreteCase<2> c(
       toml<2>(1, problems<2>()[1]) + "regularisation = { delta = 5, gamma_reg = 1e-9, max_updates = 2 }\n",
       bent_block<2>());
-  const CertifiedLevel<2> level = solve_and_certify<2>(c.form, {}, c.config);
+  const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config);
   ASSERT_TRUE(level.solved()) << level.failure;
   EXPECT_EQ(level.delta_updates, 2);
   EXPECT_GT(level.estimate.global.regularisation(), 0) << "which the bound contains";
@@ -257,12 +261,12 @@ TEST(MeanContactTraction, IsTheRootMeanSquare)
 {
   const DiscreteCase<2> c(toml<2>(1, problems<2>()[1]), box<2>({0, 0}, {2, 1}, {4, 2}));
   const std::vector<Point<2>> t(c.form.n_contact_points(), Point<2>(0.3, -0.4));
-  EXPECT_NEAR(mean_contact_traction<2>(c.form, t), 0.5, 1e-14);
+  EXPECT_NEAR(adapt::mean_contact_traction<2>(c.form, t), 0.5, 1e-14);
   const DiscreteCase<2> free(toml<2>(1, {"",
                                          "material = { E = 1.0, nu = 0.3 }\n"
                                          "boundary.left.displacement = [0, 0]\n"}),
                              box<2>({0, 0}, {2, 1}, {4, 2}));
-  EXPECT_EQ(mean_contact_traction<2>(free.form, {}), 0);
+  EXPECT_EQ(adapt::mean_contact_traction<2>(free.form, {}), 0);
 }
 
 }  // namespace

@@ -32,19 +32,19 @@ std::string sides(int dimension, int degree)
 
 /// Every shape comes more often than RepeatedShapes asks for.
 template <int dim>
-MeshData<dim> box()
+mesh::MeshData<dim> box()
 {
   if constexpr (dim == 2)
-    return box_mesh<2>({{0, 0}, {1.4, 0.7}, {24, 12}, {}});
+    return mesh::box_mesh<2>({{0, 0}, {1.4, 0.7}, {24, 12}, {}});
   else
-    return box_mesh<3>({{0, 0, 0}, {1.4, 0.7, 0.7}, {6, 5, 5}, {}});
+    return mesh::box_mesh<3>({{0, 0, 0}, {1.4, 0.7, 0.7}, {6, 5, 5}, {}});
 }
 
 /// Moves the interior by `amplitude`.
 template <int dim>
-MeshData<dim> distorted_box(double amplitude)
+mesh::MeshData<dim> distorted_box(double amplitude)
 {
-  MeshData<dim> data = box<dim>();
+  mesh::MeshData<dim> data = box<dim>();
   for (Point<dim>& x : data.vertices)
   {
     double bubble = std::sin(std::numbers::pi * x[0] / 1.4);
@@ -59,8 +59,8 @@ void expect_same_stress()
 {
   const DiscreteCase<dim> straight(sides(dim, p), box<dim>());
   const DiscreteCase<dim> distorted(sides(dim, p), distorted_box<dim>(1e-8));
-  const RepeatedShapes<dim, p> shared(straight.mesh);
-  const RepeatedShapes<dim, p> own(distorted.mesh);
+  const certify::RepeatedShapes<dim, p> shared(straight.mesh);
+  const certify::RepeatedShapes<dim, p> own(distorted.mesh);
   int n_shared = 0;
   int n_own = 0;
   for (Index c = 0; c < straight.mesh.n_cells(); ++c)
@@ -71,12 +71,13 @@ void expect_same_stress()
   EXPECT_GT(n_shared, straight.mesh.n_cells() * 9 / 10);
   EXPECT_EQ(n_own, straight.mesh.n_cells());
 
-  const NewtonResult<dim> result = straight.solve();
-  const Stress<dim> stress = equilibrate<dim>(straight.form, result.u, result.traction);
-  const IdentityDefects defects = check_identities<dim>(straight.form, result.traction, stress);
+  const solve::NewtonResult<dim> result = straight.solve();
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(straight.form, result.u, result.traction);
+  const certify::IdentityDefects defects =
+      certify::check_identities<dim>(straight.form, result.traction, stress);
   EXPECT_LE(defects.largest(p), p <= 2 ? 1e-11 : 1e-10);
 
-  const Stress<dim> other = equilibrate<dim>(distorted.form, result.u, result.traction);
+  const certify::Stress<dim> other = certify::equilibrate<dim>(distorted.form, result.u, result.traction);
   double norm = 0;
   double difference = 0;
   for (std::size_t i = 0; i < stress.dis.size(); ++i)

@@ -43,15 +43,15 @@ TEST_P(T2D, ConvergedSolution)
   const json expected = t2d_reference().at(GetParam());
   const DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
   EXPECT_EQ(c.space.n_dofs() - c.form.constraints().n_fixed(), expected["dofs"].get<int>());
-  const NewtonResult<2> result = c.solve();
-  ASSERT_EQ(result.status, NewtonStatus::converged) << result.message;
+  const solve::NewtonResult<2> result = c.solve();
+  ASSERT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_LE(result.steps.size(), expected["newton_iterations"].get<std::size_t>() + 1);
 
-  const StressNorms norms = stress_norms<2>(c.problem, c.space, result.u);
+  const contact::StressNorms norms = contact::stress_norms<2>(c.problem, c.space, result.u);
   expect_digits(norms.energy, expected["energy"], "energy");
   expect_digits(norms.sigma, expected["converged_est"]["sigma_norm"], "||sigma||");
   expect_digits(max_displacement(c, result.u), expected["max_abs_u"], "max |u|");
-  const ContactResultants<2> contact = contact_resultants<2>(c.form, result.traction);
+  const contact::ContactResultants<2> contact = contact::contact_resultants<2>(c.form, result.traction);
   expect_digits(contact.normal, expected["contact_normal"], "normal");
   expect_digits(contact.tangential, expected["contact_tangential"], "tangential");
   expect_digits(contact.abs_tangential, expected["abs_tangential"], "abs_tangential");
@@ -66,11 +66,12 @@ TEST_P(T2D, FirstAndSecondIterate)
   {
     DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
     c.config.newton.max_steps = k;
-    const NewtonResult<2> result = c.solve();
+    const solve::NewtonResult<2> result = c.solve();
     const std::string iterate = "iterate" + std::to_string(k);
-    expect_digits(stress_norms<2>(c.problem, c.space, result.u).sigma,
+    expect_digits(contact::stress_norms<2>(c.problem, c.space, result.u).sigma,
                   expected[iterate + "_est"]["sigma_norm"], iterate);
-    const ContactResultants<2> contact = contact_resultants<2>(c.form, c.form.traction(result.u));
+    const contact::ContactResultants<2> contact =
+        contact::contact_resultants<2>(c.form, c.form.traction(result.u));
     expect_digits(contact.normal, expected[iterate + "_resultants"]["contact_normal"], iterate);
     expect_digits(contact.tangential, expected[iterate + "_resultants"]["contact_tangential"], iterate);
     expect_digits(contact.abs_tangential, expected[iterate + "_resultants"]["abs_tangential"], iterate);

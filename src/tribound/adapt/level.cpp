@@ -11,23 +11,23 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
-bool linearisation_is_negligible(const BoundComponents& eta, double gamma_lin)
+bool linearisation_is_negligible(const certify::BoundComponents& eta, double gamma_lin)
 {
   return eta.linearisation() <= gamma_lin * (eta.discretisation() + eta.regularisation());
 }
 
-bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& config)
+bool linearisation_is_negligible(const certify::Estimate& estimate, const case_file::NewtonConfig& config)
 {
-  const auto negligible = [&](const BoundComponents& eta)
+  const auto negligible = [&](const certify::BoundComponents& eta)
   { return linearisation_is_negligible(eta, config.gamma_lin); };
   switch (config.stopping)
   {
-    case Stopping::adaptive:
+    case case_file::Stopping::adaptive:
       return negligible(estimate.global);
-    case Stopping::adaptive_local:
+    case case_file::Stopping::adaptive_local:
       return std::ranges::all_of(estimate.cells, negligible);
     default:
       return false;
@@ -38,10 +38,10 @@ namespace
 {
 
 /// lin1, lin2n and lin2t alone.
-BoundComponents linearisation_part(const BoundComponents& eta)
+certify::BoundComponents linearisation_part(const certify::BoundComponents& eta)
 {
-  BoundComponents part;
-  for (const auto member : linearisation_components) part.*member = eta.*member;
+  certify::BoundComponents part;
+  for (const auto member : certify::linearisation_components) part.*member = eta.*member;
   return part;
 }
 
@@ -50,8 +50,9 @@ template <int dim>
 class Certifier
 {
  public:
-  Certifier(const NitscheForm<dim>& form, const Config& config, const std::optional<double>& expected,
-            const std::optional<FriedrichsConstant>& friedrichs)
+  Certifier(const contact::NitscheForm<dim>& form, const case_file::Config& config,
+            const std::optional<double>& expected,
+            const std::optional<certify::FriedrichsConstant>& friedrichs)
       : form_(form),
         config_(config),
         known_(expected),
@@ -75,7 +76,7 @@ class Certifier
     level.stress = equilibrator_(u, t, step.step.delta);
     level.estimate = estimator_(u, level.stress);
     level.friedrichs = estimator_.friedrichs();
-    level.norms = stress_norms(form_.problem(), form_.space(), u);
+    level.norms = contact::stress_norms(form_.problem(), form_.space(), u);
     step.bound = level.estimate;
     step.linearisation = linearisation_part(level.estimate.global);
     if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;
@@ -85,7 +86,7 @@ class Certifier
  private:
   [[nodiscard]] bool always_complete() const
   {
-    return dim == 2 || config_.newton.stopping == Stopping::tolerance || config_.regularisation;
+    return dim == 2 || config_.newton.stopping == case_file::Stopping::tolerance || config_.regularisation;
   }
 
   /// Whether the linearisation error may be negligible, the discretisation error being that last known. What
@@ -93,34 +94,35 @@ class Certifier
   /// vectors x, y, z >= 0.
   bool may_be_accepted(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step)
   {
-    const double factor = config_.newton.stopping == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
+    const double factor =
+        config_.newton.stopping == case_file::Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
     step.linearisation = estimator_.linearisation(equilibrator_.linearisation(u, t));
     return step.linearisation->linearisation() <= factor * config_.newton.gamma_lin * *known_;
   }
 
-  const NitscheForm<dim>& form_;
-  const Config& config_;
+  const contact::NitscheForm<dim>& form_;
+  const case_file::Config& config_;
   std::optional<double> known_;  ///< discretisation() of the last complete bound, or as expected
-  Equilibrator<dim> equilibrator_;
-  Estimator<dim> estimator_;
+  certify::Equilibrator<dim> equilibrator_;
+  certify::Estimator<dim> estimator_;
 };
 
 /// The stress, the bound and the identities of the last step, whose iterate is kept.
 template <int dim>
-void keep_last(const NitscheForm<dim>& form, Certifier<dim>& certifier, CertifiedLevel<dim>& level)
+void keep_last(const contact::NitscheForm<dim>& form, Certifier<dim>& certifier, CertifiedLevel<dim>& level)
 {
   CertifiedStep& last = level.steps.back();
   if (!last.bound) certifier.complete(level.u, level.traction, last, level);
   last.accepted = true;
-  level.identities = check_identities<dim>(form, level.traction, level.stress);
+  level.identities = certify::check_identities<dim>(form, level.traction, level.stress);
 }
 
 /// The level with its systems solved as far as rounding lets them be, where this mends the identities.
 template <int dim>
-void tighten(const NitscheForm<dim>& form, const Config& config, const StepObserver& observer,
-             CertifiedLevel<dim>& level)
+void tighten(const contact::NitscheForm<dim>& form, const case_file::Config& config,
+             const StepObserver& observer, CertifiedLevel<dim>& level)
 {
-  Config tight = config;
+  case_file::Config tight = config;
   tight.solver.tolerance = 0;
   try
   {
@@ -140,29 +142,30 @@ template <int dim>
 bool bound_holds(const CertifiedLevel<dim>& level, int degree)
 {
   if (!level.solved()) return false;
-  const Verdict verdict = judge(level.estimate, level.identities, degree, level.norms, 0);
-  return verdict.status != RunStatus::not_certified;
+  const certify::Verdict verdict = certify::judge(level.estimate, level.identities, degree, level.norms, 0);
+  return verdict.status != certify::RunStatus::not_certified;
 }
 
 template <int dim>
-std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level,
-                                            const Config& config, const StepObserver& observer)
+std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& form,
+                                            const CertifiedLevel<dim>& level, const case_file::Config& config,
+                                            const StepObserver& observer)
 {
   CertifiedLevel<dim> result = level;
   const int before = static_cast<int>(level.steps.size());
-  const NewtonObserver<dim> record = [&](const NewtonIterate<dim>& iterate)
+  const solve::NewtonObserver<dim> record = [&](const solve::NewtonIterate<dim>& iterate)
   {
     CertifiedStep& step = result.steps.emplace_back(CertifiedStep{iterate.step, {}});
     step.step.step += before;
     if (observer) observer(step);
     return false;
   };
-  NewtonResult<dim> newton;
+  solve::NewtonResult<dim> newton;
   {
     const Charge charge(result.solve_seconds, result.solve_cpu);
-    newton = solve<dim>(form, level.u, config.newton, config.solver, record, level.delta);
+    newton = solve::solve<dim>(form, level.u, config.newton, config.solver, record, level.delta);
   }
-  if (newton.status != NewtonStatus::converged) return std::nullopt;
+  if (newton.status != solve::NewtonStatus::converged) return std::nullopt;
   for (CertifiedStep& step : result.steps) step.accepted = false;
   result.finishing_steps += static_cast<int>(result.steps.size()) - before;
   result.converged = true;
@@ -178,10 +181,10 @@ std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form, const 
 }
 
 template <int dim>
-CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<const double> start,
-                                      const Config& config, const StepObserver& observer, double delta,
-                                      const std::optional<double>& expected,
-                                      const std::optional<FriedrichsConstant>& friedrichs)
+CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std::span<const double> start,
+                                      const case_file::Config& config, const StepObserver& observer,
+                                      double delta, const std::optional<double>& expected,
+                                      const std::optional<certify::FriedrichsConstant>& friedrichs)
 {
   CertifiedLevel<dim> level;
   double wall = 0;
@@ -190,16 +193,16 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
   std::optional<DeltaUpdates> regularisation;
   if (config.regularisation) regularisation = DeltaUpdates{*config.regularisation, delta};
 
-  const auto record = [&](const NewtonStep& step)
+  const auto record = [&](const solve::NewtonStep& step)
   {
     level.steps.push_back({step, {}});
     level.steps.back().step.step = static_cast<int>(level.steps.size());
   };
-  const auto certify = [&](const NewtonIterate<dim>& iterate)
+  const auto certify = [&](const solve::NewtonIterate<dim>& iterate)
   {
     record(iterate.step);
     CertifiedStep& step = level.steps.back();
-    NewtonAdvice advice = false;
+    solve::NewtonAdvice advice = false;
     if (std::isfinite(iterate.step.residual))
     {
       const Charge charge(level.certify_seconds, level.certify_cpu);
@@ -213,11 +216,11 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
     if (observer) observer(step);
     return advice;
   };
-  NewtonResult<dim> newton;
+  solve::NewtonResult<dim> newton;
   {
     const Charge charge(wall, cpu);
     newton = solve_persistently<dim>(form, start, config, certify, delta,
-                                     [&](const NewtonStep& step)
+                                     [&](const solve::NewtonStep& step)
                                      {
                                        record(step);
                                        if (observer) observer(level.steps.back());
@@ -231,12 +234,12 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
     level.delta_updates = regularisation->n_updates;
   }
   level.failure = std::move(newton.message);
-  level.converged = newton.status == NewtonStatus::converged;
+  level.converged = newton.status == solve::NewtonStatus::converged;
   level.u = std::move(newton.u);
   level.traction = std::move(newton.traction);
   if (!level.solved())
   {
-    level.norms = stress_norms(form.problem(), form.space(), level.u);
+    level.norms = contact::stress_norms(form.problem(), form.space(), level.u);
     return level;
   }
   {
@@ -247,17 +250,19 @@ CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form, std::span<co
   return level;
 }
 
-template CertifiedLevel<2> solve_and_certify(const NitscheForm<2>&, std::span<const double>, const Config&,
-                                             const StepObserver&, double, const std::optional<double>&,
-                                             const std::optional<FriedrichsConstant>&);
-template CertifiedLevel<3> solve_and_certify(const NitscheForm<3>&, std::span<const double>, const Config&,
-                                             const StepObserver&, double, const std::optional<double>&,
-                                             const std::optional<FriedrichsConstant>&);
-template std::optional<CertifiedLevel<2>> converge(const NitscheForm<2>&, const CertifiedLevel<2>&,
-                                                   const Config&, const StepObserver&);
-template std::optional<CertifiedLevel<3>> converge(const NitscheForm<3>&, const CertifiedLevel<3>&,
-                                                   const Config&, const StepObserver&);
+template CertifiedLevel<2> solve_and_certify(const contact::NitscheForm<2>&, std::span<const double>,
+                                             const case_file::Config&, const StepObserver&, double,
+                                             const std::optional<double>&,
+                                             const std::optional<certify::FriedrichsConstant>&);
+template CertifiedLevel<3> solve_and_certify(const contact::NitscheForm<3>&, std::span<const double>,
+                                             const case_file::Config&, const StepObserver&, double,
+                                             const std::optional<double>&,
+                                             const std::optional<certify::FriedrichsConstant>&);
+template std::optional<CertifiedLevel<2>> converge(const contact::NitscheForm<2>&, const CertifiedLevel<2>&,
+                                                   const case_file::Config&, const StepObserver&);
+template std::optional<CertifiedLevel<3>> converge(const contact::NitscheForm<3>&, const CertifiedLevel<3>&,
+                                                   const case_file::Config&, const StepObserver&);
 template bool bound_holds(const CertifiedLevel<2>&, int);
 template bool bound_holds(const CertifiedLevel<3>&, int);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

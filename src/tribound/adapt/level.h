@@ -20,7 +20,7 @@
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 /// A mesh with everything up to the discrete problem on it. Its parts refer to each other: it stays where it
@@ -28,29 +28,29 @@ namespace tribound
 template <int dim>
 struct Discretisation
 {
-  Discretisation(Mesh<dim> m, const Problem<dim>& problem, const Config& config,
-                 const DataAccuracy& accuracy = {})
+  Discretisation(mesh::Mesh<dim> m, const problem::Problem<dim>& problem, const case_file::Config& config,
+                 const contact::DataAccuracy& accuracy = {})
       : mesh(std::move(m)), space(mesh, config.degree), form(problem, space, config.gamma0(), accuracy)
   {
   }
   Discretisation(const Discretisation&) = delete;
   Discretisation& operator=(const Discretisation&) = delete;
 
-  Mesh<dim> mesh;
-  LagrangeSpace<dim> space;
-  NitscheForm<dim> form;  ///< a(u,v) - (T(u),v)_C - L(v)
+  mesh::Mesh<dim> mesh;
+  fem::LagrangeSpace<dim> space;
+  contact::NitscheForm<dim> form;  ///< a(u,v) - (T(u),v)_C - L(v)
 };
 
 /// A Newton step with the bound of its iterate.
 struct CertifiedStep
 {
-  NewtonStep step;
+  solve::NewtonStep step;
   /// Absent where the iterate is not finite, or ruled out by its linearisation error (solve_and_certify).
-  std::optional<Bound> bound = {};
+  std::optional<certify::Bound> bound = {};
   bool accepted = false;                ///< whether its iterate was taken as the solution on the mesh
   std::optional<double> relative = {};  ///< bound / ||sigma(u^k)||
   /// lin1, lin2n and lin2t, the others 0; absent where the iterate is not finite.
-  std::optional<BoundComponents> linearisation = {};
+  std::optional<certify::BoundComponents> linearisation = {};
 };
 
 /// Wall time of what led to a mesh; 0 for the given one.
@@ -74,14 +74,14 @@ struct CertifiedLevel
   bool tightened = false;            ///< whether its systems were solved anew, see solve_and_certify()
   double delta = 0;                  ///< of the regularised variant, for the next mesh
   std::optional<int> delta_updates;  ///< how often delta was shrunk; absent in the plain method
-  Stress<dim> stress;
-  Estimate estimate;
-  StressNorms norms{};  ///< of u
-  IdentityDefects identities;
-  std::optional<FriedrichsConstant> friedrichs;  ///< where it was needed, on this mesh or one before
-  double solve_seconds = 0;                      ///< wall time
-  double certify_seconds = 0;                    ///< of all iterates
-  double solve_cpu = 0;                          ///< CPU time, all threads
+  certify::Stress<dim> stress;
+  certify::Estimate estimate;
+  contact::StressNorms norms{};  ///< of u
+  certify::IdentityDefects identities;
+  std::optional<certify::FriedrichsConstant> friedrichs;  ///< where it was needed, on this mesh or one before
+  double solve_seconds = 0;                               ///< wall time
+  double certify_seconds = 0;                             ///< of all iterates
+  double solve_cpu = 0;                                   ///< CPU time, all threads
   double certify_cpu = 0;
   RefinementSeconds refinement;
 
@@ -91,10 +91,11 @@ struct CertifiedLevel
 /// Whether iterating further is pointless, method section 6:
 /// eta_lin1 + eta_lin2n + eta_lin2t <= gamma_lin (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc), where T
 /// is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
-[[nodiscard]] bool linearisation_is_negligible(const BoundComponents& eta, double gamma_lin);
+[[nodiscard]] bool linearisation_is_negligible(const certify::BoundComponents& eta, double gamma_lin);
 
 /// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.
-[[nodiscard]] bool linearisation_is_negligible(const Estimate& estimate, const NewtonConfig& config);
+[[nodiscard]] bool linearisation_is_negligible(const certify::Estimate& estimate,
+                                               const case_file::NewtonConfig& config);
 
 /// Called after every Newton step; may throw to leave the level.
 using StepObserver = std::function<void(const CertifiedStep&)>;
@@ -121,23 +122,22 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 ///
 /// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>
-[[nodiscard]] CertifiedLevel<dim> solve_and_certify(const NitscheForm<dim>& form,
-                                                    std::span<const double> start, const Config& config,
-                                                    const StepObserver& observer = {}, double delta = 0,
-                                                    const std::optional<double>& expected = {},
-                                                    const std::optional<FriedrichsConstant>& friedrichs = {});
+[[nodiscard]] CertifiedLevel<dim> solve_and_certify(
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const case_file::Config& config,
+    const StepObserver& observer = {}, double delta = 0, const std::optional<double>& expected = {},
+    const std::optional<certify::FriedrichsConstant>& friedrichs = {});
 
 /// The same level with Newton's method gone on until newton.tolerance, whatever the stopping criterion, delta
 /// as it is, and with the bound of its last iterate. Nothing where it does not get there, be it that an
 /// identity is violated; throws as solve_and_certify() does. Of `level` neither stress nor estimate is used.
 template <int dim>
-[[nodiscard]] std::optional<CertifiedLevel<dim>> converge(const NitscheForm<dim>& form,
+[[nodiscard]] std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& form,
                                                           const CertifiedLevel<dim>& level,
-                                                          const Config& config,
+                                                          const case_file::Config& config,
                                                           const StepObserver& observer = {});
 
 /// Whether there is a solution and judge() may call its bound a bound.
 template <int dim>
 [[nodiscard]] bool bound_holds(const CertifiedLevel<dim>& level, int degree);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

@@ -17,7 +17,7 @@
 #include "tribound/fem/nested.h"
 #include "tribound/mesh/bisect.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 namespace
@@ -38,24 +38,24 @@ template <int dim>
 class Loop
 {
  public:
-  Loop(const Problem<dim>& problem, const Config& config, const LoopObserver<dim>& observer,
-       const std::atomic<bool>& stop)
+  Loop(const problem::Problem<dim>& problem, const case_file::Config& config,
+       const LoopObserver<dim>& observer, const std::atomic<bool>& stop)
       : problem_(problem), config_(config), observer_(observer), stop_(stop)
   {
   }
 
-  Verdict run(std::unique_ptr<Discretisation<dim>> first)
+  certify::Verdict run(std::unique_ptr<Discretisation<dim>> first)
   {
     current_ = std::move(first);
     for (number_ = 0;; ++number_)
     {
       std::optional<CertifiedLevel<dim>> level = solve();
       if (!level) return ended_;
-      Verdict verdict = judge_level(*level);
+      certify::Verdict verdict = judge_level(*level);
       if (number_ > 0 && !holds(verdict)) return certificate_of_the_level_before(verdict.reason);
       last_ = std::move(verdict);
       std::string limit = limit_reached();
-      const bool is_last = last_.status != RunStatus::budget || !limit.empty();
+      const bool is_last = last_.status != certify::RunStatus::budget || !limit.empty();
       if (is_last) finish(*level);
       tell(*level);
       if (!is_last)
@@ -63,7 +63,7 @@ class Loop
         limit = go_on_to_finer_mesh(*level);
         if (!limit.empty() && finish(*level)) tell(*level);
       }
-      if (last_.status != RunStatus::budget || !limit.empty()) return used_up(limit);
+      if (last_.status != certify::RunStatus::budget || !limit.empty()) return used_up(limit);
       level->stress = {};
       level->estimate = {};
       before_ = std::move(*level);
@@ -71,18 +71,18 @@ class Loop
   }
 
  private:
-  static bool holds(const Verdict& verdict)
+  static bool holds(const certify::Verdict& verdict)
   {
-    return verdict.status == RunStatus::certified || verdict.status == RunStatus::budget;
+    return verdict.status == certify::RunStatus::certified || verdict.status == certify::RunStatus::budget;
   }
   /// The verdict on the last level; where it is `budget`, the limit that ended the run.
-  [[nodiscard]] Verdict used_up(const std::string& limit) const
+  [[nodiscard]] certify::Verdict used_up(const std::string& limit) const
   {
-    if (last_.status != RunStatus::budget) return last_;
-    return {RunStatus::budget, last_.reason + "; " + limit};
+    if (last_.status != certify::RunStatus::budget) return last_;
+    return {certify::RunStatus::budget, last_.reason + "; " + limit};
   }
   /// The certificate of the level before, its last word on it, too.
-  [[nodiscard]] Verdict certificate_of_the_level_before(const std::string& problem);
+  [[nodiscard]] certify::Verdict certificate_of_the_level_before(const std::string& problem);
 
   void tell(const CertifiedLevel<dim>& level)
   {
@@ -97,7 +97,7 @@ class Loop
   [[nodiscard]] StepObserver watch(bool interruptible) const;
   /// Nothing if the level did not end; ended_ says why.
   std::optional<CertifiedLevel<dim>> solve();
-  [[nodiscard]] Verdict judge_level(const CertifiedLevel<dim>& level) const;
+  [[nodiscard]] certify::Verdict judge_level(const CertifiedLevel<dim>& level) const;
   [[nodiscard]] std::string limit_reached() const;
   /// refine(), which may find that there is not the memory for it.
   [[nodiscard]] std::string go_on_to_finer_mesh(const CertifiedLevel<dim>& level)
@@ -116,8 +116,8 @@ class Loop
   /// The limit that a mesh with `growth` times as many unknowns would exceed, or nothing.
   [[nodiscard]] std::string memory_limit_reached(double growth) const;
 
-  const Problem<dim>& problem_;
-  const Config& config_;
+  const problem::Problem<dim>& problem_;
+  const case_file::Config& config_;
   const LoopObserver<dim>& observer_;
   const std::atomic<bool>& stop_;
   const Clock::time_point begin_ = Clock::now();
@@ -128,12 +128,12 @@ class Loop
   std::vector<double> start_;  ///< the solution of the level before, on the current mesh
   double delta_ = 0;           ///< of the regularised variant after the level before
   RefinementSeconds refinement_;
-  std::optional<FriedrichsConstant> friedrichs_;  ///< of the mesh on which it was first needed
+  std::optional<certify::FriedrichsConstant> friedrichs_;  ///< of the mesh on which it was first needed
   std::optional<double> expected_;  ///< BoundComponents::discretisation() on the current mesh, guessed
   CertifiedLevel<dim> before_;      ///< the level before, without stress and estimate
   std::shared_ptr<const Discretisation<dim>> discrete_before_;
-  Verdict last_{RunStatus::failed, {}};
-  Verdict ended_{RunStatus::failed, {}};
+  certify::Verdict last_{certify::RunStatus::failed, {}};
+  certify::Verdict ended_{certify::RunStatus::failed, {}};
 };
 
 template <int dim>
@@ -165,11 +165,11 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
 }
 
 template <int dim>
-Verdict Loop<dim>::judge_level(const CertifiedLevel<dim>& level) const
+certify::Verdict Loop<dim>::judge_level(const CertifiedLevel<dim>& level) const
 {
-  if (!level.solved()) return {RunStatus::failed, level.failure};
-  Verdict verdict =
-      judge(level.estimate, level.identities, config_.degree, level.norms, config_.adapt.tolerance);
+  if (!level.solved()) return {certify::RunStatus::failed, level.failure};
+  certify::Verdict verdict =
+      certify::judge(level.estimate, level.identities, config_.degree, level.norms, config_.adapt.tolerance);
   if (level.tightened && !holds(verdict))
     verdict.reason +=
         "; solving the systems anew as far as rounding lets them be, with solver.tolerance = 0, did not mend "
@@ -210,15 +210,16 @@ bool Loop<dim>::finish(CertifiedLevel<dim>& level)
   };
   std::optional<CertifiedLevel<dim>> converged = attempt();
   if (!converged) return false;
-  Verdict verdict = judge_level(*converged);
-  if (last_.status == RunStatus::certified && verdict.status != RunStatus::certified) return false;
+  certify::Verdict verdict = judge_level(*converged);
+  if (last_.status == certify::RunStatus::certified && verdict.status != certify::RunStatus::certified)
+    return false;
   level = std::move(*converged);
   last_ = std::move(verdict);
   return true;
 }
 
 template <int dim>
-Verdict Loop<dim>::certificate_of_the_level_before(const std::string& problem)
+certify::Verdict Loop<dim>::certificate_of_the_level_before(const std::string& problem)
 {
   const std::string limit =
       fmt::format("this is level {}, level {} failed: {}", number_ - 1, number_, problem);
@@ -244,14 +245,14 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
 {
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
-  Bisected<dim> finer = bisect<dim>(current_->mesh, mark(level.estimate.cells, config_.adapt));
+  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, mark(level.estimate.cells, config_.adapt));
   refinement_.bisect = lap();
   if (config_.adapt.max_cells && finer.mesh.n_cells() > *config_.adapt.max_cells)
     return fmt::format("the next mesh has {} cells, more than adapt.max_cells = {}", finer.mesh.n_cells(),
                        *config_.adapt.max_cells);
   auto next = std::make_shared<const Discretisation<dim>>(
       std::move(finer.mesh), problem_, config_,
-      DataAccuracy{.absolute = share_of_data * level.estimate.total_sharp});
+      contact::DataAccuracy{.absolute = share_of_data * level.estimate.total_sharp});
   refinement_.discretise = lap();
   const long dofs = next->space.n_dofs() - next->form.constraints().n_fixed();
   if (dofs > config_.adapt.max_dofs)
@@ -262,7 +263,7 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
   if (auto limit = memory_limit_reached(growth); !limit.empty()) return limit;
   delta_ = level.delta;
   expected_ = level.estimate.global.discretisation() * std::pow(growth, -1.0 * config_.degree / dim);
-  start_ = nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
+  start_ = fem::nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
   refinement_.transfer = lap();
   discrete_before_ = std::exchange(current_, std::move(next));
   return {};
@@ -281,7 +282,7 @@ std::string Loop<dim>::memory_limit_reached(double growth) const
 
 }  // namespace
 
-MemoryLimit memory_limit(const AdaptConfig& config)
+MemoryLimit memory_limit(const case_file::AdaptConfig& config)
 {
   constexpr double share_of_machine = 0.9;
   if (config.max_memory) return {*config.max_memory * gigabyte, true};
@@ -296,15 +297,18 @@ double expected_memory(double before, double peak, double growth, int dim)
 }
 
 template <int dim>
-Verdict adapt(const Problem<dim>& problem, const Config& config, std::unique_ptr<Discretisation<dim>> first,
-              const LoopObserver<dim>& observer, const std::atomic<bool>& stop)
+certify::Verdict adapt(const problem::Problem<dim>& problem, const case_file::Config& config,
+                       std::unique_ptr<Discretisation<dim>> first, const LoopObserver<dim>& observer,
+                       const std::atomic<bool>& stop)
 {
   return Loop<dim>(problem, config, observer, stop).run(std::move(first));
 }
 
-template Verdict adapt(const Problem<2>&, const Config&, std::unique_ptr<Discretisation<2>>,
-                       const LoopObserver<2>&, const std::atomic<bool>&);
-template Verdict adapt(const Problem<3>&, const Config&, std::unique_ptr<Discretisation<3>>,
-                       const LoopObserver<3>&, const std::atomic<bool>&);
+template certify::Verdict adapt(const problem::Problem<2>&, const case_file::Config&,
+                                std::unique_ptr<Discretisation<2>>, const LoopObserver<2>&,
+                                const std::atomic<bool>&);
+template certify::Verdict adapt(const problem::Problem<3>&, const case_file::Config&,
+                                std::unique_ptr<Discretisation<3>>, const LoopObserver<3>&,
+                                const std::atomic<bool>&);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

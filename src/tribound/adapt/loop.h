@@ -12,7 +12,7 @@
 #include "tribound/adapt/level.h"
 #include "tribound/certify/bound/certificate.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 /// A level that is complete.
@@ -22,7 +22,7 @@ struct LevelView
   int number;  ///< from 0, the given mesh
   const Discretisation<dim>& discrete;
   const CertifiedLevel<dim>& level;
-  const Verdict& verdict;                            ///< what holds after it
+  const certify::Verdict& verdict;                   ///< what holds after it
   double seconds;                                    ///< wall time of the level, refinement included
   std::shared_ptr<const Discretisation<dim>> owner;  ///< of `discrete`, for those who keep it
 };
@@ -43,7 +43,7 @@ struct MemoryLimit
   bool from_case = false;  ///< adapt.max_memory; else nine tenths of the machine
 };
 
-[[nodiscard]] MemoryLimit memory_limit(const AdaptConfig& config);
+[[nodiscard]] MemoryLimit memory_limit(const case_file::AdaptConfig& config);
 
 /// The memory that a level is expected to take at most, in bytes: `before` the process had before the first
 /// level and `peak` after one with 1 / `growth` of its unknowns.
@@ -61,8 +61,8 @@ struct MemoryLimit
 /// `budget` and says what happened. Throws SolveError when the first level cannot be solved, and InputError
 /// for data that are not valid on a finer mesh.
 template <int dim>
-[[nodiscard]] Verdict adapt(const Problem<dim>& problem, const Config& config,
-                            std::unique_ptr<Discretisation<dim>> first, const LoopObserver<dim>& observer,
-                            const std::atomic<bool>& stop);
+[[nodiscard]] certify::Verdict adapt(const problem::Problem<dim>& problem, const case_file::Config& config,
+                                     std::unique_ptr<Discretisation<dim>> first,
+                                     const LoopObserver<dim>& observer, const std::atomic<bool>& stop);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

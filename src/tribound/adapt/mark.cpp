@@ -9,7 +9,7 @@
 
 #include "tribound/base/norm.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 namespace
@@ -25,17 +25,18 @@ std::vector<Index> cells_from(std::span<const double> eta, double bound)
   return cells;
 }
 
-std::vector<Index> mark_one(std::span<const double> eta, const AdaptConfig& config)
+std::vector<Index> mark_one(std::span<const double> eta, const case_file::AdaptConfig& config)
 {
-  return config.marking == Marking::doerfler ? mark_doerfler(eta, config.theta)
-                                             : mark_maximum(eta, config.theta);
+  return config.marking == case_file::Marking::doerfler ? mark_doerfler(eta, config.theta)
+                                                        : mark_maximum(eta, config.theta);
 }
 
-std::vector<double> values(std::span<const BoundComponents> cells, double (BoundComponents::*part)() const)
+std::vector<double> values(std::span<const certify::BoundComponents> cells,
+                           double (certify::BoundComponents::*part)() const)
 {
   std::vector<double> eta;
   eta.reserve(cells.size());
-  for (const BoundComponents& cell : cells) eta.push_back((cell.*part)());
+  for (const certify::BoundComponents& cell : cells) eta.push_back((cell.*part)());
   return eta;
 }
 
@@ -85,14 +86,15 @@ std::vector<Index> mark_all(std::size_t n_cells)
   return cells;
 }
 
-std::vector<Index> mark(std::span<const BoundComponents> cells, const AdaptConfig& config)
+std::vector<Index> mark(std::span<const certify::BoundComponents> cells, const case_file::AdaptConfig& config)
 {
-  if (config.marking == Marking::uniform) return mark_all(cells.size());
-  if (!config.separate_contact) return mark_one(values(cells, &BoundComponents::total_sharp), config);
+  if (config.marking == case_file::Marking::uniform) return mark_all(cells.size());
+  if (!config.separate_contact)
+    return mark_one(values(cells, &certify::BoundComponents::total_sharp), config);
   constexpr double small_part = 0.1;  // of the bound
-  const double bound = norm(values(cells, &BoundComponents::total_sharp));
+  const double bound = norm(values(cells, &certify::BoundComponents::total_sharp));
   std::vector<Index> marked;
-  for (const auto part : {&BoundComponents::body, &BoundComponents::contact})
+  for (const auto part : {&certify::BoundComponents::body, &certify::BoundComponents::contact})
   {
     const std::vector<double> eta = values(cells, part);
     if (norm(eta) < small_part * bound) continue;
@@ -104,4 +106,4 @@ std::vector<Index> mark(std::span<const BoundComponents> cells, const AdaptConfi
   return marked;
 }
 
-}  // namespace tribound
+}  // namespace tribound::adapt

@@ -10,7 +10,7 @@
 #include "tribound/case/config.h"
 #include "tribound/certify/bound/estimate.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 /// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96]; of cells with equal
@@ -27,6 +27,7 @@ namespace tribound
 /// As adapt.marking and adapt.theta ask for, by eta_T = total_sharp of every cell. With
 /// adapt.separate_contact the union of what body() and contact() mark, each for itself; a part whose square
 /// is below a hundredth of the bound's is left to the other.
-[[nodiscard]] std::vector<Index> mark(std::span<const BoundComponents> cells, const AdaptConfig& config);
+[[nodiscard]] std::vector<Index> mark(std::span<const certify::BoundComponents> cells,
+                                      const case_file::AdaptConfig& config);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

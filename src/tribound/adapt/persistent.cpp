@@ -9,7 +9,7 @@
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/error.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 namespace
@@ -17,22 +17,22 @@ namespace
 
 /// The solution with a small delta, from larger ones; nothing where that fails, too.
 template <int dim>
-std::optional<std::vector<double>> regularised_start(const NitscheForm<dim>& form,
-                                                     std::span<const double> start, const Config& config,
-                                                     const std::function<void(const NewtonStep&)>& record)
+std::optional<std::vector<double>> regularised_start(
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const case_file::Config& config,
+    const std::function<void(const solve::NewtonStep&)>& record)
 {
   // In units of the mean contact traction of the first step.
   constexpr double first = 10;
   constexpr double last = 1e-3;
   constexpr double factor = 0.25;
-  NewtonConfig newton = config.newton;
+  case_file::NewtonConfig newton = config.newton;
   newton.tolerance = std::max(newton.tolerance, 1e-4);
   double scale = 0;
   double delta = 0;
-  const NewtonObserver<dim> shrink = [&](const NewtonIterate<dim>& iterate)
+  const solve::NewtonObserver<dim> shrink = [&](const solve::NewtonIterate<dim>& iterate)
   {
     record(iterate.step);
-    NewtonAdvice advice = false;
+    solve::NewtonAdvice advice = false;
     if (delta == 0)
     {
       scale = mean_contact_traction<dim>(form, iterate.traction);
@@ -49,24 +49,24 @@ std::optional<std::vector<double>> regularised_start(const NitscheForm<dim>& for
     }
     return advice;
   };
-  NewtonResult<dim> result = solve<dim>(form, start, newton, config.solver, shrink);
-  if (result.status == NewtonStatus::diverged || delta == 0) return std::nullopt;
+  solve::NewtonResult<dim> result = solve::solve<dim>(form, start, newton, config.solver, shrink);
+  if (result.status == solve::NewtonStatus::diverged || delta == 0) return std::nullopt;
   return std::move(result.u);
 }
 
 /// The solution with gamma times `factor`; nothing where that fails, too.
 template <int dim>
-std::optional<std::vector<double>> start_with_gamma(double factor, const NitscheForm<dim>& form,
-                                                    std::span<const double> start, const Config& config,
-                                                    const std::function<void(const NewtonStep&)>& record)
+std::optional<std::vector<double>> start_with_gamma(
+    double factor, const contact::NitscheForm<dim>& form, std::span<const double> start,
+    const case_file::Config& config, const std::function<void(const solve::NewtonStep&)>& record)
 {
-  const NitscheForm<dim> other(form.problem(), form.space(), factor * form.gamma0());
-  const NewtonObserver<dim> watch = [&](const NewtonIterate<dim>& iterate)
+  const contact::NitscheForm<dim> other(form.problem(), form.space(), factor * form.gamma0());
+  const solve::NewtonObserver<dim> watch = [&](const solve::NewtonIterate<dim>& iterate)
   {
     record(iterate.step);
     return false;
   };
-  NewtonResult<dim> result = solve<dim>(other, start, config.newton, config.solver, watch);
+  solve::NewtonResult<dim> result = solve::solve<dim>(other, start, config.newton, config.solver, watch);
   if (!result.message.empty()) return std::nullopt;
   return std::move(result.u);
 }
@@ -74,13 +74,14 @@ std::optional<std::vector<double>> start_with_gamma(double factor, const Nitsche
 }  // namespace
 
 template <int dim>
-NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<const double> start,
-                                     const Config& config, const NewtonObserver<dim>& observer, double delta,
-                                     const std::function<void(const NewtonStep&)>& record)
+solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& form,
+                                            std::span<const double> start, const case_file::Config& config,
+                                            const solve::NewtonObserver<dim>& observer, double delta,
+                                            const std::function<void(const solve::NewtonStep&)>& record)
 {
   const auto attempt = [&](std::span<const double> u)
-  { return solve<dim>(form, u, config.newton, config.solver, observer, delta); };
-  NewtonResult<dim> first;
+  { return solve::solve<dim>(form, u, config.newton, config.solver, observer, delta); };
+  solve::NewtonResult<dim> first;
   std::exception_ptr failure;
   try
   {
@@ -102,7 +103,7 @@ NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<con
   for (const Start& other : others) try
     {
       if (const auto better = other())
-        if (NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;
+        if (solve::NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;
     }
     catch (const SolveError&)
     {
@@ -111,11 +112,13 @@ NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form, std::span<con
   return first;
 }
 
-template NewtonResult<2> solve_persistently(const NitscheForm<2>&, std::span<const double>, const Config&,
-                                            const NewtonObserver<2>&, double,
-                                            const std::function<void(const NewtonStep&)>&);
-template NewtonResult<3> solve_persistently(const NitscheForm<3>&, std::span<const double>, const Config&,
-                                            const NewtonObserver<3>&, double,
-                                            const std::function<void(const NewtonStep&)>&);
+template solve::NewtonResult<2> solve_persistently(const contact::NitscheForm<2>&, std::span<const double>,
+                                                   const case_file::Config&, const solve::NewtonObserver<2>&,
+                                                   double,
+                                                   const std::function<void(const solve::NewtonStep&)>&);
+template solve::NewtonResult<3> solve_persistently(const contact::NitscheForm<3>&, std::span<const double>,
+                                                   const case_file::Config&, const solve::NewtonObserver<3>&,
+                                                   double,
+                                                   const std::function<void(const solve::NewtonStep&)>&);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

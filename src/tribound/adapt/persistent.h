@@ -9,7 +9,7 @@
 #include "tribound/case/config.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 /// solve(), and where that fails, with damping and contact and without [regularisation], from other starts:
@@ -18,9 +18,9 @@ namespace tribound
 /// in circles between contact states, and finds its way from there. The steps of these solutions go to
 /// `record`, those of all attempts to `observer`. Should all fail, it is the first one that is told of.
 template <int dim>
-[[nodiscard]] NewtonResult<dim> solve_persistently(const NitscheForm<dim>& form,
-                                                   std::span<const double> start, const Config& config,
-                                                   const NewtonObserver<dim>& observer, double delta,
-                                                   const std::function<void(const NewtonStep&)>& record);
+[[nodiscard]] solve::NewtonResult<dim> solve_persistently(
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const case_file::Config& config,
+    const solve::NewtonObserver<dim>& observer, double delta,
+    const std::function<void(const solve::NewtonStep&)>& record);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace tribound
+namespace tribound::adapt
 {
 
 namespace
@@ -59,4 +59,4 @@ std::optional<double> value_at(std::span<const RatePoint> points, double dofs)
   return below.value * std::pow(dofs / below.dofs, *rate);
 }
 
-}  // namespace tribound
+}  // namespace tribound::adapt

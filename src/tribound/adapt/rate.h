@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-namespace tribound
+namespace tribound::adapt
 {
 
 /// A quantity that is known at so many degrees of freedom.
@@ -29,4 +29,4 @@ struct RatePoint
 /// Nothing outside their range and where a value is 0.
 [[nodiscard]] std::optional<double> value_at(std::span<const RatePoint> points, double dofs);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

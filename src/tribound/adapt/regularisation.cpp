@@ -2,16 +2,16 @@
 
 #include <cmath>
 
-namespace tribound
+namespace tribound::adapt
 {
 
-bool regularisation_is_negligible(const BoundComponents& eta, double gamma_reg)
+bool regularisation_is_negligible(const certify::BoundComponents& eta, double gamma_reg)
 {
   return eta.regularisation() <= gamma_reg * eta.discretisation();
 }
 
 template <int dim>
-double mean_contact_traction(const NitscheForm<dim>& form, std::span<const Point<dim>> t)
+double mean_contact_traction(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t)
 {
   double square = 0;
   double measure = 0;
@@ -27,10 +27,11 @@ double mean_contact_traction(const NitscheForm<dim>& form, std::span<const Point
 }
 
 template <int dim>
-NewtonAdvice DeltaUpdates::advise(const NitscheForm<dim>& form, const NewtonIterate<dim>& iterate,
-                                  const BoundComponents& eta, bool inner_done)
+solve::NewtonAdvice DeltaUpdates::advise(const contact::NitscheForm<dim>& form,
+                                         const solve::NewtonIterate<dim>& iterate,
+                                         const certify::BoundComponents& eta, bool inner_done)
 {
-  NewtonAdvice advice = inner_done;
+  solve::NewtonAdvice advice = inner_done;
   if (delta == 0)
   {
     delta = config.delta * mean_contact_traction<dim>(form, iterate.traction);
@@ -47,11 +48,13 @@ NewtonAdvice DeltaUpdates::advise(const NitscheForm<dim>& form, const NewtonIter
   return advice;
 }
 
-template double mean_contact_traction(const NitscheForm<2>&, std::span<const Point<2>>);
-template double mean_contact_traction(const NitscheForm<3>&, std::span<const Point<3>>);
-template NewtonAdvice DeltaUpdates::advise(const NitscheForm<2>&, const NewtonIterate<2>&,
-                                           const BoundComponents&, bool);
-template NewtonAdvice DeltaUpdates::advise(const NitscheForm<3>&, const NewtonIterate<3>&,
-                                           const BoundComponents&, bool);
+template double mean_contact_traction(const contact::NitscheForm<2>&, std::span<const Point<2>>);
+template double mean_contact_traction(const contact::NitscheForm<3>&, std::span<const Point<3>>);
+template solve::NewtonAdvice DeltaUpdates::advise(const contact::NitscheForm<2>&,
+                                                  const solve::NewtonIterate<2>&,
+                                                  const certify::BoundComponents&, bool);
+template solve::NewtonAdvice DeltaUpdates::advise(const contact::NitscheForm<3>&,
+                                                  const solve::NewtonIterate<3>&,
+                                                  const certify::BoundComponents&, bool);
 
-}  // namespace tribound
+}  // namespace tribound::adapt

@@ -10,21 +10,22 @@
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::adapt
 {
 
 /// Whether a smaller delta is pointless:
 /// eta_reg1 + eta_reg2n + eta_reg2t <= gamma_reg (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc).
-[[nodiscard]] bool regularisation_is_negligible(const BoundComponents& eta, double gamma_reg);
+[[nodiscard]] bool regularisation_is_negligible(const certify::BoundComponents& eta, double gamma_reg);
 
 /// The root mean square of |t| over Gamma_C, t given at the contact points; 0 without contact.
 template <int dim>
-[[nodiscard]] double mean_contact_traction(const NitscheForm<dim>& form, std::span<const Point<dim>> t);
+[[nodiscard]] double mean_contact_traction(const contact::NitscheForm<dim>& form,
+                                           std::span<const Point<dim>> t);
 
 /// The outer loop of the regularised variant around Newton's method on one mesh.
 struct DeltaUpdates
 {
-  RegularisationConfig config;
+  case_file::RegularisationConfig config;
   double delta = 0;   ///< of the next Newton step; 0 until the first step has shown the size of the traction
   int n_updates = 0;  ///< on this mesh
 
@@ -34,8 +35,9 @@ struct DeltaUpdates
   /// negligible or config.max_updates is reached: then the iterate is good enough, its bound holds in any
   /// case.
   template <int dim>
-  [[nodiscard]] NewtonAdvice advise(const NitscheForm<dim>& form, const NewtonIterate<dim>& iterate,
-                                    const BoundComponents& eta, bool inner_done);
+  [[nodiscard]] solve::NewtonAdvice advise(const contact::NitscheForm<dim>& form,
+                                           const solve::NewtonIterate<dim>& iterate,
+                                           const certify::BoundComponents& eta, bool inner_done);
 };
 
-}  // namespace tribound
+}  // namespace tribound::adapt

@@ -6,7 +6,7 @@
 
 #include "tribound/algebra/petsc_detail.h"
 
-namespace tribound
+namespace tribound::algebra
 {
 
 using detail::check;
@@ -57,4 +57,4 @@ void SparseCholesky::solve(std::span<const double> b, std::span<double> x) const
   check(MatSolve(factors_.get(), wrap(b).get(), wrap(x).get()), "solving a linear system");
 }
 
-}  // namespace tribound
+}  // namespace tribound::algebra

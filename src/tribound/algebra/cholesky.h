@@ -8,7 +8,7 @@
 
 #include "tribound/algebra/petsc.h"
 
-namespace tribound
+namespace tribound::algebra
 {
 
 /// L D L^T = A without pivoting. Keeps its own copy of what it needs of A.
@@ -29,4 +29,4 @@ class SparseCholesky
   bool positive_definite_ = false;
 };
 
-}  // namespace tribound
+}  // namespace tribound::algebra

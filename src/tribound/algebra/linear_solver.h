@@ -12,7 +12,7 @@
 
 struct _p_KSP;
 
-namespace tribound
+namespace tribound::algebra
 {
 
 struct KspDeleter
@@ -42,8 +42,8 @@ inline constexpr Index direct_limit_3d = 30'000;
 
 /// Direct or iterative, as configured or by dimension and size: factorisations in 2D at every size that fits,
 /// in 3D up to `direct_limit` degrees of freedom.
-[[nodiscard]] LinearMethod choose_method(const SolverConfig& config, int dim, Index n_dofs,
-                                         Index direct_limit = direct_limit_3d);
+[[nodiscard]] case_file::LinearMethod choose_method(const case_file::SolverConfig& config, int dim,
+                                                    Index n_dofs, Index direct_limit = direct_limit_3d);
 
 /// Solves the linear systems of one Newton loop by flexible GMRES, preconditioned by a factorisation (then
 /// one iteration is the rule) or by smoothed-aggregation multigrid with rigid body modes. The preconditioner
@@ -54,14 +54,14 @@ class LinearSolver
  public:
   /// `nodes`: positions of the nodes; degree of freedom dim * node + component.
   template <int dim>
-  LinearSolver(const SolverConfig& config, std::span<const Point<dim>> nodes,
+  LinearSolver(const case_file::SolverConfig& config, std::span<const Point<dim>> nodes,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
 
   /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off. Throws SolveError when A is
   /// singular or the iteration stalls.
   LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x);
 
-  [[nodiscard]] LinearMethod method() const { return method_; }
+  [[nodiscard]] case_file::LinearMethod method() const { return method_; }
 
  private:
   [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, std::span<const double> b, double tolerance,
@@ -71,8 +71,8 @@ class LinearSolver
   void configure_multigrid(const SparseMatrix& a);
   void prepare(const SparseMatrix& a);
 
-  SolverConfig config_;
-  LinearMethod method_;
+  case_file::SolverConfig config_;
+  case_file::LinearMethod method_;
   MatrixKind kind_;
   int dim_;
   std::vector<double> coordinates_;
@@ -81,4 +81,4 @@ class LinearSolver
       0;  ///< iterations with the old preconditioner that cost less than a new one; 0: none yet
 };
 
-}  // namespace tribound
+}  // namespace tribound::algebra

@@ -14,7 +14,7 @@
 
 struct _p_Mat;
 
-namespace tribound
+namespace tribound::algebra
 {
 
 /// Starts MPI (with threads: PT-Scotch deadlocks otherwise) and PETSc; ends them when destroyed. One per
@@ -52,7 +52,7 @@ class SparseMatrix
 {
  public:
   /// Sums the entries; block_size is the number of components per node.
-  SparseMatrix(Index n, int block_size, Triplets entries);
+  SparseMatrix(Index n, int block_size, contact::Triplets entries);
 
   /// A matrix of the same pattern and values.
   [[nodiscard]] SparseMatrix duplicate() const;
@@ -74,4 +74,4 @@ class SparseMatrix
   std::unique_ptr<_p_Mat, MatDeleter> mat_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::algebra

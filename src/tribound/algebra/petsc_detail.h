@@ -10,7 +10,7 @@
 
 #include "tribound/base/error.h"
 
-namespace tribound::detail
+namespace tribound::algebra::detail
 {
 
 /// Turns a PETSc error code into a SolveError.
@@ -32,4 +32,4 @@ void set_default_option(const char* name, const char* value);
 /// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
 void configure_mumps(Mat factors, int dim);
 
-}  // namespace tribound::detail
+}  // namespace tribound::algebra::detail

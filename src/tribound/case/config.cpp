@@ -13,7 +13,7 @@
 #include "tribound/case/physics.h"
 #include "tribound/case/table_reader.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -281,4 +281,4 @@ Config read_config(const std::filesystem::path& file, std::span<const std::strin
   return parse_config(text, file.string(), overrides);
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -15,7 +15,7 @@
 #include "tribound/base/error.h"
 #include "tribound/problem/field.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 /// A mesh read through Gmsh (.msh of any version, .geo).
@@ -57,7 +57,7 @@ struct MaterialConfig
 struct LoadConfig
 {
   std::string region;
-  std::vector<Expression> body;  ///< force per volume, dim components
+  std::vector<problem::Expression> body;  ///< force per volume, dim components
   Where where;
 };
 
@@ -68,7 +68,7 @@ struct Frictionless
 /// |sigma^t| <= s(x).
 struct Tresca
 {
-  Expression threshold;  ///< s >= 0, stress units
+  problem::Expression threshold;  ///< s >= 0, stress units
 };
 
 /// |sigma^t| <= mu_F |sigma^n|.
@@ -83,16 +83,17 @@ using FrictionLaw = std::variant<Frictionless, Tresca, Coulomb>;
 struct Contact
 {
   FrictionLaw friction;
-  Expression gap;  ///< initial distance g >= 0 along the outward normal
+  problem::Expression gap;  ///< initial distance g >= 0 along the outward normal
 };
 
 /// One [boundary.<name>] table.
 struct BoundaryConfig
 {
   std::string name;
-  std::vector<std::optional<Expression>> displacement;  ///< empty: none given; nullopt: "free" component
-  std::vector<Expression> traction;                     ///< empty: none given
-  std::optional<Expression> pressure;                   ///< acts against the outward normal
+  std::vector<std::optional<problem::Expression>>
+      displacement;                             ///< empty: none given; nullopt: "free" component
+  std::vector<problem::Expression> traction;    ///< empty: none given
+  std::optional<problem::Expression> pressure;  ///< acts against the outward normal
   std::optional<Contact> contact;
   Where where;
 };
@@ -248,4 +249,4 @@ struct Config
 [[nodiscard]] Config parse_config(std::string_view text, std::string name = "case",
                                   std::span<const std::string> overrides = {});
 
-}  // namespace tribound
+}  // namespace tribound::case_file

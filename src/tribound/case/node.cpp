@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -55,4 +55,4 @@ std::string dotted_key(const std::string& table, std::string_view name)
   return table.empty() ? part : table + "." + part;
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

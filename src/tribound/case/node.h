@@ -12,7 +12,7 @@
 
 #include "tribound/base/error.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 struct Entry;
@@ -70,4 +70,4 @@ struct Entry
 /// that is no TOML value counts as a string. Throws InputError.
 void apply_override(Node& document, const std::string& assignment);
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -7,7 +7,7 @@
 
 #include "tribound/case/node.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -138,4 +138,4 @@ void apply_override(Node& document, const std::string& assignment)
   merge(std::get<Node::Table>(document.value), std::get<Node::Table>(parsed.value).front(), depth);
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -7,7 +7,7 @@
 
 #include "tribound/case/table_reader.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -37,9 +37,9 @@ LoadConfig read_load(const TableReader& table, std::string region)
   return {std::move(region), to_expressions(body), body.where};
 }
 
-std::vector<std::optional<Expression>> read_displacement(const Node& node)
+std::vector<std::optional<problem::Expression>> read_displacement(const Node& node)
 {
-  std::vector<std::optional<Expression>> displacement;
+  std::vector<std::optional<problem::Expression>> displacement;
   for (const Node& item :
        to_components(node, "one number, formula or \"free\" per dimension, such as [0, \"free\"]"))
   {
@@ -84,7 +84,7 @@ FrictionLaw read_friction(const TableReader& table)
 Contact read_contact(const Node& node)
 {
   const TableReader table(node, {"friction", "threshold", "coefficient", "gap"});
-  Contact contact{.friction = read_friction(table), .gap = Expression(0.0, node.where)};
+  Contact contact{.friction = read_friction(table), .gap = problem::Expression(0.0, node.where)};
   table.read("gap", contact.gap, to_nonnegative_expression);
   return contact;
 }
@@ -102,7 +102,8 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
              "split the group in the mesh; a pressure in the joint itself, such as uplift, is not modelled");
   if (boundary.displacement.empty()) return;
 
-  const auto is_fixed = [](const std::optional<Expression>& component) { return component.has_value(); };
+  const auto is_fixed = [](const std::optional<problem::Expression>& component)
+  { return component.has_value(); };
   if (boundary.pressure && std::ranges::all_of(boundary.displacement, is_fixed))
     fail("pressure", "has no effect: displacement fixes every component", "drop it, or leave one \"free\"");
   if (boundary.traction.empty()) return;
@@ -169,4 +170,4 @@ std::vector<BoundaryConfig> read_boundaries(const Node& node)
   return boundaries;
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

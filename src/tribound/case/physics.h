@@ -8,7 +8,7 @@
 #include "tribound/case/config.h"
 #include "tribound/case/node.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 /// E, nu, plane directly or in [material.<region>]; `plane` given directly is the default of the regions.
@@ -20,4 +20,4 @@ namespace tribound
 /// One table for each boundary.
 [[nodiscard]] std::vector<BoundaryConfig> read_boundaries(const Node& table);
 
-}  // namespace tribound
+}  // namespace tribound::case_file

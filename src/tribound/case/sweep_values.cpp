@@ -10,7 +10,7 @@
 #include "tribound/base/error.h"
 #include "tribound/case/node.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -198,4 +198,4 @@ SweepTable sweep_rows(std::string_view csv, const std::string& file)
   return table;
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tribound
+namespace tribound::case_file
 {
 
 /// Keys of a case and rows of values for them, each as it would stand behind --set KEY=.
@@ -30,4 +30,4 @@ struct SweepTable
 /// messages. Throws InputError.
 [[nodiscard]] SweepTable sweep_rows(std::string_view csv, const std::string& file);
 
-}  // namespace tribound
+}  // namespace tribound::case_file

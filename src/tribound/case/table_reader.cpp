@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -49,7 +49,7 @@ TableReader::TableReader(const Node& node, std::initializer_list<std::string_vie
 const Node* TableReader::find(std::string_view key) const
 {
   assert(std::ranges::find(keys_, key) != keys_.end());
-  const Entry* entry = tribound::find(*table_, key);
+  const Entry* entry = case_file::find(*table_, key);
   return entry == nullptr || is_named(*entry) ? nullptr : &entry->node;
 }
 
@@ -99,24 +99,24 @@ double to_number(const Node& node)
   return *number;
 }
 
-Expression to_expression(const Node& node)
+problem::Expression to_expression(const Node& node)
 {
-  if (const auto* text = std::get_if<std::string>(&node.value)) return Expression(*text, node.where);
+  if (const auto* text = std::get_if<std::string>(&node.value)) return problem::Expression(*text, node.where);
   if (!std::holds_alternative<std::int64_t>(node.value) && !std::holds_alternative<double>(node.value))
     fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
   const double number = to_number(node);
   if (std::abs(number) > reasonable.upper)
     throw InputError(node.where, fmt::format("is beyond all physics, {}", number),
                      "its square must be a number, too: take other units");
-  return Expression(number, node.where);
+  return problem::Expression(number, node.where);
 }
 
-Expression to_nonnegative_expression(const Node& node)
+problem::Expression to_nonnegative_expression(const Node& node)
 {
-  Expression expression = to_expression(node);
+  problem::Expression expression = to_expression(node);
   if (expression.is_constant() && expression(Point<2>::Zero().eval()) < 0)
     throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
-                     nonnegative_hint(node.where));
+                     problem::nonnegative_hint(node.where));
   return expression;
 }
 
@@ -128,9 +128,9 @@ const Node::Array& to_components(const Node& node, std::string_view what)
   return *array;
 }
 
-std::vector<Expression> to_expressions(const Node& node)
+std::vector<problem::Expression> to_expressions(const Node& node)
 {
-  std::vector<Expression> components;
+  std::vector<problem::Expression> components;
   for (const Node& item : to_components(node, "one number or formula per dimension, such as [0, -1]"))
     components.push_back(to_expression(item));
   return components;
@@ -173,4 +173,4 @@ std::size_t to_choice(const Node& node, const std::vector<std::string>& names)
                    near.empty() ? list : fmt::format("did you mean \"{}\"? {}", near, list));
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -13,7 +13,7 @@
 #include "tribound/case/node.h"
 #include "tribound/problem/field.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 /// A table whose keys are known to be allowed.
@@ -67,12 +67,12 @@ class TableReader
 /// A finite number; integers count.
 [[nodiscard]] double to_number(const Node& node);
 /// A number or a formula.
-[[nodiscard]] Expression to_expression(const Node& node);
+[[nodiscard]] problem::Expression to_expression(const Node& node);
 /// A number or a formula; throws if it is a negative constant.
-[[nodiscard]] Expression to_nonnegative_expression(const Node& node);
+[[nodiscard]] problem::Expression to_nonnegative_expression(const Node& node);
 /// The items of an array of 2 or 3 (dim); `what` describes it, such as "one component per dimension".
 [[nodiscard]] const Node::Array& to_components(const Node& node, std::string_view what);
-[[nodiscard]] std::vector<Expression> to_expressions(const Node& node);
+[[nodiscard]] std::vector<problem::Expression> to_expressions(const Node& node);
 
 /// The numbers a key takes.
 struct Interval
@@ -117,4 +117,4 @@ template <class Enum>
   return [names = std::move(names)](const Node& node) { return static_cast<Enum>(to_choice(node, names)); };
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -6,7 +6,7 @@
 
 #include "tribound/case/node.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -163,4 +163,4 @@ Node parse_toml(std::string_view text, const std::string& file)
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -5,7 +5,7 @@
 
 #include "tribound/case/node.h"
 
-namespace tribound
+namespace tribound::case_file
 {
 
 namespace
@@ -89,4 +89,4 @@ std::string to_toml(const Node& document)
   return text;
 }
 
-}  // namespace tribound
+}  // namespace tribound::case_file

@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -22,11 +22,12 @@ double degrees_between(const Point<dim>& a, const Point<dim>& b)
 
 /// The mean of the vertices that two facets share.
 template <int dim>
-Point<dim> shared_point(const Mesh<dim>& mesh, const BoundaryFacet& a, const BoundaryFacet& b)
+Point<dim> shared_point(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& a,
+                        const mesh::BoundaryFacet& b)
 {
-  const auto of_b = facet_vertices(mesh.cell(b.cell), b.local);
+  const auto of_b = mesh::facet_vertices(mesh.cell(b.cell), b.local);
   Point<dim> sum = Point<dim>::Zero();
-  for (const Index v : facet_vertices(mesh.cell(a.cell), a.local))
+  for (const Index v : mesh::facet_vertices(mesh.cell(a.cell), a.local))
     if (std::ranges::find(of_b, v) != of_b.end()) sum += mesh.vertex(v);
   return sum / (dim - 1);
 }
@@ -36,7 +37,7 @@ template <int dim>
 class Collector
 {
  public:
-  Collector(const NitscheForm<dim>& form, int tag) : form_(form), tag_(tag)
+  Collector(const contact::NitscheForm<dim>& form, int tag) : form_(form), tag_(tag)
   {
     facts_.name = form.problem().boundary(tag).name;
     facts_.smallest_gap = std::numeric_limits<double>::infinity();
@@ -44,7 +45,7 @@ class Collector
 
   [[nodiscard]] ContactBoundaryFacts collect(std::span<const std::array<int, 2>> neighbours)
   {
-    for (const ContactFacet<dim>& facet : form_.contact_facets())
+    for (const contact::ContactFacet<dim>& facet : form_.contact_facets())
       if (facet.facet.tag == tag_) add_facet(facet);
     add_spread();
     for (const auto& [k, l] : neighbours) add_kink(form_.contact_facets()[k], form_.contact_facets()[l]);
@@ -52,18 +53,19 @@ class Collector
   }
 
  private:
-  void add_facet(const ContactFacet<dim>& facet)
+  void add_facet(const contact::ContactFacet<dim>& facet)
   {
     ++facts_.facets;
     facts_.measure += facet.geometry.measure;
     mean_ += facet.geometry.measure * facet.geometry.normal;
-    const FacetMap<dim> map = facet_map(form_.space().mesh(), facet.facet.cell, facet.facet.local);
+    const mesh::FacetMap<dim> map =
+        mesh::facet_map(form_.space().mesh(), facet.facet.cell, facet.facet.local);
     for (const Point<dim - 1>& s : form_.facet_rule().points) add_gap(*facet.contact, map(s));
   }
 
-  void add_gap(const Contact& contact, const Point<dim>& x)
+  void add_gap(const case_file::Contact& contact, const Point<dim>& x)
   {
-    const double gap = gap_at<dim>(contact, x);
+    const double gap = problem::gap_at<dim>(contact, x);
     if (gap < facts_.smallest_gap)
     {
       facts_.smallest_gap = gap;
@@ -82,12 +84,12 @@ class Collector
     if (mean_.norm() <= closed_surface * facts_.measure) return;
     const Point<dim> mean = mean_.normalized();
     facts_.normal = place<dim>(mean);
-    for (const ContactFacet<dim>& facet : form_.contact_facets())
+    for (const contact::ContactFacet<dim>& facet : form_.contact_facets())
       if (facet.facet.tag == tag_)
         facts_.spread = std::max(facts_.spread, degrees_between<dim>(mean, facet.geometry.normal));
   }
 
-  void add_kink(const ContactFacet<dim>& a, const ContactFacet<dim>& b)
+  void add_kink(const contact::ContactFacet<dim>& a, const contact::ContactFacet<dim>& b)
   {
     if (a.facet.tag != tag_) return;
     const double angle = kink(a, b);
@@ -96,7 +98,7 @@ class Collector
     facts_.kink_at = place<dim>(shared_point(form_.space().mesh(), a.facet, b.facet));
   }
 
-  const NitscheForm<dim>& form_;
+  const contact::NitscheForm<dim>& form_;
   int tag_;
   Point<dim> mean_ = Point<dim>::Zero();
   ContactBoundaryFacts facts_;
@@ -105,7 +107,7 @@ class Collector
 }  // namespace
 
 template <int dim>
-double kink(const ContactFacet<dim>& a, const ContactFacet<dim>& b)
+double kink(const contact::ContactFacet<dim>& a, const contact::ContactFacet<dim>& b)
 {
   constexpr double corner = 45;
   constexpr double round_off = 0.01;
@@ -114,19 +116,19 @@ double kink(const ContactFacet<dim>& a, const ContactFacet<dim>& b)
 }
 
 template <int dim>
-std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<dim>& form)
+std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<dim>& form)
 {
   using Ridge = std::array<Index, dim - 1>;  // what neighbours share
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::map<std::pair<int, Ridge>, int> waiting;
   std::vector<std::array<int, 2>> neighbours;
   for (int k = 0; k < static_cast<int>(form.contact_facets().size()); ++k)
   {
-    const BoundaryFacet& facet = form.contact_facets()[k].facet;
-    const auto vertices = facet_vertices(mesh.cell(facet.cell), facet.local);
+    const mesh::BoundaryFacet& facet = form.contact_facets()[k].facet;
+    const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
     for (int left_out = 0; left_out < dim; ++left_out)
     {
-      Ridge ridge = facet_vertices(vertices, left_out);
+      Ridge ridge = mesh::facet_vertices(vertices, left_out);
       std::ranges::sort(ridge);
       const auto [other, is_new] = waiting.try_emplace({facet.tag, ridge}, k);
       if (!is_new) neighbours.push_back({other->second, k});
@@ -136,7 +138,7 @@ std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<dim>& form)
 }
 
 template <int dim>
-std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<dim>& form)
+std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<dim>& form)
 {
   const std::vector<std::array<int, 2>> neighbours = contact_neighbours(form);
   std::vector<ContactBoundaryFacts> result;
@@ -150,11 +152,11 @@ std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<dim>&
   return result;
 }
 
-template std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<2>&);
-template std::vector<std::array<int, 2>> contact_neighbours(const NitscheForm<3>&);
-template double kink(const ContactFacet<2>&, const ContactFacet<2>&);
-template double kink(const ContactFacet<3>&, const ContactFacet<3>&);
-template std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<2>&);
-template std::vector<ContactBoundaryFacts> contact_boundary_facts(const NitscheForm<3>&);
+template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<2>&);
+template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<3>&);
+template double kink(const contact::ContactFacet<2>&, const contact::ContactFacet<2>&);
+template double kink(const contact::ContactFacet<3>&, const contact::ContactFacet<3>&);
+template std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<2>&);
+template std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

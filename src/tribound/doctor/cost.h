@@ -9,7 +9,7 @@
 #include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 /// Of the first mesh, all Newton steps and the certificate included, on one core.
@@ -17,7 +17,7 @@ struct CostEstimate
 {
   int degree = 0;
   double dofs = 0;  ///< fixed ones included
-  LinearMethod method = LinearMethod::direct;
+  case_file::LinearMethod method = case_file::LinearMethod::direct;
   double bytes = 0;
   double seconds = 0;
 };
@@ -26,6 +26,7 @@ struct CostEstimate
 /// the same sizes, memory was right within a factor of 1.5, mostly a quarter, and time within 2; beyond these
 /// sizes both are extrapolated.
 template <int dim>
-[[nodiscard]] std::vector<CostEstimate> cost_estimates(const Mesh<dim>& mesh, const SolverConfig& config);
+[[nodiscard]] std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh,
+                                                       const case_file::SolverConfig& config);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -15,7 +15,7 @@
 #include "tribound/doctor/support_facts.h"
 #include "tribound/doctor/units.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 struct Diagnosis
@@ -30,12 +30,12 @@ struct Diagnosis
   MeshQuality mesh;
   std::vector<CostEstimate> costs;
   double multigrid_bytes = 0;  ///< of the case's degree with solver.method = "iterative"
-  MemoryLimit memory;
+  adapt::MemoryLimit memory;
 };
 
 /// For a case whose bodies are held, see check_rigid_motions().
 template <int dim>
-[[nodiscard]] Diagnosis diagnose(const Config& config, const NitscheForm<dim>& form)
+[[nodiscard]] Diagnosis diagnose(const case_file::Config& config, const contact::NitscheForm<dim>& form)
 {
   Diagnosis result;
   result.degree = config.degree;
@@ -47,11 +47,11 @@ template <int dim>
   result.units = plausible_units(result.loads);
   result.mesh = mesh_quality(form.space().mesh());
   result.costs = cost_estimates(form.space().mesh(), config.solver);
-  SolverConfig multigrid = config.solver;
-  multigrid.method = LinearMethod::iterative;
+  case_file::SolverConfig multigrid = config.solver;
+  multigrid.method = case_file::LinearMethod::iterative;
   result.multigrid_bytes = cost_estimates(form.space().mesh(), multigrid)[config.degree - 1].bytes;
-  result.memory = memory_limit(config.adapt);
+  result.memory = adapt::memory_limit(config.adapt);
   return result;
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <span>
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -47,7 +47,7 @@ Finding held(const ContactHeldMotion& motion)
                                       : "the loads must press the body against the obstacle";
   if (motion.remedy)
     finding.advice +=
-        fmt::format("; a fixed displacement {} would hold it for certain", describe(*motion.remedy));
+        fmt::format("; a fixed displacement {} would hold it for certain", contact::describe(*motion.remedy));
   return finding;
 }
 
@@ -237,4 +237,4 @@ std::vector<Finding> findings(const Diagnosis& diagnosis)
   return result;
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

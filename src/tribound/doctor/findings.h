@@ -10,7 +10,7 @@
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/place.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 enum class Severity
@@ -46,4 +46,4 @@ struct Finding
 /// "(0.5, 1)" with six digits.
 [[nodiscard]] std::string describe(const Place& where);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

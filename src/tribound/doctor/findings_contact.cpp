@@ -2,7 +2,7 @@
 
 #include "tribound/doctor/findings.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -135,4 +135,4 @@ std::vector<Finding> contact_findings(const Diagnosis& diagnosis)
   return result;
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -6,7 +6,7 @@
 
 #include "tribound/doctor/findings.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -39,7 +39,7 @@ std::string seconds_in_words(double seconds)
 std::string memory_advice(const Diagnosis& diagnosis, const CostEstimate& cost)
 {
   std::vector<std::string> ways;
-  if (cost.method == LinearMethod::direct && diagnosis.multigrid_bytes <= diagnosis.memory.bytes)
+  if (cost.method == case_file::LinearMethod::direct && diagnosis.multigrid_bytes <= diagnosis.memory.bytes)
     ways.push_back(
         fmt::format("solver.method = \"iterative\" (about {})", bytes_in_words(diagnosis.multigrid_bytes)));
   for (const CostEstimate& other : diagnosis.costs)
@@ -92,4 +92,4 @@ std::vector<Finding> cost_findings(const Diagnosis& diagnosis)
   return result;
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -4,22 +4,22 @@
 #include <cmath>
 #include <limits>
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
 {
 
 template <int dim>
-RegionMaterial region_material(const Problem<dim>& problem, int region)
+RegionMaterial region_material(const problem::Problem<dim>& problem, int region)
 {
-  const Material& material = problem.material(region);
+  const problem::Material& material = problem.material(region);
   const auto [E, nu] = elastic_constants(material, dim);
-  return {problem.region_names()[region], E, nu, dim == 2 && material.plane == PlaneModel::stress};
+  return {problem.region_names()[region], E, nu, dim == 2 && material.plane == case_file::PlaneModel::stress};
 }
 
 template <int dim>
-void measure_extent(const Mesh<dim>& mesh, LoadFacts& facts)
+void measure_extent(const mesh::Mesh<dim>& mesh, LoadFacts& facts)
 {
   Point<dim> lower = mesh.vertex(0);
   Point<dim> upper = mesh.vertex(0);
@@ -35,11 +35,11 @@ void measure_extent(const Mesh<dim>& mesh, LoadFacts& facts)
 
 /// The integral of f; sets the largest mean of |f| over a cell.
 template <int dim>
-Point<dim> body_force_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
+Point<dim> body_force_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
   constexpr double factorial = dim == 2 ? 2 : 6;
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Quadrature<dim>& rule = form.data().cell_rule();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const fem::Quadrature<dim>& rule = form.data().cell_rule();
   Point<dim> resultant = Point<dim>::Zero();
   std::vector<Point<dim>> f(rule.size());
   for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -50,7 +50,7 @@ Point<dim> body_force_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
     for (int q = 0; q < rule.size(); ++q)
     {
       magnitude += factorial * rule.weights[q] * f[q].norm();
-      resultant += cell_map(mesh, c).det * rule.weights[q] * f[q];
+      resultant += mesh::cell_map(mesh, c).det * rule.weights[q] * f[q];
     }
     facts.largest_body_force = std::max(facts.largest_body_force, magnitude);
   }
@@ -66,18 +66,18 @@ struct BoundaryLoad
 
 /// The integral of g_N; sets the largest mean of |g_N| over a boundary.
 template <int dim>
-Point<dim> traction_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
+Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Quadrature<dim - 1>& rule = form.facet_rule();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   Point<dim> resultant = Point<dim>::Zero();
   std::vector<BoundaryLoad> loads(form.problem().boundaries().size());
   std::vector<Point<dim>> g(rule.size());
   for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
-    const BoundaryFacet& facet = mesh.boundary()[k];
+    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
-    const double measure = facet_geometry(mesh, facet.cell, facet.local).measure;
+    const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
     loads[facet.tag].measure += measure;
     form.data().traction(k, g);
     for (int q = 0; q < rule.size(); ++q)
@@ -95,15 +95,15 @@ Point<dim> traction_resultant(const NitscheForm<dim>& form, LoadFacts& facts)
 
 /// Boundaries with a negative pressure, with the lowest.
 template <int dim>
-std::vector<Suction> find_suction(const NitscheForm<dim>& form)
+std::vector<Suction> find_suction(const contact::NitscheForm<dim>& form)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   const auto boundaries = form.problem().boundaries();
   std::vector<Suction> lowest(boundaries.size());
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     if (facet.tag < 0 || !boundaries[facet.tag].pressure) continue;
-    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
     for (const Point<dim - 1>& s : form.facet_rule().points)
       if (const double p = (*boundaries[facet.tag].pressure)(map(s)); p < lowest[facet.tag].lowest)
         lowest[facet.tag] = {boundaries[facet.tag].name, p, place<dim>(map(s))};
@@ -114,23 +114,23 @@ std::vector<Suction> find_suction(const NitscheForm<dim>& form)
 
 /// The area of the boundaries that take up the loads.
 template <int dim>
-double supporting_measure(const Problem<dim>& problem, const Mesh<dim>& mesh)
+double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   double measure = 0;
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
-    const BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
     if (condition.contact || condition.fixes_any())
-      measure += facet_geometry(mesh, facet.cell, facet.local).measure;
+      measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
   return measure;
 }
 
 /// The largest range of a prescribed component. An obstacle that stays where it is counts as 0.
 template <int dim>
-double displacement_range(const NitscheForm<dim>& form)
+double displacement_range(const contact::NitscheForm<dim>& form)
 {
-  const Constraints& constraints = form.constraints();
+  const fem::Constraints& constraints = form.constraints();
   const double start = form.problem().has_contact() ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   double range = 0;
   for (int component = 0; component < dim; ++component)
@@ -150,10 +150,10 @@ double displacement_range(const NitscheForm<dim>& form)
 
 }  // namespace
 
-ElasticConstants elastic_constants(const Material& material, int dimension)
+ElasticConstants elastic_constants(const problem::Material& material, int dimension)
 {
   const auto& [lambda, mu, plane] = material;
-  const bool plane_stress = dimension == 2 && plane == PlaneModel::stress;
+  const bool plane_stress = dimension == 2 && plane == case_file::PlaneModel::stress;
   const double nu = plane_stress ? lambda / (lambda + 2 * mu) : lambda / (2 * (lambda + mu));
   return {2 * mu * (1 + nu), nu};
 }
@@ -169,10 +169,10 @@ double LoadFacts::strain() const
 }
 
 template <int dim>
-LoadFacts load_facts(const NitscheForm<dim>& form)
+LoadFacts load_facts(const contact::NitscheForm<dim>& form)
 {
-  const Problem<dim>& problem = form.problem();
-  const Mesh<dim>& mesh = form.space().mesh();
+  const problem::Problem<dim>& problem = form.problem();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   LoadFacts facts;
   measure_extent(mesh, facts);
   for (int region = 0; region < static_cast<int>(problem.region_names().size()); ++region)
@@ -187,7 +187,7 @@ LoadFacts load_facts(const NitscheForm<dim>& form)
   return facts;
 }
 
-template LoadFacts load_facts(const NitscheForm<2>&);
-template LoadFacts load_facts(const NitscheForm<3>&);
+template LoadFacts load_facts(const contact::NitscheForm<2>&);
+template LoadFacts load_facts(const contact::NitscheForm<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

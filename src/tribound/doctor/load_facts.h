@@ -9,7 +9,7 @@
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/doctor/place.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 /// Young's modulus and Poisson's ratio.
@@ -21,7 +21,7 @@ struct ElasticConstants
 
 /// E and nu of lambda and mu, the inverse of lame(). Plane stress, which counts in 2D only, works with
 /// lambda_ps = 2 lambda mu / (lambda + 2 mu), hence nu = lambda_ps / (lambda_ps + 2 mu).
-[[nodiscard]] ElasticConstants elastic_constants(const Material& material, int dimension);
+[[nodiscard]] ElasticConstants elastic_constants(const problem::Material& material, int dimension);
 
 struct RegionMaterial
 {
@@ -60,6 +60,6 @@ struct LoadFacts
 };
 
 template <int dim>
-[[nodiscard]] LoadFacts load_facts(const NitscheForm<dim>& form);
+[[nodiscard]] LoadFacts load_facts(const contact::NitscheForm<dim>& form);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

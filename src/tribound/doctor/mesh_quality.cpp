@@ -7,14 +7,14 @@
 
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
 {
 
 template <int dim>
-Point<dim> centroid(const Mesh<dim>& mesh, Index cell)
+Point<dim> centroid(const mesh::Mesh<dim>& mesh, Index cell)
 {
   Point<dim> sum = Point<dim>::Zero();
   for (const Index v : mesh.cell(cell)) sum += mesh.vertex(v);
@@ -23,10 +23,10 @@ Point<dim> centroid(const Mesh<dim>& mesh, Index cell)
 
 /// The angles between facets of the cell, in degrees: smallest and largest.
 template <int dim>
-std::array<double, 2> extreme_angles(const Mesh<dim>& mesh, Index cell)
+std::array<double, 2> extreme_angles(const mesh::Mesh<dim>& mesh, Index cell)
 {
   std::array<Point<dim>, dim + 1> normals;
-  for (int f = 0; f <= dim; ++f) normals[f] = facet_geometry(mesh, cell, f).normal;
+  for (int f = 0; f <= dim; ++f) normals[f] = mesh::facet_geometry(mesh, cell, f).normal;
   std::array<double, 2> extreme = {180, 0};
   for (int f = 0; f <= dim; ++f)
     for (int g = f + 1; g <= dim; ++g)
@@ -42,18 +42,18 @@ std::array<double, 2> extreme_angles(const Mesh<dim>& mesh, Index cell)
 }  // namespace
 
 template <int dim>
-double aspect_ratio(const Mesh<dim>& mesh, Index cell)
+double aspect_ratio(const mesh::Mesh<dim>& mesh, Index cell)
 {
   constexpr double factorial = dim == 2 ? 2 : 6;
   const double regular = 2 * std::sqrt(dim == 2 ? 3.0 : 6.0);
   double surface = 0;
-  for (int f = 0; f <= dim; ++f) surface += facet_geometry(mesh, cell, f).measure;
-  const double inradius = dim * cell_map(mesh, cell).det / factorial / surface;
-  return cell_diameter(mesh, cell) / (regular * inradius);
+  for (int f = 0; f <= dim; ++f) surface += mesh::facet_geometry(mesh, cell, f).measure;
+  const double inradius = dim * mesh::cell_map(mesh, cell).det / factorial / surface;
+  return mesh::cell_diameter(mesh, cell) / (regular * inradius);
 }
 
 template <int dim>
-MeshQuality mesh_quality(const Mesh<dim>& mesh)
+MeshQuality mesh_quality(const mesh::Mesh<dim>& mesh)
 {
   MeshQuality quality;
   for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -74,16 +74,16 @@ MeshQuality mesh_quality(const Mesh<dim>& mesh)
       quality.largest_aspect = aspect;
       quality.largest_aspect_at = place<dim>(centroid(mesh, c));
     }
-    const double h = cell_diameter(mesh, c);
+    const double h = mesh::cell_diameter(mesh, c);
     quality.smallest_cell = std::min(quality.smallest_cell, h);
     quality.largest_cell = std::max(quality.largest_cell, h);
   }
   return quality;
 }
 
-template double aspect_ratio(const Mesh<2>&, Index);
-template double aspect_ratio(const Mesh<3>&, Index);
-template MeshQuality mesh_quality(const Mesh<2>&);
-template MeshQuality mesh_quality(const Mesh<3>&);
+template double aspect_ratio(const mesh::Mesh<2>&, Index);
+template double aspect_ratio(const mesh::Mesh<3>&, Index);
+template MeshQuality mesh_quality(const mesh::Mesh<2>&);
+template MeshQuality mesh_quality(const mesh::Mesh<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

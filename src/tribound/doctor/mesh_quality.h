@@ -8,7 +8,7 @@
 #include "tribound/doctor/place.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 struct MeshQuality
@@ -26,9 +26,9 @@ struct MeshQuality
 /// Longest edge over inradius, 1 for the regular simplex: h / (c r) with c = 2 sqrt(3) in 2D and 2 sqrt(6) in
 /// 3D.
 template <int dim>
-[[nodiscard]] double aspect_ratio(const Mesh<dim>& mesh, Index cell);
+[[nodiscard]] double aspect_ratio(const mesh::Mesh<dim>& mesh, Index cell);
 
 template <int dim>
-[[nodiscard]] MeshQuality mesh_quality(const Mesh<dim>& mesh);
+[[nodiscard]] MeshQuality mesh_quality(const mesh::Mesh<dim>& mesh);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

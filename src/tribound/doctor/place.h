@@ -6,7 +6,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 /// A point whose dimension is known at run time only; empty: nowhere in particular.
@@ -18,4 +18,4 @@ template <int dim>
   return {x.begin(), x.end()};
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

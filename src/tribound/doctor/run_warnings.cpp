@@ -4,7 +4,7 @@
 
 #include "tribound/doctor/findings.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -32,12 +32,12 @@ std::string location(const std::string& boundary, const Place& where)
   return where.empty() ? name : fmt::format("{} at {}", name, describe(where));
 }
 
-void add_data(const LevelRecord& level, std::vector<RunWarning>& warnings)
+void add_data(const io::LevelRecord& level, std::vector<io::RunWarning>& warnings)
 {
-  if (!level.bound || relative_bound(level).value_or(0) <= round_off) return;
-  const BoundComponents& eta = level.bound->global;
+  if (!level.bound || io::relative_bound(level).value_or(0) <= round_off) return;
+  const certify::BoundComponents& eta = level.bound->global;
   double squares = 0;
-  for (const auto& [name, member] : all_component_names) squares += eta.*member * eta.*member;
+  for (const auto& [name, member] : certify::all_component_names) squares += eta.*member * eta.*member;
   const auto add = [&](const char* code, double component, const char* name, const char* text)
   {
     const double share = component * component / squares;
@@ -54,7 +54,7 @@ void add_data(const LevelRecord& level, std::vector<RunWarning>& warnings)
       "the tractions vary faster than the facets show; put vertices where they jump, or refine there");
 }
 
-void add_resolution(const ContactOutcome& outcome, std::vector<RunWarning>& warnings)
+void add_resolution(const ContactOutcome& outcome, std::vector<io::RunWarning>& warnings)
 {
   if (outcome.closed == 0)
     warnings.push_back({"no_contact", "nothing touches there: the boundary might as well be free", 0,
@@ -68,7 +68,7 @@ void add_resolution(const ContactOutcome& outcome, std::vector<RunWarning>& warn
          static_cast<double>(outcome.closed_facets), location(outcome.boundary, {})});
 }
 
-void add_pressure(const ContactOutcome& outcome, std::vector<RunWarning>& warnings)
+void add_pressure(const ContactOutcome& outcome, std::vector<io::RunWarning>& warnings)
 {
   if (outcome.zigzag > large_zigzag)
     warnings.push_back(
@@ -92,7 +92,7 @@ void add_pressure(const ContactOutcome& outcome, std::vector<RunWarning>& warnin
 }
 
 void add_penetration(const ContactOutcome& outcome, double max_displacement,
-                     std::vector<RunWarning>& warnings)
+                     std::vector<io::RunWarning>& warnings)
 {
   if (outcome.penetration <= large_penetration * max_displacement) return;
   const double ratio = outcome.penetration / max_displacement;
@@ -105,7 +105,7 @@ void add_penetration(const ContactOutcome& outcome, double max_displacement,
        ratio, location(outcome.boundary, outcome.penetration_at)});
 }
 
-void add_friction(const ContactOutcome& outcome, std::vector<RunWarning>& warnings)
+void add_friction(const ContactOutcome& outcome, std::vector<io::RunWarning>& warnings)
 {
   constexpr double all = 1 - 1e-9;
   if (outcome.coefficient.value_or(0) >= large_coefficient)
@@ -126,9 +126,10 @@ void add_friction(const ContactOutcome& outcome, std::vector<RunWarning>& warnin
 
 }  // namespace
 
-std::vector<RunWarning> run_warnings(const LevelRecord& level, std::span<const ContactOutcome> outcomes)
+std::vector<io::RunWarning> run_warnings(const io::LevelRecord& level,
+                                         std::span<const ContactOutcome> outcomes)
 {
-  std::vector<RunWarning> warnings;
+  std::vector<io::RunWarning> warnings;
   add_data(level, warnings);
   for (const ContactOutcome& outcome : outcomes)
   {
@@ -140,4 +141,4 @@ std::vector<RunWarning> run_warnings(const LevelRecord& level, std::span<const C
   return warnings;
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -11,11 +11,11 @@
 #include "tribound/doctor/solution_facts.h"
 #include "tribound/io/record/report.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 /// Warnings about the solution of a level with its contact; docs/doctor.md explains every code.
-[[nodiscard]] std::vector<RunWarning> run_warnings(const LevelRecord& level,
-                                                   std::span<const ContactOutcome> outcomes);
+[[nodiscard]] std::vector<io::RunWarning> run_warnings(const io::LevelRecord& level,
+                                                       std::span<const ContactOutcome> outcomes);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -10,7 +10,7 @@
 #include "tribound/contact/support/body_support.h"
 #include "tribound/doctor/contact_facts.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -30,19 +30,20 @@ struct FacetOutcome
 
 /// Adds the states on a facet to the outcome of its boundary.
 template <int dim>
-FacetOutcome<dim> add_facet(const Quadrature<dim - 1>& rule, double measure,
-                            std::span<const ContactState<dim>> states, ContactOutcome& outcome)
+FacetOutcome<dim> add_facet(const fem::Quadrature<dim - 1>& rule, double measure,
+                            std::span<const contact::ContactState<dim>> states, ContactOutcome& outcome)
 {
   FacetOutcome<dim> facet{.measure = measure};
   for (int q = 0; q < rule.size(); ++q)
   {
-    const ContactState<dim>& state = states[q];
+    const contact::ContactState<dim>& state = states[q];
     const double share = rule.weights[q] * (dim - 1);  // of the facet
     facet.centre += share * state.point;
     facet.pressure += share * state.pressure;
     facet.closed = facet.closed && state.pressure > 0;
     if (state.pressure > 0) outcome.closed += measure * share;
-    if (state.pressure > 0 && state.status == ContactStatus::slip) outcome.slipping += measure * share;
+    if (state.pressure > 0 && state.status == contact::ContactStatus::slip)
+      outcome.slipping += measure * share;
     if (state.pressure > facet.largest_pressure)
     {
       facet.largest_pressure = state.pressure;
@@ -108,7 +109,7 @@ std::vector<double> zigzag_amplitudes(std::span<const FacetOutcome<dim>> facets,
 }
 
 template <int dim>
-void add_zigzag(const NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> facets,
+void add_zigzag(const contact::NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> facets,
                 std::span<const std::array<int, 2>> pairs, std::map<int, ContactOutcome>& outcomes)
 {
   struct Squares
@@ -134,7 +135,7 @@ void add_zigzag(const NitscheForm<dim>& form, std::span<const FacetOutcome<dim>>
 }
 
 template <int dim>
-void add_kinks(const NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> facets,
+void add_kinks(const contact::NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> facets,
                std::span<const std::array<int, 2>> pairs, std::map<int, ContactOutcome>& outcomes)
 {
   for (const auto& [k, l] : pairs)
@@ -153,19 +154,20 @@ void add_kinks(const NitscheForm<dim>& form, std::span<const FacetOutcome<dim>> 
 }  // namespace
 
 template <int dim>
-std::vector<ContactOutcome> contact_outcomes(const NitscheForm<dim>& form, std::span<const double> u)
+std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const FacetTabulation<dim> table = tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
+  const fem::FacetTabulation<dim> table =
+      fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
   std::map<int, ContactOutcome> outcomes;  // by boundary
   std::vector<FacetOutcome<dim>> facets;
   facets.reserve(form.contact_facets().size());
   for (int k = 0; k < static_cast<int>(form.contact_facets().size()); ++k)
   {
-    const ContactFacet<dim>& facet = form.contact_facets()[k];
+    const contact::ContactFacet<dim>& facet = form.contact_facets()[k];
     ContactOutcome& outcome = outcomes[facet.facet.tag];
     outcome.boundary = form.problem().boundary(facet.facet.tag).name;
-    outcome.has_friction = has_friction(facet.contact->friction);
-    if (const auto* coulomb = std::get_if<Coulomb>(&facet.contact->friction))
+    outcome.has_friction = contact::has_friction(facet.contact->friction);
+    if (const auto* coulomb = std::get_if<case_file::Coulomb>(&facet.contact->friction))
       outcome.coefficient = coulomb->coefficient;
     facets.push_back(
         add_facet<dim>(form.facet_rule(), facet.geometry.measure, form.contact_states(u, k, table), outcome));
@@ -179,7 +181,9 @@ std::vector<ContactOutcome> contact_outcomes(const NitscheForm<dim>& form, std::
   return result;
 }
 
-template std::vector<ContactOutcome> contact_outcomes(const NitscheForm<2>&, std::span<const double>);
-template std::vector<ContactOutcome> contact_outcomes(const NitscheForm<3>&, std::span<const double>);
+template std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<2>&,
+                                                      std::span<const double>);
+template std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<3>&,
+                                                      std::span<const double>);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

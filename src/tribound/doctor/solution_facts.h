@@ -11,7 +11,7 @@
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/doctor/place.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 struct ContactOutcome
@@ -47,7 +47,7 @@ struct ContactOutcome
 
 /// The outcome on every contact boundary that has facets, in the order of the problem.
 template <int dim>
-[[nodiscard]] std::vector<ContactOutcome> contact_outcomes(const NitscheForm<dim>& form,
+[[nodiscard]] std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& form,
                                                            std::span<const double> u);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -5,38 +5,39 @@
 #include <set>
 #include <utility>
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
 {
 
 /// Motions in the span of `motions` that are orthogonal to those of `others`, a subspace of it.
-MotionBasis complement(const MotionBasis& motions, const MotionBasis& others)
+contact::MotionBasis complement(const contact::MotionBasis& motions, const contact::MotionBasis& others)
 {
   if (motions.cols() == 0) return motions;
   const Eigen::MatrixXd inside = motions.transpose() * others;
-  return motions * null_space(inside * inside.transpose(), 1.0);
+  return motions * contact::null_space(inside * inside.transpose(), 1.0);
 }
 
 /// For each vertex on boundaries with displacement conditions, the numbers of these boundaries.
 using FixedVertices = std::map<Index, std::set<int>>;
 
 template <int dim>
-FixedVertices vertices_on_displacement_boundaries(const Problem<dim>& problem, const Mesh<dim>& mesh)
+FixedVertices vertices_on_displacement_boundaries(const problem::Problem<dim>& problem,
+                                                  const mesh::Mesh<dim>& mesh)
 {
   FixedVertices boundaries;
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
     if (problem.boundary(facet.tag).fixes_any())
-      for (const Index v : facet_vertices(mesh.cell(facet.cell), facet.local))
+      for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
         boundaries[v].insert(facet.tag);
   return boundaries;
 }
 
 /// u_D.n at x where the condition fixes every component that n has.
 template <int dim>
-std::optional<double> fixed_normal_displacement(const BoundaryCondition<dim>& condition, const Point<dim>& n,
-                                                const Point<dim>& x)
+std::optional<double> fixed_normal_displacement(const problem::BoundaryCondition<dim>& condition,
+                                                const Point<dim>& n, const Point<dim>& x)
 {
   constexpr double negligible = 1e-6;
   double normal = 0;
@@ -54,8 +55,8 @@ std::optional<double> fixed_normal_displacement(const BoundaryCondition<dim>& co
 template <int dim>
 struct Meeting
 {
-  const BoundaryCondition<dim>& contact;
-  const BoundaryCondition<dim>& displacement;
+  const problem::BoundaryCondition<dim>& contact;
+  const problem::BoundaryCondition<dim>& displacement;
   Point<dim> x;
   double normal;  ///< u_D^n
   bool new_vertex;
@@ -65,29 +66,29 @@ template <int dim>
 void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
 {
   corner.vertices += meeting.new_vertex ? 1 : 0;
-  const double gap = gap_at<dim>(*meeting.contact.contact, meeting.x);
+  const double gap = problem::gap_at<dim>(*meeting.contact.contact, meeting.x);
   if (!corner.where.empty() && meeting.normal - gap <= corner.normal - corner.gap) return;
   corner.contact = meeting.contact.name;
   corner.displacement = meeting.displacement.name;
   corner.where = place<dim>(meeting.x);
   corner.normal = meeting.normal;
   corner.gap = gap;
-  corner.sticks = has_friction(meeting.contact.contact->friction);
+  corner.sticks = contact::has_friction(meeting.contact.contact->friction);
   for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.fixes(c);
 }
 
 /// Per boundary number the mean normal of a contact boundary whose facets are within 10 degrees of it.
 template <int dim>
-std::vector<std::optional<Point<dim>>> normals_of_planes(const NitscheForm<dim>& form)
+std::vector<std::optional<Point<dim>>> normals_of_planes(const contact::NitscheForm<dim>& form)
 {
   constexpr double cos_limit = 0.985;
   std::vector<Point<dim>> sum(form.problem().boundaries().size(), Point<dim>::Zero());
-  for (const ContactFacet<dim>& facet : form.contact_facets())
+  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
     sum[facet.facet.tag] += facet.geometry.measure * facet.geometry.normal;
   std::vector<std::optional<Point<dim>>> normals(sum.size());
   for (std::size_t tag = 0; tag < sum.size(); ++tag)
     if (sum[tag].norm() > 0) normals[tag] = sum[tag].normalized();
-  for (const ContactFacet<dim>& facet : form.contact_facets())
+  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
     if (auto& normal = normals[facet.facet.tag]; normal && facet.geometry.normal.dot(*normal) < cos_limit)
       normal.reset();
   return normals;
@@ -102,34 +103,34 @@ bool OverconstrainedCorner::contradicts() const
 }
 
 template <int dim>
-std::vector<bool> slides_as_a_whole(const NitscheForm<dim>& form)
+std::vector<bool> slides_as_a_whole(const contact::NitscheForm<dim>& form)
 {
   constexpr double negligible = 1e-6;  // motions have size 1
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   const std::vector<std::optional<Point<dim>>> plane = normals_of_planes(form);
   std::vector<bool> slides(plane.size(), false);
-  for (const Body<dim>& body : find_bodies(form.space()))
+  for (const contact::Body<dim>& body : contact::find_bodies(form.space()))
   {
-    const BodySupport<dim> support(form.problem(), mesh, body);
+    const contact::BodySupport<dim> support(form.problem(), mesh, body);
     Eigen::MatrixXd gram = support.dirichlet_gram();
     const auto for_each_contact_vertex = [&](const auto& visit)
     {
-      for (const BoundaryFacet& facet : body.facets)
+      for (const mesh::BoundaryFacet& facet : body.facets)
         if (form.problem().boundary(facet.tag).contact)
-          for (const Index v : facet_vertices(mesh.cell(facet.cell), facet.local))
+          for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
             visit(facet, body.modes.at(mesh.vertex(v)));
     };
     for_each_contact_vertex(
-        [&](const BoundaryFacet& facet, const auto& modes)
+        [&](const mesh::BoundaryFacet& facet, const auto& modes)
         {
           const Point<dim> n =
-              plane[facet.tag].value_or(facet_geometry(mesh, facet.cell, facet.local).normal);
+              plane[facet.tag].value_or(mesh::facet_geometry(mesh, facet.cell, facet.local).normal);
           const auto z_n = n.transpose() * modes;
           gram += z_n.transpose() * z_n;
         });
-    const MotionBasis motions = null_space(gram, gram.trace());
+    const contact::MotionBasis motions = contact::null_space(gram, gram.trace());
     for_each_contact_vertex(
-        [&](const BoundaryFacet& facet, const auto& modes) {
+        [&](const mesh::BoundaryFacet& facet, const auto& modes) {
           slides[facet.tag] =
               slides[facet.tag] || (plane[facet.tag] && (modes * motions).norm() > negligible);
         });
@@ -138,20 +139,20 @@ std::vector<bool> slides_as_a_whole(const NitscheForm<dim>& form)
 }
 
 template <int dim>
-std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<dim>& form)
+std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<dim>& form)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const std::vector<Body<dim>> bodies = find_bodies(form.space());
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const std::vector<contact::Body<dim>> bodies = contact::find_bodies(form.space());
   std::vector<ContactHeldMotion> result;
-  for (const Body<dim>& body : bodies)
+  for (const contact::Body<dim>& body : bodies)
   {
-    const BodySupport<dim> support(form.problem(), mesh, body);
-    const MotionBasis left = support.left_by_displacements();
-    const MotionBasis sliding = support.left_by_contact(false);
-    const auto add = [&](const MotionBasis& motions, bool by_friction)
+    const contact::BodySupport<dim> support(form.problem(), mesh, body);
+    const contact::MotionBasis left = support.left_by_displacements();
+    const contact::MotionBasis sliding = support.left_by_contact(false);
+    const auto add = [&](const contact::MotionBasis& motions, bool by_friction)
     {
-      for (const auto& z : readable_basis<dim>(motions))
-        result.push_back({describe(body, form.problem(), bodies.size() > 1), body.modes.describe(z),
+      for (const auto& z : contact::readable_basis<dim>(motions))
+        result.push_back({contact::describe(body, form.problem(), bodies.size() > 1), body.modes.describe(z),
                           by_friction, support.remedy(z)});
     };
     add(complement(left, sliding), false);
@@ -161,21 +162,21 @@ std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<dim>& f
 }
 
 template <int dim>
-std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<dim>& form)
+std::vector<OverconstrainedCorner> overconstrained_corners(const contact::NitscheForm<dim>& form)
 {
-  const Problem<dim>& problem = form.problem();
-  const Mesh<dim>& mesh = form.space().mesh();
+  const problem::Problem<dim>& problem = form.problem();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   const FixedVertices fixed = vertices_on_displacement_boundaries(problem, mesh);
   std::map<std::pair<int, int>, OverconstrainedCorner> corners;  // by contact and displacement boundary
   std::map<std::pair<int, int>, std::set<Index>> seen;
-  for (const ContactFacet<dim>& facet : form.contact_facets())
-    for (const Index v : facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local))
+  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
+    for (const Index v : mesh::facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local))
     {
       const auto boundaries = fixed.find(v);
       if (boundaries == fixed.end()) continue;
       for (const int tag : boundaries->second)
       {
-        const BoundaryCondition<dim>& condition = problem.boundary(tag);
+        const problem::BoundaryCondition<dim>& condition = problem.boundary(tag);
         const auto normal = fixed_normal_displacement<dim>(condition, facet.geometry.normal, mesh.vertex(v));
         if (!normal) continue;
         const std::pair key(facet.facet.tag, tag);
@@ -189,11 +190,11 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<dim
   return result;
 }
 
-template std::vector<bool> slides_as_a_whole(const NitscheForm<2>&);
-template std::vector<bool> slides_as_a_whole(const NitscheForm<3>&);
-template std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<2>&);
-template std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<3>&);
-template std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<2>&);
-template std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<3>&);
+template std::vector<bool> slides_as_a_whole(const contact::NitscheForm<2>&);
+template std::vector<bool> slides_as_a_whole(const contact::NitscheForm<3>&);
+template std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<2>&);
+template std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<3>&);
+template std::vector<OverconstrainedCorner> overconstrained_corners(const contact::NitscheForm<2>&);
+template std::vector<OverconstrainedCorner> overconstrained_corners(const contact::NitscheForm<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

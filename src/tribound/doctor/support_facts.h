@@ -11,28 +11,28 @@
 #include "tribound/contact/support/body_support.h"
 #include "tribound/doctor/place.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 /// A rigid motion that displacement conditions leave and only contact stops.
 struct ContactHeldMotion
 {
   std::string body;
-  std::string motion;            ///< such as "translation along x"
-  bool by_friction = false;      ///< nothing but friction stops it; else pressure, one way
-  std::optional<Remedy> remedy;  ///< what would stop it without contact
+  std::string motion;                     ///< such as "translation along x"
+  bool by_friction = false;               ///< nothing but friction stops it; else pressure, one way
+  std::optional<contact::Remedy> remedy;  ///< what would stop it without contact
 };
 
 /// The motions of every body that only contact stops: first those stopped by pressure, then by friction.
 template <int dim>
-[[nodiscard]] std::vector<ContactHeldMotion> motions_held_by_contact(const NitscheForm<dim>& form);
+[[nodiscard]] std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<dim>& form);
 
 /// Per boundary number, whether a body would slide along it as a whole without its friction: the facets of
 /// the boundary are within 10 degrees of a plane, and a rigid motion along the plane is stopped neither by
 /// displacement conditions nor by closed contact without friction. There, and only there, resultants tell how
 /// far sliding is.
 template <int dim>
-[[nodiscard]] std::vector<bool> slides_as_a_whole(const NitscheForm<dim>& form);
+[[nodiscard]] std::vector<bool> slides_as_a_whole(const contact::NitscheForm<dim>& form);
 
 /// Vertices where a contact boundary meets a boundary that fixes the normal displacement.
 struct OverconstrainedCorner
@@ -51,6 +51,7 @@ struct OverconstrainedCorner
 
 /// One for each pair of boundaries that meet like this.
 template <int dim>
-[[nodiscard]] std::vector<OverconstrainedCorner> overconstrained_corners(const NitscheForm<dim>& form);
+[[nodiscard]] std::vector<OverconstrainedCorner> overconstrained_corners(
+    const contact::NitscheForm<dim>& form);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tribound
+namespace tribound::doctor
 {
 
 namespace
@@ -46,4 +46,4 @@ std::vector<UnitSystem> plausible_units(const LoadFacts& loads)
   return plausible;
 }
 
-}  // namespace tribound
+}  // namespace tribound::doctor

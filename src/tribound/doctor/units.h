@@ -8,7 +8,7 @@
 
 #include "tribound/doctor/load_facts.h"
 
-namespace tribound
+namespace tribound::doctor
 {
 
 struct UnitSystem
@@ -27,4 +27,4 @@ struct UnitSystem
 /// like none, as a scaled model with E = 1.
 [[nodiscard]] std::vector<UnitSystem> plausible_units(const LoadFacts& loads);
 
-}  // namespace tribound
+}  // namespace tribound::doctor

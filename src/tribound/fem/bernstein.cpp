@@ -6,7 +6,7 @@
 
 #include "tribound/fem/polynomials.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 namespace
@@ -70,4 +70,4 @@ std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree)
 template std::vector<double> bernstein_from_points(const Quadrature<1>&, int);
 template std::vector<double> bernstein_from_points(const Quadrature<2>&, int);
 
-}  // namespace tribound
+}  // namespace tribound::fem

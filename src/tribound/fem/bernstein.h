@@ -7,7 +7,7 @@
 
 #include "tribound/fem/quadrature.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// The matrix, [coefficient * rule.size() + point], that gives the coefficients b_a of q = sum_a b_a B_a, |a|
@@ -18,4 +18,4 @@ namespace tribound
 template <int k>
 [[nodiscard]] std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree);
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -6,7 +6,7 @@
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 namespace
@@ -100,7 +100,7 @@ FacetTabulation<dim> tabulate_on_facets(const LagrangeBasis<dim>& basis,
   for (int facet = 0; facet <= dim; ++facet)
   {
     std::vector<Point<dim>> in_cell;
-    for (const Point<dim - 1>& s : points) in_cell.push_back(facet_to_cell<dim>(facet, s));
+    for (const Point<dim - 1>& s : points) in_cell.push_back(mesh::facet_to_cell<dim>(facet, s));
     table.on_facet[facet] = basis.tabulate(in_cell);
   }
   return table;
@@ -112,4 +112,4 @@ template class LagrangeBasis<3>;
 template FacetTabulation<2> tabulate_on_facets(const LagrangeBasis<2>&, std::span<const Point<1>>);
 template FacetTabulation<3> tabulate_on_facets(const LagrangeBasis<3>&, std::span<const Point<2>>);
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -9,7 +9,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// Basis functions at points: row q, column i.
@@ -66,4 +66,4 @@ template <int dim>
 [[nodiscard]] FacetTabulation<dim> tabulate_on_facets(const LagrangeBasis<dim>& basis,
                                                       std::span<const Point<dim - 1>> points);
 
-}  // namespace tribound
+}  // namespace tribound::fem

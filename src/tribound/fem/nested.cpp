@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-namespace tribound
+namespace tribound::fem
 {
 
 template <int dim>
@@ -17,8 +17,8 @@ std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::sp
   std::vector<Point<dim>> in_parent;
   for (Index c = 0; c < fine.mesh().n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(fine.mesh(), c);
-    const CellMap<dim> parent_map = cell_map(coarse.mesh(), parent[c]);
+    const mesh::CellMap<dim> map = mesh::cell_map(fine.mesh(), c);
+    const mesh::CellMap<dim> parent_map = mesh::cell_map(coarse.mesh(), parent[c]);
     nodes.clear();
     in_parent.clear();
     for (int i = 0; i < fine.basis().n_nodes(); ++i)
@@ -44,7 +44,7 @@ std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::sp
 
 template <int dim>
 std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
-                                       const Refined<dim>& refined, const LagrangeSpace<dim>& fine)
+                                       const mesh::Refined<dim>& refined, const LagrangeSpace<dim>& fine)
 {
   std::vector<Index> parent(fine.mesh().n_cells());
   for (Index c = 0; c < fine.mesh().n_cells(); ++c) parent[c] = refined.ancestor(c);
@@ -56,8 +56,8 @@ template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::sp
 template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
                                                 std::span<const Index>, const LagrangeSpace<3>&);
 template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
-                                                const Refined<2>&, const LagrangeSpace<2>&);
+                                                const mesh::Refined<2>&, const LagrangeSpace<2>&);
 template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
-                                                const Refined<3>&, const LagrangeSpace<3>&);
+                                                const mesh::Refined<3>&, const LagrangeSpace<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::fem

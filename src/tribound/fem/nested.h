@@ -10,12 +10,12 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/refine.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// The reference coordinates of x in a cell.
 template <int dim>
-[[nodiscard]] Point<dim> reference_point(const CellMap<dim>& map, const Point<dim>& x)
+[[nodiscard]] Point<dim> reference_point(const mesh::CellMap<dim>& map, const Point<dim>& x)
 {
   return map.inverse_transpose.transpose() * (x - map.origin);
 }
@@ -31,7 +31,8 @@ template <int dim>
 /// The same for a mesh refined uniformly.
 template <int dim>
 [[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
-                                                     std::span<const double> u, const Refined<dim>& refined,
+                                                     std::span<const double> u,
+                                                     const mesh::Refined<dim>& refined,
                                                      const LagrangeSpace<dim>& fine);
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace tribound
+namespace tribound::fem
 {
 
 namespace
@@ -123,4 +123,4 @@ template void orthonormal_gradients<1>(int, const Point<1>&, std::span<double>, 
 template void orthonormal_gradients<2>(int, const Point<2>&, std::span<double>, std::span<Point<2>>);
 template void orthonormal_gradients<3>(int, const Point<3>&, std::span<double>, std::span<Point<3>>);
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -8,7 +8,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// dim P^degree(R^k) = binomial(degree + k, k).
@@ -39,4 +39,4 @@ template <int k>
 void orthonormal_gradients(int degree, const Point<k>& x, std::span<double> values,
                            std::span<Point<k>> gradients);
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-namespace tribound
+namespace tribound::fem
 {
 
 namespace
@@ -97,4 +97,4 @@ template Quadrature<1> quadrature<1>(int);
 template Quadrature<2> quadrature<2>(int);
 template Quadrature<3> quadrature<3>(int);
 
-}  // namespace tribound
+}  // namespace tribound::fem

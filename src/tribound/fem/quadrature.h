@@ -7,7 +7,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// sum_q weights[q] f(points[q]) = integral of f; the weights add up to 1/k!.
@@ -33,4 +33,4 @@ template <int k>
   return 2 * p + 5;
 }
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -11,7 +11,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// The vertices of a simplex inside the reference simplex.
@@ -77,4 +77,4 @@ void cut(const Part<k>& part, const std::array<double, k + 1>& values, double ze
   parts.push_back(part);
 }
 
-}  // namespace tribound
+}  // namespace tribound::fem

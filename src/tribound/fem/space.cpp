@@ -9,7 +9,7 @@
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 namespace
@@ -36,7 +36,7 @@ struct NodePlace
 template <int dim>
 int local_edge(int a, int b)
 {
-  const auto& edges = local_edges<dim>;
+  const auto& edges = mesh::local_edges<dim>;
   return static_cast<int>(std::ranges::find(edges, std::array{a, b}) - edges.begin());
 }
 
@@ -71,7 +71,7 @@ std::vector<NodePlace<dim>> node_places(const LagrangeBasis<dim>& basis)
 /// Rank of a node among those inside its edge or facet, the same from every cell: weights are taken in
 /// ascending order of the global vertex numbers.
 template <int dim>
-int rank_in_entity(const NodePlace<dim>& place, const Cell<dim>& cell, int p)
+int rank_in_entity(const NodePlace<dim>& place, const mesh::Cell<dim>& cell, int p)
 {
   auto weights = place.weights;
   const auto by_vertex = [&](const auto& w) { return cell[w.first]; };
@@ -89,10 +89,10 @@ int rank_in_entity(const NodePlace<dim>& place, const Cell<dim>& cell, int p)
 }  // namespace
 
 template <int dim>
-LagrangeSpace<dim>::LagrangeSpace(const Mesh<dim>& mesh, int degree) : mesh_(&mesh), basis_(degree)
+LagrangeSpace<dim>::LagrangeSpace(const mesh::Mesh<dim>& mesh, int degree) : mesh_(&mesh), basis_(degree)
 {
   const int p = degree;
-  const Topology<dim>& topology = mesh.topology();
+  const mesh::Topology<dim>& topology = mesh.topology();
   const int per_edge = p - 1;
   const int per_facet = dim == 3 ? (p - 1) * (p - 2) / 2 : 0;
   const int per_cell = polynomial_dimension(dim, p - dim - 1);
@@ -130,7 +130,7 @@ std::vector<Point<dim>> LagrangeSpace<dim>::node_points() const
   const std::vector<Point<dim>> reference = basis_.node_points();
   for (Index c = 0; c < mesh_->n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(*mesh_, c);
+    const mesh::CellMap<dim> map = mesh::cell_map(*mesh_, c);
     const std::span<const Index> nodes = cell_nodes(c);
     for (std::size_t i = 0; i < nodes.size(); ++i) points[nodes[i]] = map(reference[i]);
   }
@@ -148,7 +148,7 @@ namespace
 
 /// Largest extent of the mesh, the length scale of displacements.
 template <int dim>
-double extent(const Mesh<dim>& mesh)
+double extent(const mesh::Mesh<dim>& mesh)
 {
   Point<dim> lower = mesh.vertex(0);
   Point<dim> upper = mesh.vertex(0);
@@ -162,11 +162,12 @@ double extent(const Mesh<dim>& mesh)
 
 /// Name of the first boundary that fixes component a at the node, empty if none does.
 template <int dim>
-std::string fixing_boundary(const Problem<dim>& problem, const LagrangeSpace<dim>& space, Index node, int a)
+std::string fixing_boundary(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space, Index node,
+                            int a)
 {
-  for (const BoundaryFacet& facet : space.mesh().boundary())
+  for (const mesh::BoundaryFacet& facet : space.mesh().boundary())
   {
-    const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
     const std::span<const Index> nodes = space.cell_nodes(facet.cell);
     const auto i = static_cast<int>(std::ranges::find(nodes, node) - nodes.begin());
     if (boundary.fixes(a) && i < space.basis().n_nodes() && space.basis().node(i)[facet.local] == 0)
@@ -178,14 +179,15 @@ std::string fixing_boundary(const Problem<dim>& problem, const LagrangeSpace<dim
 }  // namespace
 
 template <int dim>
-Constraints dirichlet(const Problem<dim>& problem, const LagrangeSpace<dim>& space)
+Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space)
 {
-  const Mesh<dim>& mesh = space.mesh();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   const LagrangeBasis<dim>& basis = space.basis();
   const double tolerance = 1e-12 * extent(mesh);
   Constraints constraints{std::vector<char>(space.n_dofs(), 0), std::vector<double>(space.n_dofs(), 0.0)};
 
-  const auto fix = [&](const BoundaryCondition<dim>& boundary, int a, Index node, const Point<dim>& x)
+  const auto fix =
+      [&](const problem::BoundaryCondition<dim>& boundary, int a, Index node, const Point<dim>& x)
   {
     const Index dof = dim * node + a;
     const double value = (*boundary.displacement[a])(x);
@@ -201,18 +203,18 @@ Constraints dirichlet(const Problem<dim>& problem, const LagrangeSpace<dim>& spa
     constraints.fixed[dof] = 1;
   };
 
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
-    const BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
     if (!boundary.fixes_any()) continue;
-    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
     const std::span<const Index> nodes = space.cell_nodes(facet.cell);
     for (int i = 0; i < basis.n_nodes(); ++i)
     {
       if (basis.node(i)[facet.local] > 0) continue;  // not on the facet
       const Point<dim> x = nodes[i] < mesh.n_vertices()
                                ? mesh.vertex(nodes[i])  // the same from all facets
-                               : map(cell_to_facet<dim>(facet.local, basis.node_point(i)));
+                               : map(mesh::cell_to_facet<dim>(facet.local, basis.node_point(i)));
       for (int a = 0; a < dim; ++a)
         if (boundary.fixes(a)) fix(boundary, a, nodes[i], x);
     }
@@ -222,7 +224,7 @@ Constraints dirichlet(const Problem<dim>& problem, const LagrangeSpace<dim>& spa
 
 template class LagrangeSpace<2>;
 template class LagrangeSpace<3>;
-template Constraints dirichlet(const Problem<2>&, const LagrangeSpace<2>&);
-template Constraints dirichlet(const Problem<3>&, const LagrangeSpace<3>&);
+template Constraints dirichlet(const problem::Problem<2>&, const LagrangeSpace<2>&);
+template Constraints dirichlet(const problem::Problem<3>&, const LagrangeSpace<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::fem

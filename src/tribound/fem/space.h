@@ -11,7 +11,7 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::fem
 {
 
 /// V_h without boundary conditions. Degree of freedom dim * node + component.
@@ -20,9 +20,9 @@ template <int dim>
 class LagrangeSpace
 {
  public:
-  LagrangeSpace(const Mesh<dim>& mesh, int degree);
+  LagrangeSpace(const mesh::Mesh<dim>& mesh, int degree);
 
-  [[nodiscard]] const Mesh<dim>& mesh() const { return *mesh_; }
+  [[nodiscard]] const mesh::Mesh<dim>& mesh() const { return *mesh_; }
   [[nodiscard]] int degree() const { return basis_.degree(); }
   [[nodiscard]] const LagrangeBasis<dim>& basis() const { return basis_; }
   [[nodiscard]] Index n_nodes() const { return n_nodes_; }
@@ -37,7 +37,7 @@ class LagrangeSpace
   [[nodiscard]] std::vector<Point<dim>> node_points() const;
 
  private:
-  const Mesh<dim>* mesh_;
+  const mesh::Mesh<dim>* mesh_;
   LagrangeBasis<dim> basis_;
   Index n_nodes_ = 0;
   std::vector<Index> cell_nodes_;
@@ -55,6 +55,6 @@ struct Constraints
 /// Nodal interpolation of u_D. Throws InputError where two boundaries prescribe different values for one
 /// component at a common node.
 template <int dim>
-[[nodiscard]] Constraints dirichlet(const Problem<dim>& problem, const LagrangeSpace<dim>& space);
+[[nodiscard]] Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space);
 
-}  // namespace tribound
+}  // namespace tribound::fem

@@ -10,7 +10,7 @@
 
 #include "tribound/mesh/marked_cell.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -269,4 +269,4 @@ Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int t
 template Bisected<2> bisect(const Mesh<2>&, std::span<const Index>, int);
 template Bisected<3> bisect(const Mesh<3>&, std::span<const Index>, int);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -8,7 +8,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 template <int dim>
@@ -32,4 +32,4 @@ struct Bisected
 template <int dim>
 [[nodiscard]] Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times = dim);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -3,7 +3,7 @@
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/verify.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -74,4 +74,4 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
 template std::vector<BoundaryFacet> find_boundary<2>(const MeshData<2>&, const Topology<2>&);
 template std::vector<BoundaryFacet> find_boundary<3>(const MeshData<3>&, const Topology<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

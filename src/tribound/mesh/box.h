@@ -6,13 +6,13 @@
 #include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// Vertex (i, j) has number j (nx+1) + i; square (i, j) is cut from lower left to upper right into
 /// (v00, v10, v11), (v00, v11, v01). A cube is cut into 6 Kuhn tetrahedra around its diagonal v000 - v111.
 /// Boundary names: left right bottom top, in 3D also back (z = lower) and front (z = upper). Region: "box".
 template <int dim>
-[[nodiscard]] MeshData<dim> box_mesh(const BoxMesh& box);
+[[nodiscard]] MeshData<dim> box_mesh(const case_file::BoxMesh& box);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

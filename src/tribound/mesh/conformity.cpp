@@ -7,7 +7,7 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/verify.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -226,4 +226,4 @@ void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology)
 template void check_conformity<2>(const MeshData<2>&, const Topology<2>&);
 template void check_conformity<3>(const MeshData<3>&, const Topology<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

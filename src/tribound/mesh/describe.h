@@ -9,7 +9,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// "(0.5, 1)".
@@ -52,4 +52,4 @@ template <int dim>
                      data.region_names[data.regions[c]], describe_corners(data, data.cells[c]));
 }
 
-}  // namespace tribound
+}  // namespace tribound::mesh

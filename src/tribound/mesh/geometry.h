@@ -13,7 +13,7 @@
 #include "tribound/base/types.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// The map x = x_0 + J xhat from the reference simplex {xhat >= 0, sum <= 1} onto a cell.
@@ -170,4 +170,4 @@ template <int dim>
   return s;
 }
 
-}  // namespace tribound
+}  // namespace tribound::mesh

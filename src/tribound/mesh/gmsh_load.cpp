@@ -13,7 +13,7 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh_session.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -369,4 +369,4 @@ std::variant<MeshData<2>, MeshData<3>> load_gmsh(const std::filesystem::path& fi
   return mesh_data<3>(file);
 }
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -8,11 +8,11 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// Reads a .msh or meshes a .geo, group by group. Throws InputError, and what Gmsh throws; may also crash or
 /// hang where Gmsh does.
 [[nodiscard]] std::variant<MeshData<2>, MeshData<3>> load_gmsh(const std::filesystem::path& file);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -157,4 +157,4 @@ void check_mesh_file(const std::filesystem::path& file, const Where& where)
     fail("does not end with a newline, and Gmsh would ignore its last statement", "add a newline at the end");
 }
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -7,7 +7,7 @@
 
 #include "tribound/base/error.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// Gmsh holds one global state per process: one session at a time. Its messages go to stdout and stderr.
@@ -25,4 +25,4 @@ class GmshSession
 /// .msh or a .geo.
 void check_mesh_file(const std::filesystem::path& file, const Where& where);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -6,7 +6,7 @@
 #include <array>
 #include <iterator>
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -66,4 +66,4 @@ std::string gmsh_text(const Mesh<dim>& mesh, std::span<const std::string> left_o
 template std::string gmsh_text(const Mesh<2>&, std::span<const std::string>);
 template std::string gmsh_text(const Mesh<3>&, std::span<const std::string>);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

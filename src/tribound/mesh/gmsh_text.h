@@ -8,7 +8,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// The mesh as a .msh file (version 2.2, ASCII): regions and boundaries as physical groups by name, but the
@@ -16,4 +16,4 @@ namespace tribound
 template <int dim>
 [[nodiscard]] std::string gmsh_text(const Mesh<dim>& mesh, std::span<const std::string> left_out = {});
 
-}  // namespace tribound
+}  // namespace tribound::mesh

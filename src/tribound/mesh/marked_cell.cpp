@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -153,4 +153,4 @@ template MarkedCell<3> child(const MarkedCell<3>&, int, Index);
 template MarkedCell<2> longest_edges_marked<2>(std::span<const Point<2>>, const Cell<2>&);
 template MarkedCell<3> longest_edges_marked<3>(std::span<const Point<3>>, const Cell<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

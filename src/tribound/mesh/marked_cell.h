@@ -17,7 +17,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// A cell, positively oriented, whose refinement edge joins the local vertices 0 and 1.
@@ -48,4 +48,4 @@ template <int dim>
 template <int dim>
 [[nodiscard]] MarkedCell<dim> longest_edges_marked(std::span<const Point<dim>> points, const Cell<dim>& cell);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -4,7 +4,7 @@
 
 #include "tribound/mesh/verify.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 template <int dim>
@@ -32,4 +32,4 @@ Mesh<dim>::Mesh(MeshData<dim> data)
 template class Mesh<2>;
 template class Mesh<3>;
 
-}  // namespace tribound
+}  // namespace tribound::mesh

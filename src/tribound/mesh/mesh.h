@@ -13,7 +13,7 @@
 #include "tribound/base/error.h"
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// Vertex numbers of a cell, positively oriented. Local facet i is opposite to local vertex i; its vertices
@@ -135,4 +135,4 @@ class Mesh
 template <int dim>
 [[nodiscard]] Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

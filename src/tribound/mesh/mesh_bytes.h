@@ -10,7 +10,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// Appends values to a string of bytes.
@@ -107,4 +107,4 @@ void get(ByteReader& bytes, MeshData<dim>& data)
   bytes.get(data.boundary_names);
 }
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -10,7 +10,7 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/verify.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -320,4 +320,4 @@ void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology)
 template void check_overlap<2>(const MeshData<2>&, const Topology<2>&);
 template void check_overlap<3>(const MeshData<3>&, const Topology<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -5,7 +5,7 @@
 
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -85,4 +85,4 @@ std::vector<CellPair> overlay(const Mesh<dim>& a, const Mesh<dim>& b)
 template std::vector<CellPair> overlay(const Mesh<2>&, const Mesh<2>&);
 template std::vector<CellPair> overlay(const Mesh<3>&, const Mesh<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

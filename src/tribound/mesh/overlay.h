@@ -7,7 +7,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// A cell of each of two meshes; the smaller one lies in the other.
@@ -27,4 +27,4 @@ struct CellPair
 template <int dim>
 [[nodiscard]] std::vector<CellPair> overlay(const Mesh<dim>& a, const Mesh<dim>& b);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

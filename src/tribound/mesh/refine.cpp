@@ -9,7 +9,7 @@
 
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -173,4 +173,4 @@ template EntityCounts count_after_refinement(const Mesh<3>&, int);
 template Refined<2> refine_uniformly(const Mesh<2>&, int);
 template Refined<3> refine_uniformly(const Mesh<3>&, int);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

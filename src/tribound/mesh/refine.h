@@ -5,7 +5,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// A mesh refined uniformly. Child i of cell c has number 2^dim c + i after each refinement; its first dim +
@@ -41,4 +41,4 @@ template <int dim>
 template <int dim>
 [[nodiscard]] Refined<dim> refine_uniformly(const Mesh<dim>& mesh, int times = 1);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

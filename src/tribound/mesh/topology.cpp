@@ -5,7 +5,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -171,4 +171,4 @@ Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells)
 template Topology<2> build_topology<2>(Index, std::span<const Cell<2>>);
 template Topology<3> build_topology<3>(Index, std::span<const Cell<3>>);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -7,7 +7,7 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/marked_cell.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 namespace
@@ -233,4 +233,4 @@ template void check_facets<3>(const MeshData<3>&, const Topology<3>&);
 template void check_vertices<2>(const MeshData<2>&, const Topology<2>&);
 template void check_vertices<3>(const MeshData<3>&, const Topology<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

@@ -8,7 +8,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::mesh
 {
 
 /// There are cells; the arrays match; vertex, region and group numbers are in range; coordinates are finite.
@@ -45,4 +45,4 @@ template <int dim>
 template <int dim>
 void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology);
 
-}  // namespace tribound
+}  // namespace tribound::mesh

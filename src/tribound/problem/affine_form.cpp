@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -117,4 +117,4 @@ std::optional<AffineForm> affine_result(Op op, const AffineForm& a, const Affine
   return result;
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -9,7 +9,7 @@
 
 #include "tribound/problem/formula_program.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// c_0 x + c_1 y + c_2 z + c_3, computed from terms of which the absolute values sum up to `size`.
@@ -40,4 +40,4 @@ struct AffineForm
 /// constant.
 [[nodiscard]] std::optional<AffineForm> affine_result(Op op, const AffineForm& a, const AffineForm& b);
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -10,7 +10,7 @@
 
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 std::string nonnegative_hint(const Where& where)
@@ -104,4 +104,4 @@ void Expression::fail(double value, std::span<const double> x) const
                              : "keep it finite, such as 1/max(x, 1e-12) for 1/x");
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

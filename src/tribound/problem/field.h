@@ -10,7 +10,7 @@
 #include "tribound/base/error.h"
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 struct Affine;
@@ -76,4 +76,4 @@ class Expression
   Where where_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::problem

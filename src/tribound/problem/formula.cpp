@@ -4,7 +4,7 @@
 
 #include "tribound/problem/formula_program.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 Formula::Formula(std::string text, const Where& where)
@@ -32,4 +32,4 @@ std::span<const Affine> Formula::switches() const
   return program_->switches;
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

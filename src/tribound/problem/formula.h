@@ -11,7 +11,7 @@
 
 #include "tribound/base/error.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// An interval that holds all values of something. Nothing but (-inf, inf) has an infinite end.
@@ -95,4 +95,4 @@ class Formula
   std::shared_ptr<const FormulaProgram> program_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -259,4 +259,4 @@ FormulaProgram FormulaBuilder::finish(std::string text) &&
   return std::move(program_);
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

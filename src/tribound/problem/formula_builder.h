@@ -11,7 +11,7 @@
 #include "tribound/problem/affine_form.h"
 #include "tribound/problem/formula_program.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// Takes the operations in postfix order.
@@ -47,4 +47,4 @@ class FormulaBuilder
   std::vector<Value> values_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -9,7 +9,7 @@
 #include "tribound/problem/formula_program.h"
 #include "tribound/problem/formula_region.h"
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -270,7 +270,7 @@ void Formula::enclose(std::span<const double> vertices, int dim, std::span<Enclo
   assert(coefficients.size() <= max_order + 1);
   const Region region(vertices, dim, sides);
   const IntervalSeries series =
-      tribound::evaluate(program_->nodes, region, static_cast<int>(coefficients.size()));
+      problem::evaluate(program_->nodes, region, static_cast<int>(coefficients.size()));
   for (std::size_t n = 0; n < coefficients.size(); ++n)
     coefficients[n] = static_cast<int>(n) < series.n_known ? series.c[n] : Enclosure{};
 }
@@ -283,8 +283,8 @@ Enclosure Formula::enclose_box(std::span<const double> lower, std::span<const do
   for (std::size_t i = 0; i < n_vertices; ++i)
     for (std::size_t k = 0; k < dim; ++k) vertices[i * dim + k] = (i >> k) % 2 == 0 ? lower[k] : upper[k];
   const Region region({vertices.data(), n_vertices * dim}, static_cast<int>(dim), Sides::closed);
-  const IntervalSeries series = tribound::evaluate(program_->nodes, region, 1);
+  const IntervalSeries series = problem::evaluate(program_->nodes, region, 1);
   return series.n_known > 0 ? series.c[0] : Enclosure{};
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

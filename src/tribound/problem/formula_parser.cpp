@@ -11,7 +11,7 @@
 #include "tribound/problem/formula_builder.h"
 #include "tribound/problem/formula_text.h"
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -271,4 +271,4 @@ FormulaProgram parse_formula(std::string text, const Where& where)
   return Parser(text, where).parse();
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

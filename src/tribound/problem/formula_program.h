@@ -11,7 +11,7 @@
 
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// Operations. Those that are functions of the grammar stand in formula_functions().
@@ -90,4 +90,4 @@ inline constexpr int max_stack = 512;
 /// Parses `text`; throws as Formula does.
 [[nodiscard]] FormulaProgram parse_formula(std::string text, const Where& where);
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -75,4 +75,4 @@ int Region::signs(const AffineForm& form) const
   return never_below ? positive : never_above ? negative : any_sign;
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

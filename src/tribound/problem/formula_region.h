@@ -9,7 +9,7 @@
 #include "tribound/problem/affine_form.h"
 #include "tribound/problem/interval_series.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 // The signs that a function takes on a region.
@@ -51,4 +51,4 @@ class Region
   std::array<double, 3> centre_{};
 };
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace tribound
+namespace tribound::problem
 {
 
 std::span<const NamedFunction> named_functions()
@@ -106,4 +106,4 @@ void check_no_assignment(const std::string& text, const Where& where)
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -9,7 +9,7 @@
 
 #include "tribound/problem/formula_program.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// A function of the grammar.
@@ -39,4 +39,4 @@ void check_names(const std::string& text, const Where& where);
 /// Throws InputError at a single "=".
 void check_no_assignment(const std::string& text, const Where& where);
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -4,7 +4,7 @@
 
 #include "tribound/problem/formula_program.h"
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -211,4 +211,4 @@ void Formula::evaluate(std::span<const double> points, int dim, std::span<double
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -66,4 +66,4 @@ Enclosure real_power(const Enclosure& a, const Enclosure& b)
                  library_error);
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -11,7 +11,7 @@
 
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// Units in the last place by which a function of the C library may be off, with a margin.
@@ -99,4 +99,4 @@ template <class Function>
 /// a^b for a >= 0; b > 0 if a contains 0.
 [[nodiscard]] Enclosure real_power(const Enclosure& a, const Enclosure& b);
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -3,7 +3,7 @@
 
 #include "tribound/problem/interval_series.h"
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -270,4 +270,4 @@ IntervalSeries smooth_function(Op op, const IntervalSeries& a)
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

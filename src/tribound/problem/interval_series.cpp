@@ -1,6 +1,6 @@
 #include "tribound/problem/interval_series.h"
 
-namespace tribound
+namespace tribound::problem
 {
 namespace
 {
@@ -132,4 +132,4 @@ IntervalSeries integer_power(const IntervalSeries& a, int n)
   return result;
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

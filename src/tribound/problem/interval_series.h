@@ -9,7 +9,7 @@
 #include "tribound/problem/formula_program.h"
 #include "tribound/problem/interval.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// The first `n_known` coefficients are finite intervals, zero from `length` on. Of the others nothing is
@@ -40,4 +40,4 @@ struct IntervalSeries
 /// One of the smooth functions of one argument.
 [[nodiscard]] IntervalSeries smooth_function(Op op, const IntervalSeries& a);
 
-}  // namespace tribound
+}  // namespace tribound::problem

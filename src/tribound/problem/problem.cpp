@@ -8,7 +8,7 @@
 #include "tribound/case/node.h"
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 namespace
@@ -80,14 +80,15 @@ double nonnegative_at(const Expression& expression, const Point<dim>& x)
 }
 
 template <int dim>
-void check_contact(const Contact& contact)
+void check_contact(const case_file::Contact& contact)
 {
   (void)in_dimension<dim>(contact.gap);
-  if (const auto* tresca = std::get_if<Tresca>(&contact.friction)) (void)in_dimension<dim>(tresca->threshold);
+  if (const auto* tresca = std::get_if<case_file::Tresca>(&contact.friction))
+    (void)in_dimension<dim>(tresca->threshold);
 }
 
 template <int dim>
-BoundaryCondition<dim> resolve(const BoundaryConfig& config)
+BoundaryCondition<dim> resolve(const case_file::BoundaryConfig& config)
 {
   BoundaryCondition<dim> boundary;
   boundary.name = config.name;
@@ -117,7 +118,7 @@ std::vector<const T*> by_region(const std::vector<T>& entries, std::span<const s
 }
 
 template <int dim>
-std::vector<Material> resolve_materials(const Config& config, std::span<const std::string> regions)
+std::vector<Material> resolve_materials(const case_file::Config& config, std::span<const std::string> regions)
 {
   const auto found = by_region(config.materials, regions);
   std::vector<Material> materials;
@@ -127,8 +128,8 @@ std::vector<Material> resolve_materials(const Config& config, std::span<const st
       throw InputError({.file = config.file, .key = "material"},
                        fmt::format("region \"{}\" of the mesh has no material", regions[r]),
                        fmt::format("add [{}] with E and nu, or give E and nu in [material] for all regions",
-                                   dotted_key("material", regions[r])));
-    if (dim == 3 && found[r]->plane == PlaneModel::stress)
+                                   case_file::dotted_key("material", regions[r])));
+    if (dim == 3 && found[r]->plane == case_file::PlaneModel::stress)
       throw InputError(inside(found[r]->where, "plane"), "plane stress in a 3D case",
                        "drop plane; it is for 2D cases");
     materials.push_back(lame(found[r]->E, found[r]->nu, found[r]->plane));
@@ -137,12 +138,12 @@ std::vector<Material> resolve_materials(const Config& config, std::span<const st
 }
 
 template <int dim>
-std::vector<std::array<Expression, dim>> resolve_body_forces(const Config& config,
+std::vector<std::array<Expression, dim>> resolve_body_forces(const case_file::Config& config,
                                                              std::span<const std::string> regions)
 {
-  for (const LoadConfig& load : config.loads) (void)vector_of<dim>(load.body, load.where);
+  for (const case_file::LoadConfig& load : config.loads) (void)vector_of<dim>(load.body, load.where);
   std::vector<std::array<Expression, dim>> forces;
-  for (const LoadConfig* load : by_region(config.loads, regions))
+  for (const case_file::LoadConfig* load : by_region(config.loads, regions))
     forces.push_back(load == nullptr ? std::array<Expression, dim>{}
                                      : vector_of<dim>(load->body, load->where));
   return forces;
@@ -151,12 +152,13 @@ std::vector<std::array<Expression, dim>> resolve_body_forces(const Config& confi
 /// Boundaries of a mesh file are named by its author for a purpose: one that the case forgets is a mistake.
 /// The sides of a box have names whether they are needed or not.
 template <int dim>
-void check_all_mentioned(const Config& config, std::span<const std::string> groups)
+void check_all_mentioned(const case_file::Config& config, std::span<const std::string> groups)
 {
-  if (std::holds_alternative<BoxMesh>(config.mesh)) return;
+  if (std::holds_alternative<case_file::BoxMesh>(config.mesh)) return;
   std::vector<std::string> forgotten;
   for (const std::string& group : groups)
-    if (std::ranges::find(config.boundaries, group, &BoundaryConfig::name) == config.boundaries.end())
+    if (std::ranges::find(config.boundaries, group, &case_file::BoundaryConfig::name) ==
+        config.boundaries.end())
       forgotten.push_back(group);
   if (!forgotten.empty())
     throw InputError(
@@ -164,16 +166,16 @@ void check_all_mentioned(const Config& config, std::span<const std::string> grou
         fmt::format("the case does not mention {} of the mesh: {}",
                     forgotten.size() == 1 ? "a boundary" : "boundaries", quoted_list(forgotten)),
         fmt::format("if it is traction-free, say so: [{}] with traction = {}",
-                    dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
+                    case_file::dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
 }
 
 template <int dim>
-std::vector<BoundaryCondition<dim>> resolve_boundaries(const Config& config,
+std::vector<BoundaryCondition<dim>> resolve_boundaries(const case_file::Config& config,
                                                        std::span<const std::string> groups)
 {
   std::vector<BoundaryCondition<dim>> boundaries(groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) boundaries[i].name = groups[i];
-  for (const BoundaryConfig& boundary : config.boundaries)
+  for (const case_file::BoundaryConfig& boundary : config.boundaries)
     boundaries[group_number(boundary.name, groups, boundary.where, "boundary")] = resolve<dim>(boundary);
   check_all_mentioned<dim>(config, groups);
   return boundaries;
@@ -181,11 +183,11 @@ std::vector<BoundaryCondition<dim>> resolve_boundaries(const Config& config,
 
 }  // namespace
 
-Material lame(double E, double nu, PlaneModel plane)
+Material lame(double E, double nu, case_file::PlaneModel plane)
 {
   const double mu = E / (2 * (1 + nu));
   const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
-  if (plane == PlaneModel::strain) return {lambda, mu};
+  if (plane == case_file::PlaneModel::strain) return {lambda, mu};
   return {2 * lambda * mu / (lambda + 2 * mu), mu, plane};
 }
 
@@ -214,19 +216,19 @@ Point<dim> BoundaryCondition<dim>::load(const Point<dim>& x, const Point<dim>& n
 }
 
 template <int dim>
-double gap_at(const Contact& contact, const Point<dim>& x)
+double gap_at(const case_file::Contact& contact, const Point<dim>& x)
 {
   return nonnegative_at<dim>(contact.gap, x);
 }
 
 template <int dim>
-double threshold_at(const Tresca& law, const Point<dim>& x)
+double threshold_at(const case_file::Tresca& law, const Point<dim>& x)
 {
   return nonnegative_at<dim>(law.threshold, x);
 }
 
 template <int dim>
-Problem<dim>::Problem(const Config& config, std::span<const std::string> region_names,
+Problem<dim>::Problem(const case_file::Config& config, std::span<const std::string> region_names,
                       std::span<const std::string> boundary_names)
     : region_names_(region_names.begin(), region_names.end()),
       materials_(resolve_materials<dim>(config, region_names)),
@@ -265,9 +267,9 @@ template struct BoundaryCondition<2>;
 template struct BoundaryCondition<3>;
 template class Problem<2>;
 template class Problem<3>;
-template double gap_at<2>(const Contact&, const Point<2>&);
-template double gap_at<3>(const Contact&, const Point<3>&);
-template double threshold_at<2>(const Tresca&, const Point<2>&);
-template double threshold_at<3>(const Tresca&, const Point<3>&);
+template double gap_at<2>(const case_file::Contact&, const Point<2>&);
+template double gap_at<3>(const case_file::Contact&, const Point<3>&);
+template double threshold_at<2>(const case_file::Tresca&, const Point<2>&);
+template double threshold_at<3>(const case_file::Tresca&, const Point<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::problem

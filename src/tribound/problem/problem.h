@@ -12,7 +12,7 @@
 #include "tribound/base/types.h"
 #include "tribound/case/config.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// Lame coefficients as used by sigma(u) = lambda tr eps(u) I + 2 mu eps(u); stress units.
@@ -20,12 +20,12 @@ struct Material
 {
   double lambda = 0.0;
   double mu = 0.0;
-  PlaneModel plane = PlaneModel::strain;  ///< 2D: whether eps_zz or sigma_zz vanishes
+  case_file::PlaneModel plane = case_file::PlaneModel::strain;  ///< 2D: whether eps_zz or sigma_zz vanishes
 };
 
 /// lambda = E nu / ((1+nu)(1-2nu)), mu = E / (2(1+nu)); plane stress: lambda replaced by
 /// 2 lambda mu / (lambda + 2 mu).
-[[nodiscard]] Material lame(double E, double nu, PlaneModel plane);
+[[nodiscard]] Material lame(double E, double nu, case_file::PlaneModel plane);
 
 /// What holds on one named part of the boundary.
 template <int dim>
@@ -35,7 +35,7 @@ struct BoundaryCondition
   std::array<std::optional<Expression>, dim> displacement;  ///< fixed components (Gamma_D)
   std::array<Expression, dim> traction;                     ///< g_N on the free components
   std::optional<Expression> pressure;                       ///< adds -pressure n to g_N
-  std::optional<Contact> contact;                           ///< Gamma_C
+  std::optional<case_file::Contact> contact;                ///< Gamma_C
   Where where;
 
   [[nodiscard]] bool fixes(int component) const { return displacement[component].has_value(); }
@@ -50,9 +50,9 @@ struct BoundaryCondition
 /// a floor y = 0 whose points have rounded coordinates. Throw InputError naming the point where the value is
 /// negative.
 template <int dim>
-[[nodiscard]] double gap_at(const Contact& contact, const Point<dim>& x);
+[[nodiscard]] double gap_at(const case_file::Contact& contact, const Point<dim>& x);
 template <int dim>
-[[nodiscard]] double threshold_at(const Tresca& law, const Point<dim>& x);
+[[nodiscard]] double threshold_at(const case_file::Tresca& law, const Point<dim>& x);
 
 /// The problem on a mesh whose regions and boundaries carry the given names. Regions and boundaries are
 /// referred to by their position in these lists, so that refinement, which inherits tags, leaves the problem
@@ -64,7 +64,7 @@ class Problem
   /// Resolves names. Throws InputError for a group that does not exist (listing those that do), for a region
   /// without material, for a boundary group of a mesh file that the case forgets, for vectors of wrong
   /// length. Sides of a box that are not mentioned are traction-free.
-  Problem(const Config& config, std::span<const std::string> region_names,
+  Problem(const case_file::Config& config, std::span<const std::string> region_names,
           std::span<const std::string> boundary_names);
 
   [[nodiscard]] const Material& material(int region) const { return materials_[region]; }
@@ -93,4 +93,4 @@ class Problem
   BoundaryCondition<dim> unnamed_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -9,7 +9,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::problem
 {
 
 /// [x]_- = min(x, 0); for delta > 0 the mean of [.]_- over (x - delta, x + delta) [DFK22]:
@@ -78,4 +78,4 @@ template <int dim>
   return (negative_part_derivative(-norm - a, delta) - negative_part_derivative(norm - a, delta)) / norm * x;
 }
 
-}  // namespace tribound
+}  // namespace tribound::problem

@@ -13,7 +13,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
-namespace tribound
+namespace tribound::solve
 {
 
 namespace
@@ -30,13 +30,16 @@ template <int dim>
 class Newton
 {
  public:
-  Newton(const NitscheForm<dim>& form, const NewtonConfig& newton, const SolverConfig& solver, double delta)
+  Newton(const contact::NitscheForm<dim>& form, const case_file::NewtonConfig& newton,
+         const case_file::SolverConfig& solver, double delta)
       : form_(form),
         config_(newton),
         delta_(delta),
         linear_tolerance_(solver.tolerance),
-        stiffness_(form.space().n_dofs(), dim, stiffness(form.problem(), form.space(), form.constraints())),
-        contact_(form.space().n_dofs(), dim, form.contact_tangent(Linearisation::closed_sticking, zero())),
+        stiffness_(form.space().n_dofs(), dim,
+                   contact::stiffness(form.problem(), form.space(), form.constraints())),
+        contact_(form.space().n_dofs(), dim,
+                 form.contact_tangent(contact::Linearisation::closed_sticking, zero())),
         tangent_(stiffness_.duplicate()),
         diagonal_(stiffness_.diagonal()),
         linear_solver_(solver, std::span<const Point<dim>>(form.space().node_points()))
@@ -61,20 +64,20 @@ class Newton
     return scale_ > 0 ? residual_norm_ / scale_ : residual_norm_;
   }
   [[nodiscard]] std::string describe_residual() const;
-  [[nodiscard]] NewtonStep step(int k, Linearisation kind);
-  [[nodiscard]] LinearSolve solve_tangent(int k, std::span<const double> rhs, double target,
-                                          std::span<double> delta);
+  [[nodiscard]] NewtonStep step(int k, contact::Linearisation kind);
+  [[nodiscard]] algebra::LinearSolve solve_tangent(int k, std::span<const double> rhs, double target,
+                                                   std::span<double> delta);
   [[nodiscard]] double search(std::span<const double> direction, bool full_step);
 
-  const NitscheForm<dim>& form_;
-  const NewtonConfig& config_;
+  const contact::NitscheForm<dim>& form_;
+  const case_file::NewtonConfig& config_;
   double delta_;  ///< of T_delta
   double linear_tolerance_;
-  SparseMatrix stiffness_;        ///< a(phi_j, phi_i)
-  SparseMatrix contact_;          ///< -(DT(u)[phi_j], phi_i)_C
-  SparseMatrix tangent_;          ///< their sum
-  std::vector<double> diagonal_;  ///< of the stiffness
-  LinearSolver linear_solver_;
+  algebra::SparseMatrix stiffness_;  ///< a(phi_j, phi_i)
+  algebra::SparseMatrix contact_;    ///< -(DT(u)[phi_j], phi_i)_C
+  algebra::SparseMatrix tangent_;    ///< their sum
+  std::vector<double> diagonal_;     ///< of the stiffness
+  algebra::LinearSolver linear_solver_;
 
   std::vector<double> u_;             ///< u^k
   std::vector<double> ku_;            ///< a(u^k - lifting of u_D, phi_i)
@@ -86,7 +89,7 @@ class Newton
 };
 
 /// Sets entries of fixed degrees of freedom to 0.
-void restrict_to_free(const Constraints& constraints, std::span<double> v)
+void restrict_to_free(const fem::Constraints& constraints, std::span<double> v)
 {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (constraints.fixed[i]) v[i] = 0;
@@ -95,7 +98,7 @@ void restrict_to_free(const Constraints& constraints, std::span<double> v)
 template <int dim>
 void Newton<dim>::initialise(std::span<const double> start)
 {
-  const Constraints& constraints = form_.constraints();
+  const fem::Constraints& constraints = form_.constraints();
   u_ = start.empty() ? zero() : std::vector<double>(start.begin(), start.end());
   std::vector<double> free_part = u_;
   restrict_to_free(constraints, free_part);
@@ -104,7 +107,7 @@ void Newton<dim>::initialise(std::span<const double> start)
 
   ku_ = stiffness_.multiply(free_part);
   load_.assign(form_.load().begin(), form_.load().end());
-  std::vector<double> lifting = apply_stiffness(form_.problem(), form_.space(), constraints.values);
+  std::vector<double> lifting = contact::apply_stiffness(form_.problem(), form_.space(), constraints.values);
   restrict_to_free(constraints, lifting);
   restrict_to_free(constraints, load_);
   scale_ = norm(load_) + norm(lifting);
@@ -207,8 +210,8 @@ double Newton<dim>::search(std::span<const double> direction, bool full_step)
 
 /// Solves with the tangent; says at which step it failed.
 template <int dim>
-LinearSolve Newton<dim>::solve_tangent(int k, std::span<const double> rhs, double target,
-                                       std::span<double> delta)
+algebra::LinearSolve Newton<dim>::solve_tangent(int k, std::span<const double> rhs, double target,
+                                                std::span<double> delta)
 {
   try
   {
@@ -222,7 +225,7 @@ LinearSolve Newton<dim>::solve_tangent(int k, std::span<const double> rhs, doubl
 
 /// Solves a(u + delta, v) - (T_lin(u + delta), v)_C = L(v), moves along delta and updates t^k.
 template <int dim>
-NewtonStep Newton<dim>::step(int k, Linearisation kind)
+NewtonStep Newton<dim>::step(int k, contact::Linearisation kind)
 {
   const bool first = k == 1;
   contact_.set_values(form_.contact_tangent(kind, u_, delta_).values);
@@ -231,7 +234,7 @@ NewtonStep Newton<dim>::step(int k, Linearisation kind)
   const double target = std::max(
       {std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_, round_off(), 1e-14 * norm(rhs)});
   std::vector<double> delta = zero();
-  const LinearSolve linear = solve_tangent(k, rhs, target, delta);
+  const algebra::LinearSolve linear = solve_tangent(k, rhs, target, delta);
 
   std::vector<double> target_u = u_;
   axpy(1, delta, target_u);
@@ -266,7 +269,8 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     const double before = residual_norm_;
     NewtonStep report{.step = k, .delta = delta_, .method = linear_solver_.method()};
     if (!nothing_moves)
-      report = step(k, from_scratch ? Linearisation::closed_sticking : Linearisation::newton);
+      report =
+          step(k, from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
     report.seconds = seconds_since(begin);
     result.steps.push_back(report);
     without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
@@ -303,16 +307,18 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 }  // namespace
 
 template <int dim>
-NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
-                        const NewtonConfig& newton, const SolverConfig& solver,
+NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
+                        const case_file::NewtonConfig& newton, const case_file::SolverConfig& solver,
                         const NewtonObserver<dim>& observer, double delta)
 {
   return Newton<dim>(form, newton, solver, delta).run(start, observer);
 }
 
-template NewtonResult<2> solve(const NitscheForm<2>&, std::span<const double>, const NewtonConfig&,
-                               const SolverConfig&, const NewtonObserver<2>&, double);
-template NewtonResult<3> solve(const NitscheForm<3>&, std::span<const double>, const NewtonConfig&,
-                               const SolverConfig&, const NewtonObserver<3>&, double);
+template NewtonResult<2> solve(const contact::NitscheForm<2>&, std::span<const double>,
+                               const case_file::NewtonConfig&, const case_file::SolverConfig&,
+                               const NewtonObserver<2>&, double);
+template NewtonResult<3> solve(const contact::NitscheForm<3>&, std::span<const double>,
+                               const case_file::NewtonConfig&, const case_file::SolverConfig&,
+                               const NewtonObserver<3>&, double);
 
-}  // namespace tribound
+}  // namespace tribound::solve

@@ -13,7 +13,7 @@
 #include "tribound/case/config.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::solve
 {
 
 struct NewtonStep
@@ -24,8 +24,8 @@ struct NewtonStep
   int linear_iterations = 0;  ///< GMRES iterations; 0 for a direct solve
   bool factorised = false;    ///< whether a new factorisation (or preconditioner) was made
   double seconds = 0.0;
-  double delta = 0.0;                          ///< of T_delta, method section 7; 0 is the plain T
-  LinearMethod method = LinearMethod::direct;  ///< of the linear solver
+  double delta = 0.0;  ///< of T_delta, method section 7; 0 is the plain T
+  case_file::LinearMethod method = case_file::LinearMethod::direct;  ///< of the linear solver
   bool fell_back = false;  ///< whether multigrid failed and the direct solver took its place
 };
 
@@ -76,8 +76,9 @@ using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
 /// equilibrium with u^k whatever delta is, and goes on when delta changes. Throws SolveError when a matrix is
 /// singular.
 template <int dim>
-[[nodiscard]] NewtonResult<dim> solve(const NitscheForm<dim>& form, std::span<const double> start,
-                                      const NewtonConfig& newton, const SolverConfig& solver,
+[[nodiscard]] NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
+                                      const case_file::NewtonConfig& newton,
+                                      const case_file::SolverConfig& solver,
                                       const NewtonObserver<dim>& observer = {}, double delta = 0);
 
-}  // namespace tribound
+}  // namespace tribound::solve

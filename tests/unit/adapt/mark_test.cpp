@@ -59,7 +59,7 @@ TEST(MarkDoerfler, NoSubsetIsSmaller)
           if ((subset >> c & 1U) != 0) sum += eta[c] * eta[c];
         if (sum >= goal) smallest = std::min(smallest, std::popcount(subset));
       }
-      const std::vector<Index> marked = mark_doerfler(eta, theta);
+      const std::vector<Index> marked = adapt::mark_doerfler(eta, theta);
       EXPECT_EQ(marked.size(), static_cast<std::size_t>(smallest));
       EXPECT_GE(sum_of_squares(eta, marked), goal);
     }
@@ -81,7 +81,7 @@ TEST(MarkDoerfler, IsTheBeginningOfTheSortedCells)
       while (sum < goal) sum += eta[cells[n]] * eta[cells[n]], ++n;
       cells.resize(n);
       std::ranges::sort(cells);
-      EXPECT_EQ(mark_doerfler(eta, theta), cells);
+      EXPECT_EQ(adapt::mark_doerfler(eta, theta), cells);
     }
 }
 
@@ -95,7 +95,7 @@ TEST(MarkDoerfler, ReachesTheGoalAndNoMore)
   const double total = sum_of_squares(eta);
   for (const double theta : {0.1, 0.3, 0.5, 0.7, 0.9, 0.99})
   {
-    std::vector<Index> marked = mark_doerfler(eta, theta);
+    std::vector<Index> marked = adapt::mark_doerfler(eta, theta);
     EXPECT_TRUE(std::ranges::is_sorted(marked));
     EXPECT_GE(sum_of_squares(eta, marked), theta * theta * total * (1 - 1e-12));
     const auto least = std::ranges::min_element(marked, {}, [&](Index c) { return eta[c]; });
@@ -113,67 +113,67 @@ TEST(MarkDoerfler, ReachesTheGoalAndNoMore)
 
 TEST(MarkDoerfler, OfEqualCellsTheFirst)
 {
-  EXPECT_THAT(mark_doerfler(std::vector{2.0, 2.0, 2.0, 2.0}, 0.5), ElementsAre(0));
-  EXPECT_THAT(mark_doerfler(std::vector{1.0, 3.0, 3.0, 3.0}, 0.75), ElementsAre(1, 2));
+  EXPECT_THAT(adapt::mark_doerfler(std::vector{2.0, 2.0, 2.0, 2.0}, 0.5), ElementsAre(0));
+  EXPECT_THAT(adapt::mark_doerfler(std::vector{1.0, 3.0, 3.0, 3.0}, 0.75), ElementsAre(1, 2));
 }
 
 TEST(MarkDoerfler, OneMarksAllThatIsNotZero)
 {
-  EXPECT_THAT(mark_doerfler(std::vector{1e10, 0.0, 1e-10, 1.0}, 1), ElementsAre(0, 2, 3));
+  EXPECT_THAT(adapt::mark_doerfler(std::vector{1e10, 0.0, 1e-10, 1.0}, 1), ElementsAre(0, 2, 3));
 }
 
 TEST(MarkMaximum, FromTheShareOfTheLargestOn)
 {
   const std::vector<double> eta{0.5, 4.0, 1.9, 2.0, 0.0, 2.1};
-  EXPECT_THAT(mark_maximum(eta, 0.5), ElementsAre(1, 3, 5));
-  EXPECT_THAT(mark_maximum(eta, 0.125), ElementsAre(0, 1, 2, 3, 5));
-  EXPECT_THAT(mark_maximum(eta, 1), ElementsAre(1));
+  EXPECT_THAT(adapt::mark_maximum(eta, 0.5), ElementsAre(1, 3, 5));
+  EXPECT_THAT(adapt::mark_maximum(eta, 0.125), ElementsAre(0, 1, 2, 3, 5));
+  EXPECT_THAT(adapt::mark_maximum(eta, 1), ElementsAre(1));
 }
 
 TEST(Mark, NothingWhereNothingIsEstimated)
 {
   const std::vector<double> zeros(5, 0.0);
-  EXPECT_THAT(mark_doerfler(zeros, 0.5), IsEmpty());
-  EXPECT_THAT(mark_maximum(zeros, 0.5), IsEmpty());
-  EXPECT_THAT(mark_doerfler({}, 0.5), IsEmpty());
-  EXPECT_THAT(mark_maximum({}, 0.5), IsEmpty());
+  EXPECT_THAT(adapt::mark_doerfler(zeros, 0.5), IsEmpty());
+  EXPECT_THAT(adapt::mark_maximum(zeros, 0.5), IsEmpty());
+  EXPECT_THAT(adapt::mark_doerfler({}, 0.5), IsEmpty());
+  EXPECT_THAT(adapt::mark_maximum({}, 0.5), IsEmpty());
 }
 
 /// Cells with these values of str and of cnt.
-std::vector<BoundComponents> cells_with(std::span<const double> str, std::span<const double> cnt)
+std::vector<certify::BoundComponents> cells_with(std::span<const double> str, std::span<const double> cnt)
 {
-  std::vector<BoundComponents> cells(str.size());
+  std::vector<certify::BoundComponents> cells(str.size());
   for (std::size_t c = 0; c < str.size(); ++c) cells[c].str = str[c], cells[c].cnt = cnt[c];
   return cells;
 }
 
 TEST(Mark, AsTheCaseAsks)
 {
-  const std::vector<BoundComponents> eta =
+  const std::vector<certify::BoundComponents> eta =
       cells_with(std::vector{1.0, 1.0, 1.0, 2.0}, std::vector{0.0, 0.0, 0.0, 0.0});
-  AdaptConfig config;
+  case_file::AdaptConfig config;
   config.theta = 0.5;
-  config.marking = Marking::doerfler;
-  EXPECT_THAT(mark(eta, config), ElementsAre(3));
-  config.marking = Marking::maximum;
-  EXPECT_THAT(mark(eta, config), ElementsAre(0, 1, 2, 3));
+  config.marking = case_file::Marking::doerfler;
+  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(3));
+  config.marking = case_file::Marking::maximum;
+  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(0, 1, 2, 3));
   config.theta = 1;
-  EXPECT_THAT(mark(eta, config), ElementsAre(3));
-  config.marking = Marking::uniform;
-  EXPECT_THAT(mark(eta, config), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(3));
+  config.marking = case_file::Marking::uniform;
+  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(0, 1, 2, 3));
 }
 
 TEST(Mark, TheContactPartIsMarkedForItselfWhenAsked)
 {
   const std::vector<double> str{1.0, 8.0, 1.0, 1.0};
-  AdaptConfig config;
+  case_file::AdaptConfig config;
   config.theta = 0.9;
-  const std::vector<BoundComponents> cells = cells_with(str, std::vector{2.0, 0.0, 0.0, 0.5});
-  EXPECT_THAT(mark(cells, config), ElementsAre(1));
+  const std::vector<certify::BoundComponents> cells = cells_with(str, std::vector{2.0, 0.0, 0.0, 0.5});
+  EXPECT_THAT(adapt::mark(cells, config), ElementsAre(1));
   config.separate_contact = true;
-  EXPECT_THAT(mark(cells, config), ElementsAre(0, 1));
+  EXPECT_THAT(adapt::mark(cells, config), ElementsAre(0, 1));
   // Below a tenth of the bound it is left to the body.
-  EXPECT_THAT(mark(cells_with(str, std::vector{0.5, 0.0, 0.0, 0.0}), config), ElementsAre(1));
+  EXPECT_THAT(adapt::mark(cells_with(str, std::vector{0.5, 0.0, 0.0, 0.0}), config), ElementsAre(1));
 }
 
 }  // namespace

@@ -20,9 +20,9 @@ namespace
 {
 
 /// tridiag(-1, 2, -1) - shift.
-SparseMatrix string_matrix(int n, double shift)
+algebra::SparseMatrix string_matrix(int n, double shift)
 {
-  Triplets entries;
+  contact::Triplets entries;
   for (int i = 0; i < n; ++i)
   {
     entries.add(i, i, 2 - shift);
@@ -40,8 +40,8 @@ double eigenvalue(int n, int k)
 
 TEST(SparseCholesky, Solves)
 {
-  const SparseMatrix a = string_matrix(50, 0);
-  const SparseCholesky cholesky(a, 2);
+  const algebra::SparseMatrix a = string_matrix(50, 0);
+  const algebra::SparseCholesky cholesky(a, 2);
   ASSERT_TRUE(cholesky.positive_definite());
   std::vector<double> b(50);
   for (int i = 0; i < 50; ++i) b[i] = std::sin(i);
@@ -57,19 +57,22 @@ TEST(SparseCholesky, TellsDefiniteFromIndefinite)
   for (const int dim : {2, 3})
     for (const int n : {1, 2, 50, 3000})
     {
-      EXPECT_TRUE(SparseCholesky(string_matrix(n, (1 - 1e-6) * eigenvalue(n, 1)), dim).positive_definite());
-      EXPECT_FALSE(SparseCholesky(string_matrix(n, (1 + 1e-6) * eigenvalue(n, 1)), dim).positive_definite());
-      EXPECT_FALSE(SparseCholesky(string_matrix(n, 1e-6 + eigenvalue(n, n)), dim).positive_definite());
+      EXPECT_TRUE(
+          algebra::SparseCholesky(string_matrix(n, (1 - 1e-6) * eigenvalue(n, 1)), dim).positive_definite());
+      EXPECT_FALSE(
+          algebra::SparseCholesky(string_matrix(n, (1 + 1e-6) * eigenvalue(n, 1)), dim).positive_definite());
+      EXPECT_FALSE(
+          algebra::SparseCholesky(string_matrix(n, 1e-6 + eigenvalue(n, n)), dim).positive_definite());
     }
 }
 
 TEST(SparseCholesky, RefusesZeroPivotsAndWhatIsNoNumber)
 {
-  EXPECT_FALSE(SparseCholesky(string_matrix(1, 2), 2).positive_definite());
-  EXPECT_FALSE(SparseCholesky(string_matrix(4, 2), 2).positive_definite());
-  EXPECT_FALSE(SparseCholesky(string_matrix(5, 2), 3).positive_definite());
-  EXPECT_FALSE(
-      SparseCholesky(string_matrix(4, std::numeric_limits<double>::quiet_NaN()), 2).positive_definite());
+  EXPECT_FALSE(algebra::SparseCholesky(string_matrix(1, 2), 2).positive_definite());
+  EXPECT_FALSE(algebra::SparseCholesky(string_matrix(4, 2), 2).positive_definite());
+  EXPECT_FALSE(algebra::SparseCholesky(string_matrix(5, 2), 3).positive_definite());
+  EXPECT_FALSE(algebra::SparseCholesky(string_matrix(4, std::numeric_limits<double>::quiet_NaN()), 2)
+                   .positive_definite());
 }
 
 }  // namespace

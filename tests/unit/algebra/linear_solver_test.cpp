@@ -26,14 +26,14 @@ struct System
       : c("degree = 2\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = " +
               std::string(dim == 2 ? "[0, 0]" : "[0, 0, 0]"),
           mesh()),
-        entries(stiffness(c.problem, c.space, c.form.constraints())),
+        entries(contact::stiffness(c.problem, c.space, c.form.constraints())),
         nodes(c.space.node_points()),
         x(random_free_vector(c.form.constraints(), 1.0, 1)),
         b(multiply(entries, x))
   {
   }
 
-  static MeshData<dim> mesh()
+  static mesh::MeshData<dim> mesh()
   {
     if constexpr (dim == 2)
       return box<2>({0, 0}, {2, 1}, {8, 4});
@@ -41,33 +41,33 @@ struct System
       return box<3>({0, 0, 0}, {2, 1, 1}, {4, 2, 2});
   }
 
-  [[nodiscard]] SparseMatrix matrix() const { return {c.space.n_dofs(), dim, entries}; }
-  [[nodiscard]] LinearSolver solver(const SolverConfig& config) const
+  [[nodiscard]] algebra::SparseMatrix matrix() const { return {c.space.n_dofs(), dim, entries}; }
+  [[nodiscard]] algebra::LinearSolver solver(const case_file::SolverConfig& config) const
   {
-    return LinearSolver(config, std::span<const Point<dim>>(nodes));
+    return algebra::LinearSolver(config, std::span<const Point<dim>>(nodes));
   }
 
   DiscreteCase<dim> c;
-  Triplets entries;
+  contact::Triplets entries;
   std::vector<Point<dim>> nodes;
   std::vector<double> x;
   std::vector<double> b;
 };
 
-SolverConfig direct(DirectPackage package)
+case_file::SolverConfig direct(case_file::DirectPackage package)
 {
-  return {.method = LinearMethod::direct, .package = package};
+  return {.method = case_file::LinearMethod::direct, .package = package};
 }
 
 template <int dim>
-void expect_solved(const SolverConfig& config)
+void expect_solved(const case_file::SolverConfig& config)
 {
   const System<dim> system;
-  const SparseMatrix a = system.matrix();
-  LinearSolver solver = system.solver(config);
+  const algebra::SparseMatrix a = system.matrix();
+  algebra::LinearSolver solver = system.solver(config);
   EXPECT_EQ(solver.method(), config.method);
   std::vector<double> x(system.x.size(), 0.0);
-  const LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+  const algebra::LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
   EXPECT_TRUE(solve.factorised);
   EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
   EXPECT_LE(distance(a.multiply(x), system.b), 1e-10 * norm(system.b));
@@ -75,9 +75,10 @@ void expect_solved(const SolverConfig& config)
 
 TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
 {
-  const SolverConfig multigrid{.method = LinearMethod::iterative};
-  for (const SolverConfig& config : {direct(DirectPackage::mumps), direct(DirectPackage::umfpack),
-                                     direct(DirectPackage::automatic), multigrid})
+  const case_file::SolverConfig multigrid{.method = case_file::LinearMethod::iterative};
+  for (const case_file::SolverConfig& config :
+       {direct(case_file::DirectPackage::mumps), direct(case_file::DirectPackage::umfpack),
+        direct(case_file::DirectPackage::automatic), multigrid})
   {
     expect_solved<2>(config);
     expect_solved<3>(config);
@@ -87,7 +88,7 @@ TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
 TEST(LinearSolver, ADirectSolveTakesOneIteration)
 {
   const System<2> system;
-  LinearSolver solver = system.solver(direct(DirectPackage::mumps));
+  algebra::LinearSolver solver = system.solver(direct(case_file::DirectPackage::mumps));
   std::vector<double> x(system.x.size(), 0.0);
   EXPECT_LE(solver.solve(system.matrix(), system.b, 1e-10 * norm(system.b), x).iterations, 2);
 }
@@ -95,13 +96,14 @@ TEST(LinearSolver, ADirectSolveTakesOneIteration)
 TEST(LinearSolver, HalfTheFactorsOfAPositiveDefiniteMatrixWillDo)
 {
   const System<3> system;
-  const SparseMatrix a = system.matrix();
-  const SolverConfig config = direct(DirectPackage::mumps);
-  LinearSolver solver(config, std::span<const Point<3>>(system.nodes), MatrixKind::positive_definite);
+  const algebra::SparseMatrix a = system.matrix();
+  const case_file::SolverConfig config = direct(case_file::DirectPackage::mumps);
+  algebra::LinearSolver solver(config, std::span<const Point<3>>(system.nodes),
+                               algebra::MatrixKind::positive_definite);
   std::vector<double> x(system.x.size(), 0.0);
   for (int i = 0; i < 2; ++i)
   {
-    const LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+    const algebra::LinearSolve solve = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
     EXPECT_EQ(solve.factorised, i == 0);
     EXPECT_LE(solve.iterations, 2);
     EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
@@ -112,15 +114,15 @@ TEST(LinearSolver, HalfTheFactorsOfAPositiveDefiniteMatrixWillDo)
 TEST(LinearSolver, KeepsFactorsForSimilarSystems)
 {
   const System<2> system;
-  SparseMatrix a = system.matrix();
-  LinearSolver solver = system.solver(direct(DirectPackage::mumps));
+  algebra::SparseMatrix a = system.matrix();
+  algebra::LinearSolver solver = system.solver(direct(case_file::DirectPackage::mumps));
   std::vector<double> x(system.x.size(), 0.0);
   EXPECT_TRUE(solver.solve(a, system.b, 1e-11 * norm(system.b), x).factorised);
 
-  Triplets entries = system.entries;
+  contact::Triplets entries = system.entries;
   for (double& value : entries.values) value *= 1.5;
   a.set_values(entries.values);
-  const LinearSolve again = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
+  const algebra::LinearSolve again = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
   EXPECT_FALSE(again.factorised);
   EXPECT_GE(again.iterations, 1);
   EXPECT_LE(norm(sum(x, -1 / 1.5, system.x)), 1e-8 * norm(system.x));
@@ -130,12 +132,12 @@ TEST(LinearSolver, KeepsFactorsForSimilarSystems)
 TEST(LinearSolver, FactorsAnewWhereOldFactorsDoNotHelp)
 {
   const System<2> system;
-  SparseMatrix a = system.matrix();
-  LinearSolver solver = system.solver(direct(DirectPackage::mumps));
+  algebra::SparseMatrix a = system.matrix();
+  algebra::LinearSolver solver = system.solver(direct(case_file::DirectPackage::mumps));
   std::vector<double> x(system.x.size(), 0.0);
   (void)solver.solve(a, system.b, 1e-11 * norm(system.b), x);
 
-  Triplets entries = system.entries;
+  contact::Triplets entries = system.entries;
   for (std::size_t k = 0; k < entries.values.size(); ++k)
     if (entries.rows[k] >= 0 && entries.rows[k] == entries.cols[k])
       entries.values[k] *= entries.rows[k] % 7 == 0 ? 1e3 : 1 + entries.rows[k] % 5;
@@ -149,13 +151,15 @@ TEST(LinearSolver, ASingularMatrixIsAnError)
 {
   const DiscreteCase<2> floating("degree = 1\nmaterial = { E = 1, nu = 0.3 }",
                                  box<2>({0, 0}, {1, 1}, {4, 4}));
-  const SparseMatrix a(floating.space.n_dofs(), 2,
-                       stiffness(floating.problem, floating.space, floating.form.constraints()));
+  const algebra::SparseMatrix a(
+      floating.space.n_dofs(), 2,
+      contact::stiffness(floating.problem, floating.space, floating.form.constraints()));
   const std::vector<Point<2>> nodes = floating.space.node_points();
   const std::vector<double> b(a.size(), 1.0);  // not in the range
-  for (const DirectPackage package : {DirectPackage::mumps, DirectPackage::umfpack})
+  for (const case_file::DirectPackage package :
+       {case_file::DirectPackage::mumps, case_file::DirectPackage::umfpack})
   {
-    LinearSolver solver(direct(package), std::span<const Point<2>>(nodes));
+    algebra::LinearSolver solver(direct(package), std::span<const Point<2>>(nodes));
     std::vector<double> x(a.size(), 0.0);
     EXPECT_THROW(solver.solve(a, b, 1e-10, x), SolveError);
   }
@@ -165,30 +169,30 @@ TEST(LinearSolver, ASingularMatrixIsAnError)
 TEST(LinearSolver, FallsBackToAFactorisationUnlessToldOtherwise)
 {
   const System<3> system;
-  const SparseMatrix a = system.matrix();
+  const algebra::SparseMatrix a = system.matrix();
   const std::span<const Point<3>> nodes(system.nodes);
   std::vector<double> x(system.x.size(), 0.0);
-  LinearSolver automatic({.max_iterations = 1}, nodes, MatrixKind::general, 0);
-  EXPECT_EQ(automatic.method(), LinearMethod::iterative);
+  algebra::LinearSolver automatic({.max_iterations = 1}, nodes, algebra::MatrixKind::general, 0);
+  EXPECT_EQ(automatic.method(), case_file::LinearMethod::iterative);
   EXPECT_TRUE(automatic.solve(a, system.b, 1e-11 * norm(system.b), x).fell_back);
-  EXPECT_EQ(automatic.method(), LinearMethod::direct);
+  EXPECT_EQ(automatic.method(), case_file::LinearMethod::direct);
   EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
-  const LinearSolve again = automatic.solve(a, system.b, 1e-11 * norm(system.b), x);
+  const algebra::LinearSolve again = automatic.solve(a, system.b, 1e-11 * norm(system.b), x);
   EXPECT_FALSE(again.fell_back);
   EXPECT_FALSE(again.factorised);
 
-  LinearSolver told({.method = LinearMethod::iterative, .max_iterations = 1}, nodes);
+  algebra::LinearSolver told({.method = case_file::LinearMethod::iterative, .max_iterations = 1}, nodes);
   EXPECT_THROW(told.solve(a, system.b, 1e-11 * norm(system.b), x), SolveError);
 }
 
 TEST(ChooseMethod, DirectUnlessLargeIn3DOrTold)
 {
-  const SolverConfig automatic;
-  EXPECT_EQ(choose_method(automatic, 2, 1'000'000), LinearMethod::direct);
-  EXPECT_EQ(choose_method(automatic, 3, 10'000), LinearMethod::direct);
-  EXPECT_EQ(choose_method(automatic, 3, 1'000'000), LinearMethod::iterative);
-  const SolverConfig told{.method = LinearMethod::iterative};
-  EXPECT_EQ(choose_method(told, 2, 100), LinearMethod::iterative);
+  const case_file::SolverConfig automatic;
+  EXPECT_EQ(algebra::choose_method(automatic, 2, 1'000'000), case_file::LinearMethod::direct);
+  EXPECT_EQ(algebra::choose_method(automatic, 3, 10'000), case_file::LinearMethod::direct);
+  EXPECT_EQ(algebra::choose_method(automatic, 3, 1'000'000), case_file::LinearMethod::iterative);
+  const case_file::SolverConfig told{.method = case_file::LinearMethod::iterative};
+  EXPECT_EQ(algebra::choose_method(told, 2, 100), case_file::LinearMethod::iterative);
 }
 
 }  // namespace

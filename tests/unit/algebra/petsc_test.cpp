@@ -18,12 +18,12 @@ namespace
 {
 
 /// Random entries with repetitions and some that do not count.
-Triplets random_entries(int n, int count, unsigned seed)
+contact::Triplets random_entries(int n, int count, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> place(-1, n - 1);
   std::uniform_real_distribution<double> value(-1, 1);
-  Triplets entries;
+  contact::Triplets entries;
   for (int i = 0; i < n; ++i) entries.add(i, i, 3.0 + i);
   for (int k = 0; k < count; ++k) entries.add(place(random), place(random), value(random));
   return entries;
@@ -38,14 +38,14 @@ std::vector<double> ramp(int n)
 
 TEST(SparseMatrix, SumsEntriesAndSkipsNegativePlaces)
 {
-  Triplets entries;
+  contact::Triplets entries;
   entries.add(0, 0, 1);
   entries.add(0, 0, 2);
   entries.add(1, 1, 1);
   entries.add(0, 1, 5);
   entries.add(-1, 1, 100);
   entries.add(1, -1, 100);
-  const SparseMatrix a(2, 1, entries);
+  const algebra::SparseMatrix a(2, 1, entries);
   EXPECT_EQ(a.size(), 2);
   EXPECT_EQ(a.multiply(std::vector{1.0, 10.0}), (std::vector{53.0, 10.0}));
   EXPECT_EQ(a.diagonal(), (std::vector{3.0, 1.0}));
@@ -53,15 +53,15 @@ TEST(SparseMatrix, SumsEntriesAndSkipsNegativePlaces)
 
 TEST(SparseMatrix, MultipliesLikeItsEntries)
 {
-  const Triplets entries = random_entries(30, 400, 1);
-  const SparseMatrix a(30, 3, entries);
+  const contact::Triplets entries = random_entries(30, 400, 1);
+  const algebra::SparseMatrix a(30, 3, entries);
   EXPECT_LE(distance(a.multiply(ramp(30)), multiply(entries, ramp(30))), 1e-12);
 }
 
 TEST(SparseMatrix, TakesNewValuesInTheSameOrder)
 {
-  Triplets entries = random_entries(30, 400, 2);
-  SparseMatrix a(30, 3, entries);
+  contact::Triplets entries = random_entries(30, 400, 2);
+  algebra::SparseMatrix a(30, 3, entries);
   for (double& value : entries.values) value = 1 - 2 * value;
   a.set_values(entries.values);
   EXPECT_LE(distance(a.multiply(ramp(30)), multiply(entries, ramp(30))), 1e-12);
@@ -69,9 +69,9 @@ TEST(SparseMatrix, TakesNewValuesInTheSameOrder)
 
 TEST(SparseMatrix, CopiesAreIndependent)
 {
-  const Triplets entries = random_entries(12, 40, 3);
-  SparseMatrix a(12, 2, entries);
-  const SparseMatrix copy = a.duplicate();
+  const contact::Triplets entries = random_entries(12, 40, 3);
+  algebra::SparseMatrix a(12, 2, entries);
+  const algebra::SparseMatrix copy = a.duplicate();
   a.set_values(std::vector<double>(entries.values.size(), 0.0));
   EXPECT_LE(distance(copy.multiply(ramp(12)), multiply(entries, ramp(12))), 1e-12);
   EXPECT_EQ(norm(a.multiply(ramp(12))), 0);
@@ -79,13 +79,13 @@ TEST(SparseMatrix, CopiesAreIndependent)
 
 TEST(SparseMatrix, SumWithASmallerPattern)
 {
-  const Triplets large = random_entries(30, 300, 4);
-  Triplets small;
+  const contact::Triplets large = random_entries(30, 300, 4);
+  contact::Triplets small;
   for (std::size_t k = 0; k < large.values.size(); k += 5)
     small.add(large.rows[k], large.cols[k], 7.0 + static_cast<double>(k));
-  const SparseMatrix a(30, 3, large);
-  const SparseMatrix b(30, 3, small);
-  SparseMatrix c = a.duplicate();
+  const algebra::SparseMatrix a(30, 3, large);
+  const algebra::SparseMatrix b(30, 3, small);
+  algebra::SparseMatrix c = a.duplicate();
   const std::vector<double> expected = sum(multiply(large, ramp(30)), 1, multiply(small, ramp(30)));
   for (int repetition = 0; repetition < 2; ++repetition)
   {
@@ -96,7 +96,7 @@ TEST(SparseMatrix, SumWithASmallerPattern)
 
 TEST(AlgebraVersions, AreKnown)
 {
-  const AlgebraVersions versions = algebra_versions();
+  const algebra::AlgebraVersions versions = algebra::algebra_versions();
   for (const std::string& text : {versions.petsc, versions.mumps, versions.mpi, versions.blas})
     EXPECT_FALSE(text.empty());
 }

@@ -14,19 +14,19 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const CaseFacts facts{"Block", "case.toml", 2, 2, "tresca", 10.0};
-const MeshFacts mesh{15,
-                     16,
-                     80,
-                     0.5,
-                     0.75,
-                     {{"box", 16, 2.0, "E = 1, nu = 0.3, plane strain"}},
-                     {{"bottom", 4, 2.0, "contact, Tresca friction, threshold 0.03, gap 0"},
-                      {"top", 1, 2.0, "traction-free"}}};
+const io::CaseFacts facts{"Block", "case.toml", 2, 2, "tresca", 10.0};
+const io::MeshFacts mesh{15,
+                         16,
+                         80,
+                         0.5,
+                         0.75,
+                         {{"box", 16, 2.0, "E = 1, nu = 0.3, plane strain"}},
+                         {{"bottom", 4, 2.0, "contact, Tresca friction, threshold 0.03, gap 0"},
+                          {"top", 1, 2.0, "traction-free"}}};
 
 TEST(Console, Header)
 {
-  EXPECT_EQ(header_text(facts, mesh),
+  EXPECT_EQ(app::header_text(facts, mesh),
             "case          Block\n"
             "mesh          15 vertices, 16 cells, h from 0.5 to 0.75\n"
             "method        2D, degree 2, 80 free degrees of freedom, gamma_0 = 10\n");
@@ -34,8 +34,8 @@ TEST(Console, Header)
 
 TEST(Console, CheckNamesRegionsAndBoundaries)
 {
-  EXPECT_EQ(check_text(facts, mesh, "direct (MUMPS)"),
-            header_text(facts, mesh) +
+  EXPECT_EQ(app::check_text(facts, mesh, "direct (MUMPS)"),
+            app::header_text(facts, mesh) +
                 "solver        direct (MUMPS)\n"
                 "regions\n"
                 "  box  16 cells, area 2: E = 1, nu = 0.3, plane strain\n"
@@ -46,29 +46,30 @@ TEST(Console, CheckNamesRegionsAndBoundaries)
 
 TEST(Console, NewtonStep)
 {
-  EXPECT_EQ(newton_text({3, 1.3e-5, 1.0, 0, false, 0.125}), "  step  3  residual 1.3e-05  direct, 0.1 s\n");
-  EXPECT_EQ(newton_text({3, 1.3e-5, 1.0, 0, true, 0.125}, 0.025),
+  EXPECT_EQ(app::newton_text({3, 1.3e-5, 1.0, 0, false, 0.125}),
+            "  step  3  residual 1.3e-05  direct, 0.1 s\n");
+  EXPECT_EQ(app::newton_text({3, 1.3e-5, 1.0, 0, true, 0.125}, 0.025),
             "  step  3  residual 1.3e-05  bound 2.50e-02  factorised, 0.1 s\n");
-  EXPECT_THAT(newton_text({1, 1.0, 0.5, 7, true, 0.0}), HasSubstr("  damping 0.5  GMRES 7, "));
+  EXPECT_THAT(app::newton_text({1, 1.0, 0.5, 7, true, 0.0}), HasSubstr("  damping 0.5  GMRES 7, "));
 }
 
 TEST(Console, NewtonStepsFitATerminal)
 {
-  const NewtonStep longest = {50, 1.25e-5, 1.0 / 1024, 0, true, 999.94};
-  EXPECT_LE(newton_text(longest, 1.25e-5).size(), 80u + 1);  // with the newline
+  const solve::NewtonStep longest = {50, 1.25e-5, 1.0 / 1024, 0, true, 999.94};
+  EXPECT_LE(app::newton_text(longest, 1.25e-5).size(), 80u + 1);  // with the newline
 }
 
 TEST(Console, CertificateGivesEveryComponentAndItsShare)
 {
-  RunRecord run;
+  io::RunRecord run;
   run.facts.degree = 1;
-  LevelRecord level;
+  io::LevelRecord level;
   level.figures.sigma_norm = 2;
-  level.bound = Bound{{0, 3, 0, 0, 4, 0, 0, 0}, 0.5, 0.25};
-  level.identities = IdentityDefects{1e-13, 0, 0, 0, 1};  // no symmetry for p = 1
+  level.bound = certify::Bound{{0, 3, 0, 0, 4, 0, 0, 0}, 0.5, 0.25};
+  level.identities = certify::IdentityDefects{1e-13, 0, 0, 0, 1};  // no symmetry for p = 1
   run.levels = {level};
   run.statements = {{"the dual norm of the residual"}, "unique", {}, {}, {"the model"}};
-  EXPECT_EQ(certificate_text(run),
+  EXPECT_EQ(app::certificate_text(run),
             "bound         0.25, that is 12.5 % of ||sigma(u_h)|| (plain sums: 0.5)\n"
             "              osc    data oscillation                       0    0.0 %\n"
             "              str    stress                                 3   36.0 %\n"
@@ -86,46 +87,46 @@ TEST(Console, CertificateGivesEveryComponentAndItsShare)
 
 TEST(Console, NoCertificateWithoutABound)
 {
-  RunRecord run;
+  io::RunRecord run;
   run.levels.resize(1);
-  EXPECT_EQ(certificate_text(run), "");
+  EXPECT_EQ(app::certificate_text(run), "");
 }
 
 TEST(Console, Level)
 {
-  LevelRecord level;
+  io::LevelRecord level;
   level.level = 3;
   level.cells = 1234;
   level.dofs = 5678;
   level.newton.resize(2);
   level.figures.sigma_norm = 2;
-  level.bound = Bound{{}, 0.5, 0.25};
+  level.bound = certify::Bound{{}, 0.5, 0.25};
   level.times.level = 1.25;
-  EXPECT_EQ(level_text(level),
+  EXPECT_EQ(app::level_text(level),
             "level 3           1234 cells      5678 dofs  newton  2  bound 12.5 %    1.25 s\n");
 }
 
 TEST(Console, SummaryOfAFailedRun)
 {
-  RunRecord run;
-  run.status = RunStatus::failed;
+  io::RunRecord run;
+  run.status = certify::RunStatus::failed;
   run.reason = "no convergence in 50 steps";
-  EXPECT_EQ(summary_text(run, ""), "status        failed: no convergence in 50 steps\n");
+  EXPECT_EQ(app::summary_text(run, ""), "status        failed: no convergence in 50 steps\n");
 }
 
 TEST(Console, SummaryOfACertifiedRunNamesTheTolerance)
 {
-  RunRecord run;
-  run.status = RunStatus::certified;
+  io::RunRecord run;
+  run.status = certify::RunStatus::certified;
   run.tolerance = 0.03;
-  EXPECT_EQ(summary_text(run, ""),
+  EXPECT_EQ(app::summary_text(run, ""),
             "status        certified: the bound is at most adapt.tolerance = 3 % of ||sigma(u_h)||\n");
 }
 
 TEST(Console, Summary)
 {
-  RunRecord run;
-  LevelRecord level;
+  io::RunRecord run;
+  io::LevelRecord level;
   level.newton.resize(5);
   level.figures = {0.0137,
                    0.116,
@@ -133,7 +134,7 @@ TEST(Console, Summary)
                    {"", {-0.04, 0.11}, -0.11, -0.04, 0.05},
                    {{"bottom", {-0.04, 0.11}, -0.11, -0.04, 0.05}}};
   run.levels = {level};
-  EXPECT_EQ(summary_text(run, "out"),
+  EXPECT_EQ(app::summary_text(run, "out"),
             "contact       bottom: normal -0.11, tangential -0.04, force (-0.04, 0.11)\n"
             "max |u|       0.084\n"
             "energy        a(u, u) = 0.0137, ||sigma|| = 0.116\n"
@@ -143,14 +144,14 @@ TEST(Console, Summary)
 
 TEST(Console, SummaryJudgesSliding)
 {
-  RunRecord run;
-  LevelRecord level;
+  io::RunRecord run;
+  io::LevelRecord level;
   level.figures.boundary_contact = {{"base", {-12.0, 32.0}, -32.0, 12.0, 12.0, 0.75},
                                     {"pad", {0.0, 4.0}, -4.0, 0.0, 0.0, 0.5},
                                     {"rail", {1.0, 4.0}, -4.0, 1.0, 1.0, {}}};
   run.levels = {level};
   EXPECT_THAT(
-      summary_text(run, ""),
+      app::summary_text(run, ""),
       AllOf(
           HasSubstr(
               "sliding       base: sliding factor H/N = 0.375, mu_F = 0.75: factor of safety mu_F N/H = 2\n"),
@@ -160,12 +161,13 @@ TEST(Console, SummaryJudgesSliding)
 
 TEST(Console, BalanceShowsRoundingAsZero)
 {
-  const Balance plane = {{1, 0.5},
-                         {{BalanceKind::load, "box", "body force", {1e-15, -3}, {{1.5}}},
-                          {BalanceKind::reaction, "left", "displacement", {1.25, 0}, {{-1.5}}},
-                          {BalanceKind::contact, "bottom", "contact", {-1.25, 3}, {{0}}},
-                          {BalanceKind::sum, "", "", {0, -4e-16}, {{2e-16}}}}};
-  EXPECT_EQ(balance_text(plane),
+  const certify::Balance plane = {
+      {1, 0.5},
+      {{certify::BalanceKind::load, "box", "body force", {1e-15, -3}, {{1.5}}},
+       {certify::BalanceKind::reaction, "left", "displacement", {1.25, 0}, {{-1.5}}},
+       {certify::BalanceKind::contact, "bottom", "contact", {-1.25, 3}, {{0}}},
+       {certify::BalanceKind::sum, "", "", {0, -4e-16}, {{2e-16}}}}};
+  EXPECT_EQ(app::balance_text(plane),
             "balance                                      force x      force y       moment\n"
             "              load      box, body force            0           -3          1.5\n"
             "              reaction  left                    1.25            0         -1.5\n"
@@ -176,24 +178,24 @@ TEST(Console, BalanceShowsRoundingAsZero)
 
 TEST(Console, BalanceOfDegreeOneLacksMoments)
 {
-  const Balance space = {{0, 0, 0},
-                         {{BalanceKind::reaction, "left", "displacement", {1, 2, 3}, {}},
-                          {BalanceKind::sum, "", "", {0, 0, 0}, {}}}};
-  EXPECT_THAT(balance_text(space), AllOf(HasSubstr("moment x     moment y     moment z\n"),
-                                         HasSubstr("3            -            -            -\n"),
-                                         HasSubstr("need degree 2 or more")));
+  const certify::Balance space = {{0, 0, 0},
+                                  {{certify::BalanceKind::reaction, "left", "displacement", {1, 2, 3}, {}},
+                                   {certify::BalanceKind::sum, "", "", {0, 0, 0}, {}}}};
+  EXPECT_THAT(app::balance_text(space), AllOf(HasSubstr("moment x     moment y     moment z\n"),
+                                              HasSubstr("3            -            -            -\n"),
+                                              HasSubstr("need degree 2 or more")));
 }
 
 TEST(Console, InfoLeavesOutWhatIsUnknown)
 {
-  BuildFacts build = build_facts();
+  io::BuildFacts build = io::build_facts();
   build.blas = "OpenBLAS 0.3.21";
   build.blas_threads = 1;
-  EXPECT_THAT(info_text(build), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
-                                      HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
-                                      HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
+  EXPECT_THAT(app::info_text(build), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
+                                           HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
+                                           HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
   build.report_page = "/usr/share/tribound/report.html";
-  EXPECT_THAT(info_text(build), HasSubstr("report page   /usr/share/tribound/report.html\n"));
+  EXPECT_THAT(app::info_text(build), HasSubstr("report page   /usr/share/tribound/report.html\n"));
 }
 
 }  // namespace

@@ -40,15 +40,15 @@ class Figures : public ::testing::Test
 
 TEST_F(Figures, TheScriptGetsTheDirectory)
 {
-  EXPECT_EQ(run_figure_script(script("echo drawn > \"$1/figure.svg\""), directory_), "");
+  EXPECT_EQ(app::run_figure_script(script("echo drawn > \"$1/figure.svg\""), directory_), "");
   EXPECT_TRUE(std::filesystem::exists(directory_ / "figure.svg"));
 }
 
 TEST_F(Figures, WhatGoesWrongIsTold)
 {
-  EXPECT_EQ(run_figure_script(script("exit 3"), directory_), "ended with exit code 3");
-  EXPECT_EQ(run_figure_script(script("kill -9 $$"), directory_), "was ended by signal 9 (Killed)");
-  EXPECT_THAT(run_figure_script(directory_ / "missing", directory_),
+  EXPECT_EQ(app::run_figure_script(script("exit 3"), directory_), "ended with exit code 3");
+  EXPECT_EQ(app::run_figure_script(script("kill -9 $$"), directory_), "was ended by signal 9 (Killed)");
+  EXPECT_THAT(app::run_figure_script(directory_ / "missing", directory_),
               ::testing::HasSubstr("cannot be started"));
 }
 

@@ -16,9 +16,10 @@ namespace
 
 TEST(Findings, OnTheScreen)
 {
-  const std::vector<Finding> some = {{"a", Severity::ok, "all is well", {}, {}, {}},
-                                     {"b", Severity::warning, "something is odd", {}, {}, "mend it"}};
-  EXPECT_EQ(findings_text(some),
+  const std::vector<doctor::Finding> some = {
+      {"a", doctor::Severity::ok, "all is well", {}, {}, {}},
+      {"b", doctor::Severity::warning, "something is odd", {}, {}, "mend it"}};
+  EXPECT_EQ(app::findings_text(some),
             "findings\n"
             "  ok          all is well\n"
             "  warning     something is odd\n"
@@ -28,10 +29,11 @@ TEST(Findings, OnTheScreen)
 
 TEST(Findings, AsJson)
 {
-  const std::vector<Finding> some = {{"a", Severity::ok, "all is well", {}, {}, {}},
-                                     {"b", Severity::warning, "odd", {{"kink", 2.5}}, {1, 0.5}, "mend it"}};
+  const std::vector<doctor::Finding> some = {
+      {"a", doctor::Severity::ok, "all is well", {}, {}, {}},
+      {"b", doctor::Severity::warning, "odd", {{"kink", 2.5}}, {1, 0.5}, "mend it"}};
   const auto json =
-      nlohmann::json::parse(check_json({"T", "case.toml", 2, 1, "none", 10}, {}, "direct", some));
+      nlohmann::json::parse(app::check_json({"T", "case.toml", 2, 1, "none", 10}, {}, "direct", some));
   EXPECT_EQ(json["title"], "T");
   EXPECT_EQ(json["solver"], "direct");
   EXPECT_EQ(json["warnings"], 1);
@@ -46,15 +48,15 @@ TEST(Findings, AsJson)
 
 TEST(RunWarnings, InTheCertificateAndOnTheScreen)
 {
-  RunRecord run;
+  io::RunRecord run;
   run.warnings = {{"sliding", "all slides", 1, "boundary \"base\""}, {"osc", "coarse", 0.75, ""}};
-  const auto json = nlohmann::json::parse(certificate_json(run))["warnings"];
+  const auto json = nlohmann::json::parse(io::certificate_json(run))["warnings"];
   ASSERT_EQ(json.size(), 2u);
   EXPECT_EQ(json[0]["code"], "sliding");
   EXPECT_EQ(json[0]["where"], "boundary \"base\"");
   EXPECT_EQ(json[1]["value"], 0.75);
   EXPECT_TRUE(json[1]["where"].is_null());
-  EXPECT_EQ(warnings_text(run.warnings),
+  EXPECT_EQ(app::warnings_text(run.warnings),
             "warning       boundary \"base\": all slides\n"
             "warning       coarse\n");
 }

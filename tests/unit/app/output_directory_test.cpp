@@ -36,7 +36,7 @@ class OutputDirectoryTest : public ::testing::Test
   {
     try
     {
-      const OutputDirectory opened(path);
+      const app::OutputDirectory opened(path);
     }
     catch (const InputError& error)
     {
@@ -65,7 +65,7 @@ TEST_F(OutputDirectoryTest, WithoutALockIsNotTaken)
 TEST_F(OutputDirectoryTest, ThatCannotBe)
 {
   const fs::path file = directory / "file";
-  write_file(file, "text");
+  io::write_file(file, "text");
   EXPECT_THAT(message(file), AllOf(HasSubstr("output.directory"), HasSubstr("not a directory")));
   EXPECT_THAT(message(file / "out"), AllOf(HasSubstr("output.directory"), HasSubstr("Not a directory")));
   EXPECT_THAT(message("/proc/tribound"), HasSubstr("/proc/tribound"));
@@ -74,7 +74,7 @@ TEST_F(OutputDirectoryTest, ThatCannotBe)
 TEST_F(OutputDirectoryTest, BelongsToOne)
 {
   {
-    const OutputDirectory mine(directory);
+    const app::OutputDirectory mine(directory);
     EXPECT_THAT(message(directory), HasSubstr("another run is writing to it: process "));
   }
   EXPECT_EQ(message(directory), "");
@@ -83,8 +83,8 @@ TEST_F(OutputDirectoryTest, BelongsToOne)
 TEST_F(OutputDirectoryTest, RemovesWhatKilledProgramsLeft)
 {
   for (const char* name : {".a.csv.123.part", ".part", "a.123.part", ".a.part", ".a.12x.part"})
-    write_file(directory / name, "");
-  const OutputDirectory mine(directory);
+    io::write_file(directory / name, "");
+  const app::OutputDirectory mine(directory);
   EXPECT_FALSE(fs::exists(directory / ".a.csv.123.part"));
   for (const char* name : {".part", "a.123.part", ".a.part", ".a.12x.part"})
     EXPECT_TRUE(fs::exists(directory / name)) << name;
@@ -92,14 +92,14 @@ TEST_F(OutputDirectoryTest, RemovesWhatKilledProgramsLeft)
 
 TEST_F(OutputDirectoryTest, TryingLeavesNothing)
 {
-  try_output_directory(directory / "a" / "b");
+  app::try_output_directory(directory / "a" / "b");
   EXPECT_TRUE(fs::is_empty(directory));
 }
 
 TEST_F(OutputDirectoryTest, RemovesResultsByName)
 {
-  for (const char* name : {"a.json", "b.csv", "mine.csv"}) write_file(directory / name, "");
-  remove_results(directory, {"a.json", "b.csv", "c.html"});
+  for (const char* name : {"a.json", "b.csv", "mine.csv"}) io::write_file(directory / name, "");
+  app::remove_results(directory, {"a.json", "b.csv", "c.html"});
   EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 1);
   EXPECT_TRUE(fs::exists(directory / "mine.csv"));
 }
@@ -109,16 +109,16 @@ TEST(OutputDirectory, EffectiveCaseDoesNotReplaceTheCaseOfTheUser)
 {
   const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "effective_case";
   std::filesystem::create_directories(directory);
-  Config config;
+  case_file::Config config;
   config.output.directory = directory;
   config.effective.text = "degree = 1\n";
   config.file = "elsewhere.toml";
-  EXPECT_EQ(effective_file_name(config), "case.toml");
+  EXPECT_EQ(app::effective_file_name(config), "case.toml");
   config.file = directory / "case.toml";
   std::ofstream(config.file) << "degree = 1 # with a comment\n";
-  EXPECT_EQ(effective_file_name(config), "case_effective.toml");
+  EXPECT_EQ(app::effective_file_name(config), "case_effective.toml");
   std::ofstream(config.file) << "degree = 1\n";
-  EXPECT_EQ(effective_file_name(config), "case.toml");
+  EXPECT_EQ(app::effective_file_name(config), "case.toml");
 }
 
 }  // namespace

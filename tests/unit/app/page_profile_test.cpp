@@ -13,9 +13,9 @@ TEST(PageProfile, ValuesAlongTheFloor)
 {
   const BoxCase<2> box(constant_stress_case<2>(2, 4));
   const std::vector<double> u = box.interpolate(constant_stress_displacement<2>);
-  const std::vector<ContactProfile> profiles = contact_profiles(box.form, u, 40);
+  const std::vector<app::ContactProfile> profiles = app::contact_profiles(box.form, u, 40);
   ASSERT_EQ(profiles.size(), 1u);
-  const ContactProfile& profile = profiles[0];
+  const app::ContactProfile& profile = profiles[0];
   EXPECT_EQ(box.mesh.boundary_names()[profile.tag], "bottom");
   ASSERT_EQ(profile.arc.size(), 4u * 11);
   EXPECT_EQ(profile.arc.front(), 0.0);
@@ -32,7 +32,7 @@ TEST(PageProfile, ValuesAlongTheFloor)
     EXPECT_NEAR(profile.friction[i], 0.0, 1e-12);
     EXPECT_NEAR(profile.gap[i], 0.0, 1e-14);
     EXPECT_NEAR(profile.slip[i], 0.1 * profile.arc[i], 1e-14);
-    EXPECT_EQ(profile.status[i], static_cast<Index>(ContactStatus::slip));
+    EXPECT_EQ(profile.status[i], static_cast<Index>(contact::ContactStatus::slip));
   }
 }
 
@@ -40,7 +40,7 @@ TEST(PageProfile, FewPointsPerFacetOnLongBoundaries)
 {
   const BoxCase<2> box(constant_stress_case<2>(2, 4));
   const std::vector<double> u = box.interpolate(constant_stress_displacement<2>);
-  EXPECT_EQ(contact_profiles(box.form, u, 1)[0].arc.size(), 4u * 3);
+  EXPECT_EQ(app::contact_profiles(box.form, u, 1)[0].arc.size(), 4u * 3);
 }
 
 }  // namespace

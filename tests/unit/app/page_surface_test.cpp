@@ -14,7 +14,7 @@ namespace
 {
 
 /// Vertex v in 3 coordinates.
-Point<3> position(const Surface& surface, int dim, Index v)
+Point<3> position(const app::Surface& surface, int dim, Index v)
 {
   Point<3> x = Point<3>::Zero();
   for (int i = 0; i < dim; ++i) x[i] = surface.points[dim * v + i];
@@ -22,28 +22,29 @@ Point<3> position(const Surface& surface, int dim, Index v)
 }
 
 /// Half the sum of the cross products: areas with their normals, of the triangle a, b, c of every face.
-Point<3> area_vector(const Surface& surface, int dim, std::size_t face, int a, int b, int c)
+Point<3> area_vector(const app::Surface& surface, int dim, std::size_t face, int a, int b, int c)
 {
   const Index* v = surface.faces.data() + face * surface.n_face_points();
   const Point<3> x = position(surface, dim, v[a]);
-  return 0.5 * cross(position(surface, dim, v[b]) - x, position(surface, dim, v[c]) - x);
+  return 0.5 * mesh::cross(position(surface, dim, v[b]) - x, position(surface, dim, v[c]) - x);
 }
 
 /// Of the whole face, from its corners.
-Point<3> area_vector(const Surface& surface, int dim, std::size_t face)
+Point<3> area_vector(const app::Surface& surface, int dim, std::size_t face)
 {
   return area_vector(surface, dim, face, 0, surface.subdivision,
                      static_cast<int>(surface.n_face_points()) - 1);
 }
 
 template <int dim>
-void expect_exact_values(const Surface& surface)
+void expect_exact_values(const app::Surface& surface)
 {
   const auto [xx, yy, zz] = constant_stress<dim>();
   const std::array<double, 6> sigma = {xx, yy, zz, 0, 0, 0};
   ASSERT_EQ(surface.stress.size(), dim == 2 ? 3u : 6u);
   for (std::size_t i = 0; i < surface.stress.size(); ++i)
-    for (const double value : surface.stress[i]) EXPECT_NEAR(value, sigma[stress_entries<dim>[i]], 1e-10);
+    for (const double value : surface.stress[i])
+      EXPECT_NEAR(value, sigma[app::stress_entries<dim>[i]], 1e-10);
   for (std::size_t v = 0; v < surface.points.size() / dim; ++v)
   {
     const Point<dim> u = constant_stress_displacement<dim>(Point<dim>(surface.points.data() + dim * v));
@@ -56,8 +57,8 @@ TEST(PageSurface, CellsIn2D)
   for (const int degree : {1, 2, 3})
   {
     const BoxCase<2> box(constant_stress_case<2>(degree, 3));
-    const CertifiedLevel<2> level = constant_stress_level(box);
-    const Surface surface = sample_surface<2>(box.form, level.u, level.stress);
+    const adapt::CertifiedLevel<2> level = constant_stress_level(box);
+    const app::Surface surface = app::sample_surface<2>(box.form, level.u, level.stress);
     EXPECT_EQ(surface.subdivision, degree);
     EXPECT_EQ(surface.n_faces(), 18u);
     EXPECT_EQ(surface.points.size() / 2, (3u * degree + 1) * (3 * degree + 1));
@@ -79,8 +80,8 @@ TEST(PageSurface, BoundaryFacetsIn3DLookOutwards)
   for (const int degree : {1, 2})
   {
     const BoxCase<3> box(constant_stress_case<3>(degree, 2));
-    const CertifiedLevel<3> level = constant_stress_level(box);
-    const Surface surface = sample_surface<3>(box.form, level.u, level.stress);
+    const adapt::CertifiedLevel<3> level = constant_stress_level(box);
+    const app::Surface surface = app::sample_surface<3>(box.form, level.u, level.stress);
     EXPECT_EQ(surface.n_faces(), 48u);
     double area = 0;
     for (std::size_t face = 0; face < surface.n_faces(); ++face)
@@ -99,9 +100,9 @@ TEST(PageSurface, BoundaryFacetsIn3DLookOutwards)
 TEST(PageSurface, ContactFacesComeFirst)
 {
   const BoxCase<3> box(constant_stress_case<3>(2, 2));
-  const CertifiedLevel<3> level = constant_stress_level(box);
-  const Surface surface = sample_surface<3>(box.form, level.u, level.stress);
-  const SurfaceContact& contact = surface.contact;
+  const adapt::CertifiedLevel<3> level = constant_stress_level(box);
+  const app::Surface surface = app::sample_surface<3>(box.form, level.u, level.stress);
+  const app::SurfaceContact& contact = surface.contact;
   const std::size_t n_points = 8 * surface.n_face_points();
   ASSERT_EQ(contact.pressure.size(), n_points);
   ASSERT_EQ(contact.status.size(), 8u * 4);
@@ -115,25 +116,27 @@ TEST(PageSurface, ContactFacesComeFirst)
     EXPECT_NEAR(x[2], 0.0, 1e-14);
     EXPECT_NEAR(contact.slip[i], 0.1 * std::hypot(x[0], x[1]), 1e-14);
   }
-  for (const Index status : contact.status) EXPECT_EQ(status, static_cast<Index>(ContactStatus::slip));
+  for (const Index status : contact.status)
+    EXPECT_EQ(status, static_cast<Index>(contact::ContactStatus::slip));
 }
 
 TEST(PageSurface, LargeMeshesAreNotSubdivided)
 {
   const BoxCase<2> box(constant_stress_case<2>(3, 3));
-  const CertifiedLevel<2> level = constant_stress_level(box);
-  EXPECT_EQ(sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4}).subdivision, 2);
-  EXPECT_EQ(sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4 - 1}).subdivision, 1);
+  const adapt::CertifiedLevel<2> level = constant_stress_level(box);
+  EXPECT_EQ(app::sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4}).subdivision, 2);
+  EXPECT_EQ(app::sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4 - 1}).subdivision,
+            1);
 }
 
 TEST(PageSurface, LargeMeshesHaveOneStressPerFace)
 {
   const BoxCase<2> box(constant_stress_case<2>(1, 40));
-  const CertifiedLevel<2> level = constant_stress_level(box);
+  const adapt::CertifiedLevel<2> level = constant_stress_level(box);
   for (const std::size_t limit : {100'000u, 1000u})
   {
-    const Surface surface = sample_surface<2>(box.form, level.u, level.stress,
-                                              {.subdivided = 0, .triangles = limit, .stresses = 3000});
+    const app::Surface surface = app::sample_surface<2>(
+        box.form, level.u, level.stress, {.subdivided = 0, .triangles = limit, .stresses = 3000});
     EXPECT_EQ(surface.stress[0].size(), surface.n_faces());
     expect_exact_values<2>(surface);
   }
@@ -142,10 +145,10 @@ TEST(PageSurface, LargeMeshesHaveOneStressPerFace)
 TEST(PageSurface, DetailsOfVeryLargeMeshesAreMerged)
 {
   const BoxCase<2> box(constant_stress_case<2>(1, 40));
-  const CertifiedLevel<2> level = constant_stress_level(box);
+  const adapt::CertifiedLevel<2> level = constant_stress_level(box);
   const std::size_t limit = 1000;
-  const Surface surface =
-      sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 0, .triangles = limit});
+  const app::Surface surface =
+      app::sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 0, .triangles = limit});
   EXPECT_LE(surface.n_triangles(), limit);
   EXPECT_GT(surface.n_triangles(), limit / 4);
   EXPECT_GT(surface.merged_below, 0.01);
@@ -162,9 +165,9 @@ TEST(PageSurface, DetailsOfVeryLargeMeshesAreMerged)
 TEST(PageSurface, MergingIn3DKeepsContactBesideItsFaces)
 {
   const BoxCase<3> box(constant_stress_case<3>(1, 6));
-  const CertifiedLevel<3> level = constant_stress_level(box);
-  const Surface surface =
-      sample_surface<3>(box.form, level.u, level.stress, {.subdivided = 0, .triangles = 200});
+  const adapt::CertifiedLevel<3> level = constant_stress_level(box);
+  const app::Surface surface =
+      app::sample_surface<3>(box.form, level.u, level.stress, {.subdivided = 0, .triangles = 200});
   const std::size_t n_contact = surface.contact.status.size();
   EXPECT_LE(surface.n_triangles(), 200u);
   EXPECT_GT(n_contact, 0u);

@@ -26,17 +26,17 @@ class PageTemplateFile : public ::testing::Test
 
 TEST(PageTemplate, NoStringEndsTheScript)
 {
-  EXPECT_EQ(script_safe(R"("</script><!-- & > \u00e4")"), R"("\u003c/script>\u003c!-- & > \u00e4")");
+  EXPECT_EQ(app::script_safe(R"("</script><!-- & > \u00e4")"), R"("\u003c/script>\u003c!-- & > \u00e4")");
 }
 
 TEST_F(PageTemplateFile, TakesTheDataInPiecesInThePlaceOfTheMarker)
 {
   const std::filesystem::path file = directory_ / "template.html";
-  std::ofstream(file) << "<p>" << page_data_marker << "</p>";
-  const PageTemplate page(file);
+  std::ofstream(file) << "<p>" << app::page_data_marker << "</p>";
+  const app::PageTemplate page(file);
   EXPECT_FALSE(page.empty());
   page.write(directory_ / "page.html", "the-id", std::array<std::string_view, 3>{"[\"<\"", ",", "2]"});
-  EXPECT_EQ(read_text(directory_ / "page.html"),
+  EXPECT_EQ(app::read_text(directory_ / "page.html"),
             R"(<p><script type="application/json" id="the-id">["\u003c",2]</script></p>)");
 }
 
@@ -45,7 +45,7 @@ TEST_F(PageTemplateFile, IsEmptyWithoutAFileOrAPlaceForData)
   std::ofstream(directory_ / "other.html") << "<html>no place for data</html>";
   for (const auto& path : {std::filesystem::path{}, directory_ / "missing.html", directory_ / "other.html"})
   {
-    const PageTemplate page(path);
+    const app::PageTemplate page(path);
     EXPECT_TRUE(page.empty());
     page.write(directory_ / "page.html", "id", {});
   }
@@ -56,7 +56,7 @@ TEST_F(PageTemplateFile, NamesTheFilesThatAreThere)
 {
   std::ofstream(directory_ / "b.csv") << "";
   std::ofstream(directory_ / "a.csv") << "";
-  EXPECT_EQ(files_json(directory_, std::array<std::string, 3>{"b.csv", "missing.csv", "a.csv"}),
+  EXPECT_EQ(app::files_json(directory_, std::array<std::string, 3>{"b.csv", "missing.csv", "a.csv"}),
             R"(["b.csv","a.csv"])");
 }
 

@@ -26,7 +26,7 @@ class ReportPageFile : public ::testing::Test
   {
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_);
-    std::ofstream(template_) << "<html>head " << page_data_marker << " tail</html>";
+    std::ofstream(template_) << "<html>head " << app::page_data_marker << " tail</html>";
   }
 
   /// The page after its data have been checked to stand in one script element.
@@ -51,22 +51,22 @@ class ReportPageFile : public ::testing::Test
 
 TEST(ReportPage, LevelsInBetweenAreLeftOutFromTheLargestOn)
 {
-  std::vector<PageLevel> levels = {{0, 10, ""}, {1, 20, ""}, {2, 40, ""}, {3, 30, ""}, {4, 50, ""}};
-  drop_levels(levels, {.all_levels = 120});
+  std::vector<app::PageLevel> levels = {{0, 10, ""}, {1, 20, ""}, {2, 40, ""}, {3, 30, ""}, {4, 50, ""}};
+  app::drop_levels(levels, {.all_levels = 120});
   std::vector<int> numbers;
-  for (const PageLevel& level : levels) numbers.push_back(level.number);
+  for (const app::PageLevel& level : levels) numbers.push_back(level.number);
   EXPECT_THAT(numbers, ::testing::ElementsAre(0, 1, 3, 4));
-  drop_levels(levels, {.all_levels = 0});
+  app::drop_levels(levels, {.all_levels = 0});
   EXPECT_EQ(levels.size(), 2u);
 }
 
 TEST_F(ReportPageFile, HoldsTheRunAndTheUsersStringsAsTheyAre)
 {
-  RunRecord run;
+  io::RunRecord run;
   run.facts.title = "</script><script>alert(1)</script> \"Bl\u00f6cke\" \u4e2d";
-  run.status = RunStatus::failed;
+  run.status = certify::RunStatus::failed;
   run.reason = "the matrix is <singular>";
-  const ReportPage page(template_);
+  const app::ReportPage page(template_);
   page.write(directory_, run);
   const json read = data();
   EXPECT_EQ(read["certificate"]["title"], run.facts.title);
@@ -79,16 +79,16 @@ TEST_F(ReportPageFile, HoldsTheRunAndTheUsersStringsAsTheyAre)
 
 TEST_F(ReportPageFile, StringsThatAreNotUtf8AreReplaced)
 {
-  RunRecord run;
+  io::RunRecord run;
   run.facts.title = "\xff";
-  ReportPage(template_).write(directory_, run);
+  app::ReportPage(template_).write(directory_, run);
   EXPECT_EQ(data()["certificate"]["title"], "\uFFFD");
 }
 
 TEST_F(ReportPageFile, FieldsOfALevel)
 {
   const BoxCase<2> box(constant_stress_case<2>(2, 3));
-  ReportPage page(template_);
+  app::ReportPage page(template_);
   page.add(0, box.form, constant_stress_level(box));
   std::ofstream(directory_ / "newton.csv") << "";
   std::ofstream(directory_ / "contact.csv") << "boundary,facet\n";
@@ -118,7 +118,7 @@ TEST_F(ReportPageFile, FieldsOfALevel)
 TEST_F(ReportPageFile, ContactIn3D)
 {
   const BoxCase<3> box(constant_stress_case<3>(1, 2));
-  const json level = json::parse(page_level(3, box.form, constant_stress_level(box)).json);
+  const json level = json::parse(app::page_level(3, box.form, constant_stress_level(box)).json);
   EXPECT_EQ(level["level"], 3);
   EXPECT_EQ(unpack(level["contact"]["pressure"]).size(), 8u * 3);
   EXPECT_FALSE(level.contains("profiles"));
@@ -127,7 +127,7 @@ TEST_F(ReportPageFile, ContactIn3D)
 TEST_F(ReportPageFile, TablesThatAreTooLargeAreLeftOut)
 {
   const BoxCase<2> box(constant_stress_case<2>(1, 2));
-  ReportPage page(template_);
+  app::ReportPage page(template_);
   page.add(0, box.form, constant_stress_level(box));
   std::string text;
   for (std::uint32_t i = 0, digits = 1; i < 100'000; ++i, digits *= 2654435761U)
@@ -140,7 +140,7 @@ TEST_F(ReportPageFile, TablesThatAreTooLargeAreLeftOut)
 TEST_F(ReportPageFile, TheInsideOfABodyIn3D)
 {
   const BoxCase<3> box(constant_stress_case<3>(2, 2));
-  const json volume = json::parse(page_volume(box.form, constant_stress_level(box)));
+  const json volume = json::parse(app::page_volume(box.form, constant_stress_level(box)));
   EXPECT_EQ(unpack(volume["points"]).size(), 3u * 27);
   EXPECT_EQ(unpack(volume["cells"]).size(), 4u * 48);
   const std::vector<double> points = unpack(volume["points"]);
@@ -156,24 +156,24 @@ TEST_F(ReportPageFile, TheInsideOfABodyIn3D)
 
 TEST_F(ReportPageFile, NothingIsWrittenWithoutATemplate)
 {
-  ReportPage(directory_ / "missing.html").write(directory_, {});
+  app::ReportPage(directory_ / "missing.html").write(directory_, {});
   EXPECT_FALSE(std::filesystem::exists(directory_ / "report.html"));
 }
 
 TEST_F(ReportPageFile, TrueErrorsOfAStudyAreAddedOnce)
 {
-  std::ofstream(template_) << "<html>" << page_data_marker << true_errors_marker << "</html>";
-  RunRecord run;
-  run.facts.title = true_errors_marker;  // a title is not mistaken for the place
-  ReportPage(template_).write(directory_, run);
-  const std::vector<TrueErrors> errors = {{0, 0.5, 0.25}, {1, {}, {}}, {2, {}, 0.125}};
-  for (int i = 0; i < 2; ++i) add_true_errors(directory_ / "report.html", errors);
+  std::ofstream(template_) << "<html>" << app::page_data_marker << app::true_errors_marker << "</html>";
+  io::RunRecord run;
+  run.facts.title = app::true_errors_marker;  // a title is not mistaken for the place
+  app::ReportPage(template_).write(directory_, run);
+  const std::vector<app::TrueErrors> errors = {{0, 0.5, 0.25}, {1, {}, {}}, {2, {}, 0.125}};
+  for (int i = 0; i < 2; ++i) app::add_true_errors(directory_ / "report.html", errors);
   std::ifstream file(directory_ / "report.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   EXPECT_TRUE(page.ends_with(
       R"(</script><script type="application/json" id="true-errors">[{"level":0,"stress_error":0.5,"dual_norm":0.25},)"
       R"({"level":1},{"level":2,"dual_norm":0.125}]</script></html>)"));
-  add_true_errors(directory_ / "missing.html", errors);
+  app::add_true_errors(directory_ / "missing.html", errors);
   EXPECT_FALSE(std::filesystem::exists(directory_ / "missing.html"));
 }
 
@@ -181,7 +181,7 @@ TEST_F(ReportPageFile, TrueErrorsOfAStudyAreAddedOnce)
 TEST_F(ReportPageFile, SizeOfALevel)
 {
   const BoxCase<2> box(constant_stress_case<2>(1, 100));
-  const PageLevel level = page_level(0, box.form, constant_stress_level(box), {.subdivided = 0});
+  const app::PageLevel level = app::page_level(0, box.form, constant_stress_level(box), {.subdivided = 0});
   EXPECT_EQ(level.n_triangles, 20'000u);
   EXPECT_LT(level.json.size() / static_cast<double>(level.n_triangles), 35.0);
 }

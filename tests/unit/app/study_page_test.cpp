@@ -23,13 +23,13 @@ class StudyPageFile : public ::testing::Test
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_ / "figures");
     std::filesystem::create_directories(directory_ / "adaptive");
-    std::ofstream(template_) << "<!doctype html>" << page_data_marker;
+    std::ofstream(template_) << "<!doctype html>" << app::page_data_marker;
   }
 
   /// The data in the page.
   json data() const
   {
-    const std::string page = read_text(directory_ / "report.html");
+    const std::string page = app::read_text(directory_ / "report.html");
     const std::string begin = R"(<!doctype html><script type="application/json" id="study-data">)";
     const std::string end = "</script>";
     EXPECT_TRUE(page.starts_with(begin) && page.ends_with(end));
@@ -44,13 +44,13 @@ class StudyPageFile : public ::testing::Test
 
 TEST_F(StudyPageFile, HoldsTheStudyAndWhereItWasMade)
 {
-  Study study;
+  app::Study study;
   study.facts.title = "</script> \"Bl\u00f6cke\"";
   study.build.version = "1.2.3";
-  study.variants = {{"adaptive", RunStatus::certified, {}, {}}};
-  write_study_page(template_, directory_, study);
+  study.variants = {{"adaptive", certify::RunStatus::certified, {}, {}}};
+  app::write_study_page(template_, directory_, study);
   const json read = data();
-  EXPECT_EQ(read["study"], json::parse(study_json(study)));
+  EXPECT_EQ(read["study"], json::parse(app::study_json(study)));
   EXPECT_EQ(read["study"]["title"], study.facts.title);
   EXPECT_EQ(read["study"]["program"]["version"], "1.2.3");
   EXPECT_FALSE(read["machine"]["written"].get<std::string>().empty());
@@ -58,23 +58,23 @@ TEST_F(StudyPageFile, HoldsTheStudyAndWhereItWasMade)
 
 TEST_F(StudyPageFile, LinksToWhatIsThere)
 {
-  Study study;
-  study.variants = {{"adaptive", RunStatus::certified, {}, {}},
-                    {"uniform", RunStatus::budget, "too large", {}}};
+  app::Study study;
+  study.variants = {{"adaptive", certify::RunStatus::certified, {}, {}},
+                    {"uniform", certify::RunStatus::budget, "too large", {}}};
   for (const char* name : {"study.csv", "adaptive/report.html", "figures/newton.svg", "figures/maps.svg",
                            "figures/notes.txt", "figures/old.svg"})
     std::ofstream(directory_ / name) << "";
   std::filesystem::last_write_time(
       directory_ / "figures/old.svg",
       std::filesystem::last_write_time(directory_ / "study.csv") - std::chrono::hours(1));
-  write_study_page(template_, directory_, study);
+  app::write_study_page(template_, directory_, study);
   EXPECT_EQ(data()["files"],
             json::array({"study.csv", "adaptive/report.html", "figures/maps.svg", "figures/newton.svg"}));
 }
 
 TEST_F(StudyPageFile, IsNotWrittenWithoutATemplate)
 {
-  write_study_page(directory_ / "missing.html", directory_, Study{});
+  app::write_study_page(directory_ / "missing.html", directory_, app::Study{});
   EXPECT_FALSE(std::filesystem::exists(directory_ / "report.html"));
 }
 

@@ -19,35 +19,35 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// A level with an energy error of 1 / dofs, a bound of 3 / dofs and a dual norm of 2 / dofs.
-StudiedLevel level(int number, long dofs, int newton_steps)
+app::StudiedLevel level(int number, long dofs, int newton_steps)
 {
-  StudiedLevel result;
+  app::StudiedLevel result;
   result.record.level = number;
   result.record.cells = dofs / 2;
   result.record.dofs = dofs;
   result.record.newton.resize(newton_steps);
   result.record.figures.sigma_norm = 2;
   const double size = 1.0 / static_cast<double>(dofs);
-  result.record.bound = Bound{{.str = 2 * size}, 4 * size, 3 * size};
+  result.record.bound = certify::Bound{{.str = 2 * size}, 4 * size, 3 * size};
   result.record.times = {.solve = 0.5, .certify = 0.25, .level = 1.0, .refinement = {}};
-  result.error = SolutionError{size, 1.5 * size};
+  result.error = certify::SolutionError{size, 1.5 * size};
   result.dual_norm = 2 * size;
   return result;
 }
 
-Study example()
+app::Study example()
 {
-  Study study;
+  app::Study study;
   study.facts = {"Block", "case.toml", 2, 1, "tresca", 10.0};
   study.gamma_lin = 0.1;
   study.marking = "doerfler";
   study.theta = 0.6;
   study.variants = {
-      {"adaptive", RunStatus::certified, {}, {level(0, 16, 3), level(1, 64, 2), level(2, 256, 2)}},
-      {"adaptive_converged", RunStatus::certified, {}, {level(0, 16, 5), level(1, 64, 4)}},
-      {"uniform", RunStatus::budget, "too large", {level(0, 16, 3)}}};
+      {"adaptive", certify::RunStatus::certified, {}, {level(0, 16, 3), level(1, 64, 2), level(2, 256, 2)}},
+      {"adaptive_converged", certify::RunStatus::certified, {}, {level(0, 16, 5), level(1, 64, 4)}},
+      {"uniform", certify::RunStatus::budget, "too large", {level(0, 16, 3)}}};
   study.variants[0].levels[1].error->energy *= 1.03;
-  study.reference = StudyReference{2, level(7, 4096, 1).record, 0.002, true, {}};
+  study.reference = app::StudyReference{2, level(7, 4096, 1).record, 0.002, true, {}};
   study.reference->level.figures.energy = 0.125;
   study.times = {{"adaptive", 1.5}};
   return study;
@@ -68,7 +68,7 @@ std::vector<std::vector<std::string>> cells(const std::string& csv)
 
 TEST(Study, CsvHasARowPerVariantAndLevel)
 {
-  const auto rows = cells(study_csv(example()));
+  const auto rows = cells(app::study_csv(example()));
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_THAT(rows[0],
               ElementsAre("variant", "level", "cells", "dofs", "newton_steps", "osc", "str", "neu", "lin1",
@@ -84,13 +84,13 @@ TEST(Study, CsvHasARowPerVariantAndLevel)
 
 TEST(Study, OfTheRegularisedVariantHasItsColumnsAtTheEnd)
 {
-  const auto plain = cells(study_csv(example()));
-  Study study = example();
-  for (StudyVariant& variant : study.variants)
-    for (StudiedLevel& level : variant.levels) level.record.delta_updates = 2;
+  const auto plain = cells(app::study_csv(example()));
+  app::Study study = example();
+  for (app::StudyVariant& variant : study.variants)
+    for (app::StudiedLevel& level : variant.levels) level.record.delta_updates = 2;
   study.variants[0].levels[0].record.bound->global.reg2n = 0.25;
   study.variants[0].levels[0].record.newton.back().step.delta = 0.125;
-  const auto rows = cells(study_csv(study));
+  const auto rows = cells(app::study_csv(study));
   std::vector<std::string> columns = plain[0];
   columns.insert(columns.end(), {"reg1", "reg2n", "reg2t", "delta", "delta_updates"});
   EXPECT_EQ(rows[0], columns);
@@ -100,14 +100,14 @@ TEST(Study, OfTheRegularisedVariantHasItsColumnsAtTheEnd)
 
 TEST(Study, WhatIsNotKnownIsEmptyInTheTableAndNullInJson)
 {
-  Study study = example();
+  app::Study study = example();
   study.reference.reset();
-  StudiedLevel& first = study.variants[0].levels[0];
+  app::StudiedLevel& first = study.variants[0].levels[0];
   first.error.reset();
   first.dual_norm.reset();
-  const auto row = cells(study_csv(study))[1];
+  const auto row = cells(app::study_csv(study))[1];
   for (const int column : {17, 18, 19, 20, 21, 22, 23}) EXPECT_EQ(row[column], "") << column;
-  const auto json = nlohmann::json::parse(study_json(study));
+  const auto json = nlohmann::json::parse(app::study_json(study));
   EXPECT_TRUE(json["reference"].is_null());
   for (const char* name : {"energy_error", "stress_error", "dual_norm", "effectivity", "effectivity_stress"})
     EXPECT_TRUE(json["variants"]["adaptive"]["levels"][0][name].is_null()) << name;
@@ -116,8 +116,8 @@ TEST(Study, WhatIsNotKnownIsEmptyInTheTableAndNullInJson)
 
 TEST(Study, JsonHasTheFieldsOfTheTable)
 {
-  const Study study = example();
-  const auto json = nlohmann::json::parse(study_json(study));
+  const app::Study study = example();
+  const auto json = nlohmann::json::parse(app::study_json(study));
   EXPECT_EQ(json["d"], 2);
   EXPECT_EQ(json["gamma_lin"], 0.1);
   EXPECT_EQ(json["guarantee"], "holds");
@@ -127,7 +127,7 @@ TEST(Study, JsonHasTheFieldsOfTheTable)
   EXPECT_EQ(json["variants"]["uniform"]["status"], "budget");
   EXPECT_EQ(json["variants"]["uniform"]["reason"], "too large");
   EXPECT_NEAR(json["variants"]["adaptive"]["rates"]["bound"].get<double>(), -1, 1e-14);
-  auto header = cells(study_csv(study))[0];
+  auto header = cells(app::study_csv(study))[0];
   header.erase(header.begin());
   const auto& first = json["variants"]["adaptive"]["levels"][0];
   EXPECT_EQ(first.size(), header.size());
@@ -136,7 +136,7 @@ TEST(Study, JsonHasTheFieldsOfTheTable)
 
 TEST(Study, ComparesWithAndWithoutTheCriterion)
 {
-  const auto json = nlohmann::json::parse(study_json(example()));
+  const auto json = nlohmann::json::parse(app::study_json(example()));
   ASSERT_EQ(json["newton_table"].size(), 3u);
   EXPECT_EQ(json["newton_table"][1]["adaptive"], 2);
   EXPECT_EQ(json["newton_table"][1]["adaptive_converged"], 4);
@@ -151,10 +151,13 @@ TEST(Study, ComparesWithAndWithoutTheCriterion)
 
 TEST(Study, ComparesErrorsAtTheSameNumberOfUnknowns)
 {
-  const StudyVariant with{"adaptive", RunStatus::certified, {}, {level(0, 16, 1), level(1, 100, 1)}};
-  const StudyVariant without{
-      "adaptive_converged", RunStatus::certified, {}, {level(0, 16, 1), level(1, 60, 1), level(2, 128, 1)}};
-  const auto differences = error_differences(with, without);
+  const app::StudyVariant with{
+      "adaptive", certify::RunStatus::certified, {}, {level(0, 16, 1), level(1, 100, 1)}};
+  const app::StudyVariant without{"adaptive_converged",
+                                  certify::RunStatus::certified,
+                                  {},
+                                  {level(0, 16, 1), level(1, 60, 1), level(2, 128, 1)}};
+  const auto differences = app::error_differences(with, without);
   ASSERT_EQ(differences.size(), 2u);
   EXPECT_EQ(differences[0], 0.0);
   EXPECT_NEAR(differences[1].value(), 0, 1e-14);  // the error is 1 / dofs in both
@@ -162,7 +165,7 @@ TEST(Study, ComparesErrorsAtTheSameNumberOfUnknowns)
 
 TEST(Study, TextShowsTablesRatesAndTheReference)
 {
-  EXPECT_THAT(study_text(example(), "out"),
+  EXPECT_THAT(app::study_text(example(), "out"),
               AllOf(HasSubstr("adaptive: certified\n"), HasSubstr("uniform: budget, too large\n"),
                     HasSubstr("Newton steps per level\n"), HasSubstr("bound -1.000"),
                     HasSubstr("adaptive: changes the energy error by at most 3 % (level 1)"),
@@ -173,22 +176,22 @@ TEST(Study, TextShowsTablesRatesAndTheReference)
 
 TEST(Study, AReferenceThatIsTooCoarseIsSaidToBe)
 {
-  Study study = example();
+  app::Study study = example();
   study.reference->fine_enough = false;
   study.reference->reason = "study.max_reference_dofs";
-  EXPECT_THAT(study_text(study, "out"),
+  EXPECT_THAT(app::study_text(study, "out"),
               AllOf(HasSubstr("coarser than asked for (0.002)"), HasSubstr("study.max_reference_dofs")));
 }
 
 TEST(Study, AnEffectivityBelowOneViolatesTheGuarantee)
 {
-  Study study = example();
-  EXPECT_EQ(violation(study), "");
+  app::Study study = example();
+  EXPECT_EQ(app::violation(study), "");
   study.variants[1].levels[1].dual_norm = 1;
-  EXPECT_THAT(violation(study),
+  EXPECT_THAT(app::violation(study),
               AllOf(HasSubstr("guarantee is violated"), HasSubstr("adaptive_converged on level 1")));
-  EXPECT_EQ(nlohmann::json::parse(study_json(study))["guarantee"], "violated");
-  EXPECT_THAT(study_text(study, ""), HasSubstr("guarantee     the guarantee is violated"));
+  EXPECT_EQ(nlohmann::json::parse(app::study_json(study))["guarantee"], "violated");
+  EXPECT_THAT(app::study_text(study, ""), HasSubstr("guarantee     the guarantee is violated"));
 }
 
 }  // namespace

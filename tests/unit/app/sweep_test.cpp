@@ -35,25 +35,25 @@ class SweepTest : public ::testing::Test
 
   void leave_certificate(const std::string& status, const std::string& sha256 = "abc")
   {
-    std::ofstream(directory / "0001/certificate.json")
-        << Json{{"case", {{"sha256", sha256}}}, {"status", status}, {"reason", "why"}, {"relative", 0.03}};
+    std::ofstream(directory / "0001/certificate.json") << io::Json{
+        {"case", {{"sha256", sha256}}}, {"status", status}, {"reason", "why"}, {"relative", 0.03}};
   }
-  SweepRun read(int exit_code)
+  app::SweepRun read(int exit_code)
   {
     run.exit_code = exit_code;
-    read_results(directory / "0001", run);
+    app::read_results(directory / "0001", run);
     return run;
   }
   std::map<std::string, int> complete_after(int exit_code)
   {
     run.exit_code = exit_code;
-    const SweepRecord record = {"", "case.toml", {"degree"}, {run}};
-    write_sweep(directory, record);
-    return complete_runs(directory, record);
+    const app::SweepRecord record = {"", "case.toml", {"degree"}, {run}};
+    app::write_sweep(directory, record);
+    return app::complete_runs(directory, record);
   }
 
   const fs::path directory;
-  SweepRun run;
+  app::SweepRun run;
 };
 
 TEST_F(SweepTest, StatusIsThatOfTheCertificateAtTheEnd)
@@ -92,10 +92,10 @@ TEST_F(SweepTest, AnotherMeshFileIsSolvedAgain)
 {
   leave_certificate("certified");
   run.exit_code = 0;
-  SweepRecord record = {"", "case.toml", {"degree"}, {run}};
-  write_sweep(directory, record);
+  app::SweepRecord record = {"", "case.toml", {"degree"}, {run}};
+  app::write_sweep(directory, record);
   record.runs[0].mesh_sha256 = "changed";
-  EXPECT_THAT(complete_runs(directory, record), IsEmpty());
+  EXPECT_THAT(app::complete_runs(directory, record), IsEmpty());
 }
 
 }  // namespace

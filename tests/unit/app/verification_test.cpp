@@ -14,9 +14,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-Verification example()
+app::Verification example()
 {
-  Verification v;
+  app::Verification v;
   v.facts = {"Block", "case.toml", 2, 1, "tresca", 10.0};
   v.mesh.cells = 16;
   v.mesh.free_dofs = 24;
@@ -26,14 +26,14 @@ Verification example()
                 {{2, 1e-12, 1.0, 1, true, 0.1}, 0.05, 0.06, 0.04, {1.0, 1.0, 0.0}, 2e-15}};
   v.converged = true;
   v.richer_degree = 2;
-  v.richer = RicherSolution{256, 1100, 4, {}, SolutionError{0.02, 0.025}};
+  v.richer = certify::RicherSolution{256, 1100, 4, {}, certify::SolutionError{0.02, 0.025}};
   v.times = {{"solve", 0.5}};
   return v;
 }
 
 TEST(Verification, TheTextIsATableOfTheIterates)
 {
-  EXPECT_EQ(verification_text(example(), "out/verify.json"),
+  EXPECT_EQ(app::verification_text(example(), "out/verify.json"),
             "dual norm     from below, degree 3 on 256 cells (2 refinements), 2450 degrees of freedom\n"
             "step   residual   plain bound         bound     dual norm  effectivity  identities\n"
             "   1  2.500e-01           0.5         0.375          0.25       1.5000     1.0e-15\n"
@@ -48,40 +48,40 @@ TEST(Verification, TheTextIsATableOfTheIterates)
 
 TEST(Verification, AnEffectivityBelowOneViolatesTheGuarantee)
 {
-  Verification v = example();
-  EXPECT_EQ(violation(v), "");
+  app::Verification v = example();
+  EXPECT_EQ(app::violation(v), "");
   v.iterates[0].dual_norm = 0.4375;
-  EXPECT_THAT(violation(v),
+  EXPECT_THAT(app::violation(v),
               AllOf(HasSubstr("guarantee is violated"), HasSubstr("step 1"), HasSubstr("0.4375")));
-  EXPECT_THAT(verification_text(v, ""),
+  EXPECT_THAT(app::verification_text(v, ""),
               AllOf(HasSubstr("status        the guarantee is violated"), Not(HasSubstr("the bound holds"))));
-  EXPECT_EQ(nlohmann::json::parse(verification_json(v))["guarantee"], "violated");
+  EXPECT_EQ(nlohmann::json::parse(app::verification_json(v))["guarantee"], "violated");
 }
 
 TEST(Verification, WhatRunWouldRefuseIsRefused)
 {
-  Verification v = example();
+  app::Verification v = example();
   v.iterates[1].identities = 1.1e-8;
-  EXPECT_THAT(violation(v), HasSubstr("an identity of the equilibrated stress is violated"));
-  EXPECT_EQ(nlohmann::json::parse(verification_json(v))["guarantee"], "not certified");
+  EXPECT_THAT(app::violation(v), HasSubstr("an identity of the equilibrated stress is violated"));
+  EXPECT_EQ(nlohmann::json::parse(app::verification_json(v))["guarantee"], "not certified");
   v.iterates[1].norms.round_off = 1.5;  // of a stress of norm 1: everything is rounding
-  EXPECT_EQ(violation(v), "");
+  EXPECT_EQ(app::violation(v), "");
 }
 
 TEST(Verification, RoundOffHasNoEffectivity)
 {
-  Verification v = example();
-  for (VerifiedIterate& iterate : v.iterates) iterate.bound = iterate.dual_norm = 1e-13;
+  app::Verification v = example();
+  for (app::VerifiedIterate& iterate : v.iterates) iterate.bound = iterate.dual_norm = 1e-13;
   v.iterates[1].dual_norm = 3e-13;
-  EXPECT_EQ(violation(v), "");
-  EXPECT_THAT(verification_text(v, ""), HasSubstr("bound and dual norm are both round-off"));
-  EXPECT_TRUE(nlohmann::json::parse(verification_json(v))["effectivity"].is_null());
+  EXPECT_EQ(app::violation(v), "");
+  EXPECT_THAT(app::verification_text(v, ""), HasSubstr("bound and dual norm are both round-off"));
+  EXPECT_TRUE(nlohmann::json::parse(app::verification_json(v))["effectivity"].is_null());
 }
 
 TEST(Verification, Json)
 {
-  Verification v = example();
-  const auto json = nlohmann::json::parse(verification_json(v));
+  app::Verification v = example();
+  const auto json = nlohmann::json::parse(app::verification_json(v));
   EXPECT_EQ(json["guarantee"], "holds");
   EXPECT_EQ(json["bound"], 0.05);
   EXPECT_EQ(json["effectivity"], 1.25);
@@ -93,12 +93,12 @@ TEST(Verification, Json)
 
   v.richer->error.reset();
   v.richer->failure = "step 50 was the last";
-  EXPECT_TRUE(nlohmann::json::parse(verification_json(v))["richer_solution"]["stress_error"].is_null());
-  EXPECT_THAT(verification_text(v, ""), HasSubstr("no solution: step 50 was the last"));
+  EXPECT_TRUE(nlohmann::json::parse(app::verification_json(v))["richer_solution"]["stress_error"].is_null());
+  EXPECT_THAT(app::verification_text(v, ""), HasSubstr("no solution: step 50 was the last"));
 
   v.richer.reset();
-  EXPECT_TRUE(nlohmann::json::parse(verification_json(v))["richer_solution"].is_null());
-  EXPECT_THAT(verification_text(v, ""), HasSubstr("not computed"));
+  EXPECT_TRUE(nlohmann::json::parse(app::verification_json(v))["richer_solution"].is_null());
+  EXPECT_THAT(app::verification_text(v, ""), HasSubstr("not computed"));
 }
 
 }  // namespace

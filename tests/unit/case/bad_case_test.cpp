@@ -45,7 +45,7 @@ TEST_P(BadCaseFile, IsRejectedWithPlaceProblemAndHint)
   const BadCase& bad = GetParam();
   try
   {
-    (void)parse_config(bad.text, "case.toml");
+    (void)case_file::parse_config(bad.text, "case.toml");
     FAIL() << "accepted";
   }
   catch (const InputError& error)
@@ -259,7 +259,7 @@ TEST(DeepDocument, IsRefusedBeforeItIsParsed)
                                           "x = 1\ny = " + std::string(100000, '{')};
   for (const std::string& text : texts) try
     {
-      (void)parse_config(text, "case.toml");
+      (void)case_file::parse_config(text, "case.toml");
       FAIL() << "accepted";
     }
     catch (const InputError& error)
@@ -268,7 +268,7 @@ TEST(DeepDocument, IsRefusedBeforeItIsParsed)
     }
   const std::string harmless =
       "title = \"[[[[[[[[[[[[[[[[[[[[[[ \\\" .......................\" # {{{{{{{{{{{{{{{{{{{{{{{\n";
-  EXPECT_EQ(parse_config(harmless + head, "case.toml").title.size(), 48u);
+  EXPECT_EQ(case_file::parse_config(harmless + head, "case.toml").title.size(), 48u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Syntax, BadCaseFile, testing::ValuesIn(syntax()), name_of);

@@ -55,7 +55,7 @@ std::optional<InputError> refusal(const Row& row, const std::string& value)
   if (row.name() == "boundary.top.contact") text = valid_case("") + "boundary.top.contact = " + value + "\n";
   try
   {
-    (void)parse_config(text, "case", overrides);
+    (void)case_file::parse_config(text, "case", overrides);
     return {};
   }
   catch (const InputError& error)
@@ -211,73 +211,86 @@ std::string unlimited(const std::optional<T>& limit, const char* text)
 }
 
 /// The default of a key as the tables write it, by the name of the key.
-std::map<std::string, std::function<std::string(const Config&, const Row&)>> defaults()
+std::map<std::string, std::function<std::string(const case_file::Config&, const Row&)>> defaults()
 {
   const auto truth = [](bool value) { return std::string(value ? "true" : "false"); };
   return {
-      {"title", [](const Config& c, const Row&) { return "`\"" + c.title + "\"`"; }},
-      {"degree", [](const Config& c, const Row&) { return std::to_string(c.degree); }},
-      {"material.plane",
-       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.materials[0].plane)); }},
-      {"load.body", [](const Config& c, const Row&) { return c.loads.empty() ? "zero" : "given"; }},
-      {"boundary.top.contact.friction", [](const Config& c, const Row& row)
+      {"title", [](const case_file::Config& c, const Row&) { return "`\"" + c.title + "\"`"; }},
+      {"degree", [](const case_file::Config& c, const Row&) { return std::to_string(c.degree); }},
+      {"material.plane", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.materials[0].plane)); }},
+      {"load.body",
+       [](const case_file::Config& c, const Row&) { return c.loads.empty() ? "zero" : "given"; }},
+      {"boundary.top.contact.friction", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.boundaries[0].contact->friction.index())); }},
-      {"boundary.top.contact.gap",
-       [](const Config& c, const Row&) { return c.boundaries[0].contact->gap.is_zero() ? "0" : "not 0"; }},
-      {"nitsche.gamma0", [](const Config&, const Row&)
-       { return fmt::format("{}; {} for degree 4", default_gamma0(3), default_gamma0(4)); }},
-      {"newton.stopping",
-       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.newton.stopping)); }},
-      {"newton.gamma_lin", [](const Config& c, const Row&) { return fmt::format("{}", c.newton.gamma_lin); }},
-      {"newton.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.newton.tolerance); }},
-      {"newton.max_steps", [](const Config& c, const Row&) { return std::to_string(c.newton.max_steps); }},
-      {"newton.finish", [=](const Config& c, const Row&) { return truth(c.newton.finish); }},
-      {"newton.damping", [=](const Config& c, const Row&) { return truth(c.newton.damping); }},
+      {"boundary.top.contact.gap", [](const case_file::Config& c, const Row&)
+       { return c.boundaries[0].contact->gap.is_zero() ? "0" : "not 0"; }},
+      {"nitsche.gamma0",
+       [](const case_file::Config&, const Row&) {
+         return fmt::format("{}; {} for degree 4", case_file::default_gamma0(3),
+                            case_file::default_gamma0(4));
+       }},
+      {"newton.stopping", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.newton.stopping)); }},
+      {"newton.gamma_lin",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.newton.gamma_lin); }},
+      {"newton.tolerance",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.newton.tolerance); }},
+      {"newton.max_steps",
+       [](const case_file::Config& c, const Row&) { return std::to_string(c.newton.max_steps); }},
+      {"newton.finish", [=](const case_file::Config& c, const Row&) { return truth(c.newton.finish); }},
+      {"newton.damping", [=](const case_file::Config& c, const Row&) { return truth(c.newton.damping); }},
       {"regularisation.delta",
-       [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->delta); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.regularisation->delta); }},
       {"regularisation.factor",
-       [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->factor); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.regularisation->factor); }},
       {"regularisation.gamma_reg",
-       [](const Config& c, const Row&) { return fmt::format("{}", c.regularisation->gamma_reg); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.regularisation->gamma_reg); }},
       {"regularisation.max_updates",
-       [](const Config& c, const Row&) { return std::to_string(c.regularisation->max_updates); }},
-      {"adapt.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.adapt.tolerance); }},
-      {"adapt.marking",
-       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.adapt.marking)); }},
-      {"adapt.theta", [](const Config& c, const Row&) { return fmt::format("{}", c.adapt.theta); }},
+       [](const case_file::Config& c, const Row&) { return std::to_string(c.regularisation->max_updates); }},
+      {"adapt.tolerance",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.adapt.tolerance); }},
+      {"adapt.marking", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.adapt.marking)); }},
+      {"adapt.theta",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.adapt.theta); }},
       {"adapt.separate_contact",
-       [=](const Config& c, const Row&) { return truth(c.adapt.separate_contact); }},
-      {"adapt.max_levels", [](const Config& c, const Row&) { return with_spaces(c.adapt.max_levels); }},
-      {"adapt.max_dofs", [](const Config& c, const Row&) { return with_spaces(c.adapt.max_dofs); }},
+       [=](const case_file::Config& c, const Row&) { return truth(c.adapt.separate_contact); }},
+      {"adapt.max_levels",
+       [](const case_file::Config& c, const Row&) { return with_spaces(c.adapt.max_levels); }},
+      {"adapt.max_dofs",
+       [](const case_file::Config& c, const Row&) { return with_spaces(c.adapt.max_dofs); }},
       {"adapt.max_cells",
-       [](const Config& c, const Row&) { return unlimited(c.adapt.max_cells, "no limit"); }},
-      {"adapt.max_time", [](const Config& c, const Row&) { return unlimited(c.adapt.max_time, "no limit"); }},
-      {"adapt.max_memory",
-       [](const Config& c, const Row&) { return unlimited(c.adapt.max_memory, "9/10 of the machine's"); }},
-      {"certify.contact_rule",
-       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.certify.contact_rule)); }},
-      {"solver.method",
-       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.solver.method)); }},
-      {"solver.package",
-       [](const Config& c, const Row& row) { return choice(row, static_cast<int>(c.solver.package)); }},
-      {"solver.tolerance", [](const Config& c, const Row&) { return fmt::format("{}", c.solver.tolerance); }},
+       [](const case_file::Config& c, const Row&) { return unlimited(c.adapt.max_cells, "no limit"); }},
+      {"adapt.max_time",
+       [](const case_file::Config& c, const Row&) { return unlimited(c.adapt.max_time, "no limit"); }},
+      {"adapt.max_memory", [](const case_file::Config& c, const Row&)
+       { return unlimited(c.adapt.max_memory, "9/10 of the machine's"); }},
+      {"certify.contact_rule", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.certify.contact_rule)); }},
+      {"solver.method", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.solver.method)); }},
+      {"solver.package", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.solver.package)); }},
+      {"solver.tolerance",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.solver.tolerance); }},
       {"solver.max_iterations",
-       [](const Config& c, const Row&) { return with_spaces(c.solver.max_iterations); }},
-      {"study.reference_degree", [](const Config& c, const Row&)
+       [](const case_file::Config& c, const Row&) { return with_spaces(c.solver.max_iterations); }},
+      {"study.reference_degree", [](const case_file::Config& c, const Row&)
        { return unlimited(c.study.reference_degree, "min(`degree` + 1, 4)"); }},
       {"study.reference_factor",
-       [](const Config& c, const Row&) { return fmt::format("{}", c.study.reference_factor); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.study.reference_factor); }},
       {"study.max_reference_dofs",
-       [](const Config& c, const Row&) { return with_spaces(c.study.max_reference_dofs); }},
+       [](const case_file::Config& c, const Row&) { return with_spaces(c.study.max_reference_dofs); }},
       {"study.dual_norm_dofs",
-       [](const Config& c, const Row&) { return with_spaces(c.study.dual_norm_dofs); }},
-      {"study.figures", [=](const Config& c, const Row&) { return truth(c.study.figures); }},
+       [](const case_file::Config& c, const Row&) { return with_spaces(c.study.dual_norm_dofs); }},
+      {"study.figures", [=](const case_file::Config& c, const Row&) { return truth(c.study.figures); }},
       {"output.directory",
-       [](const Config& c, const Row&) { return "`\"" + c.output.directory.string() + "\"`"; }},
-      {"output.vtu", [=](const Config& c, const Row&) { return truth(c.output.vtu); }},
-      {"output.report", [=](const Config& c, const Row&) { return truth(c.output.report); }},
-      {"output.mesh", [=](const Config& c, const Row&) { return truth(c.output.mesh); }},
-      {"output.moment_about", [](const Config& c, const Row&)
+       [](const case_file::Config& c, const Row&) { return "`\"" + c.output.directory.string() + "\"`"; }},
+      {"output.vtu", [=](const case_file::Config& c, const Row&) { return truth(c.output.vtu); }},
+      {"output.report", [=](const case_file::Config& c, const Row&) { return truth(c.output.report); }},
+      {"output.mesh", [=](const case_file::Config& c, const Row&) { return truth(c.output.mesh); }},
+      {"output.moment_about", [](const case_file::Config& c, const Row&)
        { return c.output.moment_about.empty() ? "centroid of the body" : "given"; }},
   };
 }
@@ -291,7 +304,7 @@ TEST(CaseFormat, DefaultsAreThoseOfTheProgram)
     const auto value = values.find(row.name());
     ASSERT_NE(value, values.end()) << row.name() << " has a default that this test does not know";
     const std::string table = row.table == "load" ? "" : row.table;
-    EXPECT_EQ(value->second(parse_config(valid_case(table)), row), row.standard) << row.name();
+    EXPECT_EQ(value->second(case_file::parse_config(valid_case(table)), row), row.standard) << row.name();
   }
 }
 

@@ -85,16 +85,16 @@ const Point<2> somewhere(0.25, 4.0);
 
 TEST(Config, ReadsEveryKey)
 {
-  const Config config = parse_config(complete_case, "cases/block.toml");
+  const case_file::Config config = case_file::parse_config(complete_case, "cases/block.toml");
   EXPECT_EQ(config.file, "cases/block.toml");
   EXPECT_EQ(config.title, "Block on a rigid floor, Tresca friction");
   EXPECT_EQ(config.degree, 2);
-  EXPECT_EQ(std::get<MeshFile>(config.mesh).path, "cases/block.msh");
+  EXPECT_EQ(std::get<case_file::MeshFile>(config.mesh).path, "cases/block.msh");
   EXPECT_EQ(config.gamma0(), 12.0);
-  EXPECT_EQ(config.newton.stopping, Stopping::tolerance);
+  EXPECT_EQ(config.newton.stopping, case_file::Stopping::tolerance);
   EXPECT_EQ(config.newton.gamma_lin, 0.2);
   EXPECT_EQ(config.adapt.tolerance, 0.02);
-  EXPECT_EQ(config.adapt.marking, Marking::maximum);
+  EXPECT_EQ(config.adapt.marking, case_file::Marking::maximum);
   EXPECT_EQ(config.adapt.theta, 0.75);
   EXPECT_EQ(config.adapt.max_levels, 3);
   EXPECT_EQ(config.adapt.max_dofs, 3'000'000);
@@ -102,9 +102,9 @@ TEST(Config, ReadsEveryKey)
   EXPECT_EQ(config.adapt.max_time, 60.0);
   EXPECT_EQ(config.adapt.max_memory, 2.5);
   EXPECT_TRUE(config.adapt.separate_contact);
-  EXPECT_EQ(config.certify.contact_rule, ContactRule::reference);
-  EXPECT_EQ(config.solver.method, LinearMethod::iterative);
-  EXPECT_EQ(config.solver.package, DirectPackage::umfpack);
+  EXPECT_EQ(config.certify.contact_rule, case_file::ContactRule::reference);
+  EXPECT_EQ(config.solver.method, case_file::LinearMethod::iterative);
+  EXPECT_EQ(config.solver.package, case_file::DirectPackage::umfpack);
   EXPECT_EQ(config.solver.tolerance, 1e-8);
   EXPECT_EQ(config.solver.max_iterations, 7);
   EXPECT_EQ(config.study.reference_degree, 4);
@@ -119,16 +119,17 @@ TEST(Config, ReadsEveryKey)
 
 TEST(Config, ReadsTheRegularisation)
 {
-  EXPECT_FALSE(parse_config(complete_case).regularisation) << "the plain method";
-  const Config with_defaults = parse_config(std::string(complete_case) + "[regularisation]\n");
+  EXPECT_FALSE(case_file::parse_config(complete_case).regularisation) << "the plain method";
+  const case_file::Config with_defaults =
+      case_file::parse_config(std::string(complete_case) + "[regularisation]\n");
   ASSERT_TRUE(with_defaults.regularisation);
   EXPECT_EQ(with_defaults.regularisation->delta, 1.0);
   EXPECT_EQ(with_defaults.regularisation->factor, 0.25);
   EXPECT_EQ(with_defaults.regularisation->gamma_reg, 0.1);
   EXPECT_EQ(with_defaults.regularisation->max_updates, 20);
-  const Config config =
-      parse_config(std::string(complete_case) +
-                   "[regularisation]\ndelta = 0.5\nfactor = 0.1\ngamma_reg = 0.2\nmax_updates = 7\n");
+  const case_file::Config config = case_file::parse_config(
+      std::string(complete_case) +
+      "[regularisation]\ndelta = 0.5\nfactor = 0.1\ngamma_reg = 0.2\nmax_updates = 7\n");
   EXPECT_EQ(config.regularisation->delta, 0.5);
   EXPECT_EQ(config.regularisation->factor, 0.1);
   EXPECT_EQ(config.regularisation->gamma_reg, 0.2);
@@ -137,12 +138,12 @@ TEST(Config, ReadsTheRegularisation)
 
 TEST(Config, ReadsMaterialAndLoad)
 {
-  const Config config = parse_config(complete_case);
+  const case_file::Config config = case_file::parse_config(complete_case);
   ASSERT_EQ(config.materials.size(), 1u);
   EXPECT_EQ(config.materials[0].region, "");
   EXPECT_EQ(config.materials[0].E, 1.0);
   EXPECT_EQ(config.materials[0].nu, 0.3);
-  EXPECT_EQ(config.materials[0].plane, PlaneModel::strain);
+  EXPECT_EQ(config.materials[0].plane, case_file::PlaneModel::strain);
   ASSERT_EQ(config.loads.size(), 1u);
   ASSERT_EQ(config.loads[0].body.size(), 2u);
   EXPECT_DOUBLE_EQ(config.loads[0].body[1](somewhere), -9.81 * 2400 * 1e-6);
@@ -150,12 +151,12 @@ TEST(Config, ReadsMaterialAndLoad)
 
 TEST(Config, ReadsBoundariesInTheOrderOfTheFile)
 {
-  const Config config = parse_config(complete_case);
+  const case_file::Config config = case_file::parse_config(complete_case);
   ASSERT_EQ(config.boundaries.size(), 4u);
-  const BoundaryConfig& left = config.boundaries[0];
-  const BoundaryConfig& top = config.boundaries[1];
-  const BoundaryConfig& right = config.boundaries[2];
-  const BoundaryConfig& bottom = config.boundaries[3];
+  const case_file::BoundaryConfig& left = config.boundaries[0];
+  const case_file::BoundaryConfig& top = config.boundaries[1];
+  const case_file::BoundaryConfig& right = config.boundaries[2];
+  const case_file::BoundaryConfig& bottom = config.boundaries[3];
   EXPECT_EQ(left.name, "left");
   EXPECT_EQ(left.where.line, 15);
   ASSERT_EQ(left.displacement.size(), 2u);
@@ -166,7 +167,7 @@ TEST(Config, ReadsBoundariesInTheOrderOfTheFile)
   EXPECT_EQ(right.name, "right");
   EXPECT_DOUBLE_EQ((*right.pressure)(somewhere), 9810 * 5.0);
   EXPECT_EQ(bottom.name, "bottom");
-  EXPECT_EQ(std::get<Tresca>(bottom.contact->friction).threshold(somewhere), 0.03);
+  EXPECT_EQ(std::get<case_file::Tresca>(bottom.contact->friction).threshold(somewhere), 0.03);
   EXPECT_TRUE(bottom.contact->gap.is_zero());
 }
 
@@ -192,11 +193,11 @@ contact = {}
 
 TEST(Config, HasTheDefaultsOfTheHeader)
 {
-  const Config config = parse_config(small_case);
+  const case_file::Config config = case_file::parse_config(small_case);
   EXPECT_EQ(config.title, "");
   EXPECT_EQ(config.degree, 1);
   EXPECT_EQ(config.gamma0(), 10.0);
-  EXPECT_EQ(config.newton.stopping, Stopping::adaptive);
+  EXPECT_EQ(config.newton.stopping, case_file::Stopping::adaptive);
   EXPECT_EQ(config.newton.tolerance, 1e-10);
   EXPECT_EQ(config.newton.max_steps, 50);
   EXPECT_EQ(config.adapt.max_dofs, 2'000'000);
@@ -204,20 +205,20 @@ TEST(Config, HasTheDefaultsOfTheHeader)
   EXPECT_FALSE(config.adapt.max_time);
   EXPECT_FALSE(config.adapt.max_memory);
   EXPECT_FALSE(config.adapt.separate_contact);
-  EXPECT_EQ(config.certify.contact_rule, ContactRule::resolved);
-  EXPECT_EQ(config.solver.method, LinearMethod::automatic);
-  EXPECT_EQ(config.solver.package, DirectPackage::automatic);
+  EXPECT_EQ(config.certify.contact_rule, case_file::ContactRule::resolved);
+  EXPECT_EQ(config.solver.method, case_file::LinearMethod::automatic);
+  EXPECT_EQ(config.solver.package, case_file::DirectPackage::automatic);
   EXPECT_EQ(config.output.directory, "out/case");
   EXPECT_TRUE(config.output.vtu);
   EXPECT_TRUE(config.output.report);
-  EXPECT_TRUE(std::holds_alternative<Frictionless>(config.boundaries[0].contact->friction));
+  EXPECT_TRUE(std::holds_alternative<case_file::Frictionless>(config.boundaries[0].contact->friction));
   EXPECT_TRUE(config.boundaries[0].contact->gap.is_zero());
 }
 
 TEST(Config, ReadsABox)
 {
-  const Config config = parse_config(small_case);
-  const auto& box = std::get<BoxMesh>(config.mesh);
+  const case_file::Config config = case_file::parse_config(small_case);
+  const auto& box = std::get<case_file::BoxMesh>(config.mesh);
   EXPECT_THAT(box.lower, ElementsAre(0, 0, -1));
   EXPECT_THAT(box.upper, ElementsAre(1, 2, 3.5));
   EXPECT_THAT(box.cells, ElementsAre(2, 3, 4));
@@ -225,22 +226,22 @@ TEST(Config, ReadsABox)
 
 TEST(Config, ReadsMaterialsOfRegions)
 {
-  const Config config = parse_config(small_case);
+  const case_file::Config config = case_file::parse_config(small_case);
   ASSERT_EQ(config.materials.size(), 3u);
   EXPECT_EQ(config.materials[0].region, "");
   EXPECT_EQ(config.materials[0].E, 7.0);
   EXPECT_EQ(config.materials[1].region, "soft");
-  EXPECT_EQ(config.materials[1].plane, PlaneModel::stress) << "inherited from [material]";
+  EXPECT_EQ(config.materials[1].plane, case_file::PlaneModel::stress) << "inherited from [material]";
   EXPECT_EQ(config.materials[2].region, "hard one");
   EXPECT_EQ(config.materials[2].nu, -0.5);
-  EXPECT_EQ(config.materials[2].plane, PlaneModel::strain);
+  EXPECT_EQ(config.materials[2].plane, case_file::PlaneModel::strain);
   ASSERT_EQ(config.loads.size(), 1u);
   EXPECT_EQ(config.loads[0].region, "soft");
 }
 
 TEST(Config, ATableInMaterialIsARegionWhateverItsName)
 {
-  const Config config = parse_config(
+  const case_file::Config config = case_file::parse_config(
       "mesh.file = 'a.msh'\n[material.E]\nE = 2\nnu = 0\n[material.plane]\nE = 3\nnu = 0\n"
       "[load.body]\nbody = [0, 1]\n");
   ASSERT_EQ(config.materials.size(), 2u);
@@ -252,20 +253,20 @@ TEST(Config, ATableInMaterialIsARegionWhateverItsName)
 
 TEST(Config, GammaDefaultGrowsWithTheDegree)
 {
-  EXPECT_EQ(default_gamma0(1), 10.0);
-  EXPECT_EQ(default_gamma0(3), 10.0);
-  EXPECT_EQ(default_gamma0(4), 48.0);
+  EXPECT_EQ(case_file::default_gamma0(1), 10.0);
+  EXPECT_EQ(case_file::default_gamma0(3), 10.0);
+  EXPECT_EQ(case_file::default_gamma0(4), 48.0);
 }
 
 TEST(Config, NamesTheFrictionLaws)
 {
-  EXPECT_EQ(friction_name(parse_config(complete_case)), "tresca");
-  EXPECT_EQ(friction_name(parse_config(small_case)), "none");
-  EXPECT_EQ(friction_name(Config{}), "");
+  EXPECT_EQ(case_file::friction_name(case_file::parse_config(complete_case)), "tresca");
+  EXPECT_EQ(case_file::friction_name(case_file::parse_config(small_case)), "none");
+  EXPECT_EQ(case_file::friction_name(case_file::Config{}), "");
   const std::string two = std::string(small_case) +
                           "[boundary.left.contact]\nfriction = \"coulomb\"\ncoefficient = 0.5\n"
                           "[boundary.right]\ncontact = { friction = \"coulomb\", coefficient = 0 }\n";
-  EXPECT_EQ(friction_name(parse_config(two)), "none+coulomb");
+  EXPECT_EQ(case_file::friction_name(case_file::parse_config(two)), "none+coulomb");
 }
 
 TEST(Config, ReadsAFile)
@@ -274,9 +275,9 @@ TEST(Config, ReadsAFile)
   std::filesystem::create_directories(directory);
   const auto file = directory / "case.toml";
   std::ofstream(file) << complete_case;
-  const Config config = read_config(file);
+  const case_file::Config config = case_file::read_config(file);
   EXPECT_EQ(config.degree, 2);
-  EXPECT_EQ(std::get<MeshFile>(config.mesh).path, directory / "block.msh");
+  EXPECT_EQ(std::get<case_file::MeshFile>(config.mesh).path, directory / "block.msh");
   std::filesystem::remove_all(directory);
 }
 
@@ -284,14 +285,14 @@ TEST(Config, AFileThatCannotBeReadIsNamed)
 {
   try
   {
-    (void)read_config("no/such/case.toml");
+    (void)case_file::read_config("no/such/case.toml");
     FAIL() << "accepted";
   }
   catch (const InputError& error)
   {
     EXPECT_THAT(error.what(), HasSubstr("no/such/case.toml: cannot be read: No such file or directory"));
   }
-  EXPECT_THROW((void)read_config(testing::TempDir()), InputError);
+  EXPECT_THROW((void)case_file::read_config(testing::TempDir()), InputError);
 }
 
 }  // namespace

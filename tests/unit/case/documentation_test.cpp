@@ -37,7 +37,7 @@ TEST(Documentation, EveryExampleIsAValidCase)
   {
     if (block.find("[mesh]") == std::string::npos) block += "[mesh]\nfile = 'a.msh'\n";
     if (block.find("[material]") == std::string::npos) block += "[material]\nE = 1\nnu = 0\n";
-    EXPECT_NO_THROW((void)parse_config(block)) << block;
+    EXPECT_NO_THROW((void)case_file::parse_config(block)) << block;
   }
 }
 

@@ -18,32 +18,33 @@ namespace tribound
 namespace
 {
 
-bool same(const Node& a, const Node& b);
+bool same(const case_file::Node& a, const case_file::Node& b);
 
-bool same(const Node::Array& a, const Node::Array& b)
+bool same(const case_file::Node::Array& a, const case_file::Node::Array& b)
 {
-  return std::ranges::equal(a, b, [](const Node& x, const Node& y) { return same(x, y); });
+  return std::ranges::equal(a, b,
+                            [](const case_file::Node& x, const case_file::Node& y) { return same(x, y); });
 }
 
 /// Whatever the order of the keys.
-bool same(const Node::Table& a, const Node::Table& b)
+bool same(const case_file::Node::Table& a, const case_file::Node::Table& b)
 {
   return a.size() == b.size() && std::ranges::all_of(a,
-                                                     [&](const Entry& x)
+                                                     [&](const case_file::Entry& x)
                                                      {
-                                                       const Entry* y = find(b, x.name);
+                                                       const case_file::Entry* y = case_file::find(b, x.name);
                                                        return y != nullptr && same(x.node, y->node);
                                                      });
 }
 
 /// 1e5 may come back as 100000.
-double number(const Node& node)
+double number(const case_file::Node& node)
 {
   const auto* integer = std::get_if<std::int64_t>(&node.value);
   return integer ? static_cast<double>(*integer) : std::get<double>(node.value);
 }
 
-bool same(const Node& a, const Node& b)
+bool same(const case_file::Node& a, const case_file::Node& b)
 {
   if (std::holds_alternative<double>(a.value)) return number(a) == number(b);
   return a.value.index() == b.value.index() &&
@@ -52,9 +53,10 @@ bool same(const Node& a, const Node& b)
              {
                using Value = std::decay_t<decltype(value)>;
                const Value& other = std::get<Value>(b.value);
-               if constexpr (std::is_same_v<Value, Node::Table> || std::is_same_v<Value, Node::Array>)
+               if constexpr (std::is_same_v<Value, case_file::Node::Table> ||
+                             std::is_same_v<Value, case_file::Node::Array>)
                  return same(value, other);
-               else if constexpr (std::is_same_v<Value, Node::DateOrTime>)
+               else if constexpr (std::is_same_v<Value, case_file::Node::DateOrTime>)
                  return true;
                else
                  return value == other;
@@ -74,10 +76,10 @@ x = { y = { z = [true, [], [{ a = 1 }, {}]] } }
 
 TEST(EffectiveCase, TomlIsReadAgain)
 {
-  const Node document = parse_toml(awkward, "case");
-  const std::string text = to_toml(document);
-  EXPECT_TRUE(same(document, parse_toml(text, "again"))) << text;
-  EXPECT_EQ(to_toml(parse_toml(text, "again")), text);
+  const case_file::Node document = case_file::parse_toml(awkward, "case");
+  const std::string text = case_file::to_toml(document);
+  EXPECT_TRUE(same(document, case_file::parse_toml(text, "again"))) << text;
+  EXPECT_EQ(case_file::to_toml(case_file::parse_toml(text, "again")), text);
 }
 
 constexpr auto box = R"toml(
@@ -93,7 +95,7 @@ traction = [0, "-1/3 * x"]
 TEST(EffectiveCase, HoldsWhatWasSetAndWhereResultsGo)
 {
   const std::vector<std::string> overrides = {"degree=3", "material.E=1"};
-  const Config config = parse_config(box, "block.toml", overrides);
+  const case_file::Config config = case_file::parse_config(box, "block.toml", overrides);
   EXPECT_EQ(config.effective.text,
             "degree = 3\n\n[material]\nE = 1\nnu = 0.3\n\n[mesh.box]\nlower = [0, 0]\nupper = [2, 1]\n"
             "cells = [4, 2]\n\n[boundary.top]\ntraction = [0, \"-1/3 * x\"]\n\n[output]\n"
@@ -108,10 +110,10 @@ TEST(EffectiveCase, PathsAreValidFromTheOutputDirectory)
   for (const std::string directory : {"out/run", "/tmp/somewhere/else"})
   {
     const std::vector<std::string> overrides = {"output.directory=" + directory};
-    const Config config = parse_config(with_mesh, "cases/block.toml", overrides);
-    const Config again = parse_config(config.effective.text, directory + "/case.toml");
-    const auto path = [](const Config& c)
-    { return std::filesystem::absolute(std::get<MeshFile>(c.mesh).path).lexically_normal(); };
+    const case_file::Config config = case_file::parse_config(with_mesh, "cases/block.toml", overrides);
+    const case_file::Config again = case_file::parse_config(config.effective.text, directory + "/case.toml");
+    const auto path = [](const case_file::Config& c)
+    { return std::filesystem::absolute(std::get<case_file::MeshFile>(c.mesh).path).lexically_normal(); };
     EXPECT_EQ(path(again), std::filesystem::absolute("cases/meshes/a.msh"));
     EXPECT_EQ(again.output.directory, directory);
     EXPECT_EQ(again.effective.text, config.effective.text);

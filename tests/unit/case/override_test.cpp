@@ -28,9 +28,9 @@ traction = [0, -1]
 
 const Point<2> somewhere(2, 3);
 
-Config with(const std::vector<std::string>& overrides)
+case_file::Config with(const std::vector<std::string>& overrides)
 {
-  return parse_config(text, "case.toml", overrides);
+  return case_file::parse_config(text, "case.toml", overrides);
 }
 
 TEST(Override, ReplacesAValue)
@@ -42,7 +42,8 @@ TEST(Override, ReplacesAValue)
 
 TEST(Override, AddsAKeyAndTheTablesAroundIt)
 {
-  const Config config = with({"adapt.tolerance=0.02", "boundary.left.displacement=[0, 'free']", "title=''"});
+  const case_file::Config config =
+      with({"adapt.tolerance=0.02", "boundary.left.displacement=[0, 'free']", "title=''"});
   EXPECT_EQ(config.adapt.tolerance, 0.02);
   ASSERT_EQ(config.boundaries.size(), 3u);
   EXPECT_EQ(config.boundaries[2].name, "left");
@@ -51,19 +52,19 @@ TEST(Override, AddsAKeyAndTheTablesAroundIt)
 
 TEST(Override, ReachesIntoInlineTables)
 {
-  const Config config = with({"boundary.bottom.contact.threshold=0.5"});
-  EXPECT_EQ(std::get<Tresca>(config.boundaries[0].contact->friction).threshold(somewhere), 0.5);
+  const case_file::Config config = with({"boundary.bottom.contact.threshold=0.5"});
+  EXPECT_EQ(std::get<case_file::Tresca>(config.boundaries[0].contact->friction).threshold(somewhere), 0.5);
 }
 
 TEST(Override, ReplacesATable)
 {
-  const Config config = with({"boundary.bottom.contact={friction=\"coulomb\", coefficient=0.4}"});
-  EXPECT_EQ(std::get<Coulomb>(config.boundaries[0].contact->friction).coefficient, 0.4);
+  const case_file::Config config = with({"boundary.bottom.contact={friction=\"coulomb\", coefficient=0.4}"});
+  EXPECT_EQ(std::get<case_file::Coulomb>(config.boundaries[0].contact->friction).coefficient, 0.4);
 }
 
 TEST(Override, TakesABareWordAsAString)
 {
-  EXPECT_EQ(with({"solver.method=direct"}).solver.method, LinearMethod::direct);
+  EXPECT_EQ(with({"solver.method=direct"}).solver.method, case_file::LinearMethod::direct);
   EXPECT_EQ(with({"title=a block = a cuboid"}).title, "a block = a cuboid");
   EXPECT_EQ(with({"output.directory=/tmp/out"}).output.directory, "/tmp/out");
   EXPECT_EQ(with({"boundary.right.pressure=10*max(0, 9-y)"}).boundaries[2].pressure.value()(somewhere), 60.0);

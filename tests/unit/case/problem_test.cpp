@@ -19,10 +19,10 @@ const Names regions = {"rubber", "steel"};
 const Names sides = {"left", "top", "bottom"};
 
 template <int dim = 2>
-Problem<dim> problem(const std::string& text, const Names& region_names = regions,
-                     const Names& boundary_names = sides)
+problem::Problem<dim> problem(const std::string& text, const Names& region_names = regions,
+                              const Names& boundary_names = sides)
 {
-  return Problem<dim>(parse_config(text, "case.toml"), region_names, boundary_names);
+  return problem::Problem<dim>(case_file::parse_config(text, "case.toml"), region_names, boundary_names);
 }
 
 template <int dim = 2>
@@ -42,10 +42,10 @@ std::string message(const std::string& text, const Names& region_names = regions
 
 TEST(Lame, FollowsTheFormulas)
 {
-  const auto [lambda, mu, plane] = lame(2.5, 0.25, PlaneModel::strain);
+  const auto [lambda, mu, plane] = problem::lame(2.5, 0.25, case_file::PlaneModel::strain);
   EXPECT_DOUBLE_EQ(lambda, 1.0);
   EXPECT_DOUBLE_EQ(mu, 1.0);
-  EXPECT_DOUBLE_EQ(lame(3.0, 0.0, PlaneModel::strain).lambda, 0.0);
+  EXPECT_DOUBLE_EQ(problem::lame(3.0, 0.0, case_file::PlaneModel::strain).lambda, 0.0);
 }
 
 TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
@@ -53,7 +53,7 @@ TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
   // sigma_xx = E eps_xx while sigma_yy = 0, that is eps_yy = -nu eps_xx.
   const double E = 2.1;
   const double nu = 0.3;
-  const auto [lambda, mu, plane] = lame(E, nu, PlaneModel::stress);
+  const auto [lambda, mu, plane] = problem::lame(E, nu, case_file::PlaneModel::stress);
   EXPECT_NEAR(lambda * (1 - nu) + 2 * mu, E, 1e-14);
   EXPECT_NEAR(lambda * (1 - nu) - 2 * mu * nu, 0.0, 1e-14);
 }
@@ -95,12 +95,12 @@ TEST(Problem, ResolvesBoundaries)
 {
   const auto p = problem(complete);
   ASSERT_EQ(p.boundaries().size(), 3u);
-  const BoundaryCondition<2>& left = p.boundary(0);
+  const problem::BoundaryCondition<2>& left = p.boundary(0);
   EXPECT_EQ(left.name, "left");
   EXPECT_TRUE(left.fixes_any() && left.fixes(1) && !left.fixes(0));
   EXPECT_TRUE(left.is_loaded());
   EXPECT_EQ(left.load({0, 0}, {-1, 0}), Point<2>(3, 0));
-  const BoundaryCondition<2>& top = p.boundary(1);
+  const problem::BoundaryCondition<2>& top = p.boundary(1);
   EXPECT_FALSE(top.fixes_any());
   EXPECT_EQ(top.load({3, 2}, {0, 1}), Point<2>(0, 3 - 20));
   EXPECT_FALSE(p.boundary(2).is_loaded());
@@ -119,10 +119,10 @@ TEST(Problem, PressureActsOnFreeComponentsOnly)
 TEST(Problem, GapAndThresholdMustNotBeNegative)
 {
   const auto p = problem(complete);
-  const Contact& contact = *p.boundary(2).contact;
-  const auto& tresca = std::get<Tresca>(contact.friction);
-  EXPECT_EQ(gap_at<2>(contact, {0, 0.5}), 0.5);
-  EXPECT_EQ(threshold_at<2>(tresca, {0.25, 0}), 0.75);
+  const case_file::Contact& contact = *p.boundary(2).contact;
+  const auto& tresca = std::get<case_file::Tresca>(contact.friction);
+  EXPECT_EQ(problem::gap_at<2>(contact, {0, 0.5}), 0.5);
+  EXPECT_EQ(problem::threshold_at<2>(tresca, {0.25, 0}), 0.75);
   const auto thrown = [](auto&& evaluate) -> std::string
   {
     try
@@ -137,12 +137,12 @@ TEST(Problem, GapAndThresholdMustNotBeNegative)
   };
   EXPECT_THAT(thrown(
                   [&] {
-                    return gap_at<2>(contact, {0, -0.5});
+                    return problem::gap_at<2>(contact, {0, -0.5});
                   }),
               HasSubstr("boundary.bottom.contact.gap: is negative, -0.5, at the point (0, -0.5)"));
   EXPECT_THAT(thrown(
                   [&] {
-                    return threshold_at<2>(tresca, {3, 0});
+                    return problem::threshold_at<2>(tresca, {3, 0});
                   }),
               HasSubstr("boundary.bottom.contact.threshold: is negative, -2, at the point (3, 0)"));
 }
@@ -164,7 +164,7 @@ TEST(Problem, WorksIn3D)
                             regions, {"top", "left"});
   EXPECT_EQ(p.body_force(0, {1, 2, 3}), Point<3>(0, 0, 3));
   EXPECT_EQ(p.boundary(0).load({0, 0, 2}, {0, 0, 1}), Point<3>(0, 0, -2));
-  EXPECT_EQ(gap_at<3>(*p.boundary(1).contact, {0, 0, 4}), 4);
+  EXPECT_EQ(problem::gap_at<3>(*p.boundary(1).contact, {0, 0, 4}), 4);
 }
 
 TEST(BadProblem, NamesAreThoseOfTheMesh)

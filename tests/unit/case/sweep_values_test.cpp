@@ -13,9 +13,9 @@ namespace
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-SweepTable grid(const std::vector<std::string>& assignments)
+case_file::SweepTable grid(const std::vector<std::string>& assignments)
 {
-  return sweep_grid(assignments);
+  return case_file::sweep_grid(assignments);
 }
 
 template <class Make>
@@ -43,7 +43,7 @@ TEST(SweepValues, RangesAreDecimal)
 
 TEST(SweepValues, FirstKeyVariesSlowest)
 {
-  const SweepTable table = grid({"a=[1, 2]", "b=[\"x\", \"2*x\"]", "c=[0, -1.5]"});
+  const case_file::SweepTable table = grid({"a=[1, 2]", "b=[\"x\", \"2*x\"]", "c=[0, -1.5]"});
   EXPECT_THAT(table.keys, ElementsAre("a", "b", "c"));
   ASSERT_EQ(table.rows.size(), 8u);
   EXPECT_THAT(table.rows[0], ElementsAre("1", "\"x\"", "0"));
@@ -78,18 +78,19 @@ TEST(SweepValues, MistakesAreNamed)
 
 TEST(SweepValues, TableHasARowPerRun)
 {
-  const SweepTable table =
-      sweep_rows("degree, boundary.top.pressure\r\n1,\"50*x\"\n\n2,\"max(x, \"\"y\"\")\"\n", "runs.csv");
+  const case_file::SweepTable table = case_file::sweep_rows(
+      "degree, boundary.top.pressure\r\n1,\"50*x\"\n\n2,\"max(x, \"\"y\"\")\"\n", "runs.csv");
   EXPECT_THAT(table.keys, ElementsAre("degree", "boundary.top.pressure"));
   EXPECT_THAT(table.rows, ElementsAre(ElementsAre("1", "50*x"), ElementsAre("2", "max(x, \"y\")")));
-  EXPECT_THAT(message([] { return sweep_rows("a,b\n1\n", "runs.csv"); }),
+  EXPECT_THAT(message([] { return case_file::sweep_rows("a,b\n1\n", "runs.csv"); }),
               HasSubstr("runs.csv: run 1 has 1 values for 2 keys"));
-  EXPECT_THAT(message([] { return sweep_rows("a,b\n1,\n", "runs.csv"); }),
+  EXPECT_THAT(message([] { return case_file::sweep_rows("a,b\n1,\n", "runs.csv"); }),
               HasSubstr("run 1 has 1 values for 2 keys"));
-  EXPECT_THAT(message([] { return sweep_rows("a\n", "runs.csv"); }), HasSubstr("runs.csv: holds no run"));
-  EXPECT_THAT(message([] { return sweep_rows("a\n\"x\"y\n", "runs.csv"); }),
+  EXPECT_THAT(message([] { return case_file::sweep_rows("a\n", "runs.csv"); }),
+              HasSubstr("runs.csv: holds no run"));
+  EXPECT_THAT(message([] { return case_file::sweep_rows("a\n\"x\"y\n", "runs.csv"); }),
               HasSubstr("runs.csv:2: something follows the quote"));
-  EXPECT_THAT(message([] { return sweep_rows("a\n1\n\"x\n2\n", "runs.csv"); }),
+  EXPECT_THAT(message([] { return case_file::sweep_rows("a\n1\n\"x\n2\n", "runs.csv"); }),
               HasSubstr("runs.csv:3: a quote is not closed"));
 }
 

@@ -19,7 +19,7 @@ constexpr int size = 3;
 using Edges = std::vector<std::array<int, 2>>;
 
 /// Blocks (i, j) of the edges are random, those on the diagonal dominate. Returns |A x - b| for a random b.
-double largest_defect(int n_blocks, const Edges& edges, BlockCholesky<size>& matrix)
+double largest_defect(int n_blocks, const Edges& edges, certify::BlockCholesky<size>& matrix)
 {
   std::mt19937 generator(n_blocks);
   std::uniform_real_distribution<double> entry(-1, 1);
@@ -44,7 +44,7 @@ double largest_defect(int n_blocks, const Edges& edges, BlockCholesky<size>& mat
             matrix.block(row, column)(r, c) = entry(generator);
   }
 
-  std::vector<DenseVector<size>> x(n_blocks);
+  std::vector<certify::DenseVector<size>> x(n_blocks);
   for (auto& block : x)
     for (int r = 0; r < size; ++r) block[r] = entry(generator);
   const auto b = x;
@@ -71,7 +71,7 @@ Edges cycle(int n)
 
 TEST(BlockCholesky, SolvesOnPathsCyclesAndWheels)
 {
-  BlockCholesky<size> matrix;  // storage is used again
+  certify::BlockCholesky<size> matrix;  // storage is used again
   EXPECT_LE(largest_defect(1, {}, matrix), 1e-14);
   EXPECT_LE(largest_defect(4, {{2, 0}, {0, 3}, {3, 1}}, matrix), 1e-14);
   for (const int n : {3, 6, 7, 70})  // 70: two words of a bit row
@@ -85,7 +85,7 @@ TEST(BlockCholesky, SolvesOnPathsCyclesAndWheels)
 
 TEST(BlockCholesky, RefusesASingularMatrix)
 {
-  BlockCholesky<size> matrix;
+  certify::BlockCholesky<size> matrix;
   matrix.reset(2);
   matrix.connect(0, 1);
   EXPECT_EQ(matrix.order().size(), 2U);
@@ -94,7 +94,7 @@ TEST(BlockCholesky, RefusesASingularMatrix)
 
 TEST(BlockCholesky, DecouplesRowsAndColumns)
 {
-  BlockCholesky<size> matrix;
+  certify::BlockCholesky<size> matrix;
   matrix.reset(2);
   matrix.connect(0, 1);
   EXPECT_EQ(matrix.order().size(), 2U);

@@ -23,72 +23,78 @@ using ::testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Bound bound_of(double total)
+certify::Bound bound_of(double total)
 {
-  Bound bound;
+  certify::Bound bound;
   bound.total = bound.total_sharp = total;
   return bound;
 }
 
-StressNorms norms_of(double sigma, double round_off = 0)
+contact::StressNorms norms_of(double sigma, double round_off = 0)
 {
   return {.energy = sigma * sigma, .sigma = sigma, .round_off = round_off};
 }
 
 TEST(Judge, CertifiesAtTheTolerance)
 {
-  const Verdict verdict = judge(bound_of(0.02), {}, 2, norms_of(2.0), 0.01);
-  EXPECT_EQ(verdict.status, RunStatus::certified);
+  const certify::Verdict verdict = certify::judge(bound_of(0.02), {}, 2, norms_of(2.0), 0.01);
+  EXPECT_EQ(verdict.status, certify::RunStatus::certified);
   EXPECT_EQ(verdict.reason, "");
 }
 
 TEST(Judge, AboveTheToleranceTheBoundStillHolds)
 {
-  const Verdict verdict = judge(bound_of(0.021), {}, 2, norms_of(2.0), 0.01);
-  EXPECT_EQ(verdict.status, RunStatus::budget);
+  const certify::Verdict verdict = certify::judge(bound_of(0.021), {}, 2, norms_of(2.0), 0.01);
+  EXPECT_EQ(verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(verdict.reason, HasSubstr("1.05 %"));
 }
 
 TEST(Judge, AViolatedIdentityIsNeverCertified)
 {
-  for (const auto member : {&IdentityDefects::divergence, &IdentityDefects::jump, &IdentityDefects::neumann,
-                            &IdentityDefects::contact, &IdentityDefects::symmetry})
+  for (const auto member : {&certify::IdentityDefects::divergence, &certify::IdentityDefects::jump,
+                            &certify::IdentityDefects::neumann, &certify::IdentityDefects::contact,
+                            &certify::IdentityDefects::symmetry})
     for (const double defect : {1.1e-8, nan, std::numeric_limits<double>::infinity()})
     {
-      IdentityDefects defects;
+      certify::IdentityDefects defects;
       defects.*member = defect;
-      EXPECT_EQ(judge(bound_of(0), defects, 2, norms_of(1), 0.01).status, RunStatus::not_certified);
+      EXPECT_EQ(certify::judge(bound_of(0), defects, 2, norms_of(1), 0.01).status,
+                certify::RunStatus::not_certified);
     }
 }
 
 TEST(Judge, SymmetryIsNoIdentityOfDegreeOne)
 {
-  EXPECT_EQ(judge(bound_of(0), {0, 0, 0, 0, 1}, 1, norms_of(1), 0.01).status, RunStatus::certified);
+  EXPECT_EQ(certify::judge(bound_of(0), {0, 0, 0, 0, 1}, 1, norms_of(1), 0.01).status,
+            certify::RunStatus::certified);
 }
 
 TEST(Judge, NumbersThatAreNotFiniteAreNeverCertified)
 {
-  EXPECT_EQ(judge(bound_of(nan), {}, 1, norms_of(1), 0.01).status, RunStatus::not_certified);
-  EXPECT_EQ(judge(bound_of(1), {}, 1, norms_of(nan), 0.01).status, RunStatus::not_certified);
+  EXPECT_EQ(certify::judge(bound_of(nan), {}, 1, norms_of(1), 0.01).status,
+            certify::RunStatus::not_certified);
+  EXPECT_EQ(certify::judge(bound_of(1), {}, 1, norms_of(nan), 0.01).status,
+            certify::RunStatus::not_certified);
 }
 
 TEST(Judge, ABodyWithoutStressIsCertifiedByABoundOfZeroOnly)
 {
-  EXPECT_EQ(judge(bound_of(0), {}, 1, norms_of(0), 0.01).status, RunStatus::certified);
-  const Verdict bounded = judge(bound_of(1e-3), {}, 1, norms_of(0), 0.01);
-  EXPECT_EQ(bounded.status, RunStatus::budget);
+  EXPECT_EQ(certify::judge(bound_of(0), {}, 1, norms_of(0), 0.01).status, certify::RunStatus::certified);
+  const certify::Verdict bounded = certify::judge(bound_of(1e-3), {}, 1, norms_of(0), 0.01);
+  EXPECT_EQ(bounded.status, certify::RunStatus::budget);
   EXPECT_THAT(bounded.reason, HasSubstr("the stress is zero"));
 }
 
 TEST(Judge, WhatIsNothingButRoundingIsComparedWithRounding)
 {
-  IdentityDefects defects;
+  certify::IdentityDefects defects;
   defects.divergence = 1.05;
-  EXPECT_EQ(judge(bound_of(1e-15), defects, 2, norms_of(2e-15, 1e-13), 0.01).status, RunStatus::certified);
-  EXPECT_EQ(judge(bound_of(1e-15), defects, 2, norms_of(2e-13, 1e-13), 0.01).status,
-            RunStatus::not_certified);
-  EXPECT_EQ(judge(bound_of(2e-13), defects, 2, norms_of(1e-15, 1e-13), 0.01).status,
-            RunStatus::not_certified);
+  EXPECT_EQ(certify::judge(bound_of(1e-15), defects, 2, norms_of(2e-15, 1e-13), 0.01).status,
+            certify::RunStatus::certified);
+  EXPECT_EQ(certify::judge(bound_of(1e-15), defects, 2, norms_of(2e-13, 1e-13), 0.01).status,
+            certify::RunStatus::not_certified);
+  EXPECT_EQ(certify::judge(bound_of(2e-13), defects, 2, norms_of(1e-15, 1e-13), 0.01).status,
+            certify::RunStatus::not_certified);
 }
 
 std::string block(const std::string& left, const std::string& contact)
@@ -102,15 +108,15 @@ TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
 {
   // (y^3): the interpolant of degree 2 on [0, 1/2] has the error max |s (s - 1/4) (s - 1/2)| near 0.006.
   const DiscreteCase<2> cubic(block("[\"y^3\", 0]", "{ friction = \"none\" }"));
-  const double error = dirichlet_interpolation_error(cubic.form);
+  const double error = certify::dirichlet_interpolation_error(cubic.form);
   EXPECT_GT(error, 0.005);
   EXPECT_LT(error, std::pow(0.25, 3) * 2 / (3 * std::sqrt(3.0)) * (1 + 1e-12));
-  EXPECT_THAT(statements(cubic.form, ContactRule::resolved).not_covered,
+  EXPECT_THAT(certify::statements(cubic.form, case_file::ContactRule::resolved).not_covered,
               ::testing::Contains(HasSubstr("interpolation")));
 
   const DiscreteCase<2> square(block("[\"y^2\", 0]", "{ friction = \"none\" }"));
-  EXPECT_LE(dirichlet_interpolation_error(square.form), 1e-15);
-  EXPECT_THAT(statements(square.form, ContactRule::resolved).not_covered,
+  EXPECT_LE(certify::dirichlet_interpolation_error(square.form), 1e-15);
+  EXPECT_THAT(certify::statements(square.form, case_file::ContactRule::resolved).not_covered,
               ::testing::Not(::testing::Contains(HasSubstr("interpolation"))));
 }
 
@@ -118,8 +124,9 @@ TEST(Statements, ThePlainContactRuleIsNoBoundAtKinks)
 {
   const DiscreteCase<2> c(block("[0, 0]", "{ friction = \"none\" }"));
   const auto kink = ::testing::Contains(HasSubstr("kink"));
-  EXPECT_THAT(statements(c.form, ContactRule::reference).not_covered, kink);
-  EXPECT_THAT(statements(c.form, ContactRule::resolved).not_covered, ::testing::Not(kink));
+  EXPECT_THAT(certify::statements(c.form, case_file::ContactRule::reference).not_covered, kink);
+  EXPECT_THAT(certify::statements(c.form, case_file::ContactRule::resolved).not_covered,
+              ::testing::Not(kink));
 }
 
 /// The value at a node where u_D jumps is that of one side, and the interpolant on the other is a ramp.
@@ -136,11 +143,13 @@ TEST(Statements, AJumpOfTheDisplacementAtANodeIsReported)
                                       "\nmaterial = { E = 1, nu = 0.3 }\n" +
                                       "boundary.left.displacement = [\"" + formula + "\", 0, 0]\n",
                                   box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1}));
-      EXPECT_GE(dirichlet_interpolation_bound(plane.form), 0.0977);
-      EXPECT_GE(dirichlet_interpolation_bound(space.form), 0.0977);
-      EXPECT_GE(dirichlet_interpolation_bound(plane.form), dirichlet_interpolation_error(plane.form));
-      EXPECT_GE(dirichlet_interpolation_bound(space.form), dirichlet_interpolation_error(space.form));
-      EXPECT_THAT(statements(plane.form, ContactRule::resolved).not_covered,
+      EXPECT_GE(certify::dirichlet_interpolation_bound(plane.form), 0.0977);
+      EXPECT_GE(certify::dirichlet_interpolation_bound(space.form), 0.0977);
+      EXPECT_GE(certify::dirichlet_interpolation_bound(plane.form),
+                certify::dirichlet_interpolation_error(plane.form));
+      EXPECT_GE(certify::dirichlet_interpolation_bound(space.form),
+                certify::dirichlet_interpolation_error(space.form));
+      EXPECT_THAT(certify::statements(plane.form, case_file::ContactRule::resolved).not_covered,
                   ::testing::Contains(HasSubstr("interpolation")));
     }
 }
@@ -153,16 +162,18 @@ TEST(Statements, DisplacementsInTheSpaceAreSaidToBe)
     const DiscreteCase<2> c(
         "degree = 1\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = [\"" + formula + "\", 0]\n",
         box<2>({0, 0}, {1, 1}, {2, 2}));
-    EXPECT_LE(dirichlet_interpolation_bound(c.form), 1e-13) << formula;
+    EXPECT_LE(certify::dirichlet_interpolation_bound(c.form), 1e-13) << formula;
   }
 }
 
 TEST(Statements, SayForWhichLaw)
 {
   const DiscreteCase<2> tresca(block("[0, 0]", "{ friction = \"tresca\", threshold = 0.1 }"));
-  EXPECT_THAT(statements(tresca.form, ContactRule::resolved).law, HasSubstr("exists and is unique"));
+  EXPECT_THAT(certify::statements(tresca.form, case_file::ContactRule::resolved).law,
+              HasSubstr("exists and is unique"));
   const DiscreteCase<2> coulomb(block("[0, 0]", "{ friction = \"coulomb\", coefficient = 0.1 }"));
-  EXPECT_THAT(statements(coulomb.form, ContactRule::resolved).law, HasSubstr("small friction"));
+  EXPECT_THAT(certify::statements(coulomb.form, case_file::ContactRule::resolved).law,
+              HasSubstr("small friction"));
 }
 
 }  // namespace

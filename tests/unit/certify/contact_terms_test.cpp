@@ -36,25 +36,26 @@ std::string block(int p, const std::string& contact)
 
 /// No stress at all: what is left of cnt and frc is the norm of T(u).
 template <int dim>
-Stress<dim> no_stress(const DiscreteCase<dim>& c)
+certify::Stress<dim> no_stress(const DiscreteCase<dim>& c)
 {
-  Stress<dim> stress;
+  certify::Stress<dim> stress;
   stress.degree = c.config.degree;
-  stress.n = polynomial_dimension(dim, stress.degree);
+  stress.n = fem::polynomial_dimension(dim, stress.degree);
   stress.dis.assign(c.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin_place.assign(c.mesh.n_cells(), -1);
   return stress;
 }
 
 template <int dim>
-ContactSquares sum_over_facets(const DiscreteCase<dim>& c, const std::vector<double>& u, ContactRule rule)
+certify::ContactSquares sum_over_facets(const DiscreteCase<dim>& c, const std::vector<double>& u,
+                                        case_file::ContactRule rule)
 {
-  const Stress<dim> stress = no_stress(c);
-  const ContactTerms<dim> terms(c.form, rule);
-  ContactSquares sum;
+  const certify::Stress<dim> stress = no_stress(c);
+  const certify::ContactTerms<dim> terms(c.form, rule);
+  certify::ContactSquares sum;
   for (std::size_t k = 0; k < c.form.contact_facets().size(); ++k)
   {
-    const ContactSquares squares = terms(static_cast<int>(k), u, stress);
+    const certify::ContactSquares squares = terms(static_cast<int>(k), u, stress);
     const double h = c.form.contact_facets()[k].geometry.diameter;
     sum.cnt += squares.cnt / h;
     sum.frc += squares.frc / h;
@@ -73,8 +74,9 @@ TEST(ContactTerms, AKinkOfTheNormalTractionIsResolvedIn2D)
     std::vector<double> u(c.space.n_dofs(), 0.0);
     for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.3;
     const double exact = std::pow(0.3, 3) / 3;
-    EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, exact, 1e-9 * exact) << "p = " << p;
-    EXPECT_GT(std::abs(sum_over_facets(c, u, ContactRule::reference).cnt - exact), 1e-6 * exact)
+    EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, exact, 1e-9 * exact)
+        << "p = " << p;
+    EXPECT_GT(std::abs(sum_over_facets(c, u, case_file::ContactRule::reference).cnt - exact), 1e-6 * exact)
         << "the plain rule cannot be exact across a kink, p = " << p;
   }
 }
@@ -86,8 +88,8 @@ TEST(ContactTerms, AKinkOfTheFrictionLimitIsResolvedIn2D)
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 0; i < u.size(); i += 2) u[i] = 0.7;
   const double exact = std::pow(0.7, 3) / 3 + 0.3 * 0.49;
-  EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).frc, exact, 1e-9 * exact);
-  EXPECT_EQ(sum_over_facets(c, u, ContactRule::resolved).cnt, 0.0);
+  EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).frc, exact, 1e-9 * exact);
+  EXPECT_EQ(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, 0.0);
 }
 
 TEST(ContactTerms, KinksAreResolvedIn3D)
@@ -98,8 +100,8 @@ TEST(ContactTerms, KinksAreResolvedIn3D)
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -0.9;
   const double exact = 0.5 * std::pow(0.9, 4) / 12;
-  EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, exact, 1e-5 * exact);
-  EXPECT_GT(std::abs(sum_over_facets(c, u, ContactRule::reference).cnt - exact), 1e-4 * exact);
+  EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, exact, 1e-5 * exact);
+  EXPECT_GT(std::abs(sum_over_facets(c, u, case_file::ContactRule::reference).cnt - exact), 1e-4 * exact);
 }
 
 TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
@@ -107,14 +109,14 @@ TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
   const DiscreteCase<2> c(block<2>(2, "{ friction = \"none\", gap = \"0.1*x\" }"));
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.9;
-  EXPECT_EQ(sum_over_facets(c, u, ContactRule::resolved).cnt,
-            sum_over_facets(c, u, ContactRule::reference).cnt);
+  EXPECT_EQ(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt,
+            sum_over_facets(c, u, case_file::ContactRule::reference).cnt);
 }
 
 /// P^n = g - u^n is a cubic above half of its range at all points of the rule, and negative near both ends.
 TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
 {
-  const Quadrature<1> rule = quadrature<1>(data_quadrature_degree(1));
+  const fem::Quadrature<1> rule = fem::quadrature<1>(fem::data_quadrature_degree(1));
   std::vector<double> x;
   for (const Point<1>& point : rule.points) x.push_back(point[0]);
   std::ranges::sort(x);
@@ -127,7 +129,7 @@ TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
       if (j != i) formula += fmt::format("*(x - {:.17g})/({:.17g})", x[j], x[i] - x[j]);
   }
   const DiscreteCase<2> c(block<2>(1, "{ gap = \"" + formula + "\" }"));
-  const Expression gap(formula, Where{.key = "gap"});
+  const problem::Expression gap(formula, Where{.key = "gap"});
   double expected = 0;
   constexpr int n = 100000;
   for (int i = 0; i < n; ++i)
@@ -135,7 +137,7 @@ TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
   EXPECT_GT(expected, 1e-4);
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -u_n;
-  EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, expected, 1e-6 * expected);
+  EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, expected, 1e-6 * expected);
 }
 
 /// P^n = g - u^n is zero but for rounding, whose kinks have no end.
@@ -147,7 +149,7 @@ TEST(ContactTerms, TheKinksOfRoundingEnd)
     std::vector<double> u(c.space.n_dofs(), 0.0);
     const std::vector<Point<2>> nodes = c.space.node_points();
     for (std::size_t i = 0; i < nodes.size(); ++i) u[2 * i + 1] = -0.3 * nodes[i][0];
-    EXPECT_LT(sum_over_facets(c, u, ContactRule::resolved).cnt, 1e-30);
+    EXPECT_LT(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, 1e-30);
   }
 }
 
@@ -163,8 +165,9 @@ TEST(ContactTerms, ASmallDiscOfContactBetweenThePointsIsSeenIn3D)
       for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -radius * radius;
       // gamma^2 times the integral of (r^2 - radius^2)^2 over the disc.
       const double exact = 0.5 * std::numbers::pi * std::pow(radius, 6) / 3;
-      EXPECT_EQ(sum_over_facets(c, u, ContactRule::reference).cnt, 0.0) << "seen by the plain rule";
-      EXPECT_NEAR(sum_over_facets(c, u, ContactRule::resolved).cnt, exact, 1e-4 * exact);
+      EXPECT_EQ(sum_over_facets(c, u, case_file::ContactRule::reference).cnt, 0.0)
+          << "seen by the plain rule";
+      EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, exact, 1e-4 * exact);
     }
 }
 

@@ -27,20 +27,20 @@ const std::string material = "material = { E = 1, nu = 0.3 }\n";
 constexpr double pi = std::numbers::pi;
 
 template <int dim>
-FriedrichsConstant constant(const std::string& boundaries, MeshData<dim> data)
+certify::FriedrichsConstant constant(const std::string& boundaries, mesh::MeshData<dim> data)
 {
   const DiscreteCase<dim> c(material + boundaries, std::move(data));
-  return friedrichs_constant<dim>(c.problem, c.mesh);
+  return certify::friedrichs_constant<dim>(c.problem, c.mesh);
 }
 
 template <int dim>
-FriedrichsConstant constant_without_factors(const std::string& boundaries, MeshData<dim> data)
+certify::FriedrichsConstant constant_without_factors(const std::string& boundaries, mesh::MeshData<dim> data)
 {
   const DiscreteCase<dim> c(material + boundaries, std::move(data));
-  return friedrichs_constant<dim>(c.problem, c.mesh, 0);
+  return certify::friedrichs_constant<dim>(c.problem, c.mesh, 0);
 }
 
-MeshData<2> rectangle(double length, double height, int nx, int ny)
+mesh::MeshData<2> rectangle(double length, double height, int nx, int ny)
 {
   return box<2>({0, 0}, {length, height}, {nx, ny});
 }
@@ -67,7 +67,7 @@ void expect_table(const std::string& boundaries, std::initializer_list<Reference
 {
   for (const auto& [nx, lambda, value] : table)
   {
-    const FriedrichsConstant c = constant<2>(boundaries, rectangle(2, 1, nx, nx / 2));
+    const certify::FriedrichsConstant c = constant<2>(boundaries, rectangle(2, 1, nx, nx / 2));
     EXPECT_NEAR(c.theta, (1 - 1e-6) * lambda, 1e-8 * lambda) << nx;
     EXPECT_NEAR(c.value, value, 1e-8 * value) << nx;
     EXPECT_NEAR(c.mesh_size, std::numbers::sqrt2 * 2 / nx, 1e-14) << nx;
@@ -102,7 +102,7 @@ double robin_root(double r)
   return low;
 }
 
-void expect_from_above(const FriedrichsConstant& c, double exact, double excess)
+void expect_from_above(const certify::FriedrichsConstant& c, double exact, double excess)
 {
   EXPECT_GE(c.value, exact);
   EXPECT_LE(c.value, (1 + excess) * exact);
@@ -125,7 +125,7 @@ TEST(Friedrichs, IsAboveTheExactConstantsOfABeamOnAFloor)
   for (const int n : {1, 3})
   {
     const double k = robin_root(n / std::numbers::sqrt2);
-    const MeshData<3> block = box<3>({0, 0, 0}, {2, 1, 1}, {2 * n, n, n});
+    const mesh::MeshData<3> block = box<3>({0, 0, 0}, {2, 1, 1}, {2 * n, n, n});
     expect_from_above(constant<3>(clamped(3, {"left"}) + floor_contact, block), 1 / std::hypot(fixed, k),
                       0.25 / n);
     expect_from_above(constant<3>(floor_contact, block), 1 / k, 0.25 / n);
@@ -134,19 +134,19 @@ TEST(Friedrichs, IsAboveTheExactConstantsOfABeamOnAFloor)
 
 /// ||f||_* / ||f|| for the body force f = e_y, from below.
 template <int dim>
-double attained(const std::string& boundaries, const MeshData<dim>& data)
+double attained(const std::string& boundaries, const mesh::MeshData<dim>& data)
 {
   const std::string force = dim == 2 ? "[0, 1]" : "[0, 1, 0]";
   const DiscreteCase<dim> c("degree = 1\n" + material + boundaries + "load.body = " + force + "\n", data);
   double volume = 0;
   for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
-    volume += cell_map(c.mesh, cell).det / (dim == 2 ? 2 : 6);
-  DualNorm<dim> dual(c.form, {.refinements = 1, .degree = 2});
+    volume += mesh::cell_map(c.mesh, cell).det / (dim == 2 ? 2 : 6);
+  certify::DualNorm<dim> dual(c.form, {.refinements = 1, .degree = 2});
   return dual(std::vector<double>(c.space.n_dofs(), 0.0)) / std::sqrt(volume);
 }
 
 template <int dim>
-void expect_above_attained(const std::string& boundaries, const MeshData<dim>& data)
+void expect_above_attained(const std::string& boundaries, const mesh::MeshData<dim>& data)
 {
   const double below = attained<dim>(boundaries, data);
   const double value = constant<dim>(boundaries, data).value;
@@ -156,7 +156,7 @@ void expect_above_attained(const std::string& boundaries, const MeshData<dim>& d
 
 TEST(Friedrichs, IsAboveWhatOneFunctionAttains)
 {
-  const MeshData<2> corner =
+  const mesh::MeshData<2> corner =
       without(box<2>({-1, -1}, {1, 1}, {4, 4}), [](const Point<2>& x) { return x[0] > 0 && x[1] > 0; });
   for (const std::string& boundaries : {clamped(2, {"left"}) + floor_contact, clamped(2, {"right"})})
     expect_above_attained<2>(boundaries, distorted(corner, 3));
@@ -186,12 +186,12 @@ TEST(Friedrichs, WithoutFactorsIsAboveTheExactConstants)
   for (const int n : {1, 4, 16})
   {
     const double k = robin_root(n);
-    const MeshData<2> data = rectangle(2, 1, 2 * n, n);
+    const mesh::MeshData<2> data = rectangle(2, 1, 2 * n, n);
     expect_from_above(constant_without_factors<2>(beam, data), 1 / std::hypot(pi / 4, k), 1.5);
     expect_from_above(constant_without_factors<2>(floor_contact, data), 1 / k, 1.5);
     EXPECT_EQ(constant_without_factors<2>(beam, data).mesh_size, 0);
   }
-  const MeshData<3> block = box<3>({0, 0, 0}, {2, 1, 1}, {6, 3, 3});
+  const mesh::MeshData<3> block = box<3>({0, 0, 0}, {2, 1, 1}, {6, 3, 3});
   const double k = robin_root(3 / std::numbers::sqrt2);
   expect_from_above(constant_without_factors<3>(clamped(3, {"left"}) + floor_contact, block),
                     1 / std::hypot(pi / 4, k), 1.5);
@@ -199,8 +199,8 @@ TEST(Friedrichs, WithoutFactorsIsAboveTheExactConstants)
       constant_without_factors<3>(clamped(3, {"left", "right", "bottom", "top", "back", "front"}),
                                   box<3>({0, 0, 0}, {1, 1, 1}, {6, 6, 6})),
       1 / (pi * std::sqrt(3.0)), 1.5);
-  const MeshData<3> bent = distorted(box<3>({0, 0, 0}, {2, 1, 1}, {4, 2, 2}), 3);
-  const FriedrichsConstant c = constant_without_factors<3>(clamped(3, {"left"}), bent);
+  const mesh::MeshData<3> bent = distorted(box<3>({0, 0, 0}, {2, 1, 1}, {4, 2, 2}), 3);
+  const certify::FriedrichsConstant c = constant_without_factors<3>(clamped(3, {"left"}), bent);
   EXPECT_GE(c.value, attained<3>(clamped(3, {"left"}), bent));
   EXPECT_LT(c.value, 2 * constant<3>(clamped(3, {"left"}), bent).value);
   EXPECT_EQ(c.value, 1 / std::sqrt(c.theta));
@@ -211,25 +211,25 @@ TEST(Friedrichs, ShrinksUnderRefinement)
 {
   const std::string boundaries = clamped(2, {"left"}) + floor_contact;
   const DiscreteCase<2> c(material + boundaries, distorted(rectangle(2, 1, 4, 2), 1));
-  const double coarse = friedrichs_constant<2>(c.problem, c.mesh).value;
-  const Refined<2> refined = refine_uniformly(c.mesh);
-  const double fine = friedrichs_constant<2>(c.problem, refined.mesh).value;
-  const Refined<2> twice = refine_uniformly(refined.mesh);
+  const double coarse = certify::friedrichs_constant<2>(c.problem, c.mesh).value;
+  const mesh::Refined<2> refined = mesh::refine_uniformly(c.mesh);
+  const double fine = certify::friedrichs_constant<2>(c.problem, refined.mesh).value;
+  const mesh::Refined<2> twice = mesh::refine_uniformly(refined.mesh);
   EXPECT_LT(fine, coarse);
-  EXPECT_LT(friedrichs_constant<2>(c.problem, twice.mesh).value, fine);
+  EXPECT_LT(certify::friedrichs_constant<2>(c.problem, twice.mesh).value, fine);
 }
 
 /// x is fixed on the left (2 L / pi, L = 3), y below (2 / pi); or the other way round.
 TEST(Friedrichs, IsTheLargestOfTheComponents)
 {
-  const MeshData<2> data = rectangle(3, 1, 24, 8);
-  const FriedrichsConstant rollers = constant<2>(
+  const mesh::MeshData<2> data = rectangle(3, 1, 24, 8);
+  const certify::FriedrichsConstant rollers = constant<2>(
       "boundary.left.displacement = [0, \"free\"]\n"
       "boundary.bottom.displacement = [\"free\", 0]\n",
       data);
   EXPECT_GE(rollers.value, 6 / pi);
   EXPECT_LE(rollers.value, 1.002 * 6 / pi);
-  const FriedrichsConstant across = constant<2>(
+  const certify::FriedrichsConstant across = constant<2>(
       "boundary.left.displacement = [0, \"free\"]\n"
       "boundary.bottom.displacement = [0, 0]\n",
       data);
@@ -240,26 +240,26 @@ TEST(Friedrichs, IsTheLargestOfTheComponents)
 /// is that of the given one, for which C^2 >= ||1||^2 / ||1||_{C,h}^2. With the h_F of the refined mesh the
 /// constant is smaller than that.
 template <int dim>
-void expect_facets_kept(MeshData<dim> cell)
+void expect_facets_kept(mesh::MeshData<dim> cell)
 {
   cell.boundary_names = {"bottom"};
   cell.region_names = {"box"};
   cell.regions = {0};
-  for (int i = 0; i <= dim; ++i) cell.facets.push_back({facet_vertices(cell.cells[0], i), 0});
+  for (int i = 0; i <= dim; ++i) cell.facets.push_back({mesh::facet_vertices(cell.cells[0], i), 0});
   const DiscreteCase<dim> c(material + floor_contact, cell);
   double trace = 0;
   for (int i = 0; i <= dim; ++i)
   {
-    const FacetGeometry<dim> facet = facet_geometry(c.mesh, 0, i);
+    const mesh::FacetGeometry<dim> facet = mesh::facet_geometry(c.mesh, 0, i);
     trace += facet.measure / facet.diameter;
   }
-  const double below = std::sqrt(cell_map(c.mesh, 0).det / (dim == 2 ? 2 : 6) / trace);
-  const FriedrichsConstant constant = friedrichs_constant<dim>(c.problem, c.mesh);
+  const double below = std::sqrt(mesh::cell_map(c.mesh, 0).det / (dim == 2 ? 2 : 6) / trace);
+  const certify::FriedrichsConstant constant = certify::friedrichs_constant<dim>(c.problem, c.mesh);
   EXPECT_EQ(constant.cells, 1 << dim);
-  EXPECT_LT(constant.mesh_size, 0.7 * cell_diameter(c.mesh, 0));
+  EXPECT_LT(constant.mesh_size, 0.7 * mesh::cell_diameter(c.mesh, 0));
   EXPECT_GE(constant.value, below);
-  const Refined<dim> refined = refine_uniformly(c.mesh);
-  EXPECT_LT(friedrichs_constant<dim>(c.problem, refined.mesh).value, below);
+  const mesh::Refined<dim> refined = mesh::refine_uniformly(c.mesh);
+  EXPECT_LT(certify::friedrichs_constant<dim>(c.problem, refined.mesh).value, below);
 }
 
 TEST(Friedrichs, KeepsTheFacetsOfTheMeshWhereTheProofNeedsAFinerOne)
@@ -285,32 +285,32 @@ TEST(Friedrichs, OfTheSmallestMeshes)
 {
   const std::string square = clamped(2, {"left", "right", "bottom", "top"});
   EXPECT_GE(constant<2>(square, rectangle(1, 1, 1, 1)).value, 1 / (pi * std::sqrt(2.0)));
-  MeshData<2> triangle{.vertices = {{0, 0}, {1, 0}, {0, 1}},
-                       .cells = {{0, 1, 2}},
-                       .regions = {0},
-                       .facets = {{{0, 1}, 0}, {{1, 2}, 0}, {{2, 0}, 0}},
-                       .region_names = {"box"},
-                       .boundary_names = {"left"},
-                       .source = {}};
+  mesh::MeshData<2> triangle{.vertices = {{0, 0}, {1, 0}, {0, 1}},
+                             .cells = {{0, 1, 2}},
+                             .regions = {0},
+                             .facets = {{{0, 1}, 0}, {{1, 2}, 0}, {{2, 0}, 0}},
+                             .region_names = {"box"},
+                             .boundary_names = {"left"},
+                             .source = {}};
   EXPECT_GE(constant<2>(clamped(2, {"left"}), triangle).value, 1 / (pi * std::sqrt(5.0)));
 }
 
 TEST(Friedrichs, OfSeveralBodiesIsTheLargest)
 {
-  const MeshData<2> low = rectangle(2, 1, 8, 4);
-  const MeshData<2> high =
+  const mesh::MeshData<2> low = rectangle(2, 1, 8, 4);
+  const mesh::MeshData<2> high =
       mapped(rectangle(3, 1, 12, 4), [](const Point<2>& x) -> Point<2> { return x + Point<2>(0, 2); });
-  const MeshData<2> both = side_by_side(low, high, "_high");
-  const FriedrichsConstant larger = constant<2>(clamped(2, {"left"}), high);
-  const FriedrichsConstant held = constant<2>(clamped(2, {"left", "left_high"}), both);
+  const mesh::MeshData<2> both = side_by_side(low, high, "_high");
+  const certify::FriedrichsConstant larger = constant<2>(clamped(2, {"left"}), high);
+  const certify::FriedrichsConstant held = constant<2>(clamped(2, {"left", "left_high"}), both);
   EXPECT_NEAR(held.theta, larger.theta, 1e-7 * larger.theta);
   EXPECT_NEAR(held.value, larger.value, 1e-7 * larger.value);
   EXPECT_GT(held.value, constant<2>(clamped(2, {"left"}), low).value);
 
-  const FriedrichsConstant loose = constant<2>(clamped(2, {"left"}), both);
+  const certify::FriedrichsConstant loose = constant<2>(clamped(2, {"left"}), both);
   EXPECT_TRUE(std::isinf(loose.value));
   EXPECT_EQ(loose.theta, 0);
-  const FriedrichsConstant half =
+  const certify::FriedrichsConstant half =
       constant<2>(clamped(2, {"left"}) + "boundary.left_high.displacement = [0, \"free\"]\n", both);
   EXPECT_TRUE(std::isinf(half.value));
 }
@@ -318,10 +318,10 @@ TEST(Friedrichs, OfSeveralBodiesIsTheLargest)
 TEST(Friedrichs, IsALength)
 {
   const std::string boundaries = clamped(2, {"left"}) + floor_contact;
-  const FriedrichsConstant unit = constant<2>(boundaries, rectangle(2, 1, 6, 3));
+  const certify::FriedrichsConstant unit = constant<2>(boundaries, rectangle(2, 1, 6, 3));
   for (const double scale : {1e-6, 1e6})
   {
-    const FriedrichsConstant c = constant<2>(boundaries, rectangle(2 * scale, scale, 6, 3));
+    const certify::FriedrichsConstant c = constant<2>(boundaries, rectangle(2 * scale, scale, 6, 3));
     EXPECT_NEAR(c.value, scale * unit.value, 1e-8 * scale * unit.value);
     EXPECT_NEAR(c.theta * scale * scale, unit.theta, 1e-8 * unit.theta);
   }

@@ -43,7 +43,7 @@ class Cubic
 };
 
 template <int dim>
-void expect_sound(const FrictionLaw& law, std::mt19937& dice)
+void expect_sound(const case_file::FrictionLaw& law, std::mt19937& dice)
 {
   constexpr int k = dim - 1;
   std::uniform_real_distribution<double> number(-1.5, 1.5);
@@ -60,18 +60,18 @@ void expect_sound(const FrictionLaw& law, std::mt19937& dice)
   const auto excess = [&](const Point<k>& s)
   {
     const Point<dim> value = at(s);
-    return value.template head<k>().norm() - friction_limit(law, threshold(s), value[dim - 1]);
+    return value.template head<k>().norm() - contact::friction_limit(law, threshold(s), value[dim - 1]);
   };
 
-  const Quadrature<k> rule = quadrature<k>(6);
+  const fem::Quadrature<k> rule = fem::quadrature<k>(6);
   std::vector<Point<dim>> values;
   std::vector<double> thresholds;
   for (const Point<k>& s : rule.points)
   {
     values.push_back(at(s));
-    thresholds.push_back(std::holds_alternative<Tresca>(law) ? threshold(s) : 0);
+    thresholds.push_back(std::holds_alternative<case_file::Tresca>(law) ? threshold(s) : 0);
   }
-  const Kinks kinks = KinkFinder<dim>(rule, 3)(law, normal, values, thresholds, 1e-14);
+  const certify::Kinks kinks = certify::KinkFinder<dim>(rule, 3)(law, normal, values, thresholds, 1e-14);
 
   constexpr int m = 60;
   std::array<bool, 2> pressed{};
@@ -85,10 +85,10 @@ void expect_sound(const FrictionLaw& law, std::mt19937& dice)
       const double p_n = at(s)[dim - 1];
       lowest = std::min(lowest, p_n);
       pressed[p_n < 0] = true;
-      if (p_n < 0 || std::holds_alternative<Tresca>(law)) slides[excess(s) > 0] = true;
+      if (p_n < 0 || std::holds_alternative<case_file::Tresca>(law)) slides[excess(s) > 0] = true;
     }
   EXPECT_LE(kinks.lowest, lowest + 1e-12);
-  const bool rubs = !std::holds_alternative<Frictionless>(law);
+  const bool rubs = !std::holds_alternative<case_file::Frictionless>(law);
   const bool kinked = (pressed[0] && pressed[1]) || (rubs && slides[0] && slides[1]);
   EXPECT_TRUE(kinks.possible || !kinked);
   const bool seen = std::ranges::any_of(values, [](const Point<dim>& v) { return v[dim - 1] < 0; });
@@ -101,10 +101,12 @@ void expect_sound(const FrictionLaw& law, std::mt19937& dice)
 TEST(Kinks, NoneIsMissed)
 {
   std::mt19937 dice(3);
-  Coulomb coulomb;
+  case_file::Coulomb coulomb;
   coulomb.coefficient = 0.6;
   for (int trial = 0; trial < 400; ++trial)
-    for (const FrictionLaw& law : {FrictionLaw(Frictionless{}), FrictionLaw(Tresca{}), FrictionLaw(coulomb)})
+    for (const case_file::FrictionLaw& law :
+         {case_file::FrictionLaw(case_file::Frictionless{}), case_file::FrictionLaw(case_file::Tresca{}),
+          case_file::FrictionLaw(coulomb)})
     {
       expect_sound<2>(law, dice);
       expect_sound<3>(law, dice);
@@ -113,26 +115,26 @@ TEST(Kinks, NoneIsMissed)
 
 TEST(Kinks, RoundingIsNone)
 {
-  const Quadrature<1> rule = quadrature<1>(6);
+  const fem::Quadrature<1> rule = fem::quadrature<1>(6);
   std::vector<Point<2>> p;
   for (int q = 0; q < rule.size(); ++q) p.emplace_back(0, q % 2 == 0 ? 1e-15 : -1e-15);
   const std::vector<double> none(p.size(), 0.0);
-  const KinkFinder<2> kinks(rule, 3);
-  EXPECT_FALSE(kinks(Frictionless{}, Point<2>::UnitY(), p, none, 1e-13).possible);
-  EXPECT_TRUE(kinks(Frictionless{}, Point<2>::UnitY(), p, none, 0).possible);
+  const certify::KinkFinder<2> kinks(rule, 3);
+  EXPECT_FALSE(kinks(case_file::Frictionless{}, Point<2>::UnitY(), p, none, 1e-13).possible);
+  EXPECT_TRUE(kinks(case_file::Frictionless{}, Point<2>::UnitY(), p, none, 0).possible);
 }
 
 /// Sharp: no kink is suspected where the traction keeps well away from one.
 TEST(Kinks, NoneIsSuspectedFarAway)
 {
-  const Quadrature<2> rule = quadrature<2>(6);
+  const fem::Quadrature<2> rule = fem::quadrature<2>(6);
   std::vector<Point<3>> p;
   for (const Point<2>& s : rule.points)
     p.emplace_back(0.1 + 0.05 * s[0], 0.05 * s[1], -1 - 0.4 * s[0] * s[1]);
   const std::vector<double> none(p.size(), 0.0);
-  Coulomb coulomb;
+  case_file::Coulomb coulomb;
   coulomb.coefficient = 0.3;
-  const KinkFinder<3> kinks(rule, 3);
+  const certify::KinkFinder<3> kinks(rule, 3);
   EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
   coulomb.coefficient = 0.05;
   EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);

@@ -14,11 +14,11 @@ namespace
 {
 
 template <int rows, int cols>
-Dense<rows, cols> random_matrix(int seed)
+certify::Dense<rows, cols> random_matrix(int seed)
 {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> entry(-1, 1);
-  Dense<rows, cols> matrix;
+  certify::Dense<rows, cols> matrix;
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < cols; ++j) matrix(i, j) = entry(generator);
   return matrix;
@@ -26,10 +26,10 @@ Dense<rows, cols> random_matrix(int seed)
 
 /// Symmetric and positive definite.
 template <int n>
-Dense<n, n> definite_matrix()
+certify::Dense<n, n> definite_matrix()
 {
-  const Dense<n, n> factor = random_matrix<n, n>(1);
-  Dense<n, n> matrix = times_transposed(factor, factor);
+  const certify::Dense<n, n> factor = random_matrix<n, n>(1);
+  certify::Dense<n, n> matrix = certify::times_transposed(factor, factor);
   for (int i = 0; i < n; ++i) matrix(i, i) += 1;
   return matrix;
 }
@@ -55,8 +55,8 @@ TYPED_TEST(SmallDense, TransposedProduct)
   const auto b = random_matrix<k, m>(3);
   const auto c = random_matrix<n, m>(4);
   auto result = c;
-  subtract_transposed_product<n, padded(m), k>(result.data(), result.stride, a.data(), a.stride, b.data(),
-                                               b.stride);
+  certify::subtract_transposed_product<n, certify::padded(m), k>(result.data(), result.stride, a.data(),
+                                                                 a.stride, b.data(), b.stride);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < result.stride; ++j)
     {
@@ -74,9 +74,9 @@ TYPED_TEST(SmallDense, MatrixTimesVector)
   const auto x = random_matrix<1, k>(3);
   const auto y = random_matrix<1, n>(4);
   auto transposed = y;
-  subtract_transposed_times<k, padded(n)>(transposed.data(), a.data(), a.stride, x.data());
+  certify::subtract_transposed_times<k, certify::padded(n)>(transposed.data(), a.data(), a.stride, x.data());
   auto straight = x;
-  subtract_times<k, padded(n)>(straight.data(), a.data(), a.stride, y.data());
+  certify::subtract_times<k, certify::padded(n)>(straight.data(), a.data(), a.stride, y.data());
   for (int i = 0; i < n; ++i)
   {
     double expected = y(0, i);
@@ -94,25 +94,25 @@ TYPED_TEST(SmallDense, MatrixTimesVector)
 TYPED_TEST(SmallDense, CholeskySolves)
 {
   constexpr int n = TypeParam::value;
-  const Dense<n, n> matrix = definite_matrix<n>();
-  Dense<n, n> factor = matrix;
+  const certify::Dense<n, n> matrix = definite_matrix<n>();
+  certify::Dense<n, n> factor = matrix;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < i; ++j) factor(i, j) = 17;  // not to be read
   std::array<double, n> reciprocal;
-  ASSERT_TRUE(cholesky<n>(factor.data(), factor.stride, reciprocal.data()));
+  ASSERT_TRUE(certify::cholesky<n>(factor.data(), factor.stride, reciprocal.data()));
 
   // U^{-1} U^{-T} b, column by column and all columns at a time
   const auto b = random_matrix<n, 3>(5);
   auto columns = b;
-  solve_transposed<n, padded(3)>(factor.data(), factor.stride, reciprocal.data(), columns.data(),
-                                 columns.stride);
+  certify::solve_transposed<n, certify::padded(3)>(factor.data(), factor.stride, reciprocal.data(),
+                                                   columns.data(), columns.stride);
   for (int j = 0; j < 3; ++j)
   {
-    DenseVector<n> x;
+    certify::DenseVector<n> x;
     for (int i = 0; i < n; ++i) x[i] = b(i, j);
-    solve_transposed<n>(factor.data(), factor.stride, reciprocal.data(), x.data());
+    certify::solve_transposed<n>(factor.data(), factor.stride, reciprocal.data(), x.data());
     for (int i = 0; i < n; ++i) EXPECT_NEAR(x[i], columns(i, j), 1e-13);
-    solve_upper<n>(factor.data(), factor.stride, reciprocal.data(), x.data());
+    certify::solve_upper<n>(factor.data(), factor.stride, reciprocal.data(), x.data());
     for (int i = 0; i < n; ++i)
     {
       double product = 0;
@@ -125,10 +125,10 @@ TYPED_TEST(SmallDense, CholeskySolves)
 TYPED_TEST(SmallDense, CholeskyRefusesWhatIsNotDefinite)
 {
   constexpr int n = TypeParam::value;
-  Dense<n, n> matrix = definite_matrix<n>();
+  certify::Dense<n, n> matrix = definite_matrix<n>();
   matrix(n - 1, n - 1) = -1;
   std::array<double, n> reciprocal;
-  EXPECT_FALSE(cholesky<n>(matrix.data(), matrix.stride, reciprocal.data()));
+  EXPECT_FALSE(certify::cholesky<n>(matrix.data(), matrix.stride, reciprocal.data()));
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TYPED_TEST_SUITE(SolutionErrorOf, Dimensions);
 const std::string material_toml = "material = { E = 1.3, nu = 0.3 }\n";
 
 template <int dim>
-MeshData<dim> some_box()
+mesh::MeshData<dim> some_box()
 {
   if constexpr (dim == 2)
     return distorted(box<2>({0, 0}, {2, 1}, {3, 2}), 4);
@@ -40,23 +40,23 @@ MeshData<dim> some_box()
 }
 
 template <int dim>
-Mesh<dim> bisected_at_random(const Mesh<dim>& initial, int levels, unsigned seed)
+mesh::Mesh<dim> bisected_at_random(const mesh::Mesh<dim>& initial, int levels, unsigned seed)
 {
   std::mt19937 random(seed);
   std::bernoulli_distribution chosen(0.2);
-  Mesh<dim> mesh = std::move(bisect<dim>(initial, {}).mesh);
+  mesh::Mesh<dim> mesh = std::move(mesh::bisect<dim>(initial, {}).mesh);
   for (int level = 0; level < levels; ++level)
   {
     std::vector<Index> marked;
     for (Index c = 0; c < mesh.n_cells(); ++c)
       if (chosen(random)) marked.push_back(c);
-    mesh = std::move(bisect<dim>(mesh, marked, 1).mesh);
+    mesh = std::move(mesh::bisect<dim>(mesh, marked, 1).mesh);
   }
   return mesh;
 }
 
 template <int dim>
-std::vector<double> random_function(const LagrangeSpace<dim>& space, unsigned seed)
+std::vector<double> random_function(const fem::LagrangeSpace<dim>& space, unsigned seed)
 {
   return random_free_vector({std::vector<char>(space.n_dofs(), 0), {}}, 1.0, seed);
 }
@@ -81,14 +81,14 @@ TYPED_TEST(SolutionErrorOf, PolynomialsOnMeshesOfWhichNeitherContainsTheOther)
   };
   const std::vector<double> difference =
       sum(interpolate(c.space, quadratic), -1, interpolate(c.space, cubic));
-  const StressNorms expected = stress_norms<dim>(c.problem, c.space, difference);
+  const contact::StressNorms expected = contact::stress_norms<dim>(c.problem, c.space, difference);
 
-  const Mesh<dim> a = bisected_at_random(c.mesh, 4, 1);
-  const Mesh<dim> b = bisected_at_random(c.mesh, 4, 2);
-  const LagrangeSpace<dim> space_a(a, 2);
-  const LagrangeSpace<dim> space_b(b, 3);
-  const LocalError error = solution_error<dim>(c.problem, space_a, interpolate(space_a, quadratic), space_b,
-                                               interpolate(space_b, cubic));
+  const mesh::Mesh<dim> a = bisected_at_random(c.mesh, 4, 1);
+  const mesh::Mesh<dim> b = bisected_at_random(c.mesh, 4, 2);
+  const fem::LagrangeSpace<dim> space_a(a, 2);
+  const fem::LagrangeSpace<dim> space_b(b, 3);
+  const certify::LocalError error = certify::solution_error<dim>(
+      c.problem, space_a, interpolate(space_a, quadratic), space_b, interpolate(space_b, cubic));
   EXPECT_NEAR(error.global.energy, std::sqrt(expected.energy), 1e-12 * std::sqrt(expected.energy));
   EXPECT_NEAR(error.global.stress, expected.sigma, 1e-12 * expected.sigma);
   ASSERT_EQ(error.energy.size(), static_cast<std::size_t>(a.n_cells()));
@@ -102,17 +102,18 @@ TYPED_TEST(SolutionErrorOf, RandomFunctionsOnNestedMeshes)
 {
   constexpr int dim = TypeParam::value;
   const DiscreteCase<dim> c(material_toml + "degree = 2\n", some_box<dim>());
-  const Bisected<dim> finer = bisect<dim>(c.mesh, {{1, 4, 7}});
+  const mesh::Bisected<dim> finer = mesh::bisect<dim>(c.mesh, {{1, 4, 7}});
   for (const int degree : {2, 3})
   {
-    const LagrangeSpace<dim> fine(finer.mesh, degree);
+    const fem::LagrangeSpace<dim> fine(finer.mesh, degree);
     const std::vector<double> u = random_function(c.space, 5);
     const std::vector<double> u_fine = random_function(fine, 6);
-    const std::vector<double> carried = nested_interpolant<dim>(c.space, u, finer.parent, fine);
-    const StressNorms expected = stress_norms<dim>(c.problem, fine, sum(carried, -1, u_fine));
-    const LocalError one = solution_error<dim>(c.problem, c.space, u, fine, u_fine);
-    const LocalError other = solution_error<dim>(c.problem, fine, u_fine, c.space, u);
-    for (const LocalError& error : {one, other})
+    const std::vector<double> carried = fem::nested_interpolant<dim>(c.space, u, finer.parent, fine);
+    const contact::StressNorms expected =
+        contact::stress_norms<dim>(c.problem, fine, sum(carried, -1, u_fine));
+    const certify::LocalError one = certify::solution_error<dim>(c.problem, c.space, u, fine, u_fine);
+    const certify::LocalError other = certify::solution_error<dim>(c.problem, fine, u_fine, c.space, u);
+    for (const certify::LocalError& error : {one, other})
     {
       EXPECT_NEAR(error.global.energy, std::sqrt(expected.energy), 1e-12 * std::sqrt(expected.energy));
       EXPECT_NEAR(error.global.stress, expected.sigma, 1e-12 * expected.sigma);
@@ -129,14 +130,14 @@ TYPED_TEST(SolutionErrorOf, SymmetricOnMeshesOfWhichNeitherContainsTheOther)
 {
   constexpr int dim = TypeParam::value;
   const DiscreteCase<dim> c(material_toml + "degree = 1\n", some_box<dim>());
-  const Mesh<dim> a = bisected_at_random(c.mesh, 5, 1);
-  const Mesh<dim> b = bisected_at_random(c.mesh, 5, 2);
-  const LagrangeSpace<dim> space_a(a, 1);
-  const LagrangeSpace<dim> space_b(b, 2);
+  const mesh::Mesh<dim> a = bisected_at_random(c.mesh, 5, 1);
+  const mesh::Mesh<dim> b = bisected_at_random(c.mesh, 5, 2);
+  const fem::LagrangeSpace<dim> space_a(a, 1);
+  const fem::LagrangeSpace<dim> space_b(b, 2);
   const std::vector<double> u_a = random_function(space_a, 5);
   const std::vector<double> u_b = random_function(space_b, 6);
-  const LocalError one = solution_error<dim>(c.problem, space_a, u_a, space_b, u_b);
-  const LocalError other = solution_error<dim>(c.problem, space_b, u_b, space_a, u_a);
+  const certify::LocalError one = certify::solution_error<dim>(c.problem, space_a, u_a, space_b, u_b);
+  const certify::LocalError other = certify::solution_error<dim>(c.problem, space_b, u_b, space_a, u_a);
   EXPECT_NEAR(one.global.energy, other.global.energy, 1e-12 * one.global.energy);
   EXPECT_NEAR(one.global.stress, other.global.stress, 1e-12 * one.global.stress);
 }
@@ -146,7 +147,7 @@ TYPED_TEST(SolutionErrorOf, ItselfIsZero)
   constexpr int dim = TypeParam::value;
   const DiscreteCase<dim> c(material_toml + "degree = 2\n", some_box<dim>());
   const std::vector<double> u = random_function(c.space, 3);
-  EXPECT_EQ(solution_error<dim>(c.problem, c.space, u, c.space, u).global.stress, 0);
+  EXPECT_EQ(certify::solution_error<dim>(c.problem, c.space, u, c.space, u).global.stress, 0);
 }
 
 /// u = (0, y^2 / 10) with an open gap below: any richer space contains it, so that the solution of higher
@@ -163,18 +164,18 @@ boundary.right.displacement = [0, "0.1*y^2"]
 boundary.top.displacement = [0, "0.1*y^2"]
 boundary.bottom.contact = { gap = 1 }
 )");
-  const NewtonResult<2> coarse = c.solve();
-  ASSERT_EQ(coarse.status, NewtonStatus::converged);
-  const RicherSolution richer = compare_with_richer<2>(c.form, coarse.u, {.refinements = 1, .degree = 2},
-                                                       c.config.gamma0(), c.config.newton, c.config.solver);
+  const solve::NewtonResult<2> coarse = c.solve();
+  ASSERT_EQ(coarse.status, solve::NewtonStatus::converged);
+  const certify::RicherSolution richer = certify::compare_with_richer<2>(
+      c.form, coarse.u, {.refinements = 1, .degree = 2}, c.config.gamma0(), c.config.newton, c.config.solver);
   ASSERT_TRUE(richer.error);
 
-  const Mesh<2> finer = bisected_at_random(c.mesh, 4, 9);
-  const LagrangeSpace<2> space(finer, 2);
-  const NitscheForm<2> form(c.problem, space, c.config.gamma0());
-  const NewtonResult<2> fine = solve<2>(form, {}, c.config.newton, c.config.solver);
-  ASSERT_EQ(fine.status, NewtonStatus::converged);
-  const LocalError error = solution_error<2>(c.problem, c.space, coarse.u, space, fine.u);
+  const mesh::Mesh<2> finer = bisected_at_random(c.mesh, 4, 9);
+  const fem::LagrangeSpace<2> space(finer, 2);
+  const contact::NitscheForm<2> form(c.problem, space, c.config.gamma0());
+  const solve::NewtonResult<2> fine = solve::solve<2>(form, {}, c.config.newton, c.config.solver);
+  ASSERT_EQ(fine.status, solve::NewtonStatus::converged);
+  const certify::LocalError error = certify::solution_error<2>(c.problem, c.space, coarse.u, space, fine.u);
   EXPECT_GT(error.global.energy, 1e-3);
   EXPECT_NEAR(error.global.energy, richer.error->energy, 1e-9 * error.global.energy);
   EXPECT_NEAR(error.global.stress, richer.error->stress, 1e-9 * error.global.stress);

@@ -32,7 +32,7 @@ TYPED_TEST_SUITE(TrueError, Dimensions);
 /// The integral of f(x, y) over (0, 2) x (0, 1).
 double integral(const std::function<double(double, double)>& f)
 {
-  const Quadrature<1> rule = quadrature<1>(15);
+  const fem::Quadrature<1> rule = fem::quadrature<1>(15);
   double sum = 0;
   for (int i = 0; i < rule.size(); ++i)
     for (int j = 0; j < rule.size(); ++j)
@@ -97,7 +97,7 @@ TYPED_TEST(TrueError, DualNormOfAResidualWithKnownRepresentative)
     const std::vector<double> u = interpolate(c.space, [&](const Point<dim>&) { return down; });
     for (const int refinements : {1, 2})
     {
-      DualNorm<dim> dual(c.form, {.refinements = refinements, .degree = 3});
+      certify::DualNorm<dim> dual(c.form, {.refinements = refinements, .degree = 3});
       EXPECT_NEAR(dual(u), known.norm(), 1e-10 * known.norm()) << "p = " << p;
     }
   }
@@ -117,7 +117,7 @@ TEST(DualNorm, IntegratesAKinkedTraction)
   {
     const std::vector<double> u =
         interpolate(c.space, [&](const Point<2>& x) { return Point<2>(-a * x[1], a * (x[0] - x_0)); });
-    DualNorm<2> dual(c.form, {.refinements = 2, .degree = 3});
+    certify::DualNorm<2> dual(c.form, {.refinements = 2, .degree = 3});
     const std::vector<double> r = dual.residual(u);
     double vertical = 0;  // <R, e_y> = integral of T_y
     for (std::size_t i = 1; i < r.size(); i += 2) vertical += r[i];
@@ -143,15 +143,15 @@ std::string block(int p)
 TYPED_TEST(TrueError, DualNormGrowsWithTheSpace)
 {
   constexpr int dim = TypeParam::value;
-  MeshData<dim> data;
+  mesh::MeshData<dim> data;
   if constexpr (dim == 2)
     data = box<2>({0, 0}, {2, 1}, {3, 2});
   else
     data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   const DiscreteCase<dim> c(block<dim>(1), distorted(std::move(data), 2));
-  const NewtonResult<dim> result = c.solve();
+  const solve::NewtonResult<dim> result = c.solve();
   const auto norm = [&](int refinements, int degree)
-  { return DualNorm<dim>(c.form, {.refinements = refinements, .degree = degree})(result.u); };
+  { return certify::DualNorm<dim>(c.form, {.refinements = refinements, .degree = degree})(result.u); };
   const std::array<double, 4> values{norm(1, 2), norm(1, 3), norm(2, 3), norm(2, 4)};
   for (int i = 1; i < 4; ++i) EXPECT_GE(values[i], values[i - 1] * (1 - 1e-6)) << i;
   EXPECT_GE(values[1], 0.9 * values[3]);
@@ -164,19 +164,19 @@ TYPED_TEST(TrueError, DofsAreCountedWithoutRefining)
   const DiscreteCase<dim> c(KnownRepresentative<dim>().toml());
   for (const int degree : {3, 6})
   {
-    const Refined<dim> refined = refine_uniformly(c.mesh, 2);
-    EXPECT_EQ(count_dofs(c.mesh, {.refinements = 2, .degree = degree}),
-              LagrangeSpace<dim>(refined.mesh, degree).n_dofs());
+    const mesh::Refined<dim> refined = mesh::refine_uniformly(c.mesh, 2);
+    EXPECT_EQ(certify::count_dofs(c.mesh, {.refinements = 2, .degree = degree}),
+              fem::LagrangeSpace<dim>(refined.mesh, degree).n_dofs());
   }
 }
 
 TEST(Effectivity, IsTheQuotientAboveRoundOff)
 {
-  EXPECT_EQ(effectivity(3, 2, {.sigma = 1}), 1.5);
-  EXPECT_EQ(effectivity(1, 2, {.sigma = 1}), 0.5);
-  EXPECT_EQ(effectivity(1e-12, 1e-3, {.sigma = 1}), 1e-9);
-  EXPECT_FALSE(effectivity(1e-12, 3e-12, {.sigma = 1}).has_value());
-  EXPECT_FALSE(effectivity(1e-12, 3e-12, {.sigma = 1e-12, .round_off = 1e-11}).has_value());
+  EXPECT_EQ(certify::effectivity(3, 2, {.sigma = 1}), 1.5);
+  EXPECT_EQ(certify::effectivity(1, 2, {.sigma = 1}), 0.5);
+  EXPECT_EQ(certify::effectivity(1e-12, 1e-3, {.sigma = 1}), 1e-9);
+  EXPECT_FALSE(certify::effectivity(1e-12, 3e-12, {.sigma = 1}).has_value());
+  EXPECT_FALSE(certify::effectivity(1e-12, 3e-12, {.sigma = 1e-12, .round_off = 1e-11}).has_value());
 }
 
 /// u = (0.3 x y, 0.2 x^2 - 0.1 y^2) in equilibrium with its loads, all of the boundary prescribed: the
@@ -196,27 +196,27 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
       "material = { E = 2.5, nu = 0.25 }\nload.body = [0, -0.4]\nboundary.left.displacement = " +
       data + "boundary.right.displacement = " + data + "boundary.top.displacement = " + data +
       "boundary.bottom.displacement = " + data);
-  const NewtonResult<2> result = c.solve();
+  const solve::NewtonResult<2> result = c.solve();
   double energy = 0;
   double stress = 0;
-  const Quadrature<2> rule = quadrature<2>(4);
-  const Tabulation<2> table = c.space.basis().tabulate(rule.points);
-  const Material& material = c.problem.material(0);
+  const fem::Quadrature<2> rule = fem::quadrature<2>(4);
+  const fem::Tabulation<2> table = c.space.basis().tabulate(rule.points);
+  const problem::Material& material = c.problem.material(0);
   for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
   {
-    const CellMap<2> map = cell_map(c.mesh, cell);
+    const mesh::CellMap<2> map = mesh::cell_map(c.mesh, cell);
     for (int q = 0; q < rule.size(); ++q)
     {
-      const Tensor<2> error =
-          gradient(map(rule.points[q])) -
-          gradient_at<2>(c.space.cell_nodes(cell), result.u, table.gradients_at(q), map.inverse_transpose);
-      const Tensor<2> s = sigma<2>(material, error);
+      const Tensor<2> error = gradient(map(rule.points[q])) -
+                              contact::gradient_at<2>(c.space.cell_nodes(cell), result.u,
+                                                      table.gradients_at(q), map.inverse_transpose);
+      const Tensor<2> s = contact::sigma<2>(material, error);
       energy += rule.weights[q] * map.det * s.cwiseProduct(error).sum();
       stress += rule.weights[q] * map.det * s.squaredNorm();
     }
   }
-  const RicherSolution richer = compare_with_richer<2>(c.form, result.u, {.refinements = 1, .degree = 2}, 10,
-                                                       c.config.newton, c.config.solver);
+  const certify::RicherSolution richer = certify::compare_with_richer<2>(
+      c.form, result.u, {.refinements = 1, .degree = 2}, 10, c.config.newton, c.config.solver);
   ASSERT_TRUE(richer.error.has_value()) << richer.failure;
   EXPECT_EQ(richer.cells, 48);
   EXPECT_NEAR(richer.error->energy, std::sqrt(energy), 1e-9);
@@ -227,10 +227,10 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
 TEST(RicherSolution, ThatIsNotReachedSaysWhy)
 {
   const DiscreteCase<2> c(block<2>(1), box<2>({0, 0}, {2, 1}, {3, 2}));
-  NewtonConfig newton = c.config.newton;
+  case_file::NewtonConfig newton = c.config.newton;
   newton.max_steps = 1;
-  const RicherSolution richer = compare_with_richer<2>(c.form, c.solve().u, {.refinements = 1, .degree = 2},
-                                                       10, newton, c.config.solver);
+  const certify::RicherSolution richer = certify::compare_with_richer<2>(
+      c.form, c.solve().u, {.refinements = 1, .degree = 2}, 10, newton, c.config.solver);
   EXPECT_FALSE(richer.error.has_value());
   EXPECT_NE(richer.failure.find("max_steps"), std::string::npos) << richer.failure;
 }
@@ -238,21 +238,21 @@ TEST(RicherSolution, ThatIsNotReachedSaysWhy)
 TYPED_TEST(TrueError, NestedInterpolationIsExact)
 {
   constexpr int dim = TypeParam::value;
-  MeshData<dim> data;
+  mesh::MeshData<dim> data;
   if constexpr (dim == 2)
     data = box<2>({0, 0}, {2, 1}, {3, 2});
   else
     data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   const DiscreteCase<dim> c(block<dim>(2), distorted(std::move(data), 4));
-  const Constraints none{std::vector<char>(c.space.n_dofs(), 0), {}};
+  const fem::Constraints none{std::vector<char>(c.space.n_dofs(), 0), {}};
   const std::vector<double> u = random_free_vector(none, 1.0, 3);
-  const StressNorms norms = stress_norms<dim>(c.problem, c.space, u);
+  const contact::StressNorms norms = contact::stress_norms<dim>(c.problem, c.space, u);
   for (const auto& [times, degree] : {std::pair{1, 2}, {2, 3}, {1, 6}})
   {
-    const Refined<dim> refined = refine_uniformly(c.mesh, times);
-    const LagrangeSpace<dim> fine(refined.mesh, degree);
-    const std::vector<double> carried = nested_interpolant<dim>(c.space, u, refined, fine);
-    const StressNorms carried_norms = stress_norms<dim>(c.problem, fine, carried);
+    const mesh::Refined<dim> refined = mesh::refine_uniformly(c.mesh, times);
+    const fem::LagrangeSpace<dim> fine(refined.mesh, degree);
+    const std::vector<double> carried = fem::nested_interpolant<dim>(c.space, u, refined, fine);
+    const contact::StressNorms carried_norms = contact::stress_norms<dim>(c.problem, fine, carried);
     EXPECT_NEAR(carried_norms.energy, norms.energy, 1e-11 * norms.energy);
     EXPECT_NEAR(carried_norms.sigma, norms.sigma, 1e-11 * norms.sigma);
     for (Index v = 0; v < dim * c.mesh.n_vertices(); ++v) EXPECT_NEAR(carried[v], u[v], 1e-13);

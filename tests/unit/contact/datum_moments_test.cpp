@@ -16,18 +16,18 @@ namespace
 {
 
 constexpr double pi = std::numbers::pi;
-constexpr DatumWeights weights{1, 1};
+constexpr contact::DatumWeights weights{1, 1};
 
-Expression formula(const std::string& text)
+problem::Expression formula(const std::string& text)
 {
   return {text, Where{.key = "test"}};
 }
 
 /// The segment from (0, 0) to (length, 0), the triangle and the tetrahedron at the origin with legs `length`.
 template <int k, int dim>
-SimplexMap<k, dim> simplex(double length)
+contact::SimplexMap<k, dim> simplex(double length)
 {
-  SimplexMap<k, dim> map;
+  contact::SimplexMap<k, dim> map;
   map.origin.setZero();
   map.jacobian.setZero();
   map.measure = 1;
@@ -41,16 +41,16 @@ SimplexMap<k, dim> simplex(double length)
 
 /// The scalar formula as component 0.
 template <int k, int dim>
-DatumOnSimplex<k, dim> looked_into(const Expression& f, double length, double allowed, int p = 2,
-                                   int parts = 4096)
+contact::DatumOnSimplex<k, dim> looked_into(const problem::Expression& f, double length, double allowed,
+                                            int p = 2, int parts = 4096)
 {
-  const DatumMoments<k, dim> moments(p, k == dim ? p - 1 : p);
+  const contact::DatumMoments<k, dim> moments(p, k == dim ? p - 1 : p);
   return moments({{{&f, Point<dim>::Unit(0)}}}, simplex<k, dim>(length), weights, allowed, parts);
 }
 
 /// The integral over the simplex: theta_0 is the root of k!, the reciprocal of its measure.
 template <int k, int dim>
-double integral(const DatumOnSimplex<k, dim>& found, double length)
+double integral(const contact::DatumOnSimplex<k, dim>& found, double length)
 {
   constexpr double factorial = k == 3 ? 6 : k;
   return found.moments[0][0] / std::sqrt(factorial) * factorial * simplex<k, dim>(length).measure;
@@ -193,16 +193,16 @@ TEST(DatumMoments, ManySwitchesAreCutUpToALimit)
 
 TEST(DatumMoments, TheirPolynomialHasTheSameMoments)
 {
-  const DatumMoments<2, 2> moments(2, 1);
-  const Expression f = formula("x > 0.123 ? y : 0");
+  const contact::DatumMoments<2, 2> moments(2, 1);
+  const problem::Expression f = formula("x > 0.123 ? y : 0");
   const auto found = moments({{{&f, Point<2>(1, 2)}}}, simplex<2, 2>(1), weights, 0, 100);
   std::vector<Point<2>> values(moments.rule().size());
   moments.evaluate(found.moments, values);
-  std::vector<double> theta(polynomial_dimension(2, 3));
+  std::vector<double> theta(fem::polynomial_dimension(2, 3));
   std::vector<Point<2>> again(theta.size(), Point<2>::Zero());
   for (int q = 0; q < moments.rule().size(); ++q)
   {
-    orthonormal_values<2>(3, moments.rule().points[q], theta);
+    fem::orthonormal_values<2>(3, moments.rule().points[q], theta);
     for (std::size_t j = 0; j < theta.size(); ++j)
       again[j] += moments.rule().weights[q] * theta[j] * values[q];
   }

@@ -19,7 +19,7 @@ namespace
 
 /// The sum of component 1 of the load.
 template <int dim>
-double vertical_load(const NitscheForm<dim>& form)
+double vertical_load(const contact::NitscheForm<dim>& form)
 {
   double sum = 0;
   for (std::size_t i = 1; i < form.load().size(); i += dim) sum += form.load()[i];

@@ -23,7 +23,7 @@ constexpr double E = 2.5;
 constexpr double nu = 0.3;
 
 template <int dim>
-MeshData<dim> grid()
+mesh::MeshData<dim> grid()
 {
   if constexpr (dim == 2)
     return box<2>({0, 0}, {2, 1}, {3, 2});
@@ -64,12 +64,13 @@ void expect_linear_fields_exact(int p, const std::string& material, bool is_plan
 
   double volume = 0;
   for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
-    volume += determinant<dim>(points_of(c.mesh.vertices(), c.mesh.cell(cell))) / (dim == 2 ? 2 : 6);
+    volume +=
+        mesh::determinant<dim>(mesh::points_of(c.mesh.vertices(), c.mesh.cell(cell))) / (dim == 2 ? 2 : 6);
   const double energy = volume * stress.cwiseProduct(eps).sum();
-  const StressNorms norms = stress_norms<dim>(c.problem, c.space, u);
+  const contact::StressNorms norms = contact::stress_norms<dim>(c.problem, c.space, u);
   EXPECT_NEAR(norms.energy, energy, 1e-12 * energy);
   EXPECT_NEAR(norms.sigma, stress.norm() * std::sqrt(volume), 1e-12 * stress.norm());
-  const std::vector<double> ku = apply_stiffness<dim>(c.problem, c.space, u);
+  const std::vector<double> ku = contact::apply_stiffness<dim>(c.problem, c.space, u);
   EXPECT_NEAR(std::inner_product(u.begin(), u.end(), ku.begin(), 0.0), energy, 1e-12 * energy);
 }
 
@@ -97,11 +98,12 @@ TYPED_TEST(Stiffness, MatrixAndCellwiseProductAgree)
   for (int p = 1; p <= 4; ++p)
   {
     const DiscreteCase<dim> c(toml(p, plane_strain + clamp), distorted(grid<dim>(), p));
-    const Constraints& constraints = c.form.constraints();
+    const fem::Constraints& constraints = c.form.constraints();
     ASSERT_GT(constraints.n_fixed(), 0);
     const std::vector<double> u = random_free_vector(constraints, 1.0, p);
-    const Triplets matrix = stiffness(c.problem, c.space, constraints);
-    const std::vector<double> expected = free_part(constraints, apply_stiffness<dim>(c.problem, c.space, u));
+    const contact::Triplets matrix = contact::stiffness(c.problem, c.space, constraints);
+    const std::vector<double> expected =
+        free_part(constraints, contact::apply_stiffness<dim>(c.problem, c.space, u));
     EXPECT_LE(distance(multiply(matrix, u), expected), 1e-12 * norm(expected)) << "degree " << p;
   }
 }
@@ -112,8 +114,8 @@ TYPED_TEST(Stiffness, FixedDegreesOfFreedomHaveAPositiveDiagonalOnly)
   const std::string clamp = dim == 2 ? "boundary.left.displacement = [0, \"free\"]"
                                      : "boundary.left.displacement = [0, \"free\", 0]";
   const DiscreteCase<dim> c(toml(2, plane_strain + clamp), grid<dim>());
-  const Constraints& constraints = c.form.constraints();
-  const Triplets matrix = stiffness(c.problem, c.space, constraints);
+  const fem::Constraints& constraints = c.form.constraints();
+  const contact::Triplets matrix = contact::stiffness(c.problem, c.space, constraints);
   Index n_diagonal = 0;
   for (std::size_t k = 0; k < matrix.values.size(); ++k)
   {

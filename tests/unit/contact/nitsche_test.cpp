@@ -54,7 +54,7 @@ std::string contact_case(int p, const std::string& law)
 }
 
 template <int dim>
-MeshData<dim> bent_block(unsigned seed)
+mesh::MeshData<dim> bent_block(unsigned seed)
 {
   if constexpr (dim == 2)
     return distorted(box<2>({0, 0}, {2, 1}, {4, 2}), seed);
@@ -65,9 +65,9 @@ MeshData<dim> bent_block(unsigned seed)
 /// Everything in `status` with a margin: pushed into the obstacle below (or pulled off it) and aside, in 3D
 /// across the coordinate axes, and shaken a little.
 template <int dim>
-std::vector<double> displaced(const DiscreteCase<dim>& c, ContactStatus status, unsigned seed)
+std::vector<double> displaced(const DiscreteCase<dim>& c, contact::ContactStatus status, unsigned seed)
 {
-  const double down = status == ContactStatus::open ? -0.1 : 0.1;
+  const double down = status == contact::ContactStatus::open ? -0.1 : 0.1;
   Point<dim> background = Point<dim>::Zero();
   background[0] = 0.05;
   background[dim - 1] = 0.03;
@@ -81,19 +81,20 @@ std::vector<double> displaced(const DiscreteCase<dim>& c, ContactStatus status, 
 
 /// The statuses at the contact points of the form.
 template <int dim>
-std::vector<ContactStatus> statuses(const NitscheForm<dim>& form, std::span<const double> u)
+std::vector<contact::ContactStatus> statuses(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const FacetTabulation<dim> table = tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
-  std::vector<ContactStatus> result;
+  const fem::FacetTabulation<dim> table =
+      fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
+  std::vector<contact::ContactStatus> result;
   for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
-    for (const ContactState<dim>& state : form.contact_states(u, static_cast<int>(k), table))
+    for (const contact::ContactState<dim>& state : form.contact_states(u, static_cast<int>(k), table))
       result.push_back(state.status);
   return result;
 }
 
 /// (T(u), phi_i)_C for free i.
 template <int dim>
-std::vector<double> contact_forces(const NitscheForm<dim>& form, std::span<const double> u)
+std::vector<double> contact_forces(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   std::vector<double> forces(form.space().n_dofs(), 0.0);
   form.add_contact_load(form.traction(u), forces);
@@ -104,20 +105,21 @@ std::vector<double> contact_forces(const NitscheForm<dim>& form, std::span<const
 template <int dim>
 std::vector<double> residual(const DiscreteCase<dim>& c, std::span<const double> u)
 {
-  const std::vector<double> ku = free_part(c.form.constraints(), apply_stiffness<dim>(c.problem, c.space, u));
+  const std::vector<double> ku =
+      free_part(c.form.constraints(), contact::apply_stiffness<dim>(c.problem, c.space, u));
   return sum(ku, -1, contact_forces(c.form, u));
 }
 
 template <int dim>
-void expect_tangent_agrees_with_differences(int p, const Law& law, ContactStatus status)
+void expect_tangent_agrees_with_differences(int p, const Law& law, contact::ContactStatus status)
 {
-  const std::string parameters = status == ContactStatus::slip ? law.slipping : law.sticking;
+  const std::string parameters = status == contact::ContactStatus::slip ? law.slipping : law.sticking;
   const DiscreteCase<dim> c(contact_case<dim>(p, parameters), bent_block<dim>(p));
-  const Constraints& constraints = c.form.constraints();
+  const fem::Constraints& constraints = c.form.constraints();
   const std::vector<double> u = displaced(c, status, 1);
-  const ContactStatus expected =
-      law.name == "none" && status == ContactStatus::stick ? ContactStatus::slip : status;
-  for (const ContactStatus s : statuses(c.form, u)) ASSERT_EQ(s, expected);
+  const contact::ContactStatus expected =
+      law.name == "none" && status == contact::ContactStatus::stick ? contact::ContactStatus::slip : status;
+  for (const contact::ContactStatus s : statuses(c.form, u)) ASSERT_EQ(s, expected);
 
   constexpr double h = 1e-6;
   const std::vector<double> w = random_free_vector(constraints, 1.0, 2);
@@ -130,22 +132,23 @@ void expect_tangent_agrees_with_differences(int p, const Law& law, ContactStatus
     return d;
   };
 
-  const Triplets tangent = c.form.contact_tangent(Linearisation::newton, u);
+  const contact::Triplets tangent = c.form.contact_tangent(contact::Linearisation::newton, u);
   const std::vector<double> contact = multiply(tangent, w);
   const std::vector<double> by_difference =
       difference([&](const std::vector<double>& v) { return contact_forces(c.form, v); });
   EXPECT_LE(norm(sum(contact, 1, by_difference)), 1e-7 * norm(contact));
 
-  const std::vector<double> whole = sum(multiply(stiffness(c.problem, c.space, constraints), w), 1, contact);
+  const std::vector<double> whole =
+      sum(multiply(contact::stiffness(c.problem, c.space, constraints), w), 1, contact);
   const std::vector<double> whole_by_difference =
       difference([&](const std::vector<double>& v) { return residual(c, v); });
   EXPECT_LE(distance(whole, whole_by_difference), 1e-7 * norm(whole));
   // A threshold does not fall with the pressure: Tresca's tangent lives on open contact, too.
-  const bool is_zero = status == ContactStatus::open && law.name != "tresca";
+  const bool is_zero = status == contact::ContactStatus::open && law.name != "tresca";
   EXPECT_EQ(norm(contact) == 0, is_zero);
 }
 
-class Tangent : public ::testing::TestWithParam<std::tuple<Law, ContactStatus, int>>
+class Tangent : public ::testing::TestWithParam<std::tuple<Law, contact::ContactStatus, int>>
 {
 };
 
@@ -170,17 +173,18 @@ std::string test_name(const ::testing::TestParamInfo<Tangent::ParamType>& info)
 
 INSTANTIATE_TEST_SUITE_P(AllLaws, Tangent,
                          ::testing::Combine(::testing::Values(frictionless, tresca, coulomb),
-                                            ::testing::Values(ContactStatus::open, ContactStatus::stick,
-                                                              ContactStatus::slip),
+                                            ::testing::Values(contact::ContactStatus::open,
+                                                              contact::ContactStatus::stick,
+                                                              contact::ContactStatus::slip),
                                             ::testing::Range(1, 5)),
                          test_name);
 
 template <int dim>
-void expect_linearised_traction_agrees(const Law& law, ContactStatus status)
+void expect_linearised_traction_agrees(const Law& law, contact::ContactStatus status)
 {
-  const std::string parameters = status == ContactStatus::slip ? law.slipping : law.sticking;
+  const std::string parameters = status == contact::ContactStatus::slip ? law.slipping : law.sticking;
   const DiscreteCase<dim> c(contact_case<dim>(2, parameters), bent_block<dim>(7));
-  const NitscheForm<dim>& form = c.form;
+  const contact::NitscheForm<dim>& form = c.form;
   const std::vector<double> u = displaced(c, status, 1);
   const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
   constexpr double h = 1e-6;
@@ -188,8 +192,9 @@ void expect_linearised_traction_agrees(const Law& law, ContactStatus status)
   const std::vector<Point<dim>> at_u = form.traction(u);
   const std::vector<Point<dim>> ahead = form.traction(sum(u, h, step));
   const std::vector<Point<dim>> behind = form.traction(sum(u, -h, step));
-  const std::vector<Point<dim>> same = form.linearised_traction(Linearisation::newton, u, u);
-  const std::vector<Point<dim>> there = form.linearised_traction(Linearisation::newton, u, sum(u, 1, step));
+  const std::vector<Point<dim>> same = form.linearised_traction(contact::Linearisation::newton, u, u);
+  const std::vector<Point<dim>> there =
+      form.linearised_traction(contact::Linearisation::newton, u, sum(u, 1, step));
   ASSERT_EQ(at_u.size(), form.n_contact_points());
   for (std::size_t i = 0; i < at_u.size(); ++i)
   {
@@ -202,7 +207,8 @@ void expect_linearised_traction_agrees(const Law& law, ContactStatus status)
 TEST(LinearisedTraction, AgreesWithDifferences)
 {
   for (const Law& law : {frictionless, tresca, coulomb})
-    for (const ContactStatus status : {ContactStatus::open, ContactStatus::stick, ContactStatus::slip})
+    for (const contact::ContactStatus status :
+         {contact::ContactStatus::open, contact::ContactStatus::stick, contact::ContactStatus::slip})
     {
       SCOPED_TRACE(law.name);
       expect_linearised_traction_agrees<2>(law, status);
@@ -215,19 +221,19 @@ template <int dim>
 void expect_regularised_tangent_agrees(const Law& law, double delta)
 {
   const DiscreteCase<dim> c(contact_case<dim>(2, law.slipping), bent_block<dim>(7));
-  const NitscheForm<dim>& form = c.form;
+  const contact::NitscheForm<dim>& form = c.form;
   const std::vector<double> u = random_free_vector(form.constraints(), 0.02, 3);
   const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
-  const std::vector<ContactStatus> found = statuses(form, u);
-  EXPECT_GT(std::ranges::count(found, ContactStatus::open), 0);
-  EXPECT_GT(std::ranges::count(found, ContactStatus::slip), 0);
+  const std::vector<contact::ContactStatus> found = statuses(form, u);
+  EXPECT_GT(std::ranges::count(found, contact::ContactStatus::open), 0);
+  EXPECT_GT(std::ranges::count(found, contact::ContactStatus::slip), 0);
   constexpr double h = 1e-7;
 
   const std::vector<Point<dim>> at_u = form.traction(u, delta);
   std::vector<Point<dim>> difference = form.traction(sum(u, h, step), delta);
   const std::vector<Point<dim>> behind = form.traction(sum(u, -h, step), delta);
   const std::vector<Point<dim>> there =
-      form.linearised_traction(Linearisation::newton, u, sum(u, 1, step), delta);
+      form.linearised_traction(contact::Linearisation::newton, u, sum(u, 1, step), delta);
   for (std::size_t i = 0; i < at_u.size(); ++i)
   {
     difference[i] = (difference[i] - behind[i]) / (2 * h);
@@ -235,7 +241,8 @@ void expect_regularised_tangent_agrees(const Law& law, double delta)
   }
   std::vector<double> forces(form.space().n_dofs(), 0.0);
   form.add_contact_load(difference, forces);
-  const std::vector<double> tangent = multiply(form.contact_tangent(Linearisation::newton, u, delta), step);
+  const std::vector<double> tangent =
+      multiply(form.contact_tangent(contact::Linearisation::newton, u, delta), step);
   EXPECT_LE(norm(sum(tangent, 1, free_part(form.constraints(), forces))), 2e-5 * norm(tangent));
 }
 
@@ -300,7 +307,8 @@ TEST(Traction, ClosedAndStickingInTheFirstStep)
   {
     const FlatBlock block(law);
     const std::vector<double> zero(block.u.size(), 0.0);
-    return block.c.form.linearised_traction(Linearisation::closed_sticking, zero, sum(zero, scale, block.u));
+    return block.c.form.linearised_traction(contact::Linearisation::closed_sticking, zero,
+                                            sum(zero, scale, block.u));
   };
   const std::string slippery = "friction = \"coulomb\", coefficient = 0.001";
   expect_constant(traction("friction = \"none\"", 1), {0, -F::normal});
@@ -313,7 +321,7 @@ TEST(ContactStates, ClosedFormOnAFlatBottom)
 {
   const FlatBlock block("friction = \"coulomb\", coefficient = 0.1");
   const std::vector<Point<1>> middle{Point<1>(0.5)};
-  const auto table = tabulate_on_facets<2>(block.c.space.basis(), middle);
+  const auto table = fem::tabulate_on_facets<2>(block.c.space.basis(), middle);
   for (int k = 0; k < 4; ++k)
   {
     const auto states = block.c.form.contact_states(block.u, k, table);
@@ -322,7 +330,7 @@ TEST(ContactStates, ClosedFormOnAFlatBottom)
     EXPECT_LE((states[0].normal - Point<2>(0, -1)).norm(), 1e-14);
     EXPECT_NEAR(states[0].pressure, -FlatBlock::normal, 1e-12);
     EXPECT_NEAR(states[0].limit, -0.1 * FlatBlock::normal, 1e-12);
-    EXPECT_EQ(states[0].status, ContactStatus::slip);
+    EXPECT_EQ(states[0].status, contact::ContactStatus::slip);
     EXPECT_NEAR(states[0].gap, 0.04 - 0.1, 1e-14);
     EXPECT_LE((states[0].slip - Point<2>(0.02, 0)).norm(), 1e-14);
   }
@@ -332,21 +340,23 @@ TEST(ContactResultants, OfAConstantTraction)
 {
   const FlatBlock block("friction = \"none\"");
   const std::vector<Point<2>> t(block.c.form.n_contact_points(), Point<2>(0.3, 0.5));
-  const ContactResultants<2> sum = contact_resultants<2>(block.c.form, t);
+  const contact::ContactResultants<2> sum = contact::contact_resultants<2>(block.c.form, t);
   EXPECT_LE((sum.force - Point<2>(0.6, 1.0)).norm(), 1e-13);
   EXPECT_NEAR(sum.normal, -1.0, 1e-13);
   EXPECT_NEAR(sum.tangential, 0.6, 1e-13);  // n = (0, -1) turned by +90 degrees is (1, 0)
   EXPECT_NEAR(sum.abs_tangential, 0.6, 1e-13);
-  EXPECT_EQ(contact_resultants<2>(block.c.form, t, 99).normal, 0);
+  EXPECT_EQ(contact::contact_resultants<2>(block.c.form, t, 99).normal, 0);
 }
 
 TEST(ContactTangent, PatternDoesNotDependOnTheState)
 {
   const DiscreteCase<3> c(contact_case<3>(2, coulomb.slipping), bent_block<3>(4));
-  const Triplets open = c.form.contact_tangent(Linearisation::newton, displaced(c, ContactStatus::open, 1));
-  const Triplets slip = c.form.contact_tangent(Linearisation::newton, displaced(c, ContactStatus::slip, 1));
+  const contact::Triplets open =
+      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, contact::ContactStatus::open, 1));
+  const contact::Triplets slip =
+      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, contact::ContactStatus::slip, 1));
   const std::vector<double> zero(c.space.n_dofs(), 0.0);
-  const Triplets first = c.form.contact_tangent(Linearisation::closed_sticking, zero);
+  const contact::Triplets first = c.form.contact_tangent(contact::Linearisation::closed_sticking, zero);
   EXPECT_FALSE(open.rows.empty());
   EXPECT_EQ(open.rows, slip.rows);
   EXPECT_EQ(open.cols, slip.cols);
@@ -357,8 +367,8 @@ TEST(ContactTangent, PatternDoesNotDependOnTheState)
 TEST(ContactTangent, FixedDegreesOfFreedomHaveNoEntries)
 {
   const DiscreteCase<2> c(contact_case<2>(3, tresca.slipping), bent_block<2>(4));
-  const Triplets tangent =
-      c.form.contact_tangent(Linearisation::newton, displaced(c, ContactStatus::slip, 1));
+  const contact::Triplets tangent =
+      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, contact::ContactStatus::slip, 1));
   int n_dropped = 0;
   for (std::size_t k = 0; k < tangent.values.size(); ++k)
     for (const int dof : {tangent.rows[k], tangent.cols[k]})

@@ -214,11 +214,11 @@ TEST(RigidMotion, TrescaTooWeakAgainstAPullOffTheFloor)
 }
 
 /// An L of three squares, foot to the right; frictionless obstacles around it.
-MeshData<2> hook()
+mesh::MeshData<2> hook()
 {
-  MeshData<2> data = box<2>({0, 0}, {2, 2}, {2, 2});
+  mesh::MeshData<2> data = box<2>({0, 0}, {2, 2}, {2, 2});
   std::erase_if(data.cells,
-                [&](const Cell<2>& cell)
+                [&](const mesh::Cell<2>& cell)
                 {
                   Point<2> middle = Point<2>::Zero();
                   for (const Index v : cell) middle += data.vertices[v] / 3;
@@ -227,7 +227,7 @@ MeshData<2> hook()
   data.regions.resize(data.cells.size());
   data.vertices.pop_back();  // (2, 2)
   std::erase_if(data.facets,
-                [](const TaggedFacet<2>& f) { return f.vertices[0] == 8 || f.vertices[1] == 8; });
+                [](const mesh::TaggedFacet<2>& f) { return f.vertices[0] == 8 || f.vertices[1] == 8; });
   data.boundary_names.insert(data.boundary_names.end(), {"step", "notch"});
   data.facets.push_back({{4, 5}, 4});  // (1, 1)-(2, 1)
   data.facets.push_back({{4, 7}, 5});  // (1, 1)-(1, 2)

@@ -51,7 +51,7 @@ struct RandomCase
     return toml;
   }
 
-  MeshData<dim> mesh()
+  mesh::MeshData<dim> mesh()
   {
     Tensor<dim> turn = Tensor<dim>::Identity();
     const double angle = pick(0, 6.28);
@@ -63,13 +63,14 @@ struct RandomCase
   }
 
   /// A traction that contact can exert, often one of the largest.
-  Point<dim> traction(const ContactFacet<dim>& facet, const Point<dim>& x)
+  Point<dim> traction(const contact::ContactFacet<dim>& facet, const Point<dim>& x)
   {
     const Point<dim>& n = facet.geometry.normal;
     const double pressure = random() % 2 == 0 ? 0 : std::pow(pick(0, 1), 4);
     double limit = 0;
-    if (const auto* tresca = std::get_if<Tresca>(&facet.contact->friction)) limit = tresca->threshold(x);
-    if (const auto* coulomb = std::get_if<Coulomb>(&facet.contact->friction))
+    if (const auto* tresca = std::get_if<case_file::Tresca>(&facet.contact->friction))
+      limit = tresca->threshold(x);
+    if (const auto* coulomb = std::get_if<case_file::Coulomb>(&facet.contact->friction))
       limit = coulomb->coefficient * pressure;
     const Point<dim> any = Point<dim>::Random();
     const Point<dim> direction = (any - any.dot(n) * n).normalized();
@@ -94,11 +95,11 @@ void never_refused(int n_cases)
     // On a third of the cases all friction pulls in one direction as hard as it can.
     const Point<dim> pull = Point<dim>::Random();
     std::vector<Point<dim>> t;
-    for (const ContactFacet<dim>& facet : c.form.contact_facets())
+    for (const contact::ContactFacet<dim>& facet : c.form.contact_facets())
       for (const Point<dim - 1>& s : c.form.facet_rule().points)
       {
         t.push_back(any.traction(
-            facet, cell_map(c.mesh, facet.facet.cell)(facet_to_cell<dim>(facet.facet.local, s))));
+            facet, mesh::cell_map(c.mesh, facet.facet.cell)(mesh::facet_to_cell<dim>(facet.facet.local, s))));
         const Point<dim>& n = facet.geometry.normal;
         const Point<dim> along = pull - pull.dot(n) * n;
         const Point<dim> friction = t.back() - t.back().dot(n) * n;
@@ -110,7 +111,7 @@ void never_refused(int n_cases)
     std::string said = "held";
     try
     {
-      check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load);
+      contact::check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load);
       ++tried;
     }
     catch (const InputError& error)

@@ -72,8 +72,8 @@ TEST(RigidMotion, NamesAComponentThatWouldStopTheMotion)
 
 TEST(RigidMotion, WordsForAScrew)
 {
-  const RigidModes<3> modes{.centre = {0, 0, 0}, .size = 2};
-  RigidModes<3>::Coefficients motion;
+  const contact::RigidModes<3> modes{.centre = {0, 0, 0}, .size = 2};
+  contact::RigidModes<3>::Coefficients motion;
   motion << 1, 0, 3, 0, 0, 1;  // about the vertical axis where its horizontal part vanishes, at y = 2
   EXPECT_EQ(modes.describe(motion), "screw motion about the axis through (0, 2, 0) along (0, 0, 1)");
 }
@@ -92,7 +92,7 @@ TEST(RigidMotion, RollersOnTwoPlanesLeaveTheirCommonDirection)
 
 TEST(RigidMotion, BodiesAreLookedAtOneByOne)
 {
-  const MeshData<2> two = side_by_side(block(), box<2>({5, 0}, {6, 2}, {1, 2}), "2");
+  const mesh::MeshData<2> two = side_by_side(block(), box<2>({5, 0}, {6, 2}, {1, 2}), "2");
   const std::string said = verdict<2>(two,
                                       "boundary.left.displacement = [0, 0]\nboundary.bottom2.displacement = "
                                       "[\"free\", 0]\nboundary.right2.displacement = [\"free\", 0]");
@@ -102,7 +102,7 @@ TEST(RigidMotion, BodiesAreLookedAtOneByOne)
 
 TEST(RigidMotion, TwoRegionsOfOneBodyAreNamedTogether)
 {
-  MeshData<2> data = block();
+  mesh::MeshData<2> data = block();
   data.region_names = {"steel", "rubber"};
   data.regions.back() = 1;
   EXPECT_THAT(verdict<2>(data, ""), HasSubstr("the body (regions \"steel\", \"rubber\")"));

@@ -29,7 +29,7 @@ TEST(ContactFacts, FlatBoundaryWithAGap)
       "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\n"
       "boundary.bottom.contact = { gap = \"0.1*x^2\" }",
       box<2>({-1, 0}, {2, 1}, {6, 1}));
-  const auto facts = contact_boundary_facts(c.form);
+  const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_EQ(facts[0].name, "bottom");
   EXPECT_EQ(facts[0].facets, 6);
@@ -53,7 +53,7 @@ TEST(ContactFacts, PolygonHasEqualKinks)
   const DiscreteCase<2> c(
       "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\nboundary.bottom.contact = {}",
       mapped<2>(box<2>({-3, 0}, {3, 1}, {6, 1}), bend));
-  const auto facts = contact_boundary_facts(c.form);
+  const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_NEAR(facts[0].kink, 1, 1e-10);
   EXPECT_NEAR(facts[0].spread, 2.5, 1e-10);
@@ -63,15 +63,15 @@ TEST(ContactFacts, PolygonHasEqualKinks)
 
 TEST(ContactFacts, CornersOfTheBodyAreNoKinks)
 {
-  MeshData<2> mesh = box<2>({0, 0}, {1, 1}, {2, 2});
-  for (TaggedFacet<2>& facet : mesh.facets)
+  mesh::MeshData<2> mesh = box<2>({0, 0}, {1, 1}, {2, 2});
+  for (mesh::TaggedFacet<2>& facet : mesh.facets)
     if (mesh.boundary_names[facet.tag] == "left")
       facet.tag =
           static_cast<int>(std::ranges::find(mesh.boundary_names, "bottom") - mesh.boundary_names.begin());
   const DiscreteCase<2> c(
       "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\nboundary.bottom.contact = {}",
       mesh);
-  const auto facts = contact_boundary_facts(c.form);
+  const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_EQ(facts[0].kink, 0);
   EXPECT_NEAR(facts[0].spread, 45, 1e-10);
@@ -86,7 +86,7 @@ TEST(ContactFacts, RoofIn3D)
       "material = { E = 1, nu = 0.3 }\nboundary.front.displacement = [0, 0, 0]\nboundary.back.contact = { "
       "gap = 0.5 }",
       mapped<3>(box<3>({-1, 0, 0}, {1, 1, 1}, {2, 1, 1}), fold));
-  const auto facts = contact_boundary_facts(c.form);
+  const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_EQ(facts[0].facets, 4);
   EXPECT_NEAR(facts[0].kink, 10, 1e-10);

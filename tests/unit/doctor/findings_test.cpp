@@ -17,9 +17,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// A case in which all is well.
-Diagnosis healthy()
+doctor::Diagnosis healthy()
 {
-  Diagnosis diagnosis;
+  doctor::Diagnosis diagnosis;
   diagnosis.degree = 2;
   diagnosis.loads.extent = {2, 1};
   diagnosis.loads.size = 2;
@@ -29,23 +29,24 @@ Diagnosis healthy()
   diagnosis.units = {{"m", "N", "Pa", 1, 1}};
   diagnosis.mesh = {45, {0, 0}, 90, {1, 1}, 1.4, {1, 0}, 0.1, 0.2};
   diagnosis.contacts = {{"base", 10, 2, {0, -1}, 0, 0, {}, 0, {0, 0}, 0, {0, 0}}};
-  diagnosis.costs = {{2, 400, LinearMethod::direct, 1e8, 0.5}};
+  diagnosis.costs = {{2, 400, case_file::LinearMethod::direct, 1e8, 0.5}};
   diagnosis.multigrid_bytes = 0.9e8;
   diagnosis.memory = {8e9, false};
   return diagnosis;
 }
 
-Finding finding(const Diagnosis& diagnosis, const std::string& code)
+doctor::Finding finding(const doctor::Diagnosis& diagnosis, const std::string& code)
 {
-  const std::vector<Finding> all = findings(diagnosis);
-  const auto found = std::ranges::find(all, code, &Finding::code);
+  const std::vector<doctor::Finding> all = doctor::findings(diagnosis);
+  const auto found = std::ranges::find(all, code, &doctor::Finding::code);
   if (found == all.end()) ADD_FAILURE() << "no finding " << code;
-  return found == all.end() ? Finding{} : *found;
+  return found == all.end() ? doctor::Finding{} : *found;
 }
 
 TEST(Findings, AHealthyCase)
 {
-  for (const Finding& f : findings(healthy())) EXPECT_EQ(f.severity, Severity::ok) << f.text;
+  for (const doctor::Finding& f : doctor::findings(healthy()))
+    EXPECT_EQ(f.severity, doctor::Severity::ok) << f.text;
   EXPECT_EQ(finding(healthy(), "held").text, "displacement conditions alone stop every rigid motion");
   EXPECT_EQ(finding(healthy(), "gap").text, "contact \"base\" is closed everywhere at the start");
   EXPECT_EQ(finding(healthy(), "units").text,
@@ -58,29 +59,29 @@ TEST(Findings, AHealthyCase)
 
 TEST(Findings, MotionsThatContactStops)
 {
-  Diagnosis diagnosis = healthy();
-  diagnosis.held_by_contact = {{"the body", "translation along y", false, Remedy{"top", 1}},
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.held_by_contact = {{"the body", "translation along y", false, contact::Remedy{"top", 1}},
                                {"the body", "translation along x", true, std::nullopt}};
   EXPECT_EQ(finding(diagnosis, "held_by_contact").text,
             "only contact stops the body from translation along y, and contact only pushes");
   EXPECT_THAT(finding(diagnosis, "held_by_contact").advice, HasSubstr("y on boundary \"top\""));
   EXPECT_EQ(finding(diagnosis, "held_by_friction").text,
             "only friction stops the body from translation along x");
-  EXPECT_EQ(finding(diagnosis, "held_by_friction").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "held_by_friction").severity, doctor::Severity::note);
 }
 
 TEST(Findings, Corners)
 {
-  Diagnosis diagnosis = healthy();
+  doctor::Diagnosis diagnosis = healthy();
   diagnosis.corners = {{"base", "left", 1, {0, 0}, 0, 0, true},
                        {"base", "right", 3, {2, 0}, 0.5, 0.25, false}};
-  const Finding clamped = finding(diagnosis, "overconstrained_corner");
-  EXPECT_EQ(clamped.severity, Severity::note);
+  const doctor::Finding clamped = finding(diagnosis, "overconstrained_corner");
+  EXPECT_EQ(clamped.severity, doctor::Severity::note);
   EXPECT_THAT(clamped.text,
               HasSubstr("contact \"base\" and displacement \"left\" meet at the vertex (0, 0)"));
   EXPECT_THAT(clamped.advice, HasSubstr("singularity"));
-  const Finding pushed = finding(diagnosis, "contradicting_corner");
-  EXPECT_EQ(pushed.severity, Severity::warning);
+  const doctor::Finding pushed = finding(diagnosis, "contradicting_corner");
+  EXPECT_EQ(pushed.severity, doctor::Severity::warning);
   EXPECT_THAT(pushed.text,
               HasSubstr("3 vertices, such as (2, 0), where the prescribed displacement towards the "
                         "obstacle, 0.5, is beyond the gap of 0.25"));
@@ -89,45 +90,45 @@ TEST(Findings, Corners)
 
 TEST(Findings, GapLargerThanTheBody)
 {
-  Diagnosis diagnosis = healthy();
+  doctor::Diagnosis diagnosis = healthy();
   diagnosis.contacts[0].smallest_gap = 0;
   diagnosis.contacts[0].largest_gap = diagnosis.loads.size;
-  EXPECT_EQ(finding(diagnosis, "gap").severity, Severity::ok);
+  EXPECT_EQ(finding(diagnosis, "gap").severity, doctor::Severity::ok);
   diagnosis.contacts[0].largest_gap = 15 * diagnosis.loads.size;
-  EXPECT_EQ(finding(diagnosis, "gap").severity, Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "gap").severity, doctor::Severity::warning);
   EXPECT_THAT(finding(diagnosis, "gap").advice, HasSubstr("up to 15 times the size of the body"));
 }
 
 TEST(Findings, ContactSurface)
 {
-  Diagnosis diagnosis = healthy();
+  doctor::Diagnosis diagnosis = healthy();
   diagnosis.contacts[0].spread = 12;
   diagnosis.contacts[0].kink = 2;
   diagnosis.contacts[0].kink_at = {0.5, 0};
   diagnosis.contacts[0].smallest_gap = 0.5;
   diagnosis.contacts[0].largest_gap = 0.75;
   diagnosis.contacts[0].facets = 2;
-  EXPECT_EQ(finding(diagnosis, "contact_surface").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "contact_surface").severity, doctor::Severity::note);
   EXPECT_THAT(finding(diagnosis, "contact_surface").text, HasSubstr("differ by up to 2 degrees"));
-  EXPECT_EQ(finding(diagnosis, "gap").severity, Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "gap").severity, doctor::Severity::warning);
   EXPECT_THAT(finding(diagnosis, "gap").advice, HasSubstr("25 % of the body"));
-  EXPECT_EQ(finding(diagnosis, "contact_facets").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "contact_facets").severity, doctor::Severity::note);
   diagnosis.refines = false;
-  EXPECT_EQ(finding(diagnosis, "contact_facets").severity, Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "contact_facets").severity, doctor::Severity::warning);
 }
 
 TEST(Findings, LoadsAgainstStiffness)
 {
-  Diagnosis diagnosis = healthy();
+  doctor::Diagnosis diagnosis = healthy();
   diagnosis.loads.traction_stress = 2.1e10;
-  EXPECT_EQ(finding(diagnosis, "strain").severity, Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "strain").severity, doctor::Severity::warning);
   EXPECT_EQ(finding(diagnosis, "strain").text,
             "expect strains of about 10 % (stresses near 2.1e+10, E = 2.1e+11)");
   diagnosis.loads.traction_stress = 100;  // MPa in a case in Pa
-  EXPECT_EQ(finding(diagnosis, "strain").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "strain").severity, doctor::Severity::note);
   EXPECT_THAT(finding(diagnosis, "strain").advice, HasSubstr("units of loads and E"));
   diagnosis.loads.traction_stress = 0;
-  EXPECT_EQ(finding(diagnosis, "no_load").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "no_load").severity, doctor::Severity::note);
   diagnosis.loads.displacement_strain = 0.1;
   EXPECT_THAT(finding(diagnosis, "strain").text,
               HasSubstr("prescribed displacements of 0.2 over the size 2"));
@@ -135,53 +136,54 @@ TEST(Findings, LoadsAgainstStiffness)
 
 TEST(Findings, NearlyIncompressible)
 {
-  Diagnosis diagnosis = healthy();
+  doctor::Diagnosis diagnosis = healthy();
   diagnosis.loads.materials[0].nu = 0.499;
-  EXPECT_EQ(finding(diagnosis, "nearly_incompressible").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "nearly_incompressible").severity, doctor::Severity::note);
   diagnosis.degree = 1;
-  EXPECT_EQ(finding(diagnosis, "nearly_incompressible").severity, Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "nearly_incompressible").severity, doctor::Severity::warning);
   diagnosis.loads.materials[0].plane_stress = true;  // free to expand in z: nothing locks
-  const std::vector<Finding> all = findings(diagnosis);
-  EXPECT_EQ(std::ranges::count(all, "nearly_incompressible", &Finding::code), 0);
+  const std::vector<doctor::Finding> all = doctor::findings(diagnosis);
+  EXPECT_EQ(std::ranges::count(all, "nearly_incompressible", &doctor::Finding::code), 0);
 }
 
 TEST(Findings, MeshAndUnits)
 {
-  Diagnosis diagnosis = healthy();
+  doctor::Diagnosis diagnosis = healthy();
   diagnosis.mesh.smallest_angle = 10;
   diagnosis.mesh.smallest_angle_at = {0.25, 0.5};
   diagnosis.mesh.smallest_cell = 1e-6;
   diagnosis.units.clear();
-  EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, doctor::Severity::warning);
   EXPECT_THAT(finding(diagnosis, "cell_shapes").where, ElementsAre(0.25, 0.5));
-  EXPECT_EQ(finding(diagnosis, "cell_sizes").severity, Severity::warning);
-  EXPECT_EQ(finding(diagnosis, "units").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "cell_sizes").severity, doctor::Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "units").severity, doctor::Severity::note);
   diagnosis.loads.extent = {2, 1, 1};  // what is poor for triangles is usual for tetrahedra
-  EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, Severity::ok);
+  EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, doctor::Severity::ok);
 }
 
 TEST(Findings, Cost)
 {
-  Diagnosis diagnosis = healthy();
-  diagnosis.costs = {{3, 1234567, LinearMethod::iterative, 12.34e9, 4321}};
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.costs = {{3, 1234567, case_file::LinearMethod::iterative, 12.34e9, 4321}};
   EXPECT_EQ(finding(diagnosis, "cost_degree_3").text,
             "degree 3 on this mesh: 1234567 degrees of freedom, about 12 GB and 72 min");
 }
 
 TEST(Findings, MegabytesThatAreAGigabyte)
 {
-  Diagnosis diagnosis = healthy();
-  diagnosis.costs = {{2, 1e5, LinearMethod::direct, 0.9996e9, 50}};
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.costs = {{2, 1e5, case_file::LinearMethod::direct, 0.9996e9, 50}};
   EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("about 1.0 GB"));
 }
 
 TEST(Findings, MemoryThatIsNotThere)
 {
-  Diagnosis diagnosis = healthy();
-  diagnosis.costs = {{1, 1e5, LinearMethod::direct, 4e9, 50}, {2, 1e6, LinearMethod::direct, 30e9, 500}};
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.costs = {{1, 1e5, case_file::LinearMethod::direct, 4e9, 50},
+                     {2, 1e6, case_file::LinearMethod::direct, 30e9, 500}};
   diagnosis.multigrid_bytes = 7e9;
-  const Finding warning = finding(diagnosis, "memory");
-  EXPECT_EQ(warning.severity, Severity::warning);
+  const doctor::Finding warning = finding(diagnosis, "memory");
+  EXPECT_EQ(warning.severity, doctor::Severity::warning);
   EXPECT_EQ(warning.text,
             "this case needs about 30 GB on this mesh, more than 8.0 GB (nine tenths of the machine)");
   EXPECT_EQ(
@@ -189,13 +191,13 @@ TEST(Findings, MemoryThatIsNotThere)
       "take solver.method = \"iterative\" (about 7.0 GB), or degree 1 (about 4.0 GB), or a coarser first "
       "mesh, which the run refines where it pays");
   diagnosis.memory = {40e9, true};  // within the uncertainty of the estimate
-  EXPECT_EQ(finding(diagnosis, "memory").severity, Severity::note);
+  EXPECT_EQ(finding(diagnosis, "memory").severity, doctor::Severity::note);
   EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("of 40 GB (adapt.max_memory)"));
   diagnosis.memory = {100e9, true};
-  EXPECT_EQ(finding(diagnosis, "memory").severity, Severity::ok);
+  EXPECT_EQ(finding(diagnosis, "memory").severity, doctor::Severity::ok);
   diagnosis.memory = {};  // not known
-  const std::vector<Finding> all = findings(diagnosis);
-  EXPECT_EQ(std::ranges::count(all, "memory", &Finding::code), 0);
+  const std::vector<doctor::Finding> all = doctor::findings(diagnosis);
+  EXPECT_EQ(std::ranges::count(all, "memory", &doctor::Finding::code), 0);
 }
 
 }  // namespace

@@ -19,14 +19,14 @@ namespace
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-LoadFacts facts(const std::string& toml, double size = 1)
+doctor::LoadFacts facts(const std::string& toml, double size = 1)
 {
-  return load_facts(DiscreteCase<2>(toml, box<2>({0, 0}, {2 * size, size}, {4, 2})).form);
+  return doctor::load_facts(DiscreteCase<2>(toml, box<2>({0, 0}, {2 * size, size}, {4, 2})).form);
 }
 
 TEST(LoadFacts, TractionAndWhatHoldsIt)
 {
-  const LoadFacts loads = facts(
+  const doctor::LoadFacts loads = facts(
       "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.traction = [0.3, "
       "-0.4]");
   EXPECT_THAT(loads.extent, ElementsAre(2, 1));
@@ -39,7 +39,7 @@ TEST(LoadFacts, TractionAndWhatHoldsIt)
 
 TEST(LoadFacts, LoadsInEquilibriumDoNotReachTheSupports)
 {
-  const LoadFacts loads = facts(
+  const doctor::LoadFacts loads = facts(
       "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.pressure = 2\n"
       "boundary.bottom.pressure = 2");
   EXPECT_NEAR(loads.traction_stress, 2, 1e-14);
@@ -48,7 +48,7 @@ TEST(LoadFacts, LoadsInEquilibriumDoNotReachTheSupports)
 
 TEST(LoadFacts, ANegativePressurePulls)
 {
-  const LoadFacts loads = facts(
+  const doctor::LoadFacts loads = facts(
       "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.pressure = 2\n"
       "boundary.right.pressure = \"0.75-y\"");
   ASSERT_EQ(loads.suction.size(), 1u);
@@ -59,7 +59,7 @@ TEST(LoadFacts, ANegativePressurePulls)
 
 TEST(LoadFacts, BodyForceOverTheLengthOfTheBody)
 {
-  const LoadFacts loads =
+  const doctor::LoadFacts loads =
       facts("material = { E = 100, nu = 0.3 }\nload.body = [0, -0.25]\nboundary.left.displacement = [0, 0]");
   EXPECT_NEAR(loads.largest_body_force, 0.25, 1e-15);
   EXPECT_NEAR(loads.body_stress, 0.5, 1e-14);
@@ -82,7 +82,7 @@ TEST(LoadFacts, PrescribedDisplacements)
 
 TEST(LoadFacts, MaterialsAsGiven)
 {
-  const LoadFacts loads =
+  const doctor::LoadFacts loads =
       facts("material = { E = 7, nu = 0.25, plane = \"stress\" }\nboundary.left.displacement = [0, 0]");
   EXPECT_NEAR(loads.smallest_E, 7, 1e-13);
   EXPECT_NEAR(loads.materials[0].nu, 0.25, 1e-14);
@@ -91,13 +91,13 @@ TEST(LoadFacts, MaterialsAsGiven)
 
 std::vector<std::string> guesses(double E, double size, double body_force = 0)
 {
-  LoadFacts loads;
+  doctor::LoadFacts loads;
   loads.materials = {{"body", E, 0.3, false}};
   loads.smallest_E = E;
   loads.size = size;
   loads.largest_body_force = body_force;
   std::vector<std::string> names;
-  for (const UnitSystem& units : plausible_units(loads))
+  for (const doctor::UnitSystem& units : doctor::plausible_units(loads))
     names.push_back(units.length + " " + units.force + " " + units.stress);
   return names;
 }

@@ -15,18 +15,18 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-LevelRecord level(const BoundComponents& components)
+io::LevelRecord level(const certify::BoundComponents& components)
 {
-  LevelRecord record;
+  io::LevelRecord record;
   record.figures.sigma_norm = 10;
   record.figures.max_displacement = 1;
-  record.bound = Bound{components, components.total(), components.total_sharp()};
+  record.bound = certify::Bound{components, components.total(), components.total_sharp()};
   return record;
 }
 
-ContactOutcome closed_contact()
+doctor::ContactOutcome closed_contact()
 {
-  ContactOutcome outcome;
+  doctor::ContactOutcome outcome;
   outcome.boundary = "base";
   outcome.facets = 20;
   outcome.closed_facets = 10;
@@ -41,14 +41,15 @@ ContactOutcome closed_contact()
   return outcome;
 }
 
-std::vector<std::string> codes(const LevelRecord& record, const ContactOutcome& outcome)
+std::vector<std::string> codes(const io::LevelRecord& record, const doctor::ContactOutcome& outcome)
 {
   std::vector<std::string> result;
-  for (const RunWarning& warning : run_warnings(record, std::array{outcome})) result.push_back(warning.code);
+  for (const io::RunWarning& warning : doctor::run_warnings(record, std::array{outcome}))
+    result.push_back(warning.code);
   return result;
 }
 
-const LevelRecord sound = level({.str = 1, .cnt = 0.5});
+const io::LevelRecord sound = level({.str = 1, .cnt = 0.5});
 
 TEST(RunWarnings, NoneForASoundResult)
 {
@@ -60,14 +61,14 @@ TEST(RunWarnings, DataThatDominate)
   EXPECT_THAT(codes(level({.osc = 2, .str = 1}), closed_contact()), ElementsAre("body_force_oscillation"));
   EXPECT_THAT(codes(level({.str = 1, .neu = 2}), closed_contact()), ElementsAre("traction_oscillation"));
   EXPECT_THAT(codes(level({.osc = 1e-12, .str = 1e-14}), closed_contact()), IsEmpty());  // round-off
-  LevelRecord without_bound;
+  io::LevelRecord without_bound;
   without_bound.figures.max_displacement = 1;
   EXPECT_THAT(codes(without_bound, closed_contact()), IsEmpty());
 }
 
 TEST(RunWarnings, ContactThatIsNotResolved)
 {
-  ContactOutcome outcome = closed_contact();
+  doctor::ContactOutcome outcome = closed_contact();
   outcome.closed_facets = 2;
   EXPECT_THAT(codes(sound, outcome), ElementsAre("few_contact_facets"));
   outcome.facets = 2;  // all of it is closed: nothing to resolve
@@ -81,12 +82,12 @@ TEST(RunWarnings, ContactThatIsNotResolved)
 /// What is compared with a limit, from either side of it, and where it is.
 TEST(RunWarnings, Zigzag)
 {
-  ContactOutcome outcome = closed_contact();
+  doctor::ContactOutcome outcome = closed_contact();
   outcome.zigzag = 0.035;
   EXPECT_THAT(codes(sound, outcome), IsEmpty());
   outcome.zigzag = 0.06;
   outcome.zigzag_at = {0.25, 0};
-  const auto warnings = run_warnings(sound, std::array{outcome});
+  const auto warnings = doctor::run_warnings(sound, std::array{outcome});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].code, "pressure_zigzag");
   EXPECT_EQ(warnings[0].value, 0.06);
@@ -96,13 +97,13 @@ TEST(RunWarnings, Zigzag)
 
 TEST(RunWarnings, PressureAtKinks)
 {
-  ContactOutcome outcome = closed_contact();
+  doctor::ContactOutcome outcome = closed_contact();
   outcome.kink = 0.5;
   outcome.kink_pressure = 2;  // a Hertz contact on a fine polygon
   EXPECT_THAT(codes(sound, outcome), IsEmpty());
   outcome.kink_pressure = 4.5;
   outcome.kink_at = {0.5, 0};
-  const auto warnings = run_warnings(sound, std::array{outcome});
+  const auto warnings = doctor::run_warnings(sound, std::array{outcome});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].code, "pressure_at_kinks");
   EXPECT_DOUBLE_EQ(warnings[0].value, 3);
@@ -113,12 +114,12 @@ TEST(RunWarnings, PressureAtKinks)
 
 TEST(RunWarnings, Penetration)
 {
-  ContactOutcome outcome = closed_contact();
+  doctor::ContactOutcome outcome = closed_contact();
   outcome.penetration = 0.015;
   EXPECT_THAT(codes(sound, outcome), IsEmpty());
   outcome.penetration = 0.1;
   outcome.penetration_at = {0.5, 0};
-  const auto warnings = run_warnings(sound, std::array{outcome});
+  const auto warnings = doctor::run_warnings(sound, std::array{outcome});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].code, "penetration");
   EXPECT_DOUBLE_EQ(warnings[0].value, 0.1);
@@ -128,7 +129,7 @@ TEST(RunWarnings, Penetration)
 
 TEST(RunWarnings, Friction)
 {
-  ContactOutcome outcome = closed_contact();
+  doctor::ContactOutcome outcome = closed_contact();
   outcome.coefficient = 1.5;
   EXPECT_THAT(codes(sound, outcome), ElementsAre("friction_coefficient"));
   outcome = closed_contact();

@@ -26,7 +26,7 @@ using ::testing::SizeIs;
 const std::string material = "degree = 1\nmaterial = { E = 1, nu = 0 }\nnitsche.gamma0 = 1\n";
 
 template <int dim>
-std::vector<double> interpolate(const LagrangeSpace<dim>& space,
+std::vector<double> interpolate(const fem::LagrangeSpace<dim>& space,
                                 const std::function<Point<dim>(const Point<dim>&)>& f)
 {
   std::vector<double> u;
@@ -39,20 +39,20 @@ std::vector<double> interpolate(const LagrangeSpace<dim>& space,
 }
 
 /// Eight facets of length 1/4 at the bottom: gamma = 4.
-ContactOutcome outcome(const std::string& contact, const std::function<Point<2>(const Point<2>&)>& u)
+doctor::ContactOutcome outcome(const std::string& contact, const std::function<Point<2>(const Point<2>&)>& u)
 {
   const DiscreteCase<2> c(material + "boundary.bottom.contact = " + contact, box<2>({0, 0}, {2, 1}, {8, 4}));
-  const auto outcomes = contact_outcomes<2>(c.form, interpolate<2>(c.space, u));
+  const auto outcomes = doctor::contact_outcomes<2>(c.form, interpolate<2>(c.space, u));
   EXPECT_THAT(outcomes, SizeIs(1));
   return outcomes.front();
 }
 
 TEST(SolutionFacts, Penetration)
 {
-  const ContactOutcome found = outcome("{ gap = 0.25 }",
-                                       [](const Point<2>& x) -> Point<2> {
-                                         return {0, -0.25 * x[0]};
-                                       });
+  const doctor::ContactOutcome found = outcome("{ gap = 0.25 }",
+                                               [](const Point<2>& x) -> Point<2> {
+                                                 return {0, -0.25 * x[0]};
+                                               });
   EXPECT_EQ(found.boundary, "bottom");
   EXPECT_EQ(found.facets, 8);
   EXPECT_EQ(found.closed_facets, 4);  // u^n = x/4 passes the gap at x = 1
@@ -66,10 +66,10 @@ TEST(SolutionFacts, Penetration)
 
 TEST(SolutionFacts, OpenContact)
 {
-  const ContactOutcome found = outcome("{}",
-                                       [](const Point<2>&) -> Point<2> {
-                                         return {0, 1};
-                                       });
+  const doctor::ContactOutcome found = outcome("{}",
+                                               [](const Point<2>&) -> Point<2> {
+                                                 return {0, 1};
+                                               });
   EXPECT_EQ(found.closed, 0);
   EXPECT_EQ(found.closed_facets, 0);
   EXPECT_EQ(found.penetration, 0);
@@ -79,27 +79,27 @@ TEST(SolutionFacts, OpenContact)
 TEST(SolutionFacts, SlidingAndSticking)
 {
   const std::string coulomb = "{ friction = \"coulomb\", coefficient = 0.5 }";
-  const ContactOutcome slides = outcome(coulomb,
-                                        [](const Point<2>&) -> Point<2> {
-                                          return {0.25, -0.25};
-                                        });
+  const doctor::ContactOutcome slides = outcome(coulomb,
+                                                [](const Point<2>&) -> Point<2> {
+                                                  return {0.25, -0.25};
+                                                });
   EXPECT_TRUE(slides.has_friction);
   EXPECT_EQ(slides.coefficient, 0.5);
   EXPECT_NEAR(slides.slipping, 2, 1e-12);
-  const ContactOutcome sticks = outcome(coulomb,
-                                        [](const Point<2>&) -> Point<2> {
-                                          return {0, -0.25};
-                                        });
+  const doctor::ContactOutcome sticks = outcome(coulomb,
+                                                [](const Point<2>&) -> Point<2> {
+                                                  return {0, -0.25};
+                                                });
   EXPECT_EQ(sticks.slipping, 0);
   EXPECT_NEAR(sticks.closed, 2, 1e-12);
 }
 
 TEST(SolutionFacts, ForceAndMeanPressure)
 {
-  const ContactOutcome found = outcome("{ gap = 0.25 }",
-                                       [](const Point<2>& x) -> Point<2> {
-                                         return {0, -0.25 * x[0]};
-                                       });
+  const doctor::ContactOutcome found = outcome("{ gap = 0.25 }",
+                                               [](const Point<2>& x) -> Point<2> {
+                                                 return {0, -0.25 * x[0]};
+                                               });
   EXPECT_NEAR(found.force, 4 * 0.25 / 2, 1e-12);  // 4 (x/4 - 1/4) from 1 to 2
   EXPECT_NEAR(found.mean_pressure(), 0.5, 1e-12);
 }
@@ -124,10 +124,10 @@ TEST(SolutionFacts, PressuresWithoutZigzag)
 /// the four facets whose neighbours have two neighbours.
 TEST(SolutionFacts, ZigzagOfTheGap)
 {
-  const ContactOutcome found = outcome("{ gap = \"0.01 + 0.01*(sin(4*pi*x) > 0 ? 1 : -1)\" }",
-                                       [](const Point<2>&) -> Point<2> {
-                                         return {0, -1};
-                                       });
+  const doctor::ContactOutcome found = outcome("{ gap = \"0.01 + 0.01*(sin(4*pi*x) > 0 ? 1 : -1)\" }",
+                                               [](const Point<2>&) -> Point<2> {
+                                                 return {0, -1};
+                                               });
   EXPECT_NEAR(found.zigzag, 0.01 * std::sqrt(0.5) / std::hypot(0.99, 0.01), 1e-12);
   EXPECT_NEAR(found.largest_pressure, 4, 1e-12);
 }
@@ -142,16 +142,16 @@ TEST(SolutionFacts, PressureAtKinks)
                           mapped<2>(box<2>({0, 0}, {3, 1}, {3, 1}), bend));
   const auto press = [&](const std::function<double(double)>& w)
   {
-    return contact_outcomes<2>(c.form, interpolate<2>(c.space,
-                                                      [&](const Point<2>& x) -> Point<2> {
-                                                        return {0, -w(x[0])};
-                                                      }))
+    return doctor::contact_outcomes<2>(c.form, interpolate<2>(c.space,
+                                                              [&](const Point<2>& x) -> Point<2> {
+                                                                return {0, -w(x[0])};
+                                                              }))
         .front();
   };
-  const ContactOutcome even = press([](double) { return 1; });
+  const doctor::ContactOutcome even = press([](double) { return 1; });
   EXPECT_NEAR(even.kink, (std::atan(0.05) - std::atan(0.03)) * 180 / std::numbers::pi, 0.02);
   EXPECT_NEAR(even.kink_pressure / even.mean_pressure(), 1, 0.05);
-  const ContactOutcome peaked = press([](double x) { return x > 2.5 ? 10 : 1; });
+  const doctor::ContactOutcome peaked = press([](double x) { return x > 2.5 ? 10 : 1; });
   EXPECT_GT(peaked.kink_pressure / peaked.mean_pressure(), 2);
   EXPECT_NEAR(peaked.kink_at[0], 3, 0.1);
   EXPECT_EQ(press([](double) { return -1; }).kink, 0);  // nothing touches
@@ -162,10 +162,10 @@ TEST(SolutionFacts, ZigzagIn3D)
   const DiscreteCase<3> c(material + "boundary.back.contact = {}", box<3>({0, 0, 0}, {1, 1, 1}, {4, 4, 1}));
   const auto zigzag = [&](const std::function<double(const Point<3>&)>& w)
   {
-    return contact_outcomes<3>(c.form, interpolate<3>(c.space,
-                                                      [&](const Point<3>& x) -> Point<3> {
-                                                        return {0, 0, -w(x)};
-                                                      }))
+    return doctor::contact_outcomes<3>(c.form, interpolate<3>(c.space,
+                                                              [&](const Point<3>& x) -> Point<3> {
+                                                                return {0, 0, -w(x)};
+                                                              }))
         .front()
         .zigzag;
   };

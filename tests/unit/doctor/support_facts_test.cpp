@@ -29,14 +29,14 @@ DiscreteCase<2> block(const std::string& toml)
 TEST(SupportFacts, ClampedBodyNeedsNoContact)
 {
   const auto c = block("boundary.left.displacement = [0, 0]\nboundary.bottom.contact = {}");
-  EXPECT_THAT(motions_held_by_contact(c.form), IsEmpty());
+  EXPECT_THAT(doctor::motions_held_by_contact(c.form), IsEmpty());
 }
 
 TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
 {
   const auto c = block(
       "boundary.left.displacement = [0, \"free\"]\nboundary.bottom.contact = {}\nboundary.top.pressure = 1");
-  const auto motions = motions_held_by_contact(c.form);
+  const auto motions = doctor::motions_held_by_contact(c.form);
   ASSERT_THAT(motions, SizeIs(1));
   EXPECT_EQ(motions[0].body, "the body (region \"box\")");
   EXPECT_EQ(motions[0].motion, "translation along y");
@@ -51,7 +51,7 @@ TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
 template <int dim>
 std::vector<std::string> sliding_boundaries(const DiscreteCase<dim>& c)
 {
-  const std::vector<bool> slides = slides_as_a_whole(c.form);
+  const std::vector<bool> slides = doctor::slides_as_a_whole(c.form);
   std::vector<std::string> names;
   for (std::size_t tag = 0; tag < slides.size(); ++tag)
     if (slides[tag]) names.push_back(c.problem.boundaries()[tag].name);
@@ -91,7 +91,7 @@ TEST(SupportFacts, SlidingIsJudgedOnPlaneBoundariesOnly)
 TEST(SupportFacts, LooseBlockIsHeldByPressureAndFriction)
 {
   const auto c = block("boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }");
-  const auto motions = motions_held_by_contact(c.form);
+  const auto motions = doctor::motions_held_by_contact(c.form);
   ASSERT_THAT(motions, SizeIs(3));
   EXPECT_EQ(motions[0].motion, "translation along y");
   EXPECT_FALSE(motions[0].by_friction);
@@ -99,8 +99,8 @@ TEST(SupportFacts, LooseBlockIsHeldByPressureAndFriction)
   EXPECT_FALSE(motions[1].by_friction);
   EXPECT_EQ(motions[2].motion, "translation along x");
   EXPECT_TRUE(motions[2].by_friction);
-  EXPECT_EQ(motions[2].remedy, (Remedy{"left", 0}));
-  EXPECT_EQ(motions[0].remedy, (Remedy{"top", 1}));
+  EXPECT_EQ(motions[2].remedy, (contact::Remedy{"left", 0}));
+  EXPECT_EQ(motions[0].remedy, (contact::Remedy{"top", 1}));
 }
 
 TEST(SupportFacts, NoRemedyWhereAllIsContact)
@@ -108,7 +108,8 @@ TEST(SupportFacts, NoRemedyWhereAllIsContact)
   const auto c = block(
       "boundary.left.contact = {}\nboundary.right.contact = {}\nboundary.top.contact = {}\n"
       "boundary.bottom.contact = {}");
-  for (const ContactHeldMotion& motion : motions_held_by_contact(c.form)) EXPECT_FALSE(motion.remedy);
+  for (const doctor::ContactHeldMotion& motion : doctor::motions_held_by_contact(c.form))
+    EXPECT_FALSE(motion.remedy);
 }
 
 TEST(SupportFacts, ClampedCorner)
@@ -116,7 +117,7 @@ TEST(SupportFacts, ClampedCorner)
   const auto c = block(
       "boundary.left.displacement = [0, 0]\nboundary.bottom.contact = { friction = \"tresca\", threshold = 1 "
       "}");
-  const auto corners = overconstrained_corners(c.form);
+  const auto corners = doctor::overconstrained_corners(c.form);
   ASSERT_THAT(corners, SizeIs(1));
   EXPECT_EQ(corners[0].contact, "bottom");
   EXPECT_EQ(corners[0].displacement, "left");
@@ -129,7 +130,7 @@ TEST(SupportFacts, ClampedCorner)
 TEST(SupportFacts, SymmetryDoesNotConstrainTheNormal)
 {
   const auto c = block("boundary.left.displacement = [0, \"free\"]\nboundary.bottom.contact = {}");
-  EXPECT_THAT(overconstrained_corners(c.form), IsEmpty());
+  EXPECT_THAT(doctor::overconstrained_corners(c.form), IsEmpty());
 }
 
 TEST(SupportFacts, DisplacementBeyondTheGap)
@@ -137,7 +138,7 @@ TEST(SupportFacts, DisplacementBeyondTheGap)
   const auto c = block(
       "boundary.left.displacement = [\"free\", -0.25]\nboundary.right.displacement = [0, \"-0.1*y\"]\n"
       "boundary.bottom.contact = { gap = 0.125 }");
-  const auto corners = overconstrained_corners(c.form);
+  const auto corners = doctor::overconstrained_corners(c.form);
   ASSERT_THAT(corners, SizeIs(2));
   EXPECT_EQ(corners[0].displacement, "left");
   EXPECT_EQ(corners[0].normal, 0.25);
@@ -153,7 +154,7 @@ TEST(SupportFacts, EdgeIn3DCountsItsVertices)
   const DiscreteCase<3> c(
       material + "boundary.left.displacement = [0, \"free\", \"0.01*y\"]\nboundary.back.contact = {}",
       box<3>({0, 0, 0}, {1, 1, 1}, {1, 3, 1}));
-  const auto corners = overconstrained_corners(c.form);
+  const auto corners = doctor::overconstrained_corners(c.form);
   ASSERT_THAT(corners, SizeIs(1));
   EXPECT_EQ(corners[0].vertices, 4);
   EXPECT_THAT(corners[0].where, ElementsAre(0, 0, 0));  // where the body is closest to the obstacle

@@ -17,10 +17,10 @@ namespace
 {
 
 template <int k>
-Eigen::VectorXd coefficients(const Quadrature<k>& rule, int degree, const Eigen::VectorXd& values)
+Eigen::VectorXd coefficients(const fem::Quadrature<k>& rule, int degree, const Eigen::VectorXd& values)
 {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const std::vector<double> matrix = bernstein_from_points<k>(rule, degree);
+  const std::vector<double> matrix = fem::bernstein_from_points<k>(rule, degree);
   const auto n = static_cast<Eigen::Index>(matrix.size()) / values.size();
   return Eigen::Map<const RowMajor>(matrix.data(), n, values.size()) * values;
 }
@@ -28,7 +28,7 @@ Eigen::VectorXd coefficients(const Quadrature<k>& rule, int degree, const Eigen:
 TEST(Bernstein, AQuadraticHasItsKnownCoefficients)
 {
   // x^2 = B_2 on the segment; (x - 1/2)^2 has the coefficients 1/4, -1/4, 1/4.
-  const Quadrature<1> rule = quadrature<1>(4);
+  const fem::Quadrature<1> rule = fem::quadrature<1>(4);
   Eigen::VectorXd values(rule.size());
   for (int q = 0; q < rule.size(); ++q) values[q] = std::pow(rule.points[q][0] - 0.5, 2);
   const Eigen::VectorXd b = coefficients<1>(rule, 2, values);
@@ -52,7 +52,7 @@ void expect_enclosure(int degree, std::mt19937& dice)
       sum += a[1] * std::pow(a[0] + a.template tail<k>().dot(x), degree) + a[0];
     return sum;
   };
-  const Quadrature<k> rule = quadrature<k>(2 * degree);
+  const fem::Quadrature<k> rule = fem::quadrature<k>(2 * degree);
   Eigen::VectorXd values(rule.size());
   for (int q = 0; q < rule.size(); ++q) values[q] = f(rule.points[q]);
   const Eigen::VectorXd b = coefficients<k>(rule, degree, values);

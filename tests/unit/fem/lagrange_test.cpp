@@ -32,8 +32,8 @@ TYPED_TEST(Lagrange, NodesAreThePrincipalLatticeByEntity)
   constexpr int k = TypeParam::value;
   for (int p = 1; p <= 6; ++p)
   {
-    const LagrangeBasis<k> basis(p);
-    ASSERT_EQ(basis.n_nodes(), polynomial_dimension(k, p));
+    const fem::LagrangeBasis<k> basis(p);
+    ASSERT_EQ(basis.n_nodes(), fem::polynomial_dimension(k, p));
     std::set<std::array<int, k + 1>> seen;
     for (int i = 0; i < basis.n_nodes(); ++i)
     {
@@ -51,8 +51,8 @@ TYPED_TEST(Lagrange, OneAtItsNodeZeroAtTheOthers)
   constexpr int k = TypeParam::value;
   for (int p = 1; p <= 6; ++p)
   {
-    const LagrangeBasis<k> basis(p);
-    const Tabulation<k> table = basis.tabulate(basis.node_points());
+    const fem::LagrangeBasis<k> basis(p);
+    const fem::Tabulation<k> table = basis.tabulate(basis.node_points());
     ASSERT_EQ(table.n_points, basis.n_nodes());
     ASSERT_EQ(table.n_nodes, basis.n_nodes());
     for (int q = 0; q < table.n_points; ++q)
@@ -63,10 +63,10 @@ TYPED_TEST(Lagrange, OneAtItsNodeZeroAtTheOthers)
 TYPED_TEST(Lagrange, SumToOneAndGradientsToZero)
 {
   constexpr int k = TypeParam::value;
-  const std::vector<Point<k>> points = quadrature<k>(7).points;
+  const std::vector<Point<k>> points = fem::quadrature<k>(7).points;
   for (int p = 1; p <= 6; ++p)
   {
-    const Tabulation<k> table = LagrangeBasis<k>(p).tabulate(points);
+    const fem::Tabulation<k> table = fem::LagrangeBasis<k>(p).tabulate(points);
     for (int q = 0; q < table.n_points; ++q)
     {
       const auto values = table.values_at(q);
@@ -82,19 +82,19 @@ TYPED_TEST(Lagrange, GradientsAgreeWithDifferences)
 {
   constexpr int k = TypeParam::value;
   constexpr double h = 1e-5;
-  const std::vector<Point<k>> points = quadrature<k>(5).points;
+  const std::vector<Point<k>> points = fem::quadrature<k>(5).points;
   for (int p = 1; p <= 4; ++p)
   {
-    const LagrangeBasis<k> basis(p);
-    const Tabulation<k> table = basis.tabulate(points);
+    const fem::LagrangeBasis<k> basis(p);
+    const fem::Tabulation<k> table = basis.tabulate(points);
     for (int a = 0; a < k; ++a)
     {
       std::vector<Point<k>> ahead = points;
       std::vector<Point<k>> behind = points;
       for (Point<k>& x : ahead) x[a] += h;
       for (Point<k>& x : behind) x[a] -= h;
-      const Tabulation<k> plus = basis.tabulate(ahead);
-      const Tabulation<k> minus = basis.tabulate(behind);
+      const fem::Tabulation<k> plus = basis.tabulate(ahead);
+      const fem::Tabulation<k> minus = basis.tabulate(behind);
       for (std::size_t i = 0; i < table.values.size(); ++i)
         EXPECT_NEAR((plus.values[i] - minus.values[i]) / (2 * h), table.gradients[i][a], 2e-8);
     }
@@ -104,13 +104,13 @@ TYPED_TEST(Lagrange, GradientsAgreeWithDifferences)
 template <int dim>
 void expect_facet_tables_agree()
 {
-  const std::vector<Point<dim - 1>> points = quadrature<dim - 1>(5).points;
+  const std::vector<Point<dim - 1>> points = fem::quadrature<dim - 1>(5).points;
   for (int p = 1; p <= 4; ++p)
   {
-    const LagrangeBasis<dim> basis(p);
-    const LagrangeBasis<dim - 1> trace(p);
-    const FacetTabulation<dim> facets = tabulate_on_facets<dim>(basis, points);
-    const Tabulation<dim - 1> expected = trace.tabulate(points);
+    const fem::LagrangeBasis<dim> basis(p);
+    const fem::LagrangeBasis<dim - 1> trace(p);
+    const fem::FacetTabulation<dim> facets = fem::tabulate_on_facets<dim>(basis, points);
+    const fem::Tabulation<dim - 1> expected = trace.tabulate(points);
     ASSERT_EQ(facets.points.size(), points.size());
     for (int facet = 0; facet <= dim; ++facet)
       for (int q = 0; q < expected.n_points; ++q)
@@ -119,7 +119,7 @@ void expect_facet_tables_agree()
           // The trace of a function is the function of the facet with the node's remaining weights.
           double value = 0;
           for (int j = 0; j < trace.n_nodes(); ++j)
-            if (basis.node(i)[facet] == 0 && facet_vertices(basis.node(i), facet) == trace.node(j))
+            if (basis.node(i)[facet] == 0 && mesh::facet_vertices(basis.node(i), facet) == trace.node(j))
               value = expected.values_at(q)[j];
           EXPECT_NEAR(facets.on_facet[facet].values_at(q)[i], value, 1e-13);
         }

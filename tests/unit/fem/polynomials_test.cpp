@@ -23,8 +23,8 @@ constexpr int max_degree = 8;
 template <int k>
 std::vector<double> values(int degree, const Point<k>& x)
 {
-  std::vector<double> result(polynomial_dimension(k, degree));
-  orthonormal_values<k>(degree, x, result);
+  std::vector<double> result(fem::polynomial_dimension(k, degree));
+  fem::orthonormal_values<k>(degree, x, result);
   return result;
 }
 
@@ -48,8 +48,8 @@ TYPED_TEST_SUITE(OrthonormalPolynomials, AllDimensions);
 TYPED_TEST(OrthonormalPolynomials, AreOrthonormal)
 {
   constexpr int k = TypeParam::value;
-  const Quadrature<k> rule = quadrature<k>(2 * max_degree);
-  const int n = polynomial_dimension(k, max_degree);
+  const fem::Quadrature<k> rule = fem::quadrature<k>(2 * max_degree);
+  const int n = fem::polynomial_dimension(k, max_degree);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
   for (int q = 0; q < rule.size(); ++q)
   {
@@ -68,7 +68,7 @@ TYPED_TEST(OrthonormalPolynomials, FirstOnesSpanThePolynomialsOfLowerDegree)
   const Point<k> start = Point<k>::Constant(0.05);
   for (int m = 0; m < max_degree; ++m)
   {
-    const int n = polynomial_dimension(k, m);
+    const int n = fem::polynomial_dimension(k, m);
     std::vector<double> difference(n, 0.0);
     std::vector<double> size(n, 0.0);
     double binomial = 1;
@@ -105,12 +105,12 @@ TYPED_TEST(OrthonormalPolynomials, GradientsAgreeWithDifferences)
 {
   constexpr int k = TypeParam::value;
   constexpr double h = 1e-4;
-  const int n = polynomial_dimension(k, max_degree);
+  const int n = fem::polynomial_dimension(k, max_degree);
   std::vector<double> phi(n);
   std::vector<Point<k>> gradients(n);
   for (const Point<k>& x : sample_points<k>())
   {
-    orthonormal_gradients<k>(max_degree, x, phi, gradients);
+    fem::orthonormal_gradients<k>(max_degree, x, phi, gradients);
     EXPECT_EQ(phi, values<k>(max_degree, x));
     for (int a = 0; a < k; ++a)
     {
@@ -128,10 +128,10 @@ TYPED_TEST(OrthonormalPolynomials, GradientsAgreeWithDifferences)
 
 TEST(PolynomialDimension, Counts)
 {
-  EXPECT_EQ(polynomial_dimension(2, -1), 0);
-  EXPECT_EQ(polynomial_dimension(1, 5), 6);
-  EXPECT_EQ(polynomial_dimension(2, 4), 15);
-  EXPECT_EQ(polynomial_dimension(3, 4), 35);
+  EXPECT_EQ(fem::polynomial_dimension(2, -1), 0);
+  EXPECT_EQ(fem::polynomial_dimension(1, 5), 6);
+  EXPECT_EQ(fem::polynomial_dimension(2, 4), 15);
+  EXPECT_EQ(fem::polynomial_dimension(3, 4), 35);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ void for_each_monomial(int degree, Visit visit)
 template <int k>
 void expect_exact(int degree)
 {
-  const Quadrature<k> rule = quadrature<k>(degree);
+  const fem::Quadrature<k> rule = fem::quadrature<k>(degree);
   for_each_monomial<k>(degree,
                        [&](const std::array<int, k>& powers)
                        {
@@ -70,7 +70,7 @@ void expect_exact(int degree)
 template <int k>
 void expect_positive_and_inside(int degree)
 {
-  const Quadrature<k> rule = quadrature<k>(degree);
+  const fem::Quadrature<k> rule = fem::quadrature<k>(degree);
   ASSERT_EQ(rule.points.size(), rule.weights.size());
   for (int q = 0; q < rule.size(); ++q)
   {
@@ -102,12 +102,12 @@ TEST(Quadrature, PositiveWeightsAndPointsInside)
 
 TEST(Quadrature, OnALineNoRuleWithFewerPointsIsExact)
 {
-  for (int degree = 0; degree <= 17; ++degree) EXPECT_EQ(quadrature<1>(degree).size(), degree / 2 + 1);
+  for (int degree = 0; degree <= 17; ++degree) EXPECT_EQ(fem::quadrature<1>(degree).size(), degree / 2 + 1);
 }
 
 TEST(Quadrature, ReferenceRuleHasTheStatedNumberOfPoints)
 {
-  for (int p = 1; p <= 4; ++p) EXPECT_EQ(quadrature<1>(data_quadrature_degree(p)).size(), p + 3);
+  for (int p = 1; p <= 4; ++p) EXPECT_EQ(fem::quadrature<1>(fem::data_quadrature_degree(p)).size(), p + 3);
 }
 
 }  // namespace

@@ -30,20 +30,20 @@ TYPED_TEST(SimplexParts, CutAlongPlanesFillTheSimplexAndLieOnOneSide)
   constexpr int k = TypeParam::value;
   for (int trial = 0; trial < 200; ++trial)
   {
-    std::vector<Part<k>> parts{reference_simplex<k>()};
+    std::vector<fem::Part<k>> parts{fem::reference_simplex<k>()};
     for (int plane = 0; plane < 3; ++plane)
     {
       Point<k> a;
       for (double& x : a) x = this->between(-1, 1);
       const double b = this->between(-0.3, 0.3);
-      std::vector<Part<k>> finer;
-      for (const Part<k>& part : parts)
+      std::vector<fem::Part<k>> finer;
+      for (const fem::Part<k>& part : parts)
       {
         std::array<double, k + 1> values;
         for (int i = 0; i <= k; ++i) values[i] = a.dot(part[i]) + b;
-        cut<k>(part, values, 1e-14, finer);
+        fem::cut<k>(part, values, 1e-14, finer);
       }
-      for (const Part<k>& part : finer)
+      for (const fem::Part<k>& part : finer)
       {
         double lowest = 0;
         double highest = 0;
@@ -57,7 +57,7 @@ TYPED_TEST(SimplexParts, CutAlongPlanesFillTheSimplexAndLieOnOneSide)
       parts = finer;
     }
     double all = 0;
-    for (const Part<k>& part : parts) all += fraction<k>(part);
+    for (const fem::Part<k>& part : parts) all += fem::fraction<k>(part);
     EXPECT_NEAR(all, 1, 1e-12);
   }
 }

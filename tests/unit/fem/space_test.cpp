@@ -26,7 +26,7 @@ namespace
 using ::testing::HasSubstr;
 
 template <int dim>
-MeshData<dim> grid()
+mesh::MeshData<dim> grid()
 {
   if constexpr (dim == 2)
     return box<2>({0, 0}, {2, 1}, {4, 3});
@@ -36,12 +36,12 @@ MeshData<dim> grid()
 
 /// The function with the given nodal values at a point x of a cell.
 template <int dim>
-double evaluate(const LagrangeSpace<dim>& space, std::span<const double> nodal, Index cell,
+double evaluate(const fem::LagrangeSpace<dim>& space, std::span<const double> nodal, Index cell,
                 const Point<dim>& x)
 {
-  const CellMap<dim> map = cell_map(space.mesh(), cell);
+  const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
   const std::vector<Point<dim>> xhat{map.inverse_transpose.transpose() * (x - map.origin)};
-  const Tabulation<dim> table = space.basis().tabulate(xhat);
+  const fem::Tabulation<dim> table = space.basis().tabulate(xhat);
   double value = 0;
   for (int i = 0; i < table.n_nodes; ++i) value += nodal[space.cell_nodes(cell)[i]] * table.values_at(0)[i];
   return value;
@@ -58,22 +58,22 @@ TYPED_TEST(Space, FunctionsAreContinuousAcrossFacets)
   constexpr int dim = TypeParam::value;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const Quadrature<dim - 1> rule = quadrature<dim - 1>(4);
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(4);
   for (int p = 1; p <= 6; ++p)
   {
-    const Mesh<dim> mesh(distorted<dim>(grid<dim>(), p));
-    const LagrangeSpace<dim> space(mesh, p);
+    const mesh::Mesh<dim> mesh(distorted<dim>(grid<dim>(), p));
+    const fem::LagrangeSpace<dim> space(mesh, p);
     std::vector<double> nodal(space.n_nodes());
     for (double& value : nodal) value = uniform(random);
 
-    const Topology<dim>& topology = mesh.topology();
+    const mesh::Topology<dim>& topology = mesh.topology();
     int n_interior = 0;
     for (std::size_t f = 0; f < topology.facets.size(); ++f)
     {
       const auto [one, other] = topology.facet_cells[f];
       if (other < 0) continue;
       ++n_interior;
-      const auto corners = points_of(mesh.vertices(), topology.facets[f]);
+      const auto corners = mesh::points_of(mesh.vertices(), topology.facets[f]);
       for (const Point<dim - 1>& s : rule.points)
       {
         Point<dim> x = (1 - s.sum()) * corners[0];
@@ -91,16 +91,16 @@ TYPED_TEST(Space, InterpolationReproducesPolynomials)
   constexpr int dim = TypeParam::value;
   for (int p = 1; p <= 6; ++p)
   {
-    const Mesh<dim> mesh(distorted<dim>(grid<dim>(), 10 + p));
-    const LagrangeSpace<dim> space(mesh, p);
+    const mesh::Mesh<dim> mesh(distorted<dim>(grid<dim>(), 10 + p));
+    const fem::LagrangeSpace<dim> space(mesh, p);
     const auto f = [&](const Point<dim>& x)
     { return std::pow(1 + x[0] - 0.5 * x[dim - 1], p) + std::pow(x[1] - 0.3 * x[0], p); };
     std::vector<double> nodal;
     for (const Point<dim>& x : space.node_points()) nodal.push_back(f(x));
     for (Index c = 0; c < mesh.n_cells(); ++c)
-      for (const Point<dim>& xhat : quadrature<dim>(3).points)
+      for (const Point<dim>& xhat : fem::quadrature<dim>(3).points)
       {
-        const Point<dim> x = cell_map(mesh, c)(xhat);
+        const Point<dim> x = mesh::cell_map(mesh, c)(xhat);
         EXPECT_NEAR(evaluate<dim>(space, nodal, c, x), f(x), 1e-11);
       }
   }
@@ -109,7 +109,7 @@ TYPED_TEST(Space, InterpolationReproducesPolynomials)
 TYPED_TEST(Space, NumberOfNodesByEulersFormula)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh(distorted<dim>(grid<dim>(), 3));
+  const mesh::Mesh<dim> mesh(distorted<dim>(grid<dim>(), 3));
   const Index v = mesh.n_vertices();
   const Index c = mesh.n_cells();
   const Index f = ((dim + 1) * c + static_cast<Index>(mesh.boundary().size())) / 2;
@@ -120,7 +120,7 @@ TYPED_TEST(Space, NumberOfNodesByEulersFormula)
     const Index inside_tetrahedron = (p - 1) * (p - 2) * (p - 3) / 6;
     const Index expected =
         v + (p - 1) * e + (dim == 2 ? c : f) * inside_triangle + (dim == 3 ? c * inside_tetrahedron : 0);
-    const LagrangeSpace<dim> space(mesh, p);
+    const fem::LagrangeSpace<dim> space(mesh, p);
     EXPECT_EQ(space.n_nodes(), expected);
     EXPECT_EQ(space.n_dofs(), dim * expected);
   }
@@ -129,34 +129,34 @@ TYPED_TEST(Space, NumberOfNodesByEulersFormula)
 TYPED_TEST(Space, NodesOfABoxAreAGrid)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh(grid<dim>());
+  const mesh::Mesh<dim> mesh(grid<dim>());
   for (int p = 1; p <= 4; ++p)
-    EXPECT_EQ(LagrangeSpace<dim>(mesh, p).n_nodes(),
+    EXPECT_EQ(fem::LagrangeSpace<dim>(mesh, p).n_nodes(),
               dim == 2 ? (4 * p + 1) * (3 * p + 1) : (3 * p + 1) * (2 * p + 1) * (2 * p + 1));
 }
 
 /// The constraints of a case on the box of grid().
 template <int dim>
-Constraints constraints_of(const std::string& boundaries, int p)
+fem::Constraints constraints_of(const std::string& boundaries, int p)
 {
-  const Mesh<dim> mesh(grid<dim>());
-  const Config config = parse_config(
+  const mesh::Mesh<dim> mesh(grid<dim>());
+  const case_file::Config config = case_file::parse_config(
       "degree = 1\nmaterial = { E = 1, nu = 0.3 }\n"
       "mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\n" +
       boundaries);
-  const Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  return dirichlet(problem, LagrangeSpace<dim>(mesh, p));
+  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  return fem::dirichlet(problem, fem::LagrangeSpace<dim>(mesh, p));
 }
 
 TEST(Dirichlet, FixesExactlyTheNodesOnTheBoundary)
 {
-  const Mesh<2> mesh(grid<2>());
+  const mesh::Mesh<2> mesh(grid<2>());
   for (int p = 1; p <= 4; ++p)
   {
-    const Constraints constraints = constraints_of<2>(
+    const fem::Constraints constraints = constraints_of<2>(
         "boundary.left.displacement = [\"1 + y^2\", \"free\"]\nboundary.top.displacement = [\"free\", \"x\"]",
         p);
-    const std::vector<Point<2>> points = LagrangeSpace<2>(mesh, p).node_points();
+    const std::vector<Point<2>> points = fem::LagrangeSpace<2>(mesh, p).node_points();
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       const double x = points[i][0];

@@ -46,7 +46,7 @@ class AtomicFileTest : public ::testing::Test
 TEST_F(AtomicFileTest, AppearsOnCommitOnly)
 {
   const fs::path path = directory / "a.txt";
-  AtomicFile file(path);
+  io::AtomicFile file(path);
   file.write("hello");
   EXPECT_FALSE(fs::exists(path));
   file.commit();
@@ -57,9 +57,9 @@ TEST_F(AtomicFileTest, AppearsOnCommitOnly)
 TEST_F(AtomicFileTest, WithoutCommitTheOldFileStays)
 {
   const fs::path path = directory / "a.txt";
-  write_file(path, "old");
+  io::write_file(path, "old");
   {
-    AtomicFile file(path);
+    io::AtomicFile file(path);
     file.write("new");
   }
   EXPECT_EQ(content(path), "old");
@@ -69,7 +69,7 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldFileStays)
 TEST_F(AtomicFileTest, OverwritesInPlaceAndGoesOnAtTheEnd)
 {
   const fs::path path = directory / "a.txt";
-  AtomicFile file(path);
+  io::AtomicFile file(path);
   file.write("0123456789");
   EXPECT_EQ(file.position(), 10u);
   file.overwrite(2, std::as_bytes(std::span(std::string_view("ab"))));
@@ -84,10 +84,10 @@ TEST_F(AtomicFileTest, NamesTheFileAndTheReasonOfAFailure)
   const fs::path path = directory / "missing" / "a.txt";
   try
   {
-    AtomicFile file(path);
+    io::AtomicFile file(path);
     FAIL() << "opened a file in a directory that does not exist";
   }
-  catch (const WriteError& error)
+  catch (const io::WriteError& error)
   {
     EXPECT_THAT(error.what(), AllOf(HasSubstr(path.string()), HasSubstr("No such file or directory"),
                                     HasSubstr("output.directory")));
@@ -126,11 +126,11 @@ TEST_F(AtomicFileTest, LeavesNothingBehindWhenTheDiskIsFull)
     const FileSizeLimit limit(100'000);
     try
     {
-      AtomicFile file(path);
+      io::AtomicFile file(path);
       for (int i = 0; i < 4; ++i) file.write(mebibyte);
       file.commit();
     }
-    catch (const WriteError& error)
+    catch (const io::WriteError& error)
     {
       message = error.what();
     }
@@ -143,14 +143,14 @@ TEST_F(AtomicFileTest, ReportsAnErrorThatOnlyFlushingShows)
 {
   const fs::path path = directory / "small.txt";
   const FileSizeLimit limit(10);
-  EXPECT_THROW(write_file(path, std::string(100, 'x')), WriteError);
+  EXPECT_THROW(io::write_file(path, std::string(100, 'x')), io::WriteError);
   EXPECT_EQ(n_files(), 0);
 }
 
 TEST_F(AtomicFileTest, DoesNotReplaceADirectory)
 {
   fs::create_directories(directory / "taken" / "inside");
-  EXPECT_THROW(write_file(directory / "taken", "text"), WriteError);
+  EXPECT_THROW(io::write_file(directory / "taken", "text"), io::WriteError);
   EXPECT_EQ(n_files(), 1);
 }
 

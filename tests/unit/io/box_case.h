@@ -20,16 +20,16 @@ namespace tribound::test
 template <int dim>
 struct BoxCase
 {
-  Config config;
-  Mesh<dim> mesh;
-  Problem<dim> problem;
-  LagrangeSpace<dim> space;
-  NitscheForm<dim> form;
+  case_file::Config config;
+  mesh::Mesh<dim> mesh;
+  problem::Problem<dim> problem;
+  fem::LagrangeSpace<dim> space;
+  contact::NitscheForm<dim> form;
 
   /// `change` may alter the mesh before it is built.
-  explicit BoxCase(std::string_view text, const std::function<void(MeshData<dim>&)>& change = {})
-      : config(parse_config(text)),
-        mesh(changed_mesh(std::get<BoxMesh>(config.mesh), change)),
+  explicit BoxCase(std::string_view text, const std::function<void(mesh::MeshData<dim>&)>& change = {})
+      : config(case_file::parse_config(text)),
+        mesh(changed_mesh(std::get<case_file::BoxMesh>(config.mesh), change)),
         problem(config, mesh.region_names(), mesh.boundary_names()),
         space(mesh, config.degree),
         form(problem, space, config.gamma0())
@@ -52,11 +52,12 @@ struct BoxCase
   }
 
  private:
-  static Mesh<dim> changed_mesh(const BoxMesh& box, const std::function<void(MeshData<dim>&)>& change)
+  static mesh::Mesh<dim> changed_mesh(const case_file::BoxMesh& box,
+                                      const std::function<void(mesh::MeshData<dim>&)>& change)
   {
-    MeshData<dim> data = box_mesh<dim>(box);
+    mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);
     if (change) change(data);
-    return Mesh<dim>(std::move(data));
+    return mesh::Mesh<dim>(std::move(data));
   }
 };
 

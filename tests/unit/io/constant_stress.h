@@ -55,12 +55,12 @@ std::array<double, 3> constant_stress()
 
 /// What the adaptive loop would hand over.
 template <int dim>
-CertifiedLevel<dim> constant_stress_level(const BoxCase<dim>& box)
+adapt::CertifiedLevel<dim> constant_stress_level(const BoxCase<dim>& box)
 {
-  CertifiedLevel<dim> level;
+  adapt::CertifiedLevel<dim> level;
   level.u = box.interpolate(constant_stress_displacement<dim>);
-  level.stress = equilibrate<dim>(box.form, level.u, box.form.traction(level.u));
-  level.estimate = estimate<dim>(box.form, level.u, level.stress);
+  level.stress = certify::equilibrate<dim>(box.form, level.u, box.form.traction(level.u));
+  level.estimate = certify::estimate<dim>(box.form, level.u, level.stress);
   return level;
 }
 

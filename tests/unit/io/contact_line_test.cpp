@@ -67,7 +67,7 @@ TEST(ContactCsv, RunsAlongEachBoundary)
 {
   const BoxCase<2> box(two_contacts);
   const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], 0.01); });
-  const Table table(contact_csv(box.form, u, 0));
+  const Table table(io::contact_csv(box.form, u, 0));
   const std::size_t n = 4 * box.form.n_facet_points();
   ASSERT_EQ(table.size(), 2 * n);
 
@@ -94,7 +94,7 @@ TEST(ContactCsv, StatesAreThoseOfTheForm)
 {
   const BoxCase<2> box(two_contacts);
   const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); });
-  const Table table(contact_csv(box.form, u, 0));
+  const Table table(io::contact_csv(box.form, u, 0));
   const auto traction = box.form.traction(u);
   // Sorted along the boundary, the points of a facet need not be in the order of the rule.
   double sum = 0.0;
@@ -114,7 +114,7 @@ TEST(ContactCsv, NumbersReadBackExactly)
 {
   const BoxCase<2> box(two_contacts);
   const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(x[0] / 3.0, -x[0] / 7.0); });
-  const Table table(contact_csv(box.form, u, 0));
+  const Table table(io::contact_csv(box.form, u, 0));
   std::vector<double> written;
   for (std::size_t row = 0; row < table.size(); ++row) written.push_back(table(row, "traction_x"));
   std::vector<double> computed;
@@ -130,7 +130,7 @@ void expect_integrals(const BoxCase<dim>& box, const std::vector<double>& u, con
 {
   int tag = 0;
   while (box.problem.boundary(tag).name != boundary) ++tag;
-  const Table table(contact_csv(box.form, u, 3));
+  const Table table(io::contact_csv(box.form, u, 3));
   double measure = 0;
   double normal = 0;
   double force = 0;
@@ -142,7 +142,7 @@ void expect_integrals(const BoxCase<dim>& box, const std::vector<double>& u, con
     normal -= table(row, "weight") * table(row, "pressure");
     force += table(row, "weight") * table(row, "traction_x");
   }
-  const auto resultants = contact_resultants<dim>(box.form, box.form.traction(u), tag);
+  const auto resultants = contact::contact_resultants<dim>(box.form, box.form.traction(u), tag);
   EXPECT_NEAR(measure, dim == 2 ? 2 : 1, 1e-14);
   EXPECT_NEAR(normal, resultants.normal, 1e-14 * std::abs(resultants.normal));
   EXPECT_NEAR(force, resultants.force[0], 1e-13 * resultants.force.norm());
@@ -168,8 +168,8 @@ boundary.back.contact = { friction = "coulomb", coefficient = 0.5 }
 
 TEST(ContactCsv, RoundingOfCoordinatesIsZero)
 {
-  const BoxCase<2> box(two_contacts, [](MeshData<2>& data) { data.vertices[1][1] = 5.55e-17; });
-  const Table table(contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
+  const BoxCase<2> box(two_contacts, [](mesh::MeshData<2>& data) { data.vertices[1][1] = 5.55e-17; });
+  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
   for (std::size_t row = 0; row < table.size(); ++row)
     if (table.text(row, "boundary") == "bottom")
     {
@@ -183,7 +183,7 @@ TEST(ContactChains, OnePieceAroundACorner)
   // The top is joined to the right side: the chain starts at the upper left corner and ends below.
   const BoxCase<2> box(
       two_contacts,
-      [](MeshData<2>& data)
+      [](mesh::MeshData<2>& data)
       {
         const auto number = [&data](const std::string& name) {
           return static_cast<int>(std::ranges::find(data.boundary_names, name) - data.boundary_names.begin());
@@ -193,12 +193,12 @@ TEST(ContactChains, OnePieceAroundACorner)
       });
   int tag = 0;
   while (box.problem.boundary(tag).name != "top") ++tag;
-  const auto links = contact_chains(box.form, tag);
+  const auto links = io::contact_chains(box.form, tag);
   ASSERT_EQ(links.size(), 6u);
   EXPECT_EQ(links[0].arc, 0.0);
   EXPECT_NEAR(links[5].arc, 2.5, 1e-15);
 
-  const Table table(contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
+  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
   for (std::size_t row = 0; row < table.size(); ++row)
     if (table.text(row, "boundary") == "top")
     {
@@ -220,7 +220,7 @@ displacement = [0, 0]
 [boundary.bottom]
 contact = { friction = "none", gap = 0 }
 )",
-      [](MeshData<2>& data)
+      [](mesh::MeshData<2>& data)
       {
         const int bottom =
             static_cast<int>(std::ranges::find(data.boundary_names, "bottom") - data.boundary_names.begin());
@@ -231,13 +231,13 @@ contact = { friction = "none", gap = 0 }
       });
   int tag = 0;
   while (box.problem.boundary(tag).name != "bottom") ++tag;
-  const auto links = contact_chains(box.form, tag);
+  const auto links = io::contact_chains(box.form, tag);
   ASSERT_EQ(links.size(), 7u);
   std::vector<double> arcs;
-  for (const ChainLink& link : links) arcs.push_back(link.arc);
+  for (const io::ChainLink& link : links) arcs.push_back(link.arc);
   EXPECT_THAT(arcs, ::testing::Pointwise(::testing::DoubleNear(1e-14), {0., 1., 2., 3., 4., 5., 6.}));
 
-  const Table table(contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
+  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
   for (std::size_t row = 1; row < table.size(); ++row)
   {
     const double distance =
@@ -263,7 +263,7 @@ displacement = [0, 0, 0]
 contact = { friction = "coulomb", coefficient = 0.5, gap = 0 }
 )");
   const auto u = box.interpolate([](const Point<3>&) { return Point<3>(0.0, 0.0, -0.1); });
-  const std::string csv = contact_csv(box.form, u, 0);
+  const std::string csv = io::contact_csv(box.form, u, 0);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
             "slip_y,slip_z,weight,level");

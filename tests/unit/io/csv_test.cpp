@@ -9,7 +9,7 @@ namespace
 
 TEST(CsvTable, QuotesWhatWouldBreakARow)
 {
-  CsvTable table("name,value");
+  io::CsvTable table("name,value");
   table.add("left, \"lower\"");
   table.add(0.1);
   table.end_row();
@@ -18,7 +18,7 @@ TEST(CsvTable, QuotesWhatWouldBreakARow)
 
 TEST(CsvTable, ZeroHasNoSign)
 {
-  CsvTable table("a,b,c");
+  io::CsvTable table("a,b,c");
   table.add(-0.0);
   table.add(-1e-300);
   table.add(std::optional<double>{});

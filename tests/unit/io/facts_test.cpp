@@ -11,9 +11,11 @@ namespace
 
 TEST(Facts, MaterialInEngineersConstants)
 {
-  EXPECT_EQ(describe(lame(2.1e5, 0.3, PlaneModel::strain), 2), "E = 210000, nu = 0.3, plane strain");
-  EXPECT_EQ(describe(lame(2.1e5, 0.3, PlaneModel::stress), 2), "E = 210000, nu = 0.3, plane stress");
-  EXPECT_EQ(describe(lame(1.0, -0.25, PlaneModel::strain), 3), "E = 1, nu = -0.25");
+  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, case_file::PlaneModel::strain), 2),
+            "E = 210000, nu = 0.3, plane strain");
+  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, case_file::PlaneModel::stress), 2),
+            "E = 210000, nu = 0.3, plane stress");
+  EXPECT_EQ(io::describe(problem::lame(1.0, -0.25, case_file::PlaneModel::strain), 3), "E = 1, nu = -0.25");
 }
 
 TEST(Facts, MeshAndBoundary)
@@ -31,12 +33,12 @@ traction = [0, "x*y"]
 [boundary.bottom]
 contact = { friction = "tresca", threshold = 0.03, gap = 0 }
 )");
-  const CaseFacts facts = case_facts(box.config, 2);
+  const io::CaseFacts facts = io::case_facts(box.config, 2);
   EXPECT_EQ(facts.title, "Block");
   EXPECT_EQ(facts.friction, "tresca");
   EXPECT_EQ(facts.gamma0, 10.0);
 
-  const MeshFacts mesh = mesh_facts(box.problem, box.space, box.form.constraints());
+  const io::MeshFacts mesh = io::mesh_facts(box.problem, box.space, box.form.constraints());
   EXPECT_EQ(mesh.vertices, 15);
   EXPECT_EQ(mesh.cells, 16);
   EXPECT_EQ(mesh.free_dofs, 2 * 9 * 5 - 5);
@@ -46,7 +48,7 @@ contact = { friction = "tresca", threshold = 0.03, gap = 0 }
   EXPECT_EQ(mesh.regions[0].cells, 16);
   EXPECT_NEAR(mesh.regions[0].measure, 2.0, 1e-14);
   ASSERT_EQ(mesh.boundaries.size(), 4u);
-  for (const BoundaryFacts& boundary : mesh.boundaries)
+  for (const io::BoundaryFacts& boundary : mesh.boundaries)
   {
     const bool side = boundary.name == "left" || boundary.name == "right";
     EXPECT_EQ(boundary.facets, side ? 2 : 4) << boundary.name;

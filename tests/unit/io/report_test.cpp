@@ -23,12 +23,12 @@ std::vector<std::string> lines(const std::string& text)
   return result;
 }
 
-RunRecord uncertified_run()
+io::RunRecord uncertified_run()
 {
-  RunRecord run;
+  io::RunRecord run;
   run.facts = {"Block, \"Tresca\"", "case.toml", 2, 2, "tresca", 10.0};
   run.reason = "the bound is not computed";
-  LevelRecord level;
+  io::LevelRecord level;
   level.cells = 16;
   level.dofs = 24;
   level.newton = {{{1, 0.5, 1.0, 0, true, 0.25}, {}, false}, {{2, 1e-12, 0.5, 3, false, 0.125}, {}, true}};
@@ -42,14 +42,14 @@ RunRecord uncertified_run()
   return run;
 }
 
-RunRecord certified_run()
+io::RunRecord certified_run()
 {
-  RunRecord run = uncertified_run();
-  run.status = RunStatus::certified;
+  io::RunRecord run = uncertified_run();
+  run.status = certify::RunStatus::certified;
   run.reason.clear();
-  LevelRecord& level = run.levels[0];
-  level.bound = Bound{{1, 2, 3, 4, 5, 6, 7, 8}, 20, 10};
-  level.identities = IdentityDefects{1e-14, 2e-14, 3e-14, 4e-14, 5e-14};
+  io::LevelRecord& level = run.levels[0];
+  level.bound = certify::Bound{{1, 2, 3, 4, 5, 6, 7, 8}, 20, 10};
+  level.identities = certify::IdentityDefects{1e-14, 2e-14, 3e-14, 4e-14, 5e-14};
   level.newton[1].bound = level.bound;
   level.times.certify = 0.25;
   return run;
@@ -57,7 +57,7 @@ RunRecord certified_run()
 
 TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
 {
-  EXPECT_THAT(lines(convergence_csv(uncertified_run())),
+  EXPECT_THAT(lines(io::convergence_csv(uncertified_run())),
               ::testing::ElementsAre(
                   "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
                   "relative,energy,contact_normal,contact_tangential,t_solve,t_certify,t_level",
@@ -66,13 +66,13 @@ TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
 
 TEST(Report, ConvergenceOfACertifiedRun)
 {
-  EXPECT_EQ(lines(convergence_csv(certified_run()))[1],
+  EXPECT_EQ(lines(io::convergence_csv(certified_run()))[1],
             "0,16,24,2,1,2,3,4,5,6,7,8,0,20,10,20,0.1,-2,0.25,1.5,0.25,2");
 }
 
 TEST(Report, NewtonTable)
 {
-  EXPECT_THAT(lines(newton_csv(certified_run())),
+  EXPECT_THAT(lines(io::newton_csv(certified_run())),
               ::testing::ElementsAre(
                   "level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,accepted",
                   "0,1,0.5,1,,,,,,,,,,,0", "0,2,1e-12,0.5,1,2,3,4,5,6,7,8,0,20,1"));
@@ -80,14 +80,14 @@ TEST(Report, NewtonTable)
 
 TEST(Report, AStepWithoutABoundShowsItsLinearisationError)
 {
-  RunRecord run = certified_run();
-  run.levels[0].newton[0].linearisation = BoundComponents{.lin1 = 3, .lin2n = 2, .lin2t = 1};
-  EXPECT_EQ(lines(newton_csv(run))[1], "0,1,0.5,1,,,,3,,,2,1,,,0");
+  io::RunRecord run = certified_run();
+  run.levels[0].newton[0].linearisation = certify::BoundComponents{.lin1 = 3, .lin2n = 2, .lin2t = 1};
+  EXPECT_EQ(lines(io::newton_csv(run))[1], "0,1,0.5,1,,,,3,,,2,1,,,0");
 }
 
 TEST(Report, TimesOfEveryStage)
 {
-  RunRecord run = certified_run();
+  io::RunRecord run = certified_run();
   run.levels[0].times.refinement = {0.5, 0.25, 0.125};
   run.levels[0].times.output = 0.0625;
   run.levels[0].times.solve_cpu = 1.75;
@@ -96,13 +96,13 @@ TEST(Report, TimesOfEveryStage)
   const json expected = {{"solve", 1.5},        {"certify", 0.25},  {"bisect", 0.5}, {"discretise", 0.25},
                          {"transfer", 0.125},   {"output", 0.0625}, {"level", 2.0},  {"solve_cpu", 1.75},
                          {"certify_cpu", 0.75}, {"level_cpu", 3.0}};
-  EXPECT_EQ(json::parse(certificate_json(run))["levels"][0]["times"], expected);
+  EXPECT_EQ(json::parse(io::certificate_json(run))["levels"][0]["times"], expected);
 }
 
-RunRecord regularised_run()
+io::RunRecord regularised_run()
 {
-  RunRecord run = certified_run();
-  LevelRecord& level = run.levels[0];
+  io::RunRecord run = certified_run();
+  io::LevelRecord& level = run.levels[0];
   level.bound->global.reg1 = 9;
   level.bound->global.reg2n = 10;
   level.bound->global.reg2t = 11;
@@ -114,42 +114,42 @@ RunRecord regularised_run()
 
 TEST(Report, ARegularisedRunHasItsColumnsAtTheEnd)
 {
-  EXPECT_THAT(lines(convergence_csv(regularised_run())),
+  EXPECT_THAT(lines(io::convergence_csv(regularised_run())),
               ::testing::ElementsAre(
-                  lines(convergence_csv(certified_run()))[0] + ",reg1,reg2n,reg2t,delta,delta_updates",
-                  lines(convergence_csv(certified_run()))[1] + ",9,10,11,0.125,3"));
-  const std::vector<std::string> plain = lines(newton_csv(certified_run()));
-  EXPECT_THAT(lines(newton_csv(regularised_run())),
+                  lines(io::convergence_csv(certified_run()))[0] + ",reg1,reg2n,reg2t,delta,delta_updates",
+                  lines(io::convergence_csv(certified_run()))[1] + ",9,10,11,0.125,3"));
+  const std::vector<std::string> plain = lines(io::newton_csv(certified_run()));
+  EXPECT_THAT(lines(io::newton_csv(regularised_run())),
               ::testing::ElementsAre(plain[0] + ",reg1,reg2n,reg2t,delta", plain[1] + ",,,,0",
                                      plain[2] + ",9,10,11,0.125"));
 }
 
 TEST(Report, CertificateOfARegularisedRun)
 {
-  const json certificate = json::parse(certificate_json(regularised_run()));
+  const json certificate = json::parse(io::certificate_json(regularised_run()));
   EXPECT_EQ(certificate["components"]["reg2t"], 11.0);
   EXPECT_EQ(certificate["regularisation"]["delta"], 0.125);
   EXPECT_EQ(certificate["regularisation"]["updates"], 3);
   EXPECT_EQ(certificate["levels"][0]["newton"][1]["delta"], 0.125);
-  const json plain = json::parse(certificate_json(certified_run()));
+  const json plain = json::parse(io::certificate_json(certified_run()));
   EXPECT_FALSE(plain.contains("regularisation"));
   EXPECT_FALSE(plain["components"].contains("reg1"));
 }
 
-Balance small_balance()
+certify::Balance small_balance()
 {
   return {{1, 0.5},
-          {{BalanceKind::load, "box", "body force", {0, -3}, {{1.5}}},
-           {BalanceKind::reaction, "left", "displacement", {0, 3}, {}},
-           {BalanceKind::sum, "", "", {0, 0}, {}}}};
+          {{certify::BalanceKind::load, "box", "body force", {0, -3}, {{1.5}}},
+           {certify::BalanceKind::reaction, "left", "displacement", {0, 3}, {}},
+           {certify::BalanceKind::sum, "", "", {0, 0}, {}}}};
 }
 
 TEST(Report, CertificateHasTheBalance)
 {
-  RunRecord run = certified_run();
-  EXPECT_TRUE(json::parse(certificate_json(run)).at("balance").is_null());
+  io::RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(io::certificate_json(run)).at("balance").is_null());
   run.levels[0].balance = small_balance();
-  const json balance = json::parse(certificate_json(run))["balance"];
+  const json balance = json::parse(io::certificate_json(run))["balance"];
   EXPECT_EQ(balance["about"], json({1, 0.5}));
   EXPECT_EQ(balance["rows"][0], json({{"kind", "load"},
                                       {"name", "box"},
@@ -163,10 +163,10 @@ TEST(Report, CertificateHasTheBalance)
 
 TEST(Report, CertificateNamesTheEffectiveCase)
 {
-  RunRecord run = certified_run();
-  EXPECT_TRUE(json::parse(certificate_json(run)).at("case").is_null());
+  io::RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(io::certificate_json(run)).at("case").is_null());
   run.effective = {"abc", {"degree=2"}};
-  EXPECT_EQ(json::parse(certificate_json(run))["case"],
+  EXPECT_EQ(json::parse(io::certificate_json(run))["case"],
             json({{"file", "case.toml"},
                   {"sha256", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
                   {"overrides", {"degree=2"}}}));
@@ -174,7 +174,7 @@ TEST(Report, CertificateNamesTheEffectiveCase)
 
 TEST(Report, CertificateOfAnUncertifiedRun)
 {
-  const json certificate = json::parse(certificate_json(uncertified_run()));
+  const json certificate = json::parse(io::certificate_json(uncertified_run()));
   EXPECT_EQ(certificate["schema"], "1");
   EXPECT_EQ(certificate["title"], "Block, \"Tresca\"");
   EXPECT_EQ(certificate["status"], "uncertified");
@@ -192,7 +192,7 @@ TEST(Report, CertificateOfAnUncertifiedRun)
 
 TEST(Report, CertificateOfACertifiedRun)
 {
-  const json certificate = json::parse(certificate_json(certified_run()));
+  const json certificate = json::parse(io::certificate_json(certified_run()));
   EXPECT_EQ(certificate["status"], "certified");
   EXPECT_TRUE(certificate["reason"].is_null());
   EXPECT_EQ(certificate["bound"], 10.0);
@@ -204,10 +204,10 @@ TEST(Report, CertificateOfACertifiedRun)
 
 TEST(Report, SlidingIsJudgedWhereFrictionIsCoulombs)
 {
-  RunRecord run = certified_run();
-  EXPECT_TRUE(json::parse(certificate_json(run))["contact"]["boundaries"]["bottom"]["sliding"].is_null());
+  io::RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(io::certificate_json(run))["contact"]["boundaries"]["bottom"]["sliding"].is_null());
   run.levels[0].figures.boundary_contact[0].coefficient = 0.5;
-  const json certificate = json::parse(certificate_json(run));
+  const json certificate = json::parse(io::certificate_json(run));
   for (const json& level : {certificate, certificate["levels"][0]})
   {
     const json& sliding = level["contact"]["boundaries"]["bottom"]["sliding"];
@@ -219,40 +219,40 @@ TEST(Report, SlidingIsJudgedWhereFrictionIsCoulombs)
 
 TEST(Report, SlidingWithoutAForce)
 {
-  Resultants contact{"base", {0.0, 2.0}, -2.0, -0.25, 0.25, 0.5};
-  EXPECT_EQ(sliding(contact)->safety_factor, 4.0) << "the sign of the tangent is of no importance";
+  io::Resultants contact{"base", {0.0, 2.0}, -2.0, -0.25, 0.25, 0.5};
+  EXPECT_EQ(io::sliding(contact)->safety_factor, 4.0) << "the sign of the tangent is of no importance";
   contact.tangential = 1e-11;  // round-off
-  EXPECT_FALSE(sliding(contact)->safety_factor.has_value());
+  EXPECT_FALSE(io::sliding(contact)->safety_factor.has_value());
   contact.tangential = 1e-9;
-  EXPECT_TRUE(sliding(contact)->safety_factor.has_value());
+  EXPECT_TRUE(io::sliding(contact)->safety_factor.has_value());
   contact.coefficient = 0.0;
-  EXPECT_EQ(sliding(contact)->safety_factor, 0.0);
+  EXPECT_EQ(io::sliding(contact)->safety_factor, 0.0);
   contact.normal = 0.0;  // lifted off
-  EXPECT_FALSE(sliding(contact).has_value());
+  EXPECT_FALSE(io::sliding(contact).has_value());
 }
 
 TEST(Report, ForcesHaveTheDigitsThatAreKnown)
 {
-  EXPECT_EQ(known_digits(1234.5678, 0.01), 1234.57);
-  EXPECT_EQ(known_digits(-1234.5678, 3), -1235);
-  EXPECT_EQ(known_digits(2.5e-7, 1e-6), 0.0);
-  EXPECT_EQ(known_digits(1 / 3.0, 0), 1 / 3.0);
-  EXPECT_EQ(known_digits(0, 0), 0.0);
-  EXPECT_TRUE(std::isnan(known_digits(std::nan(""), 1)));
+  EXPECT_EQ(io::known_digits(1234.5678, 0.01), 1234.57);
+  EXPECT_EQ(io::known_digits(-1234.5678, 3), -1235);
+  EXPECT_EQ(io::known_digits(2.5e-7, 1e-6), 0.0);
+  EXPECT_EQ(io::known_digits(1 / 3.0, 0), 1 / 3.0);
+  EXPECT_EQ(io::known_digits(0, 0), 0.0);
+  EXPECT_TRUE(std::isnan(io::known_digits(std::nan(""), 1)));
 
-  const Resultants dam{"base", {}, -1000, 600, 600, 0.75, 1};
-  EXPECT_EQ(sliding(dam)->sliding_factor, 0.6);
-  EXPECT_EQ(sliding(dam)->safety_factor, 1.25);
-  const Resultants without_water{"base", {}, -1000, 0.8, 0.8, 0.75, 1};
-  EXPECT_FALSE(sliding(without_water)->safety_factor.has_value());
+  const io::Resultants dam{"base", {}, -1000, 600, 600, 0.75, 1};
+  EXPECT_EQ(io::sliding(dam)->sliding_factor, 0.6);
+  EXPECT_EQ(io::sliding(dam)->safety_factor, 1.25);
+  const io::Resultants without_water{"base", {}, -1000, 0.8, 0.8, 0.75, 1};
+  EXPECT_FALSE(io::sliding(without_water)->safety_factor.has_value());
 }
 
 TEST(Report, CertificateWithoutALevelHasNoFigures)
 {
-  RunRecord run;
-  run.status = RunStatus::failed;
+  io::RunRecord run;
+  run.status = certify::RunStatus::failed;
   run.reason = "singular matrix";
-  const json certificate = json::parse(certificate_json(run));
+  const json certificate = json::parse(io::certificate_json(run));
   EXPECT_EQ(certificate["status"], "failed");
   EXPECT_FALSE(certificate.contains("energy"));
   EXPECT_TRUE(certificate["levels"].empty());
@@ -260,11 +260,11 @@ TEST(Report, CertificateWithoutALevelHasNoFigures)
 
 TEST(Report, CertificateSaysWhatItCovers)
 {
-  RunRecord run = certified_run();
+  io::RunRecord run = certified_run();
   run.tolerance = 0.01;
   run.statements = {
       {"the residual"}, "Tresca", {{"poincare", 0.25}}, {{"geometry", "straight"}}, {"the model"}};
-  const json certificate = json::parse(certificate_json(run));
+  const json certificate = json::parse(io::certificate_json(run));
   EXPECT_EQ(certificate["tolerance"], 0.01);
   EXPECT_EQ(certificate["covered"], json({"the residual"}));
   EXPECT_EQ(certificate["law"], "Tresca");
@@ -275,9 +275,9 @@ TEST(Report, CertificateSaysWhatItCovers)
 
 TEST(Report, NamesThatAreNotUtf8DoNotSpoilTheCertificate)
 {
-  RunRecord run = uncertified_run();
+  io::RunRecord run = uncertified_run();
   run.facts.title = "\xff block";
-  EXPECT_EQ(json::parse(certificate_json(run))["title"], "\xef\xbf\xbd block");
+  EXPECT_EQ(json::parse(io::certificate_json(run))["title"], "\xef\xbf\xbd block");
 }
 
 }  // namespace

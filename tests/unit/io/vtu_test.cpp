@@ -18,27 +18,27 @@ namespace
 
 TEST(Vtu, OutOfPlaneRatio)
 {
-  EXPECT_NEAR(out_of_plane_ratio(lame(2.0, 0.3, PlaneModel::strain)), 0.3, 1e-15);
-  EXPECT_EQ(out_of_plane_ratio(lame(2.0, 0.3, PlaneModel::stress)), 0.0);
+  EXPECT_NEAR(io::out_of_plane_ratio(problem::lame(2.0, 0.3, case_file::PlaneModel::strain)), 0.3, 1e-15);
+  EXPECT_EQ(io::out_of_plane_ratio(problem::lame(2.0, 0.3, case_file::PlaneModel::stress)), 0.0);
 }
 
 TEST(Vtu, VonMises)
 {
-  EXPECT_DOUBLE_EQ(von_mises({-3.0, 0.0, 0.0, 0.0, 0.0, 0.0}), 3.0);
-  EXPECT_DOUBLE_EQ(von_mises({2.0, 2.0, 2.0, 0.0, 0.0, 0.0}), 0.0);
-  EXPECT_DOUBLE_EQ(von_mises({0.0, 0.0, 0.0, 0.0, 2.0, 0.0}), 2.0 * std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(io::von_mises({-3.0, 0.0, 0.0, 0.0, 0.0, 0.0}), 3.0);
+  EXPECT_DOUBLE_EQ(io::von_mises({2.0, 2.0, 2.0, 0.0, 0.0, 0.0}), 0.0);
+  EXPECT_DOUBLE_EQ(io::von_mises({0.0, 0.0, 0.0, 0.0, 2.0, 0.0}), 2.0 * std::sqrt(3.0));
 }
 
 TEST(Vtu, PrincipalStresses)
 {
   using ::testing::DoubleNear;
   using ::testing::ElementsAre;
-  EXPECT_THAT(principal_stresses({-3.0, 1.0, 2.0, 0.0, 0.0, 0.0}),
+  EXPECT_THAT(io::principal_stresses({-3.0, 1.0, 2.0, 0.0, 0.0, 0.0}),
               ElementsAre(DoubleNear(2, 1e-14), DoubleNear(1, 1e-14), DoubleNear(-3, 1e-14)));
-  EXPECT_THAT(principal_stresses({0.0, 0.0, 0.0, 0.0, 2.0, 0.0}),
+  EXPECT_THAT(io::principal_stresses({0.0, 0.0, 0.0, 0.0, 2.0, 0.0}),
               ElementsAre(DoubleNear(2, 1e-14), DoubleNear(0, 1e-14), DoubleNear(-2, 1e-14)));
   // 4, 1, 1 in a basis that is turned about (1, 1, 1).
-  EXPECT_THAT(principal_stresses({2.0, 2.0, 2.0, 1.0, 1.0, 1.0}),
+  EXPECT_THAT(io::principal_stresses({2.0, 2.0, 2.0, 1.0, 1.0, 1.0}),
               ElementsAre(DoubleNear(4, 1e-7), DoubleNear(1, 1e-7), DoubleNear(1, 1e-7)));
 }
 
@@ -47,13 +47,13 @@ TEST(VtuFile, RefusesAnArrayOfWrongLength)
   const auto path = std::filesystem::path(::testing::TempDir()) / "wrong.vtu";
   for (const int n : {2, 4})
   {
-    VtuGrid grid;
-    grid.points = {vtu_array<double>("Points", 1, 3,
-                                     [n](const auto& put)
-                                     {
-                                       for (int i = 0; i < n; ++i) put(i);
-                                     })};
-    EXPECT_THROW(write_vtu(path, grid), std::logic_error);
+    io::VtuGrid grid;
+    grid.points = {io::vtu_array<double>("Points", 1, 3,
+                                         [n](const auto& put)
+                                         {
+                                           for (int i = 0; i < n; ++i) put(i);
+                                         })};
+    EXPECT_THROW(io::write_vtu(path, grid), std::logic_error);
     EXPECT_FALSE(std::filesystem::exists(path));
   }
 }
@@ -68,18 +68,19 @@ TEST(VtuSeries, RemovesOnlyWhatARunHasWritten)
                                       "my_level_001.vtu", "contact_0x1.vtu", "contact_.vtu",
                                       "contact.csv",      "levels_001.vtu",  "certificate.json",
                                       "level_0011.vtux",  "level_-01.vtu",   "level_.vtu"};
-  for (const std::string& name : kept) write_file(directory / name, "");
+  for (const std::string& name : kept) io::write_file(directory / name, "");
   for (const int level : {0, 12, 1234})
-    for (const char* stem : {"level", "contact"}) write_file(directory / level_file_name(stem, level), "");
-  write_series(directory, 3);
+    for (const char* stem : {"level", "contact"})
+      io::write_file(directory / io::level_file_name(stem, level), "");
+  io::write_series(directory, 3);
 
-  remove_series(directory);
+  io::remove_series(directory);
   std::set<std::string> left;
   for (const auto& entry : fs::directory_iterator(directory))
     if (entry.is_regular_file()) left.insert(entry.path().filename().string());
   EXPECT_EQ(left, kept);
   EXPECT_TRUE(fs::exists(directory / "level_004.vtu"));
-  remove_series(directory / "does_not_exist");  // nothing to do
+  io::remove_series(directory / "does_not_exist");  // nothing to do
   fs::remove_all(directory);
 }
 

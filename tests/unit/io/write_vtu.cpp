@@ -30,7 +30,7 @@ std::string case_text(int degree)
 
 /// Moves inner vertices, so that no two cells are alike.
 template <int dim>
-void distort(MeshData<dim>& data)
+void distort(mesh::MeshData<dim>& data)
 {
   for (Point<dim>& x : data.vertices)
   {
@@ -62,19 +62,19 @@ void write(const std::filesystem::path& directory, int degree, nlohmann::json& m
   const auto u = box.interpolate([degree](const Point<dim>& x) { return displacement<dim>(degree, x); });
   std::vector<double> eta;
   for (Index c = 0; c < box.mesh.n_cells(); ++c) eta.push_back(0.5 * c);
-  const TensorField<dim> stress = stress_field(box.problem, box.space, u);
-  const std::vector<TensorField<dim>> tensors{{"twice_stress",
-                                               [&stress](Index cell, std::span<Tensor<dim>> values)
-                                               {
-                                                 stress.at_nodes(cell, values);
-                                                 for (Tensor<dim>& value : values) value *= 2.0;
-                                               }}};
-  const std::vector<CellField> cell_fields{{"eta_tot", eta}};
+  const io::TensorField<dim> stress = io::stress_field(box.problem, box.space, u);
+  const std::vector<io::TensorField<dim>> tensors{{"twice_stress",
+                                                   [&stress](Index cell, std::span<Tensor<dim>> values)
+                                                   {
+                                                     stress.at_nodes(cell, values);
+                                                     for (Tensor<dim>& value : values) value *= 2.0;
+                                                   }}};
+  const std::vector<io::CellField> cell_fields{{"eta_tot", eta}};
 
   const std::string name = std::to_string(dim) + "d_p" + std::to_string(degree) + ".vtu";
-  write_level_vtu<dim>(directory / ("level_" + name), degree, box.problem, box.space, u, cell_fields,
-                       tensors);
-  write_contact_vtu<dim>(directory / ("contact_" + name), degree, box.form, u);
+  io::write_level_vtu<dim>(directory / ("level_" + name), degree, box.problem, box.space, u, cell_fields,
+                           tensors);
+  io::write_contact_vtu<dim>(directory / ("contact_" + name), degree, box.form, u);
   manifest["files"].push_back({{"level", "level_" + name},
                                {"contact", "contact_" + name},
                                {"dimension", dim},
@@ -90,7 +90,7 @@ void write_without_contact(const std::filesystem::path& directory)
       "degree = 2\nmesh = { box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] } }\n"
       "material = { E = 1.0, nu = 0.3 }\n[boundary.left]\ndisplacement = [0, 0]\n");
   const std::vector<double> u(box.space.n_dofs(), 0.0);
-  write_contact_vtu<2>(directory / "no_contact.vtu", 0, box.form, u);
+  io::write_contact_vtu<2>(directory / "no_contact.vtu", 0, box.form, u);
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ int main(int argc, char** argv)
     tribound::test::write<2>(directory, degree, manifest);
     tribound::test::write<3>(directory, degree, manifest);
   }
-  tribound::write_series(directory, 2);
+  tribound::io::write_series(directory, 2);
   tribound::test::write_without_contact(directory);
   std::ofstream(directory / "manifest.json") << manifest.dump(2) << '\n';
 }

@@ -16,7 +16,7 @@ namespace tribound::testing_mesh
 
 /// The coordinates of a simplex's vertices, in lexicographic order: what it is whatever its numbers are.
 template <int dim, std::size_t n>
-std::array<std::array<double, dim>, n> coordinates(const Mesh<dim>& mesh,
+std::array<std::array<double, dim>, n> coordinates(const mesh::Mesh<dim>& mesh,
                                                    const std::array<Index, n>& vertices)
 {
   std::array<std::array<double, dim>, n> points;
@@ -27,7 +27,7 @@ std::array<std::array<double, dim>, n> coordinates(const Mesh<dim>& mesh,
 
 /// All cells by their coordinates, in order.
 template <int dim>
-std::vector<std::array<std::array<double, dim>, dim + 1>> cells_by_coordinates(const Mesh<dim>& mesh)
+std::vector<std::array<std::array<double, dim>, dim + 1>> cells_by_coordinates(const mesh::Mesh<dim>& mesh)
 {
   std::vector<std::array<std::array<double, dim>, dim + 1>> cells;
   for (const auto& cell : mesh.cells()) cells.push_back(coordinates(mesh, cell));
@@ -38,7 +38,7 @@ std::vector<std::array<std::array<double, dim>, dim + 1>> cells_by_coordinates(c
 /// Facets with one cell cover the boundary and nothing else, facets with two cells have them on both sides.
 /// Facets and vertices are told apart by coordinates.
 template <int dim>
-void expect_conforming(const Mesh<dim>& mesh, double boundary)
+void expect_conforming(const mesh::Mesh<dim>& mesh, double boundary)
 {
   std::vector<std::array<double, dim>> places;
   for (const Point<dim>& x : mesh.vertices())
@@ -59,9 +59,9 @@ void expect_conforming(const Mesh<dim>& mesh, double boundary)
   for (Index c = 0; c < mesh.n_cells(); ++c)
     for (int i = 0; i <= dim; ++i)
     {
-      const FacetGeometry<dim> geometry = facet_geometry(mesh, c, i);
+      const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, c, i);
       sides.push_back(
-          {coordinates(mesh, facet_vertices(mesh.cell(c), i)), geometry.normal, geometry.measure});
+          {coordinates(mesh, mesh::facet_vertices(mesh.cell(c), i)), geometry.normal, geometry.measure});
     }
   std::ranges::sort(sides, {}, &Side::facet);
   double single = 0;
@@ -82,7 +82,7 @@ void expect_conforming(const Mesh<dim>& mesh, double boundary)
 }
 
 template <int dim>
-double whole_boundary(const Mesh<dim>& mesh)
+double whole_boundary(const mesh::Mesh<dim>& mesh)
 {
   double sum = 0;
   for (int tag = -1; tag < static_cast<int>(mesh.boundary_names().size()); ++tag)
@@ -91,17 +91,17 @@ double whole_boundary(const Mesh<dim>& mesh)
 }
 
 template <int dim>
-std::vector<double> region_volumes(const Mesh<dim>& mesh)
+std::vector<double> region_volumes(const mesh::Mesh<dim>& mesh)
 {
   std::vector<double> volumes(mesh.region_names().size(), 0.0);
   for (Index c = 0; c < mesh.n_cells(); ++c)
-    volumes[mesh.region(c)] += cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
+    volumes[mesh.region(c)] += mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
   return volumes;
 }
 
 /// Names, volumes of regions and measures of boundary groups are those of the original mesh.
 template <int dim>
-void expect_same_parts(const Mesh<dim>& mesh, const Mesh<dim>& original)
+void expect_same_parts(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& original)
 {
   EXPECT_TRUE(std::ranges::equal(mesh.region_names(), original.region_names()));
   EXPECT_TRUE(std::ranges::equal(mesh.boundary_names(), original.boundary_names()));
@@ -115,7 +115,7 @@ void expect_same_parts(const Mesh<dim>& mesh, const Mesh<dim>& original)
 
 /// Every cell lies in its parent and has its region, and the children fill it.
 template <int dim>
-void expect_right_parents(const Bisected<dim>& bisected, const Mesh<dim>& original)
+void expect_right_parents(const mesh::Bisected<dim>& bisected, const mesh::Mesh<dim>& original)
 {
   ASSERT_EQ(bisected.parent.size(), static_cast<std::size_t>(bisected.mesh.n_cells()));
   EXPECT_TRUE(std::ranges::is_sorted(bisected.parent));
@@ -123,8 +123,8 @@ void expect_right_parents(const Bisected<dim>& bisected, const Mesh<dim>& origin
   for (Index c = 0; c < bisected.mesh.n_cells(); ++c)
   {
     const Index parent = bisected.parent[c];
-    const CellMap<dim> map = cell_map(original, parent);
-    filled[parent] += cell_map(bisected.mesh, c).det / map.det;
+    const mesh::CellMap<dim> map = mesh::cell_map(original, parent);
+    filled[parent] += mesh::cell_map(bisected.mesh, c).det / map.det;
     ASSERT_EQ(bisected.mesh.region(c), original.region(parent));
     for (const Index v : bisected.mesh.cell(c))
     {
@@ -139,7 +139,7 @@ void expect_right_parents(const Bisected<dim>& bisected, const Mesh<dim>& origin
 /// Every boundary group is where it was: the facets of the bisected mesh lie in facets of the original one
 /// with their tag. Facets on the boundary have one parent cell; its facet is the one that contains them.
 template <int dim>
-void expect_tags_in_place(const Bisected<dim>& bisected, const Mesh<dim>& original)
+void expect_tags_in_place(const mesh::Bisected<dim>& bisected, const mesh::Mesh<dim>& original)
 {
   std::vector<std::array<int, dim + 1>> tags(original.n_cells());
   for (auto& cell_tags : tags) cell_tags.fill(-2);  // inside the domain
@@ -147,9 +147,9 @@ void expect_tags_in_place(const Bisected<dim>& bisected, const Mesh<dim>& origin
   for (const auto& [cell, local, tag] : bisected.mesh.boundary())
   {
     const Index parent = bisected.parent[cell];
-    const CellMap<dim> map = cell_map(original, parent);
+    const mesh::CellMap<dim> map = mesh::cell_map(original, parent);
     Point<dim> centre = Point<dim>::Zero();
-    for (const Index v : facet_vertices(bisected.mesh.cell(cell), local))
+    for (const Index v : mesh::facet_vertices(bisected.mesh.cell(cell), local))
       centre += bisected.mesh.vertex(v) / dim;
     const Point<dim> xhat = map.inverse_transpose.transpose() * (centre - map.origin);
     std::array<double, dim + 1> barycentric{1 - xhat.sum()};

@@ -49,16 +49,16 @@ std::vector<Index> random_cells(Index n, double share, std::mt19937& random)
 
 /// The cells that contain the vertex.
 template <int dim>
-std::vector<Index> cells_around(const Mesh<dim>& mesh, Index vertex)
+std::vector<Index> cells_around(const mesh::Mesh<dim>& mesh, Index vertex)
 {
-  const Topology<dim>& topology = mesh.topology();
+  const mesh::Topology<dim>& topology = mesh.topology();
   const auto begin = topology.vertex_cells.begin();
   return {begin + topology.vertex_cells_begin[vertex], begin + topology.vertex_cells_begin[vertex + 1]};
 }
 
 /// The vertex furthest to the lower left.
 template <int dim>
-Index corner(const Mesh<dim>& mesh)
+Index corner(const mesh::Mesh<dim>& mesh)
 {
   const auto vertices = mesh.vertices();
   return static_cast<Index>(
@@ -67,7 +67,7 @@ Index corner(const Mesh<dim>& mesh)
 
 /// About a fifth of the cells, chosen by a hash of their coordinates.
 template <int dim>
-std::vector<Index> cells_chosen_by_place(const Mesh<dim>& mesh, std::uint64_t seed)
+std::vector<Index> cells_chosen_by_place(const mesh::Mesh<dim>& mesh, std::uint64_t seed)
 {
   std::vector<Index> cells;
   for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -83,13 +83,13 @@ std::vector<Index> cells_chosen_by_place(const Mesh<dim>& mesh, std::uint64_t se
 
 /// Bisects `levels` times; `choose(mesh, level)` names the cells. Checks every level, returns the last mesh.
 template <int dim, class Choose>
-Mesh<dim> bisect_and_check(Mesh<dim> mesh, int levels, const Choose& choose, int times = dim)
+mesh::Mesh<dim> bisect_and_check(mesh::Mesh<dim> mesh, int levels, const Choose& choose, int times = dim)
 {
   const double boundary = whole_boundary(mesh);
   for (int level = 0; level < levels && !::testing::Test::HasFailure(); ++level)
   {
     const std::vector<Index> marked = choose(mesh, level);
-    Bisected<dim> bisected = bisect<dim>(mesh, marked, times);
+    mesh::Bisected<dim> bisected = mesh::bisect<dim>(mesh, marked, times);
     SCOPED_TRACE(level);
     expect_conforming(bisected.mesh, boundary);
     expect_same_parts(bisected.mesh, mesh);
@@ -103,21 +103,21 @@ Mesh<dim> bisect_and_check(Mesh<dim> mesh, int levels, const Choose& choose, int
 /// The smallest angle of the shapes that bisection of the cells leads to: after 9 bisections of every cell
 /// there are no new ones, see marked_cell_test.cpp.
 template <int dim>
-double smallest_angle_of_descendants(const Mesh<dim>& mesh)
+double smallest_angle_of_descendants(const mesh::Mesh<dim>& mesh)
 {
   double smallest = smallest_angle(mesh);
-  Bisected<dim> bisected = bisect<dim>(mesh, all_cells(mesh.n_cells()));
+  mesh::Bisected<dim> bisected = mesh::bisect<dim>(mesh, all_cells(mesh.n_cells()));
   for (int times = dim; times <= 9; times += dim)
   {
     smallest = std::min(smallest, smallest_angle(bisected.mesh));
-    bisected = bisect<dim>(bisected.mesh, all_cells(bisected.mesh.n_cells()));
+    bisected = mesh::bisect<dim>(bisected.mesh, all_cells(bisected.mesh.n_cells()));
   }
   return smallest;
 }
 
 /// Angles of `mesh`, which comes from `original`, are bounded; the test's XML has the figures.
 template <int dim>
-void expect_bounded_angles(const Mesh<dim>& mesh, const Mesh<dim>& original)
+void expect_bounded_angles(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& original)
 {
   const double angle = smallest_angle(mesh);
   EXPECT_GE(angle, smallest_angle_of_descendants(original) * (1 - 1e-9));
@@ -136,9 +136,10 @@ TYPED_TEST(Bisect, RandomLevels)
 {
   constexpr int dim = TypeParam::value;
   std::mt19937 random(5);
-  const Mesh<dim> mesh = bisect_and_check(
+  const mesh::Mesh<dim> mesh = bisect_and_check(
       irregular_mesh<dim>(), dim == 2 ? 20 : 12,
-      [&](const Mesh<dim>& m, int) { return random_cells(m.n_cells(), dim == 2 ? 0.2 : 0.15, random); }, 1);
+      [&](const mesh::Mesh<dim>& m, int) { return random_cells(m.n_cells(), dim == 2 ? 0.2 : 0.15, random); },
+      1);
   EXPECT_GT(mesh.n_cells(), 10000);
   expect_bounded_angles(mesh, irregular_mesh<dim>());
 }
@@ -148,12 +149,12 @@ TYPED_TEST(Bisect, GradedTowardsACorner)
 {
   constexpr int dim = TypeParam::value;
   std::vector<Index> n_cells;
-  const Mesh<dim> mesh = bisect_and_check(irregular_mesh<dim>(), dim == 2 ? 15 : 8,
-                                          [&](const Mesh<dim>& m, int)
-                                          {
-                                            n_cells.push_back(m.n_cells());
-                                            return cells_around(m, corner(m));
-                                          });
+  const mesh::Mesh<dim> mesh = bisect_and_check(irregular_mesh<dim>(), dim == 2 ? 15 : 8,
+                                                [&](const mesh::Mesh<dim>& m, int)
+                                                {
+                                                  n_cells.push_back(m.n_cells());
+                                                  return cells_around(m, corner(m));
+                                                });
   const Index added = mesh.n_cells() - n_cells.back();
   EXPECT_GT(added, 0);
   for (std::size_t level = n_cells.size() - 1; level > n_cells.size() - 4; --level)
@@ -164,10 +165,10 @@ TYPED_TEST(Bisect, GradedTowardsACorner)
 TYPED_TEST(Bisect, AllCellsDimTimesHalvesEveryEdge)
 {
   constexpr int dim = TypeParam::value;
-  Mesh<dim> mesh = irregular_mesh<dim>();
+  mesh::Mesh<dim> mesh = irregular_mesh<dim>();
   for (int level = 0; level < 3; ++level)
   {
-    Bisected<dim> bisected = bisect<dim>(mesh, all_cells(mesh.n_cells()));
+    mesh::Bisected<dim> bisected = mesh::bisect<dim>(mesh, all_cells(mesh.n_cells()));
     EXPECT_EQ(bisected.mesh.n_cells(), mesh.n_cells() * (1 << dim));
     EXPECT_EQ(bisected.mesh.n_vertices() - mesh.n_vertices(), mesh.topology().edges.size());
     mesh = std::move(bisected.mesh);
@@ -178,16 +179,17 @@ TYPED_TEST(Bisect, AllCellsDimTimesHalvesEveryEdge)
 TYPED_TEST(Bisect, MarkedCellsAreCutAsOftenAsAskedFor)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const mesh::Mesh<dim> mesh = irregular_mesh<dim>();
   const std::vector<Index> marked{3, 7};
   for (int times = 1; times <= 5; ++times)
   {
-    const Bisected<dim> bisected = bisect<dim>(mesh, marked, times);
+    const mesh::Bisected<dim> bisected = mesh::bisect<dim>(mesh, marked, times);
     expect_conforming(bisected.mesh, whole_boundary(mesh));
     for (Index c = 0; c < bisected.mesh.n_cells(); ++c)
       if (bisected.parent[c] == 3 || bisected.parent[c] == 7)
       {
-        const double share = cell_map(bisected.mesh, c).det / cell_map(mesh, bisected.parent[c]).det;
+        const double share =
+            mesh::cell_map(bisected.mesh, c).det / mesh::cell_map(mesh, bisected.parent[c]).det;
         EXPECT_LE(share, std::ldexp(1 + 1e-9, -times));
       }
     EXPECT_LT(bisected.mesh.n_cells(), mesh.n_cells() * (1 << times));
@@ -199,23 +201,23 @@ TYPED_TEST(Bisect, MarkedCellsAreCutAsOftenAsAskedFor)
 TYPED_TEST(Bisect, BisectionTypesAreCarriedAlong)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh(mapped(irregular_data<dim>(),
-                              [](Point<dim> x)
-                              {
-                                x[1] *= 0.2;
-                                return x;
-                              }));
+  const mesh::Mesh<dim> mesh(mapped(irregular_data<dim>(),
+                                    [](Point<dim> x)
+                                    {
+                                      x[1] *= 0.2;
+                                      return x;
+                                    }));
   const auto all = all_cells(mesh.n_cells());
-  const Mesh<dim> first = bisect<dim>(mesh, all, dim).mesh;
-  const Mesh<dim> second = bisect<dim>(first, all_cells(first.n_cells()), 2 * dim).mesh;
-  EXPECT_EQ(cells_by_coordinates(second), cells_by_coordinates(bisect<dim>(mesh, all, 3 * dim).mesh));
+  const mesh::Mesh<dim> first = mesh::bisect<dim>(mesh, all, dim).mesh;
+  const mesh::Mesh<dim> second = mesh::bisect<dim>(first, all_cells(first.n_cells()), 2 * dim).mesh;
+  EXPECT_EQ(cells_by_coordinates(second), cells_by_coordinates(mesh::bisect<dim>(mesh, all, 3 * dim).mesh));
 }
 
 TYPED_TEST(Bisect, NothingMarkedChangesNothing)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh = irregular_mesh<dim>();
-  const Bisected<dim> same = bisect<dim>(mesh, {});
+  const mesh::Mesh<dim> mesh = irregular_mesh<dim>();
+  const mesh::Bisected<dim> same = mesh::bisect<dim>(mesh, {});
   EXPECT_EQ(cells_by_coordinates(same.mesh), cells_by_coordinates(mesh));
   EXPECT_EQ(same.parent, all_cells(mesh.n_cells()));
 }
@@ -223,9 +225,9 @@ TYPED_TEST(Bisect, NothingMarkedChangesNothing)
 TYPED_TEST(Bisect, OrderAndRepetitionOfMarksDoNotMatter)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh = irregular_mesh<dim>();
-  const Bisected<dim> a = bisect<dim>(mesh, std::vector<Index>{1, 4, 9});
-  const Bisected<dim> b = bisect<dim>(mesh, std::vector<Index>{9, 4, 9, 1, 4});
+  const mesh::Mesh<dim> mesh = irregular_mesh<dim>();
+  const mesh::Bisected<dim> a = mesh::bisect<dim>(mesh, std::vector<Index>{1, 4, 9});
+  const mesh::Bisected<dim> b = mesh::bisect<dim>(mesh, std::vector<Index>{9, 4, 9, 1, 4});
   EXPECT_TRUE(std::ranges::equal(a.mesh.vertices(), b.mesh.vertices()));
   EXPECT_TRUE(std::ranges::equal(a.mesh.cells(), b.mesh.cells()));
   EXPECT_TRUE(std::ranges::equal(a.mesh.bisection_types(), b.mesh.bisection_types()));
@@ -247,21 +249,21 @@ TYPED_TEST(Bisect, NumberingDoesNotMatter)
       return y;
     };
   };
-  MeshData<dim> grid;
+  mesh::MeshData<dim> grid;
   if constexpr (dim == 2)
     grid = box<2>({0, 0}, {1, 1}, {4, 4});
   else
     grid = box<3>({0, 0, 0}, {1, 0.5, 0.5}, {4, 2, 2});
-  for (const MeshData<dim>& data :
+  for (const mesh::MeshData<dim>& data :
        {grid, mapped(grid, slanted(2)), mapped(grid, slanted(std::sqrt(0.75))), irregular_data<dim>()})
     for (unsigned seed = 0; seed < 5; ++seed)
     {
-      Mesh<dim> a{MeshData<dim>(data)};
-      Mesh<dim> b{renumbered(data, seed)};
+      mesh::Mesh<dim> a{mesh::MeshData<dim>(data)};
+      mesh::Mesh<dim> b{renumbered(data, seed)};
       for (std::uint64_t level = 0; level < 5; ++level)
       {
-        a = bisect<dim>(a, cells_chosen_by_place(a, level + seed), 1).mesh;
-        b = bisect<dim>(b, cells_chosen_by_place(b, level + seed), 1).mesh;
+        a = mesh::bisect<dim>(a, cells_chosen_by_place(a, level + seed), 1).mesh;
+        b = mesh::bisect<dim>(b, cells_chosen_by_place(b, level + seed), 1).mesh;
         ASSERT_EQ(a.n_cells(), b.n_cells());
         ASSERT_EQ(cells_by_coordinates(a), cells_by_coordinates(b));
       }
@@ -293,10 +295,10 @@ TYPED_TEST(Bisect, MeshesFromGmsh)
   const Directory directory;
   const auto source = directory.write("mesh.geo", dim == 2 ? plate_geo : solid_geo);
   std::mt19937 random(11);
-  const auto original = std::get<Mesh<dim>>(read_gmsh(source));
-  const Mesh<dim> mesh = bisect_and_check(
-      std::get<Mesh<dim>>(read_gmsh(source)), dim == 2 ? 8 : 4,
-      [&](const Mesh<dim>& m, int) { return random_cells(m.n_cells(), 0.1, random); }, 1);
+  const auto original = std::get<mesh::Mesh<dim>>(mesh::read_gmsh(source));
+  const mesh::Mesh<dim> mesh = bisect_and_check(
+      std::get<mesh::Mesh<dim>>(mesh::read_gmsh(source)), dim == 2 ? 8 : 4,
+      [&](const mesh::Mesh<dim>& m, int) { return random_cells(m.n_cells(), 0.1, random); }, 1);
   expect_bounded_angles(mesh, original);
 }
 

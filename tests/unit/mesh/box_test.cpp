@@ -12,13 +12,13 @@ using testing_mesh::boundary_measure;
 using testing_mesh::expect_input_error;
 using testing_mesh::volume;
 
-const BoxMesh rectangle{{-1, 0}, {1, 3}, {4, 3}, {}};
-const BoxMesh cuboid{{0, -1, 2}, {2, 0, 5}, {3, 2, 4}, {}};
+const case_file::BoxMesh rectangle{{-1, 0}, {1, 3}, {4, 3}, {}};
+const case_file::BoxMesh cuboid{{0, -1, 2}, {2, 0, 5}, {3, 2, 4}, {}};
 
 TEST(Box, NumbersVerticesAndCellsAsTheReferenceData)
 {
   const int nx = 4;
-  const MeshData<2> data = box_mesh<2>(rectangle);
+  const mesh::MeshData<2> data = mesh::box_mesh<2>(rectangle);
   ASSERT_EQ(data.vertices.size(), 20U);
   ASSERT_EQ(data.cells.size(), 24U);
   for (int j = 0; j < 3; ++j)
@@ -26,15 +26,15 @@ TEST(Box, NumbersVerticesAndCellsAsTheReferenceData)
     {
       const Index v00 = j * (nx + 1) + i;
       const Index v01 = v00 + nx + 1;
-      EXPECT_EQ(data.cells[2 * (j * nx + i)], (Cell<2>{v00, v00 + 1, v01 + 1}));
-      EXPECT_EQ(data.cells[2 * (j * nx + i) + 1], (Cell<2>{v00, v01 + 1, v01}));
+      EXPECT_EQ(data.cells[2 * (j * nx + i)], (mesh::Cell<2>{v00, v00 + 1, v01 + 1}));
+      EXPECT_EQ(data.cells[2 * (j * nx + i) + 1], (mesh::Cell<2>{v00, v01 + 1, v01}));
       EXPECT_NEAR((data.vertices[v00] - Point<2>(-1 + 0.5 * i, j)).norm(), 0, 1e-15);
     }
 }
 
 TEST(Box, NumbersVerticesOfACuboidAlongXThenYThenZ)
 {
-  const MeshData<3> data = box_mesh<3>(cuboid);
+  const mesh::MeshData<3> data = mesh::box_mesh<3>(cuboid);
   ASSERT_EQ(data.vertices.size(), 60U);
   ASSERT_EQ(data.cells.size(), 6U * 24);
   EXPECT_NEAR((data.vertices[(2 * 3 + 1) * 4 + 3] - Point<3>(2, -0.5, 3.5)).norm(), 0, 1e-15);
@@ -42,7 +42,7 @@ TEST(Box, NumbersVerticesOfACuboidAlongXThenYThenZ)
 
 TEST(Box, RegionAndSidesHaveTheirMeasures)
 {
-  const Mesh<2> plane(box_mesh<2>(rectangle));
+  const mesh::Mesh<2> plane(mesh::box_mesh<2>(rectangle));
   EXPECT_THAT(plane.region_names(), testing::ElementsAre("box"));
   EXPECT_THAT(plane.boundary_names(), testing::ElementsAre("left", "right", "bottom", "top"));
   EXPECT_NEAR(volume(plane), 6, 1e-13);
@@ -50,7 +50,7 @@ TEST(Box, RegionAndSidesHaveTheirMeasures)
   for (const int tag : {0, 1}) EXPECT_NEAR(boundary_measure(plane, tag), 3, 1e-13);
   for (const int tag : {2, 3}) EXPECT_NEAR(boundary_measure(plane, tag), 2, 1e-13);
 
-  const Mesh<3> solid(box_mesh<3>(cuboid));
+  const mesh::Mesh<3> solid(mesh::box_mesh<3>(cuboid));
   EXPECT_THAT(solid.boundary_names(),
               testing::ElementsAre("left", "right", "bottom", "top", "back", "front"));
   EXPECT_NEAR(volume(solid), 6, 1e-13);
@@ -61,23 +61,23 @@ TEST(Box, RegionAndSidesHaveTheirMeasures)
 
 TEST(Box, SidesLieWhereTheirNamesSay)
 {
-  const Mesh<3> mesh(box_mesh<3>(cuboid));
-  for (const BoundaryFacet& facet : mesh.boundary())
+  const mesh::Mesh<3> mesh(mesh::box_mesh<3>(cuboid));
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     ASSERT_GE(facet.tag, 0);
     Point<3> outward = Point<3>::Zero();
     outward[facet.tag / 2] = facet.tag % 2 == 0 ? -1 : 1;
-    EXPECT_NEAR((facet_geometry(mesh, facet.cell, facet.local).normal - outward).norm(), 0, 1e-14);
+    EXPECT_NEAR((mesh::facet_geometry(mesh, facet.cell, facet.local).normal - outward).norm(), 0, 1e-14);
   }
 }
 
 TEST(Box, EveryCubeIsCutIntoTetrahedraOfEqualVolume)
 {
-  const Mesh<3> mesh(box_mesh<3>({{0, 0, 0}, {1, 1, 1}, {1, 1, 1}, {}}));
+  const mesh::Mesh<3> mesh(mesh::box_mesh<3>({{0, 0, 0}, {1, 1, 1}, {1, 1, 1}, {}}));
   ASSERT_EQ(mesh.n_cells(), 6);
   for (Index c = 0; c < 6; ++c)
   {
-    EXPECT_NEAR(cell_map(mesh, c).det, 1, 1e-15);
+    EXPECT_NEAR(mesh::cell_map(mesh, c).det, 1, 1e-15);
     EXPECT_EQ(mesh.cell(c)[0], 0);
     EXPECT_EQ(mesh.cell(c)[3], 7);
   }
@@ -87,7 +87,7 @@ TEST(Box, RejectsNonsenseNamingTheKey)
 {
   const Where where{.file = "case.toml", .key = "mesh.box", .line = 4};
   const auto build = [&](std::vector<double> lower, std::vector<double> upper, std::vector<int> cells) {
-    return [=] { (void)box_mesh<2>({lower, upper, cells, where}); };
+    return [=] { (void)mesh::box_mesh<2>({lower, upper, cells, where}); };
   };
   expect_input_error(build({0, 0}, {1}, {1, 1}),
                      {"case.toml:4: mesh.box: ", "2, 1 and 2 entries", "hint: two"});
@@ -95,13 +95,17 @@ TEST(Box, RejectsNonsenseNamingTheKey)
   expect_input_error(build({0, 0}, {INFINITY, 1}, {1, 1}), {"upper = inf along x"});
   expect_input_error(build({0, 0}, {1, 1}, {1, 0}), {"0 cells along y", "at least one"});
   expect_input_error(build({0, 0}, {1, 1}, {100'000, 100'000}), {"2e+10 cells are too many"});
-  expect_input_error([&] { (void)read_mesh(BoxMesh{{0}, {1}, {2}, where}); }, {"1, 1 and 1 entries"});
+  expect_input_error(
+      [&] {
+        (void)mesh::read_mesh(case_file::BoxMesh{{0}, {1}, {2}, where});
+      },
+      {"1, 1 and 1 entries"});
 }
 
 TEST(Box, ReadMeshTakesTheDimensionFromTheNumberOfEntries)
 {
-  EXPECT_EQ(std::get<Mesh<2>>(read_mesh(rectangle)).n_cells(), 24);
-  EXPECT_EQ(std::get<Mesh<3>>(read_mesh(cuboid)).n_cells(), 144);
+  EXPECT_EQ(std::get<mesh::Mesh<2>>(mesh::read_mesh(rectangle)).n_cells(), 24);
+  EXPECT_EQ(std::get<mesh::Mesh<3>>(mesh::read_mesh(cuboid)).n_cells(), 144);
 }
 
 }  // namespace

@@ -56,12 +56,12 @@ class BadMesh : public testing::TestWithParam<BadFile>
 TEST_P(BadMesh, IsRefused)
 {
   const Directory directory;
-  const MeshFile source = directory.write(GetParam().file, GetParam().content);
+  const case_file::MeshFile source = directory.write(GetParam().file, GetParam().content);
   std::vector<std::string> messages;
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   for (int attempt = 0; attempt < 2; ++attempt)
-    messages.push_back(message_of([&] { (void)read_gmsh(source); }));
+    messages.push_back(message_of([&] { (void)mesh::read_gmsh(source); }));
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(messages[0], messages[1]) << "the first failure has left a trace";
@@ -192,7 +192,7 @@ TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
 {
   expect_input_error(
       [] {
-        (void)read_gmsh({"nowhere/block.msh", {.file = "case.toml", .key = "mesh.file", .line = 3}});
+        (void)mesh::read_gmsh({"nowhere/block.msh", {.file = "case.toml", .key = "mesh.file", .line = 3}});
       },
       {"case.toml:3: mesh.file: mesh file \"nowhere/block.msh\" does not exist", "relative to"});
 }
@@ -201,24 +201,24 @@ TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
 TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
 {
   const Directory directory;
-  const MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
-  expect_input_error([&] { (void)read_gmsh(source, nullptr, 0.3); },
+  const case_file::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
+  expect_input_error([&] { (void)mesh::read_gmsh(source, nullptr, 0.3); },
                      {"loop.geo: Gmsh shows no progress for 0.3 s and was ended", "gmsh -2"});
 }
 
 TEST(Gmsh, CanBeInterrupted)
 {
   const Directory directory;
-  const MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
+  const case_file::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
   const std::atomic<bool> stop = true;
-  EXPECT_THROW((void)read_gmsh(source, &stop), SolveError);
+  EXPECT_THROW((void)mesh::read_gmsh(source, &stop), SolveError);
 }
 
 TEST(Gmsh, ADirectoryIsNotAFile)
 {
   const Directory directory;
   std::filesystem::create_directory(directory / "block.msh");
-  expect_input_error([&] { (void)read_gmsh({directory / "block.msh", {}}); }, {"is a directory"});
+  expect_input_error([&] { (void)mesh::read_gmsh({directory / "block.msh", {}}); }, {"is a directory"});
 }
 
 }  // namespace

@@ -35,11 +35,11 @@ Physical Surface("floor") = Surface In BoundingBox {-0.1, -0.1, -0.1, 3.1, 1.1, 
 )";
 
 /// Meshes a .geo by Gmsh itself and saves it.
-MeshFile saved(const Directory& directory, const std::string& geo, double version, bool binary,
-               bool all = false)
+case_file::MeshFile saved(const Directory& directory, const std::string& geo, double version, bool binary,
+                          bool all = false)
 {
-  const MeshFile source = directory.write("source.geo", geo);
-  MeshFile result = source;
+  const case_file::MeshFile source = directory.write("source.geo", geo);
+  case_file::MeshFile result = source;
   result.path.replace_extension(".msh");
   gmsh::initialize(0, nullptr, false);
   gmsh::option::setNumber("General.Terminal", 0);
@@ -58,10 +58,10 @@ int position(std::span<const std::string> names, const std::string& name)
   return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-void expect_plane(const AnyMesh& any)
+void expect_plane(const mesh::AnyMesh& any)
 {
-  ASSERT_TRUE(std::holds_alternative<Mesh<2>>(any));
-  const auto& mesh = std::get<Mesh<2>>(any);
+  ASSERT_TRUE(std::holds_alternative<mesh::Mesh<2>>(any));
+  const auto& mesh = std::get<mesh::Mesh<2>>(any);
   EXPECT_THAT(mesh.region_names(), testing::UnorderedElementsAre("steel", "rubber"));
   EXPECT_THAT(mesh.boundary_names(), testing::UnorderedElementsAre("foot", "end", "17"));
   EXPECT_NEAR(volume(mesh), 3, 1e-12);
@@ -73,15 +73,15 @@ void expect_plane(const AnyMesh& any)
   EXPECT_NEAR(boundary_measure(mesh, -1), 1, 1e-12);
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const bool is_left = cell_map(mesh, c)(Point<2>::Constant(1.0 / 3))[0] < 1;
+    const bool is_left = mesh::cell_map(mesh, c)(Point<2>::Constant(1.0 / 3))[0] < 1;
     EXPECT_EQ(mesh.region(c), position(mesh.region_names(), is_left ? "steel" : "rubber"));
   }
 }
 
-void expect_solid(const AnyMesh& any)
+void expect_solid(const mesh::AnyMesh& any)
 {
-  ASSERT_TRUE(std::holds_alternative<Mesh<3>>(any));
-  const auto& mesh = std::get<Mesh<3>>(any);
+  ASSERT_TRUE(std::holds_alternative<mesh::Mesh<3>>(any));
+  const auto& mesh = std::get<mesh::Mesh<3>>(any);
   EXPECT_THAT(mesh.region_names(), testing::UnorderedElementsAre("long", "short"));
   EXPECT_THAT(mesh.boundary_names(), testing::ElementsAre("floor"));
   EXPECT_NEAR(volume(mesh), 3, 1e-12);
@@ -102,12 +102,12 @@ TEST_P(GmshFormat, IsRead)
   testing::internal::CaptureStderr();
   if (version > 1)  // version 1 has no names
   {
-    expect_plane(read_gmsh(saved(directory, plane_geo, version, binary)));
-    expect_solid(read_gmsh(saved(directory, solid_geo, version, binary)));
+    expect_plane(mesh::read_gmsh(saved(directory, plane_geo, version, binary)));
+    expect_solid(mesh::read_gmsh(saved(directory, solid_geo, version, binary)));
   }
   else
   {
-    const auto mesh = std::get<Mesh<2>>(read_gmsh(saved(directory, plane_geo, version, binary)));
+    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(saved(directory, plane_geo, version, binary)));
     EXPECT_NEAR(volume(mesh), 3, 1e-12);
     EXPECT_EQ(mesh.region_names().size(), 2U);
     EXPECT_THAT(mesh.boundary_names(), testing::Contains("17"));
@@ -128,14 +128,14 @@ INSTANTIATE_TEST_SUITE_P(Gmsh, GmshFormat,
 TEST(Gmsh, GeometriesAreMeshed)
 {
   const Directory directory;
-  expect_plane(read_gmsh(directory.write("plane.geo", plane_geo)));
-  expect_solid(read_gmsh(directory.write("solid.geo", solid_geo)));
+  expect_plane(mesh::read_gmsh(directory.write("plane.geo", plane_geo)));
+  expect_solid(mesh::read_gmsh(directory.write("solid.geo", solid_geo)));
 }
 
 TEST(Gmsh, AGeometryThatMeshesItselfIsNotMeshedAgain)
 {
   const Directory directory;
-  expect_plane(read_gmsh(directory.write("plane.geo", plane_geo + "Mesh 2;\n")));
+  expect_plane(mesh::read_gmsh(directory.write("plane.geo", plane_geo + "Mesh 2;\n")));
 }
 
 TEST(Gmsh, SurfacesOrientedDownAreTurned)
@@ -144,16 +144,17 @@ TEST(Gmsh, SurfacesOrientedDownAreTurned)
   std::string geo = plane_geo;
   geo.replace(geo.find("{1, 7, 5, 6}"), 12, "{-6, -5, -7, -1}");
   const auto file = saved(directory, geo, 4.1, false);
-  expect_plane(read_gmsh(file));
+  expect_plane(mesh::read_gmsh(file));
 }
 
 TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
 {
   const Directory directory;
   const std::string geo = plane_geo.substr(0, plane_geo.find("Physical"));
-  for (const MeshFile& file : {saved(directory, geo, 4.1, false), directory.write("bare.geo", geo)})
+  for (const case_file::MeshFile& file :
+       {saved(directory, geo, 4.1, false), directory.write("bare.geo", geo)})
   {
-    const auto mesh = std::get<Mesh<2>>(read_gmsh(file));
+    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(file));
     EXPECT_THAT(mesh.region_names(), testing::ElementsAre("domain"));
     EXPECT_THAT(mesh.boundary_names(), testing::IsEmpty());
     EXPECT_NEAR(volume(mesh), 3, 1e-12);
@@ -163,18 +164,18 @@ TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
 TEST(Gmsh, PointsOfTheGeometryThatNoCellUsesAreDropped)
 {
   const Directory directory;
-  expect_plane(read_gmsh(saved(directory, plane_geo, 4.1, false, true)));
+  expect_plane(mesh::read_gmsh(saved(directory, plane_geo, 4.1, false, true)));
 }
 
 TEST(Gmsh, SparseNodeTagsAreFine)
 {
   const Directory directory;
-  const auto mesh =
-      std::get<Mesh<2>>(read_gmsh(directory.write("sparse.msh",
-                                                  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n"
-                                                  "7 0 0 0\n900000 1 0 0\n80000000 0 1 0\n$EndNodes\n"
-                                                  "$Elements\n1\n1 2 2 1 1 7 900000 80000000\n"
-                                                  "$EndElements\n")));
+  const auto mesh = std::get<mesh::Mesh<2>>(
+      mesh::read_gmsh(directory.write("sparse.msh",
+                                      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n"
+                                      "7 0 0 0\n900000 1 0 0\n80000000 0 1 0\n$EndNodes\n"
+                                      "$Elements\n1\n1 2 2 1 1 7 900000 80000000\n"
+                                      "$EndElements\n")));
   EXPECT_EQ(mesh.n_vertices(), 3);
   EXPECT_NEAR(volume(mesh), 0.5, 1e-15);
   EXPECT_THAT(mesh.region_names(), testing::ElementsAre("1"));
@@ -183,9 +184,9 @@ TEST(Gmsh, SparseNodeTagsAreFine)
 TEST(Gmsh, ReadingTwiceGivesTheSame)
 {
   const Directory directory;
-  const MeshFile file = saved(directory, solid_geo, 4.1, true);
-  const auto first = std::get<Mesh<3>>(read_gmsh(file));
-  const auto second = std::get<Mesh<3>>(read_gmsh(file));
+  const case_file::MeshFile file = saved(directory, solid_geo, 4.1, true);
+  const auto first = std::get<mesh::Mesh<3>>(mesh::read_gmsh(file));
+  const auto second = std::get<mesh::Mesh<3>>(mesh::read_gmsh(file));
   EXPECT_TRUE(std::ranges::equal(first.cells(), second.cells()));
   EXPECT_TRUE(std::ranges::equal(first.vertices(), second.vertices()));
 }
@@ -195,14 +196,14 @@ TEST(Gmsh, ReadingTwiceGivesTheSame)
 TEST(Gmsh, ReadsBesideThreadsAndAnotherModel)
 {
   const Directory directory;
-  const MeshFile source = directory.write("plane.geo", plane_geo);
+  const case_file::MeshFile source = directory.write("plane.geo", plane_geo);
   int n_threads = 0;
 #pragma omp parallel num_threads(3) reduction(+ : n_threads)
   n_threads += 1;
   EXPECT_GE(n_threads, 1);
   gmsh::initialize(0, nullptr, false);
   gmsh::model::add("mine");
-  const auto mesh = std::get<Mesh<2>>(read_gmsh(source));
+  const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(source));
   EXPECT_NEAR(volume(mesh), 3.0, 1e-14);
   std::string name;
   gmsh::model::getCurrent(name);

@@ -22,9 +22,9 @@ namespace
 
 /// A distorted box in which some cells are bisected, in two regions.
 template <int dim>
-Mesh<dim> bisected_box()
+mesh::Mesh<dim> bisected_box()
 {
-  MeshData<dim> data;
+  mesh::MeshData<dim> data;
   if constexpr (dim == 2)
     data = box<2>({0, 0}, {2, 1}, {4, 2});
   else
@@ -32,16 +32,16 @@ Mesh<dim> bisected_box()
   data = distorted<dim>(std::move(data), 3);
   data.region_names = {"soft ground", "wall"};
   for (std::size_t c = 0; c < data.regions.size(); ++c) data.regions[c] = c % 3 == 0;
-  const Mesh<dim> mesh(std::move(data));
+  const mesh::Mesh<dim> mesh(std::move(data));
   const std::array<Index, 3> marked = {0, 2, 5};
-  return bisect<dim>(mesh, marked).mesh;
+  return mesh::bisect<dim>(mesh, marked).mesh;
 }
 
 template <int dim>
-Mesh<dim> read_again(const std::string& text)
+mesh::Mesh<dim> read_again(const std::string& text)
 {
   const testing_mesh::Directory directory;
-  return std::get<Mesh<dim>>(read_gmsh(directory.write("again.msh", text)));
+  return std::get<mesh::Mesh<dim>>(mesh::read_gmsh(directory.write("again.msh", text)));
 }
 
 /// Cells or boundary facets by the coordinates of their vertices, with the name of their group.
@@ -53,7 +53,7 @@ auto sorted_by_place(Corners corners)
 }
 
 template <int dim>
-auto cells_by_place(const Mesh<dim>& mesh)
+auto cells_by_place(const mesh::Mesh<dim>& mesh)
 {
   std::vector<std::pair<std::string, std::vector<std::vector<double>>>> result;
   for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -66,13 +66,13 @@ auto cells_by_place(const Mesh<dim>& mesh)
 }
 
 template <int dim>
-auto facets_by_place(const Mesh<dim>& mesh)
+auto facets_by_place(const mesh::Mesh<dim>& mesh)
 {
   std::vector<std::pair<std::string, std::vector<std::vector<double>>>> result;
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     auto& corners = result.emplace_back(facet.tag < 0 ? "" : mesh.boundary_names()[facet.tag], 0);
-    for (const Index v : facet_vertices(mesh.cell(facet.cell), facet.local))
+    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
       corners.second.emplace_back(mesh.vertex(v).begin(), mesh.vertex(v).end());
     std::ranges::sort(corners.second);
   }
@@ -82,8 +82,8 @@ auto facets_by_place(const Mesh<dim>& mesh)
 template <int dim>
 void expect_round_trip()
 {
-  const Mesh<dim> mesh = bisected_box<dim>();
-  const Mesh<dim> again = read_again<dim>(gmsh_text(mesh));
+  const mesh::Mesh<dim> mesh = bisected_box<dim>();
+  const mesh::Mesh<dim> again = read_again<dim>(mesh::gmsh_text(mesh));
   EXPECT_EQ(again.n_vertices(), mesh.n_vertices());
   EXPECT_EQ(cells_by_place(again), cells_by_place(mesh)) << "coordinates must come back to the last digit";
   EXPECT_EQ(facets_by_place(again), facets_by_place(mesh));
@@ -97,9 +97,9 @@ TEST(GmshText, IsReadAgain)
 
 TEST(GmshText, LeavesOutBoundaries)
 {
-  const Mesh<2> mesh = bisected_box<2>();
+  const mesh::Mesh<2> mesh = bisected_box<2>();
   const std::vector<std::string> left_out = {"top"};
-  const Mesh<2> again = read_again<2>(gmsh_text<2>(mesh, left_out));
+  const mesh::Mesh<2> again = read_again<2>(mesh::gmsh_text<2>(mesh, left_out));
   const std::vector<std::string> names(again.boundary_names().begin(), again.boundary_names().end());
   EXPECT_THAT(names, ::testing::UnorderedElementsAre("left", "right", "bottom"));
   EXPECT_EQ(again.boundary().size(), mesh.boundary().size());

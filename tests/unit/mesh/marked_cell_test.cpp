@@ -42,13 +42,13 @@ Simplex<dim> without_symmetry(std::uint8_t type)
 template <int dim>
 Simplex<dim> child_of(const Simplex<dim>& parent, int kept)
 {
-  MarkedCell<dim> cell{{}, parent.type};
+  mesh::MarkedCell<dim> cell{{}, parent.type};
   std::iota(cell.vertices.begin(), cell.vertices.end(), 0);
   std::array<Point<dim>, dim + 2> points;
   std::ranges::copy(parent.points, points.begin());
   points[dim + 1] = 0.5 * (points[0] + points[1]);
-  const MarkedCell<dim> result = child(cell, kept, dim + 1);
-  return {points_of<dim>(points, result.vertices), result.type};
+  const mesh::MarkedCell<dim> result = mesh::child(cell, kept, dim + 1);
+  return {mesh::points_of<dim>(points, result.vertices), result.type};
 }
 
 /// The shape up to similarity and reflection, the vertices in the given order: squared lengths of the edges
@@ -57,7 +57,7 @@ template <int dim>
 std::vector<long> shape(const std::array<Point<dim>, dim + 1>& points, const std::array<int, dim + 1>& order)
 {
   std::vector<double> lengths;
-  for (const auto& [i, j] : local_edges<dim>)
+  for (const auto& [i, j] : mesh::local_edges<dim>)
     lengths.push_back((points[order[i]] - points[order[j]]).squaredNorm());
   const double sum = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   std::vector<long> rounded;
@@ -123,14 +123,15 @@ TYPED_TEST_SUITE(Marked, Dimensions);
 TYPED_TEST(Marked, ChildrenArePositivelyOrientedHalves)
 {
   constexpr int dim = TypeParam::value;
-  for (int type = 0; type < n_bisection_types<dim>; ++type)
+  for (int type = 0; type < mesh::n_bisection_types<dim>; ++type)
   {
     const auto parent = without_symmetry<dim>(static_cast<std::uint8_t>(type));
     for (int kept = 0; kept < 2; ++kept)
     {
       const Simplex<dim> simplex = child_of(parent, kept);
-      EXPECT_NEAR(determinant<dim>(simplex.points), 0.5 * determinant<dim>(parent.points), 1e-15) << type;
-      EXPECT_LT(simplex.type, n_bisection_types<dim>);
+      EXPECT_NEAR(mesh::determinant<dim>(simplex.points), 0.5 * mesh::determinant<dim>(parent.points), 1e-15)
+          << type;
+      EXPECT_LT(simplex.type, mesh::n_bisection_types<dim>);
     }
   }
 }
@@ -169,10 +170,10 @@ TEST(MarkedFirst, FacesAreMarkedTheSameFromBothSides)
     do
       for (const Index tip : {0, 4})
       {
-        const Cell<3> vertices{face[0], face[1], face[2], tip};
-        const auto cell = longest_edges_marked<3>(points, vertices);
+        const mesh::Cell<3> vertices{face[0], face[1], face[2], tip};
+        const auto cell = mesh::longest_edges_marked<3>(points, vertices);
         const auto local = static_cast<int>(std::ranges::find(cell.vertices, tip) - cell.vertices.begin());
-        const auto facet = marked_facet(cell, local);
+        const auto facet = mesh::marked_facet(cell, local);
         marked.insert({facet[0], facet[1]});
       }
     while (std::ranges::next_permutation(face).found);

@@ -40,7 +40,7 @@ class Directory
 
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  [[nodiscard]] MeshFile write(const std::string& name, const std::string& text) const
+  [[nodiscard]] case_file::MeshFile write(const std::string& name, const std::string& text) const
   {
     std::ofstream(path_ / name, std::ios::binary) << text;
     return {path_ / name, {.file = "case.toml", .key = "mesh.file", .line = 3}};
@@ -74,33 +74,34 @@ void expect_input_error(const Action& action, std::initializer_list<std::string>
 }
 
 template <int dim>
-double volume(const Mesh<dim>& mesh)
+double volume(const mesh::Mesh<dim>& mesh)
 {
   double sum = 0.0;
-  for (Index c = 0; c < mesh.n_cells(); ++c) sum += cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
+  for (Index c = 0; c < mesh.n_cells(); ++c) sum += mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
   return sum;
 }
 
 /// The measure of a boundary group.
 template <int dim>
-double boundary_measure(const Mesh<dim>& mesh, int tag)
+double boundary_measure(const mesh::Mesh<dim>& mesh, int tag)
 {
   double sum = 0.0;
-  for (const BoundaryFacet& facet : mesh.boundary())
-    if (facet.tag == tag) sum += facet_geometry(mesh, facet.cell, facet.local).measure;
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+    if (facet.tag == tag) sum += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   return sum;
 }
 
 /// The smallest angle between two edges of a triangle or two faces of a tetrahedron, degrees.
 template <int dim>
-double smallest_angle(const Mesh<dim>& mesh)
+double smallest_angle(const mesh::Mesh<dim>& mesh)
 {
   double smallest = std::numeric_limits<double>::infinity();
   for (Index c = 0; c < mesh.n_cells(); ++c)
     for (int i = 0; i <= dim; ++i)
       for (int j = i + 1; j <= dim; ++j)
       {
-        const double cosine = -facet_geometry(mesh, c, i).normal.dot(facet_geometry(mesh, c, j).normal);
+        const double cosine =
+            -mesh::facet_geometry(mesh, c, i).normal.dot(mesh::facet_geometry(mesh, c, j).normal);
         smallest = std::min(smallest, std::acos(cosine) * 180 / std::numbers::pi);
       }
   return smallest;
@@ -108,7 +109,7 @@ double smallest_angle(const Mesh<dim>& mesh)
 
 /// A few squares or cubes.
 template <int dim>
-MeshData<dim> grid()
+mesh::MeshData<dim> grid()
 {
   if constexpr (dim == 2)
     return test::box<2>({0, 0}, {2, 1}, {3, 2});
@@ -118,20 +119,20 @@ MeshData<dim> grid()
 
 /// Two regions, a boundary group in pieces, a part of the boundary in no group, all cells different.
 template <int dim>
-MeshData<dim> irregular_data()
+mesh::MeshData<dim> irregular_data()
 {
-  MeshData<dim> data = grid<dim>();
+  mesh::MeshData<dim> data = grid<dim>();
   data.region_names.push_back("inclusion");
   for (std::size_t c = 0; c < data.cells.size(); c += 3) data.regions[c] = 1;
-  std::erase_if(data.facets, [](const TaggedFacet<dim>& facet) { return facet.tag == 1; });
+  std::erase_if(data.facets, [](const mesh::TaggedFacet<dim>& facet) { return facet.tag == 1; });
   data.source = {.file = "grid.msh"};
   return test::distorted(std::move(data), 3);
 }
 
 template <int dim>
-Mesh<dim> irregular_mesh()
+mesh::Mesh<dim> irregular_mesh()
 {
-  return Mesh<dim>(irregular_data<dim>());
+  return mesh::Mesh<dim>(irregular_data<dim>());
 }
 
 }  // namespace tribound::testing_mesh

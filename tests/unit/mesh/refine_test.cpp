@@ -38,14 +38,14 @@ std::array<long, dim> key(const Point<dim>& x)
 
 /// Facets told apart by the coordinates of their centres alone.
 template <int dim>
-std::map<std::array<long, dim>, int> cells_per_facet_centre(const Mesh<dim>& mesh)
+std::map<std::array<long, dim>, int> cells_per_facet_centre(const mesh::Mesh<dim>& mesh)
 {
   std::map<std::array<long, dim>, int> count;
   for (Index c = 0; c < mesh.n_cells(); ++c)
     for (int i = 0; i <= dim; ++i)
     {
       Point<dim> centre = Point<dim>::Zero();
-      for (const Index v : facet_vertices(mesh.cell(c), i)) centre += mesh.vertex(v) / dim;
+      for (const Index v : mesh::facet_vertices(mesh.cell(c), i)) centre += mesh.vertex(v) / dim;
       ++count[key<dim>(centre)];
     }
   return count;
@@ -54,7 +54,8 @@ std::map<std::array<long, dim>, int> cells_per_facet_centre(const Mesh<dim>& mes
 TYPED_TEST(Refine, IsConformingByCoordinates)
 {
   constexpr int dim = TypeParam::value;
-  const Refined<dim> refined = refine_uniformly(irregular_mesh<dim>(), 2);  // verifies itself, too
+  const mesh::Refined<dim> refined =
+      mesh::refine_uniformly(irregular_mesh<dim>(), 2);  // verifies itself, too
   std::set<std::array<long, dim>> places;
   for (const Point<dim>& x : refined.mesh.vertices()) places.insert(key<dim>(x));
   EXPECT_EQ(places.size(), static_cast<std::size_t>(refined.mesh.n_vertices()));
@@ -71,11 +72,11 @@ TYPED_TEST(Refine, IsConformingByCoordinates)
 TYPED_TEST(Refine, CountsAreThoseOfTheFormula)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh = irregular_mesh<dim>();
+  const mesh::Mesh<dim> mesh = irregular_mesh<dim>();
   for (const int times : {1, 2})
   {
-    const Mesh<dim> refined = refine_uniformly(mesh, times).mesh;
-    const EntityCounts n = count_after_refinement(mesh, times);
+    const mesh::Mesh<dim> refined = mesh::refine_uniformly(mesh, times).mesh;
+    const mesh::EntityCounts n = mesh::count_after_refinement(mesh, times);
     EXPECT_EQ(n.vertices, refined.n_vertices());
     EXPECT_EQ(n.edges, refined.topology().edges.size());
     EXPECT_EQ(n.facets, refined.topology().facets.size());
@@ -87,8 +88,8 @@ TYPED_TEST(Refine, CountsAreThoseOfTheFormula)
 TYPED_TEST(Refine, NamesRegionsAndBoundariesAreInherited)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh = irregular_mesh<dim>();
-  const Refined<dim> refined = refine_uniformly(mesh, 2);
+  const mesh::Mesh<dim> mesh = irregular_mesh<dim>();
+  const mesh::Refined<dim> refined = mesh::refine_uniformly(mesh, 2);
   EXPECT_TRUE(std::ranges::equal(mesh.region_names(), refined.mesh.region_names()));
   EXPECT_TRUE(std::ranges::equal(mesh.boundary_names(), refined.mesh.boundary_names()));
   EXPECT_EQ(refined.mesh.source().file, "grid.msh");
@@ -102,14 +103,14 @@ TYPED_TEST(Refine, NamesRegionsAndBoundariesAreInherited)
 TYPED_TEST(Refine, DescendantsFillTheirAncestors)
 {
   constexpr int dim = TypeParam::value;
-  const Mesh<dim> mesh = irregular_mesh<dim>();
-  const Refined<dim> refined = refine_uniformly(mesh, 2);
+  const mesh::Mesh<dim> mesh = irregular_mesh<dim>();
+  const mesh::Refined<dim> refined = mesh::refine_uniformly(mesh, 2);
   std::vector<double> filled(mesh.n_cells(), 0.0);
   for (Index c = 0; c < refined.mesh.n_cells(); ++c)
   {
     const Index ancestor = refined.ancestor(c);
-    const CellMap<dim> map = cell_map(mesh, ancestor);
-    filled[ancestor] += cell_map(refined.mesh, c).det / map.det;
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, ancestor);
+    filled[ancestor] += mesh::cell_map(refined.mesh, c).det / map.det;
     EXPECT_EQ(refined.mesh.region(c), mesh.region(ancestor));
     for (const Index v : refined.mesh.cell(c))
     {
@@ -123,25 +124,25 @@ TYPED_TEST(Refine, DescendantsFillTheirAncestors)
 
 TEST(RefineShapes, TrianglesStaySimilar)
 {
-  const Mesh<2> mesh = irregular_mesh<2>();
-  EXPECT_NEAR(smallest_angle(refine_uniformly(mesh, 4).mesh), smallest_angle(mesh), 1e-9);
+  const mesh::Mesh<2> mesh = irregular_mesh<2>();
+  EXPECT_NEAR(smallest_angle(mesh::refine_uniformly(mesh, 4).mesh), smallest_angle(mesh), 1e-9);
 }
 
 /// Of a tetrahedron of any shape the children differ from it once; from then on no new shapes worth the name
 /// appear. The meshes: Kuhn's tetrahedra, distorted ones, a flat one.
 TEST(RefineShapes, AnglesOfTetrahedraAreBoundedOverFourLevels)
 {
-  MeshData<3> flat = mapped(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
-                            [](const Point<3>& x) {
-                              return Point<3>{x[0] + 0.4 * x[1], x[1], 0.2 * x[2]};
-                            });
-  for (MeshData<3> data : {box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
-                           distorted(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), 7), std::move(flat)})
+  mesh::MeshData<3> flat = mapped(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
+                                  [](const Point<3>& x) {
+                                    return Point<3>{x[0] + 0.4 * x[1], x[1], 0.2 * x[2]};
+                                  });
+  for (mesh::MeshData<3> data : {box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
+                                 distorted(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), 7), std::move(flat)})
   {
-    const Mesh<3> mesh(std::move(data));
+    const mesh::Mesh<3> mesh(std::move(data));
     std::array<double, 5> angle{smallest_angle(mesh)};
     for (int level = 1; level <= 4; ++level)
-      angle[level] = smallest_angle(refine_uniformly(mesh, level).mesh);
+      angle[level] = smallest_angle(mesh::refine_uniformly(mesh, level).mesh);
     EXPECT_GE(angle[1], 0.5 * angle[0]);
     for (int level = 2; level <= 4; ++level) EXPECT_GE(angle[level], angle[1] * (1 - 1e-9)) << level;
   }
@@ -149,8 +150,9 @@ TEST(RefineShapes, AnglesOfTetrahedraAreBoundedOverFourLevels)
 
 TEST(RefineSize, TooManyCellsAreRefused)
 {
-  const Mesh<3> mesh(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}));
-  testing_mesh::expect_input_error([&] { (void)refine_uniformly(mesh, 9); }, {"9 times", "8.05e+08 cells"});
+  const mesh::Mesh<3> mesh(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}));
+  testing_mesh::expect_input_error([&] { (void)mesh::refine_uniformly(mesh, 9); },
+                                   {"9 times", "8.05e+08 cells"});
 }
 
 }  // namespace

@@ -15,32 +15,32 @@ namespace
 
 /// The definition, through std::map.
 template <int dim>
-Topology<dim> by_definition(Index n_vertices, std::span<const Cell<dim>> cells)
+mesh::Topology<dim> by_definition(Index n_vertices, std::span<const mesh::Cell<dim>> cells)
 {
   using Facet = std::array<Index, dim>;
   using Edge = std::array<Index, 2>;
   std::map<Facet, std::vector<Index>> facets;
   std::map<Edge, Index> edges;
   std::vector<std::set<Index>> around(n_vertices);
-  const auto facet_of = [](const Cell<dim>& cell, int i)
+  const auto facet_of = [](const mesh::Cell<dim>& cell, int i)
   {
-    Facet facet = facet_vertices(cell, i);
+    Facet facet = mesh::facet_vertices(cell, i);
     std::sort(facet.begin(), facet.end());
     return facet;
   };
-  const auto edge_of = [](const Cell<dim>& cell, int e)
+  const auto edge_of = [](const mesh::Cell<dim>& cell, int e)
   {
-    const auto [a, b] = local_edges<dim>[e];
+    const auto [a, b] = mesh::local_edges<dim>[e];
     return Edge{std::min(cell[a], cell[b]), std::max(cell[a], cell[b])};
   };
   for (std::size_t c = 0; c < cells.size(); ++c)
   {
     for (int i = 0; i <= dim; ++i) facets[facet_of(cells[c], i)].push_back(static_cast<Index>(c));
-    for (int e = 0; e < Topology<dim>::n_cell_edges; ++e) edges[edge_of(cells[c], e)] = 0;
+    for (int e = 0; e < mesh::Topology<dim>::n_cell_edges; ++e) edges[edge_of(cells[c], e)] = 0;
     for (const Index v : cells[c]) around[v].insert(static_cast<Index>(c));
   }
 
-  Topology<dim> topology;
+  mesh::Topology<dim> topology;
   std::map<Facet, Index> number;
   for (const auto& [facet, its_cells] : facets)
   {
@@ -53,12 +53,12 @@ Topology<dim> by_definition(Index n_vertices, std::span<const Cell<dim>> cells)
     n = static_cast<Index>(topology.edges.size());
     topology.edges.push_back(edge);
   }
-  for (const Cell<dim>& cell : cells)
+  for (const mesh::Cell<dim>& cell : cells)
   {
     auto& of_cell = topology.cell_facets.emplace_back();
     for (int i = 0; i <= dim; ++i) of_cell[i] = number[facet_of(cell, i)];
     auto& its_edges = topology.cell_edges.emplace_back();
-    for (int e = 0; e < Topology<dim>::n_cell_edges; ++e) its_edges[e] = edges[edge_of(cell, e)];
+    for (int e = 0; e < mesh::Topology<dim>::n_cell_edges; ++e) its_edges[e] = edges[edge_of(cell, e)];
   }
   topology.vertex_cells_begin = {0};
   for (const auto& its_cells : around)
@@ -70,7 +70,7 @@ Topology<dim> by_definition(Index n_vertices, std::span<const Cell<dim>> cells)
 }
 
 template <int dim>
-void expect_same(const Topology<dim>& actual, const Topology<dim>& expected)
+void expect_same(const mesh::Topology<dim>& actual, const mesh::Topology<dim>& expected)
 {
   EXPECT_EQ(actual.facets, expected.facets);
   EXPECT_EQ(actual.facet_cells, expected.facet_cells);
@@ -83,14 +83,14 @@ void expect_same(const Topology<dim>& actual, const Topology<dim>& expected)
 
 /// Cells with vertices renumbered and listed at random, so that no order of the box helps.
 template <int dim>
-std::vector<Cell<dim>> shuffled(const MeshData<dim>& data)
+std::vector<mesh::Cell<dim>> shuffled(const mesh::MeshData<dim>& data)
 {
   std::mt19937 generator(3);
   std::vector<Index> number(data.vertices.size());
   std::iota(number.begin(), number.end(), 0);
   std::shuffle(number.begin(), number.end(), generator);
-  std::vector<Cell<dim>> cells = data.cells;
-  for (Cell<dim>& cell : cells)
+  std::vector<mesh::Cell<dim>> cells = data.cells;
+  for (mesh::Cell<dim>& cell : cells)
   {
     for (Index& v : cell) v = number[v];
     std::shuffle(cell.begin(), cell.end(), generator);
@@ -100,13 +100,13 @@ std::vector<Cell<dim>> shuffled(const MeshData<dim>& data)
 }
 
 template <int dim>
-void check_box(const BoxMesh& box)
+void check_box(const case_file::BoxMesh& box)
 {
-  const MeshData<dim> data = box_mesh<dim>(box);
+  const mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);
   const auto n = static_cast<Index>(data.vertices.size());
-  expect_same(build_topology<dim>(n, data.cells), by_definition<dim>(n, data.cells));
-  const std::vector<Cell<dim>> cells = shuffled(data);
-  expect_same(build_topology<dim>(n, cells), by_definition<dim>(n, cells));
+  expect_same(mesh::build_topology<dim>(n, data.cells), by_definition<dim>(n, data.cells));
+  const std::vector<mesh::Cell<dim>> cells = shuffled(data);
+  expect_same(mesh::build_topology<dim>(n, cells), by_definition<dim>(n, cells));
 }
 
 TEST(Topology, OfBoxesIsTheDefinition)
@@ -120,24 +120,24 @@ TEST(Topology, OfBoxesIsTheDefinition)
 TEST(Topology, OfGmshMeshesIsTheDefinition)
 {
   const testing_mesh::Directory directory;
-  const auto plane =
-      std::get<Mesh<2>>(read_gmsh(directory.write("disk.geo",
-                                                  "SetFactory(\"OpenCASCADE\"); Disk(1) = {0, 0, 0, 1};"
-                                                  "Mesh.MeshSizeMax = 0.2;\n")));
+  const auto plane = std::get<mesh::Mesh<2>>(
+      mesh::read_gmsh(directory.write("disk.geo",
+                                      "SetFactory(\"OpenCASCADE\"); Disk(1) = {0, 0, 0, 1};"
+                                      "Mesh.MeshSizeMax = 0.2;\n")));
   expect_same(plane.topology(), by_definition<2>(plane.n_vertices(), plane.cells()));
-  const auto solid =
-      std::get<Mesh<3>>(read_gmsh(directory.write("ball.geo",
-                                                  "SetFactory(\"OpenCASCADE\"); Sphere(1) = {0, 0, 0, 1};"
-                                                  "Mesh.MeshSizeMax = 0.4;\n")));
+  const auto solid = std::get<mesh::Mesh<3>>(
+      mesh::read_gmsh(directory.write("ball.geo",
+                                      "SetFactory(\"OpenCASCADE\"); Sphere(1) = {0, 0, 0, 1};"
+                                      "Mesh.MeshSizeMax = 0.4;\n")));
   expect_same(solid.topology(), by_definition<3>(solid.n_vertices(), solid.cells()));
 }
 
 TEST(Topology, OfAVertexWithManyCellsStaysExact)
 {
   const Index n = 5000;  // a fan around vertex 0
-  std::vector<Cell<2>> cells;
+  std::vector<mesh::Cell<2>> cells;
   for (Index i = 1; i < n; ++i) cells.push_back({0, i, i + 1});
-  expect_same(build_topology<2>(n + 1, cells), by_definition<2>(n + 1, cells));
+  expect_same(mesh::build_topology<2>(n + 1, cells), by_definition<2>(n + 1, cells));
 }
 
 }  // namespace

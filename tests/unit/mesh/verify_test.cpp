@@ -17,7 +17,7 @@ template <int dim>
 struct Flaw
 {
   std::string name;
-  std::function<void(MeshData<dim>&)> spoil;
+  std::function<void(mesh::MeshData<dim>&)> spoil;
   std::vector<std::string> words;
 };
 
@@ -31,25 +31,26 @@ template <int dim>
 void expect_found(const Flaw<dim>& flaw)
 {
   const std::vector<double> upper(dim, 2.0);
-  MeshData<dim> data = box_mesh<dim>({std::vector<double>(dim, 0.0), upper, std::vector<int>(dim, 2), {}});
+  mesh::MeshData<dim> data =
+      mesh::box_mesh<dim>({std::vector<double>(dim, 0.0), upper, std::vector<int>(dim, 2), {}});
   data.source = {.file = "block.msh"};
   flaw.spoil(data);
-  const std::string message = testing_mesh::message_of([&] { const Mesh<dim> mesh(std::move(data)); });
+  const std::string message = testing_mesh::message_of([&] { const mesh::Mesh<dim> mesh(std::move(data)); });
   EXPECT_THAT(message, testing::StartsWith("block.msh: "));
   for (const std::string& word : flaw.words) EXPECT_THAT(message, testing::HasSubstr(word));
 }
 
 /// Adds the vertices and one cell with region 0.
 template <int dim>
-void add_cell(MeshData<dim>& data, const std::vector<Point<dim>>& vertices, const Cell<dim>& cell)
+void add_cell(mesh::MeshData<dim>& data, const std::vector<Point<dim>>& vertices, const mesh::Cell<dim>& cell)
 {
   data.vertices.insert(data.vertices.end(), vertices.begin(), vertices.end());
   data.cells.push_back(cell);
   data.regions.push_back(0);
 }
 
-using Plane = MeshData<2>;
-using Solid = MeshData<3>;
+using Plane = mesh::MeshData<2>;
+using Solid = mesh::MeshData<3>;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 class PlaneFlaw : public testing::TestWithParam<Flaw<2>>
@@ -272,41 +273,41 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Verify, AcceptsThinAndGradedMeshes)
 {
-  EXPECT_NO_THROW(Mesh<2>(box_mesh<2>({{0, 0}, {1, 1e-7}, {4, 3}, {}})));
-  EXPECT_NO_THROW(Mesh<3>(box_mesh<3>({{1e3, 1e3, 1e3}, {1001, 1001, 1000.001}, {4, 4, 4}, {}})));
-  MeshData<2> graded = box_mesh<2>({{0, 0}, {1, 1}, {16, 16}, {}});
+  EXPECT_NO_THROW(mesh::Mesh<2>(mesh::box_mesh<2>({{0, 0}, {1, 1e-7}, {4, 3}, {}})));
+  EXPECT_NO_THROW(mesh::Mesh<3>(mesh::box_mesh<3>({{1e3, 1e3, 1e3}, {1001, 1001, 1000.001}, {4, 4, 4}, {}})));
+  mesh::MeshData<2> graded = mesh::box_mesh<2>({{0, 0}, {1, 1}, {16, 16}, {}});
   for (auto& x : graded.vertices) x = x.array().pow(6);
-  EXPECT_NO_THROW(Mesh<2>(std::move(graded)));
+  EXPECT_NO_THROW(mesh::Mesh<2>(std::move(graded)));
 }
 
 TEST(Verify, AcceptsTwoBodiesSideBySideWithANarrowGap)
 {
-  MeshData<2> data = box_mesh<2>({{0, 0}, {1, 1}, {3, 3}, {}});
-  const MeshData<2> other = box_mesh<2>({{1 + 1e-6, 0}, {2, 1}, {2, 5}, {}});
+  mesh::MeshData<2> data = mesh::box_mesh<2>({{0, 0}, {1, 1}, {3, 3}, {}});
+  const mesh::MeshData<2> other = mesh::box_mesh<2>({{1 + 1e-6, 0}, {2, 1}, {2, 5}, {}});
   const auto shift = static_cast<Index>(data.vertices.size());
   data.vertices.insert(data.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const auto& cell : other.cells)
     data.cells.push_back({cell[0] + shift, cell[1] + shift, cell[2] + shift});
   data.regions.resize(data.cells.size(), 0);
-  EXPECT_NO_THROW(Mesh<2>(std::move(data)));
+  EXPECT_NO_THROW(mesh::Mesh<2>(std::move(data)));
 }
 
 TEST(Verify, AcceptsAFacetListedTwiceInOneGroup)
 {
-  MeshData<2> data = box_mesh<2>({{0, 0}, {1, 1}, {3, 3}, {}});
+  mesh::MeshData<2> data = mesh::box_mesh<2>({{0, 0}, {1, 1}, {3, 3}, {}});
   data.facets.push_back(data.facets.front());
-  EXPECT_EQ(Mesh<2>(std::move(data)).boundary().size(), 12U);
+  EXPECT_EQ(mesh::Mesh<2>(std::move(data)).boundary().size(), 12U);
 }
 
 TEST(Verify, KeepsTheTagsOfTheBoundaryAndMarksTheRest)
 {
-  MeshData<2> data = box_mesh<2>({{0, 0}, {1, 1}, {2, 2}, {}});
+  mesh::MeshData<2> data = mesh::box_mesh<2>({{0, 0}, {1, 1}, {2, 2}, {}});
   std::erase_if(data.facets, [](const auto& facet) { return facet.tag == 1; });
-  const Mesh<2> mesh(std::move(data));
+  const mesh::Mesh<2> mesh(std::move(data));
   ASSERT_EQ(mesh.boundary().size(), 8U);
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
-    const Point<2> normal = facet_geometry(mesh, facet.cell, facet.local).normal;
+    const Point<2> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
     EXPECT_EQ(facet.tag, normal[0] > 0.5 ? -1 : normal[0] < -0.5 ? 0 : normal[1] < 0 ? 2 : 3);
   }
 }

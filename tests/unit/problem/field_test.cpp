@@ -19,14 +19,14 @@ const Where in_case_file{"case.toml", "boundary.top.pressure", 12, 11};
 
 double at(const std::string& formula, const Point<3>& x)
 {
-  return Expression(formula, in_case_file)(x);
+  return problem::Expression(formula, in_case_file)(x);
 }
 
 std::string message(const std::string& formula)
 {
   try
   {
-    const Expression expression(formula, in_case_file);
+    const problem::Expression expression(formula, in_case_file);
   }
   catch (const InputError& error)
   {
@@ -52,44 +52,44 @@ TEST(Expression, EvaluatesFormulas)
 
 TEST(Expression, IsEvaluatedIn2DWithoutZ)
 {
-  const Expression formula("x - y", in_case_file);
+  const problem::Expression formula("x - y", in_case_file);
   EXPECT_EQ(formula(Point<2>(1, 2)), -1);
   EXPECT_EQ(formula(Point<3>(1, 2, 3)), -1);
 }
 
 TEST(Expression, KnowsWhatItDependsOn)
 {
-  const Expression constant("2*pi", in_case_file);
+  const problem::Expression constant("2*pi", in_case_file);
   EXPECT_TRUE(constant.is_constant());
   EXPECT_FALSE(constant.is_zero());
   EXPECT_DOUBLE_EQ(constant(Point<2>(9, 9)), 2 * std::numbers::pi);
-  EXPECT_TRUE(Expression("1 - 1", in_case_file).is_zero());
-  EXPECT_TRUE(Expression().is_zero());
-  EXPECT_FALSE(Expression(3.0).is_zero());
-  EXPECT_FALSE(Expression("0*x", in_case_file).is_constant());
-  EXPECT_TRUE(Expression("x + sin(z)", in_case_file).uses_z());
-  EXPECT_FALSE(Expression("x + y", in_case_file).uses_z());
-  EXPECT_FALSE(Expression(1.0).uses_z());
-  EXPECT_EQ(Expression(1.0, in_case_file).where().line, 12);
+  EXPECT_TRUE(problem::Expression("1 - 1", in_case_file).is_zero());
+  EXPECT_TRUE(problem::Expression().is_zero());
+  EXPECT_FALSE(problem::Expression(3.0).is_zero());
+  EXPECT_FALSE(problem::Expression("0*x", in_case_file).is_constant());
+  EXPECT_TRUE(problem::Expression("x + sin(z)", in_case_file).uses_z());
+  EXPECT_FALSE(problem::Expression("x + y", in_case_file).uses_z());
+  EXPECT_FALSE(problem::Expression(1.0).uses_z());
+  EXPECT_EQ(problem::Expression(1.0, in_case_file).where().line, 12);
 }
 
 TEST(Expression, CopiesAreIndependent)
 {
   const Point<2> a(1, 0);
   const Point<2> b(2, 0);
-  Expression copy;
+  problem::Expression copy;
   {
-    const Expression original("10*x", in_case_file);
+    const problem::Expression original("10*x", in_case_file);
     copy = original;
     EXPECT_EQ(original(a), 10);
     EXPECT_EQ(copy(b), 20);
     EXPECT_EQ(original(a), 10);
   }
   EXPECT_EQ(copy(a), 10);
-  const Expression moved = std::move(copy);
+  const problem::Expression moved = std::move(copy);
   EXPECT_EQ(moved(b), 20);
-  std::vector<Expression> many(3, moved);
-  many.resize(100, Expression("y", in_case_file));
+  std::vector<problem::Expression> many(3, moved);
+  many.resize(100, problem::Expression("y", in_case_file));
   EXPECT_EQ(many[2](b), 20);
   EXPECT_EQ(many[99](Point<2>(0, 4)), 4);
 }
@@ -153,7 +153,7 @@ TEST(Expression, ShowsTheSurroundingsOfAMistakeInALongFormula)
 
 TEST(Expression, NamesThePointWhereItIsNotFinite)
 {
-  const Expression formula("1/x", in_case_file);
+  const problem::Expression formula("1/x", in_case_file);
   EXPECT_EQ(formula(Point<2>(0.5, 0)), 2);
   try
   {
@@ -165,7 +165,7 @@ TEST(Expression, NamesThePointWhereItIsNotFinite)
     EXPECT_THAT(error.what(),
                 HasSubstr("boundary.top.pressure: the formula \"1/x\" is inf at the point (0, 0.25)"));
   }
-  EXPECT_THROW((void)Expression("sqrt(z)", in_case_file)(Point<3>(0, 0, -1)), InputError);
+  EXPECT_THROW((void)problem::Expression("sqrt(z)", in_case_file)(Point<3>(0, 0, -1)), InputError);
 }
 
 }  // namespace

@@ -19,14 +19,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Vertices = std::vector<double>;
 
-std::vector<Enclosure> enclose(const std::string& text, const Vertices& vertices, int dim, int order)
+std::vector<problem::Enclosure> enclose(const std::string& text, const Vertices& vertices, int dim, int order)
 {
-  std::vector<Enclosure> coefficients(order + 1);
-  Formula(text, in_case_file).enclose(vertices, dim, coefficients);
+  std::vector<problem::Enclosure> coefficients(order + 1);
+  problem::Formula(text, in_case_file).enclose(vertices, dim, coefficients);
   return coefficients;
 }
 
-void expect_range(const Enclosure& enclosure, double lower, double upper)
+void expect_range(const problem::Enclosure& enclosure, double lower, double upper)
 {
   const double tolerance = 1e-13 * (1 + std::abs(lower) + std::abs(upper));
   EXPECT_NEAR(enclosure.lower, lower, tolerance);
@@ -129,7 +129,7 @@ TEST(Enclosure, OfWhatIsUndefinedSomewhereIsEverything)
                                  "atan(sqrt(x-2))", "exp(sqrt(x-2)) > -1 ? sqrt(x-2) : 0", "(-x)^x"})
   {
     const auto c = enclose(text, triangle, 2, 2);
-    for (const Enclosure& coefficient : c)
+    for (const problem::Enclosure& coefficient : c)
     {
       EXPECT_EQ(coefficient.lower, -infinity) << text;
       EXPECT_EQ(coefficient.upper, infinity) << text;
@@ -149,38 +149,38 @@ TEST(Enclosure, OfARootIsBoundedDownToZero)
 
 TEST(Enclosure, OfABoxHoldsItsBoundary)
 {
-  const Formula formula("y > 0 ? 1 : 2", in_case_file);
+  const problem::Formula formula("y > 0 ? 1 : 2", in_case_file);
   const auto at = [&](double lower, double upper) {
     return formula.enclose_box(std::array{0.0, lower}, std::array{1.0, upper});
   };
   EXPECT_EQ(at(0, 1).upper, 2.0);
   EXPECT_EQ(at(0.1, 1).upper, 1.0);
-  const Formula product("x*y*z", in_case_file);
+  const problem::Formula product("x*y*z", in_case_file);
   expect_range(product.enclose_box(std::array{-1.0, 2.0, 3.0}, std::array{1.0, 4.0, 5.0}), -20, 20);
 }
 
 TEST(ExpressionEnclosure, AroundAPointTellsRoundingFromAValue)
 {
-  const Expression gap("y", in_case_file);
-  const Enclosure near_zero = gap.around(std::array{0.5, -5.5e-17}, 1e-15);
+  const problem::Expression gap("y", in_case_file);
+  const problem::Enclosure near_zero = gap.around(std::array{0.5, -5.5e-17}, 1e-15);
   EXPECT_TRUE(near_zero.contains(0.0));
   EXPECT_FALSE(gap.around(std::array{0.5, -1e-12}, 1e-15).contains(0.0));
-  EXPECT_EQ(Expression(3.0).around(std::array{0.5, 0.5}, 1.0).lower, 3.0);
+  EXPECT_EQ(problem::Expression(3.0).around(std::array{0.5, 0.5}, 1.0).lower, 3.0);
 }
 
 TEST(ExpressionEnclosure, ForwardsToTheFormula)
 {
-  const Expression formula("max(x, 0)^2", in_case_file);
-  EXPECT_EQ(formula.degree(), Formula::not_polynomial);
+  const problem::Expression formula("max(x, 0)^2", in_case_file);
+  EXPECT_EQ(formula.degree(), problem::Formula::not_polynomial);
   EXPECT_EQ(formula.switches().size(), 1u);
   std::vector<double> values(2);
   formula.evaluate(std::array{2.0, 0.0, -1.0, 5.0}, 2, values);
   EXPECT_EQ(values, (std::vector{4.0, 0.0}));
-  std::array<Enclosure, 2> coefficients;
+  std::array<problem::Enclosure, 2> coefficients;
   formula.enclose(triangle, 2, coefficients);
   expect_range(coefficients[0], 1, 9);
 
-  const Expression constant(4.0);
+  const problem::Expression constant(4.0);
   EXPECT_EQ(constant.degree(), 0);
   EXPECT_TRUE(constant.switches().empty());
   constant.evaluate(std::array{2.0, 0.0, -1.0, 5.0}, 2, values);
@@ -192,7 +192,7 @@ TEST(ExpressionEnclosure, ForwardsToTheFormula)
 
 TEST(ExpressionEnclosure, BatchNamesThePointWhereItIsNotFinite)
 {
-  const Expression formula("1/x", in_case_file);
+  const problem::Expression formula("1/x", in_case_file);
   std::vector<double> values(2);
   try
   {

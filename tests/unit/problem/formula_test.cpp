@@ -64,7 +64,7 @@ bool agree(double a, double b, double tolerance)
 
 /// By how much the value changes where x changes by a few units in the last place: no other evaluation is
 /// nearer than that.
-double sensitivity(const Formula& formula, const std::array<double, 3>& x)
+double sensitivity(const problem::Formula& formula, const std::array<double, 3>& x)
 {
   const double value = formula(x);
   double change = 0.0;
@@ -87,7 +87,7 @@ TEST(Formula, AgreesWithMuParser)
   for (int i = 0; i < 20000; ++i)
   {
     const std::string text = random.text(random.tree(1 + i % 5, false), 0.5);
-    const Formula formula(text, in_case_file);
+    const problem::Formula formula(text, in_case_file);
     Reference reference(text);
     for (int j = 0; j < 4; ++j)
     {
@@ -109,7 +109,7 @@ TEST(Formula, OfManyPointsIsThatOfEachToTheLastBit)
   RandomFormulas random(2);
   for (int i = 0; i < 1000; ++i)
   {
-    const Formula formula(random.text(random.tree(4, false)), in_case_file);
+    const problem::Formula formula(random.text(random.tree(4, false)), in_case_file);
     const int dim = 2 + i % 2;
     const int n = i % 100;
     std::vector<double> points(n * dim);
@@ -128,7 +128,7 @@ TEST(Formula, OfManyPointsIsThatOfEachToTheLastBit)
 
 TEST(Formula, IsSharedByThreads)
 {
-  const Formula formula("sin(x)*exp(-y^2) + (x > 0.3 ? sqrt(x) : max(y, z))^2", in_case_file);
+  const problem::Formula formula("sin(x)*exp(-y^2) + (x > 0.3 ? sqrt(x) : max(y, z))^2", in_case_file);
   constexpr int n = 2000;
   const std::array<double, 12> cell = {0.1, 0, 0, 0.9, 0.2, 0, 0.4, 0.8, 0.1, 0.3, 0.3, 0.7};
   const auto work = [&](std::vector<double>& results)
@@ -137,7 +137,7 @@ TEST(Formula, IsSharedByThreads)
     {
       const double t = i / static_cast<double>(n);
       results.push_back(formula(std::array{t, 1 - t, t * t}));
-      std::array<Enclosure, 5> coefficients;
+      std::array<problem::Enclosure, 5> coefficients;
       formula.enclose(cell, 3, coefficients);
       results.push_back(coefficients[0].upper);
     }
@@ -171,12 +171,12 @@ TEST(Formula, TakesAnySequenceOfSigns)
                                                                                   {"-x*-y", 6},
                                                                                   {"x^-1*y", 1.5},
                                                                                   {"(-x)^3", -8}})
-    EXPECT_EQ(Formula(text, in_case_file)(x), expected) << text;
+    EXPECT_EQ(problem::Formula(text, in_case_file)(x), expected) << text;
 }
 
 TEST(Formula, KnowsItsDegree)
 {
-  constexpr int no = Formula::not_polynomial;
+  constexpr int no = problem::Formula::not_polynomial;
   for (const auto& [text, degree] : std::vector<std::pair<std::string, int>>{{"3", 0},
                                                                              {"sin(1)*2", 0},
                                                                              {"x", 1},
@@ -206,14 +206,14 @@ TEST(Formula, KnowsItsDegree)
                                                                              {"x^1e9", no},
                                                                              {"(x^1000)^1000", no},
                                                                              {"rint(2.6)*x", 1}})
-    EXPECT_EQ(Formula(text, in_case_file).degree(), degree) << text;
+    EXPECT_EQ(problem::Formula(text, in_case_file).degree(), degree) << text;
 }
 
 /// "a0 a1 a2 b; ..." of the switches, each divided by its first coefficient that is not 0.
 std::string switches(const std::string& text)
 {
   std::string result;
-  const Formula formula(text, in_case_file);
+  const problem::Formula formula(text, in_case_file);
   for (const auto& [a, b] : formula.switches())
   {
     const double factor = 1.0 / *std::ranges::find_if(a, [](double c) { return c != 0.0; });
@@ -242,7 +242,7 @@ TEST(Formula, OfAnySizeIsReadOrRefused)
   {
     try
     {
-      const Formula formula(text, in_case_file);
+      const problem::Formula formula(text, in_case_file);
     }
     catch (const InputError& error)
     {
@@ -271,9 +271,9 @@ TEST(Formula, EvaluatesDeepStacks)
 {
   std::string text = "x";
   for (int i = 0; i < 60; ++i) text = "1<2||x&&y<1+1*2^(" + text + ")";
-  const Formula formula(text, in_case_file);
+  const problem::Formula formula(text, in_case_file);
   EXPECT_EQ(formula(std::array{0.5, 0.5}), 1.0);
-  std::array<Enclosure, 2> coefficients;
+  std::array<problem::Enclosure, 2> coefficients;
   formula.enclose(std::array{0.1, 0.1, 0.2, 0.1, 0.1, 0.2}, 2, coefficients);
   EXPECT_EQ(coefficients[0].lower, 1.0);
 }

@@ -18,10 +18,10 @@ TEST(Interval, OfAPeriodicFunctionHoldsForWideArguments)
   {
     const double centre = std::pow(10.0, random.uniform(-3, 17)) * (i % 2 == 0 ? 1 : -1);
     const double radius = std::pow(10.0, random.uniform(-6, 1));
-    const Enclosure a = {centre - radius, centre + radius};
-    const Enclosure sines = sine(a);
-    const Enclosure cosines = cosine(a);
-    const bool pole = has_pole_of_tangent(a);
+    const problem::Enclosure a = {centre - radius, centre + radius};
+    const problem::Enclosure sines = problem::sine(a);
+    const problem::Enclosure cosines = problem::cosine(a);
+    const bool pole = problem::has_pole_of_tangent(a);
     for (int j = 0; j < 10; ++j)
     {
       const double x = random.uniform(a.lower, a.upper);
@@ -30,12 +30,12 @@ TEST(Interval, OfAPeriodicFunctionHoldsForWideArguments)
       EXPECT_TRUE(pole || (std::tan(a.lower) <= std::tan(x) && std::tan(x) <= std::tan(a.upper)));
     }
   }
-  EXPECT_LT(sine({0.1, 0.2}).upper, 0.2);
-  EXPECT_EQ(sine({0.0, 0.2}).lower, 0.0);
-  EXPECT_EQ(sine({1.5, 1.6}).upper, 1.0);
-  EXPECT_EQ(cosine({3.1, 3.2}).lower, -1.0);
-  EXPECT_FALSE(has_pole_of_tangent({1.6, 4.7}));
-  EXPECT_TRUE(has_pole_of_tangent({1.5, 1.6}));
+  EXPECT_LT(problem::sine({0.1, 0.2}).upper, 0.2);
+  EXPECT_EQ(problem::sine({0.0, 0.2}).lower, 0.0);
+  EXPECT_EQ(problem::sine({1.5, 1.6}).upper, 1.0);
+  EXPECT_EQ(problem::cosine({3.1, 3.2}).lower, -1.0);
+  EXPECT_FALSE(problem::has_pole_of_tangent({1.6, 4.7}));
+  EXPECT_TRUE(problem::has_pole_of_tangent({1.5, 1.6}));
 }
 
 TEST(Interval, OfAPowerHoldsForEverySign)
@@ -45,9 +45,9 @@ TEST(Interval, OfAPowerHoldsForEverySign)
   {
     const double centre = random.uniform(-2, 2);
     const double radius = random.uniform(0, 1);
-    const Enclosure a = {centre - radius, centre + radius};
+    const problem::Enclosure a = {centre - radius, centre + radius};
     const int n = i % 9;
-    const Enclosure power = integer_power(a, n);
+    const problem::Enclosure power = problem::integer_power(a, n);
     for (int j = 0; j < 5; ++j)
     {
       const double x = random.uniform(a.lower, a.upper);
@@ -66,15 +66,15 @@ TEST(Interval, ArithmeticHoldsRounding)
   {
     const double a = number();
     const double b = number();
-    const auto holds = [](const Enclosure& enclosure, long double value)
+    const auto holds = [](const problem::Enclosure& enclosure, long double value)
     { return enclosure.lower <= value && value <= enclosure.upper; };
-    EXPECT_TRUE(holds(exactly(a) + exactly(b), static_cast<long double>(a) + b));
-    EXPECT_TRUE(holds(exactly(a) - exactly(b), static_cast<long double>(a) - b));
-    EXPECT_TRUE(holds(exactly(a) * exactly(b), static_cast<long double>(a) * b));
-    EXPECT_TRUE(holds(exactly(a) / exactly(b), static_cast<long double>(a) / b));
+    EXPECT_TRUE(holds(problem::exactly(a) + problem::exactly(b), static_cast<long double>(a) + b));
+    EXPECT_TRUE(holds(problem::exactly(a) - problem::exactly(b), static_cast<long double>(a) - b));
+    EXPECT_TRUE(holds(problem::exactly(a) * problem::exactly(b), static_cast<long double>(a) * b));
+    EXPECT_TRUE(holds(problem::exactly(a) / problem::exactly(b), static_cast<long double>(a) / b));
   }
-  const Enclosure straddling = {-2, 3};
-  EXPECT_EQ((straddling * exactly(0.0)).magnitude(), 0.0);
+  const problem::Enclosure straddling = {-2, 3};
+  EXPECT_EQ((straddling * problem::exactly(0.0)).magnitude(), 0.0);
   EXPECT_NEAR((straddling * straddling).lower, -6, 1e-14);
   EXPECT_NEAR((straddling * straddling).upper, 9, 1e-14);
 }
@@ -83,8 +83,9 @@ TEST(Interval, ArithmeticHoldsRounding)
 TEST(Interval, AnOverflowIsNotForgotten)
 {
   const double infinity = std::numeric_limits<double>::infinity();
-  const Enclosure overflown = {1, infinity};
-  for (const Enclosure& a : {overflown * Enclosure{0, 1}, Enclosure{0, 1} * overflown, overflown / overflown})
+  const problem::Enclosure overflown = {1, infinity};
+  for (const problem::Enclosure& a :
+       {overflown * problem::Enclosure{0, 1}, problem::Enclosure{0, 1} * overflown, overflown / overflown})
     EXPECT_EQ(a.upper, infinity);
 }
 

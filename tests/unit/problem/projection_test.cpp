@@ -18,26 +18,26 @@ namespace
 
 TEST(NegativePart, ValuesAndDerivative)
 {
-  EXPECT_EQ(negative_part(-2.5), -2.5);
-  EXPECT_EQ(negative_part(0), 0);
-  EXPECT_EQ(negative_part(3), 0);
-  EXPECT_EQ(negative_part_derivative(-2.5), 1);
-  EXPECT_EQ(negative_part_derivative(0), 1);
-  EXPECT_EQ(negative_part_derivative(3), 0);
+  EXPECT_EQ(problem::negative_part(-2.5), -2.5);
+  EXPECT_EQ(problem::negative_part(0), 0);
+  EXPECT_EQ(problem::negative_part(3), 0);
+  EXPECT_EQ(problem::negative_part_derivative(-2.5), 1);
+  EXPECT_EQ(problem::negative_part_derivative(0), 1);
+  EXPECT_EQ(problem::negative_part_derivative(3), 0);
 }
 
 TEST(BallProjection, KeepsTheInsideAndPullsTheRestToTheSphere)
 {
-  EXPECT_EQ(ball_projection<2>({0.3, -0.4}, 0.5), Point<2>(0.3, -0.4));
-  EXPECT_LE((ball_projection<2>({3, -4}, 2.5) - Point<2>(1.5, -2)).norm(), 1e-15);
-  EXPECT_LE((ball_projection<3>({2, 4, 4}, 3) - Point<3>(1, 2, 2)).norm(), 1e-15);
+  EXPECT_EQ(problem::ball_projection<2>({0.3, -0.4}, 0.5), Point<2>(0.3, -0.4));
+  EXPECT_LE((problem::ball_projection<2>({3, -4}, 2.5) - Point<2>(1.5, -2)).norm(), 1e-15);
+  EXPECT_LE((problem::ball_projection<3>({2, 4, 4}, 3) - Point<3>(1, 2, 2)).norm(), 1e-15);
 }
 
 /// (x - [x]_a).(y - [x]_a) <= 0 for all y of the ball.
 TEST(BallProjection, IsTheNearestPointOfTheBall)
 {
   const Point<3> x(0.7, -1.1, 0.2);
-  const Point<3> projection = ball_projection<3>(x, 0.8);
+  const Point<3> projection = problem::ball_projection<3>(x, 0.8);
   for (int i = 0; i < 200; ++i)
   {
     const Point<3> y = 0.8 * Point<3>(std::sin(i), std::cos(3 * i + 1), std::sin(7 * i + 2)).normalized();
@@ -64,16 +64,17 @@ void expect_derivatives_agree_with_differences()
   constexpr double h = 1e-6;
   for (const Point<dim>& x : samples<dim>(a))
   {
-    const Tensor<dim> derivative = ball_projection_derivative<dim>(x, a);
+    const Tensor<dim> derivative = problem::ball_projection_derivative<dim>(x, a);
     for (int j = 0; j < dim; ++j)
     {
       const Point<dim> step = h * Point<dim>::Unit(j);
       const Point<dim> difference =
-          (ball_projection<dim>(x + step, a) - ball_projection<dim>(x - step, a)) / (2 * h);
+          (problem::ball_projection<dim>(x + step, a) - problem::ball_projection<dim>(x - step, a)) / (2 * h);
       EXPECT_LE((difference - derivative.col(j)).norm(), 1e-9);
     }
-    const Point<dim> by_radius = (ball_projection<dim>(x, a + h) - ball_projection<dim>(x, a - h)) / (2 * h);
-    EXPECT_LE((by_radius - ball_projection_radius_derivative<dim>(x, a)).norm(), 1e-9);
+    const Point<dim> by_radius =
+        (problem::ball_projection<dim>(x, a + h) - problem::ball_projection<dim>(x, a - h)) / (2 * h);
+    EXPECT_LE((by_radius - problem::ball_projection_radius_derivative<dim>(x, a)).norm(), 1e-9);
   }
 }
 
@@ -87,12 +88,12 @@ TEST(BallProjection, RadiusZero)
 {
   const Point<3> x(1, 2, 3);
   const Point<3> zero = Point<3>::Zero();
-  EXPECT_EQ(ball_projection<3>(x, 0), zero);
-  EXPECT_EQ(ball_projection<3>(zero, 0), zero);
-  EXPECT_EQ(ball_projection_derivative<3>(x, 0), Tensor<3>::Zero());
-  EXPECT_EQ(ball_projection_derivative<3>(zero, 0), Tensor<3>::Zero());
-  EXPECT_EQ(ball_projection_radius_derivative<3>(zero, 0), zero);
-  EXPECT_LE((ball_projection_radius_derivative<3>(x, 0) - x.normalized()).norm(), 1e-15);
+  EXPECT_EQ(problem::ball_projection<3>(x, 0), zero);
+  EXPECT_EQ(problem::ball_projection<3>(zero, 0), zero);
+  EXPECT_EQ(problem::ball_projection_derivative<3>(x, 0), Tensor<3>::Zero());
+  EXPECT_EQ(problem::ball_projection_derivative<3>(zero, 0), Tensor<3>::Zero());
+  EXPECT_EQ(problem::ball_projection_radius_derivative<3>(zero, 0), zero);
+  EXPECT_LE((problem::ball_projection_radius_derivative<3>(x, 0) - x.normalized()).norm(), 1e-15);
 }
 
 /// The mean of f over (x - delta, x + delta), by the midpoint rule.
@@ -108,14 +109,15 @@ double mean(const F& f, double x, double delta)
 TEST(RegularisedNegativePart, IsTheFormulaOfTheMethod)
 {
   constexpr double delta = 0.5;
-  EXPECT_EQ(negative_part(-0.5, delta), -0.5);
-  EXPECT_EQ(negative_part(-2, delta), -2);
-  EXPECT_EQ(negative_part(0.5, delta), 0);
-  EXPECT_EQ(negative_part(2, delta), 0);
-  EXPECT_DOUBLE_EQ(negative_part(0, delta), -delta / 4);
-  EXPECT_DOUBLE_EQ(negative_part(0.2, delta), -0.09 / 2);
+  EXPECT_EQ(problem::negative_part(-0.5, delta), -0.5);
+  EXPECT_EQ(problem::negative_part(-2, delta), -2);
+  EXPECT_EQ(problem::negative_part(0.5, delta), 0);
+  EXPECT_EQ(problem::negative_part(2, delta), 0);
+  EXPECT_DOUBLE_EQ(problem::negative_part(0, delta), -delta / 4);
+  EXPECT_DOUBLE_EQ(problem::negative_part(0.2, delta), -0.09 / 2);
   for (const double x : {-0.6, -0.4, -0.1, 0.0, 0.3, 0.49})
-    EXPECT_NEAR(negative_part(x, delta), mean([](double y) { return negative_part(y); }, x, delta), 1e-8);
+    EXPECT_NEAR(problem::negative_part(x, delta),
+                mean([](double y) { return problem::negative_part(y); }, x, delta), 1e-8);
 }
 
 TEST(RegularisedNegativePart, IsDifferentiableEverywhere)
@@ -124,8 +126,9 @@ TEST(RegularisedNegativePart, IsDifferentiableEverywhere)
   constexpr double h = 1e-6;
   for (const double x : {-1.0, -0.5, -0.3, 0.0, 0.2, 0.5, 0.7})
   {
-    const double difference = (negative_part(x + h, delta) - negative_part(x - h, delta)) / (2 * h);
-    EXPECT_NEAR(difference, negative_part_derivative(x, delta), 2e-6) << x;
+    const double difference =
+        (problem::negative_part(x + h, delta) - problem::negative_part(x - h, delta)) / (2 * h);
+    EXPECT_NEAR(difference, problem::negative_part_derivative(x, delta), 2e-6) << x;
   }
 }
 
@@ -140,8 +143,8 @@ TEST(RegularisedBallProjection, IsTheMeanOfTheProjectionOnTheLine)
     for (const double r : lengths)
     {
       const double expected = mean([](double y) { return std::clamp(y, -a, a); }, r, delta);
-      EXPECT_NEAR(ball_projection<2>({0, r}, a, delta)[1], expected, 1e-8) << r << " " << delta;
-      EXPECT_NEAR(ball_projection<2>({0, -r}, a, delta)[1], -expected, 1e-8) << r << " " << delta;
+      EXPECT_NEAR(problem::ball_projection<2>({0, r}, a, delta)[1], expected, 1e-8) << r << " " << delta;
+      EXPECT_NEAR(problem::ball_projection<2>({0, -r}, a, delta)[1], -expected, 1e-8) << r << " " << delta;
     }
 }
 
@@ -152,11 +155,12 @@ TEST(RegularisedBallProjection, StaysInTheBallAndTendsToTheProjection)
   for (const double r : lengths)
   {
     const Point<3> x = r * direction;
-    for (const double delta : deltas) EXPECT_LE(ball_projection<3>(x, a, delta).norm(), a + 1e-15);
+    for (const double delta : deltas) EXPECT_LE(problem::ball_projection<3>(x, a, delta).norm(), a + 1e-15);
     for (const double delta : {1e-2, 1e-4, 1e-8})
-      EXPECT_LE((ball_projection<3>(x, a, delta) - ball_projection<3>(x, a)).norm(), delta / 4 + 1e-15);
-    EXPECT_EQ(ball_projection<3>(x, 0, 0.2), Point<3>(Point<3>::Zero()));
-    EXPECT_EQ(ball_projection_derivative<3>(x, 0, 0.2), Tensor<3>(Tensor<3>::Zero()));
+      EXPECT_LE((problem::ball_projection<3>(x, a, delta) - problem::ball_projection<3>(x, a)).norm(),
+                delta / 4 + 1e-15);
+    EXPECT_EQ(problem::ball_projection<3>(x, 0, 0.2), Point<3>(Point<3>::Zero()));
+    EXPECT_EQ(problem::ball_projection_derivative<3>(x, 0, 0.2), Tensor<3>(Tensor<3>::Zero()));
   }
 }
 
@@ -170,17 +174,19 @@ void expect_regularised_derivatives_agree_with_differences()
     for (const double r : lengths)
     {
       const Point<dim> x = r * direction;
-      const Tensor<dim> derivative = ball_projection_derivative<dim>(x, a, delta);
+      const Tensor<dim> derivative = problem::ball_projection_derivative<dim>(x, a, delta);
       for (int j = 0; j < dim; ++j)
       {
         const Point<dim> step = h * Point<dim>::Unit(j);
-        const Point<dim> difference =
-            (ball_projection<dim>(x + step, a, delta) - ball_projection<dim>(x - step, a, delta)) / (2 * h);
+        const Point<dim> difference = (problem::ball_projection<dim>(x + step, a, delta) -
+                                       problem::ball_projection<dim>(x - step, a, delta)) /
+                                      (2 * h);
         EXPECT_LE((difference - derivative.col(j)).norm(), 5e-6) << r << " " << delta;
       }
       const Point<dim> by_radius =
-          (ball_projection<dim>(x, a + h, delta) - ball_projection<dim>(x, a - h, delta)) / (2 * h);
-      EXPECT_LE((by_radius - ball_projection_radius_derivative<dim>(x, a, delta)).norm(), 5e-6)
+          (problem::ball_projection<dim>(x, a + h, delta) - problem::ball_projection<dim>(x, a - h, delta)) /
+          (2 * h);
+      EXPECT_LE((by_radius - problem::ball_projection_radius_derivative<dim>(x, a, delta)).norm(), 5e-6)
           << r << " " << delta;
     }
 }

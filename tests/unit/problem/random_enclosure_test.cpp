@@ -20,10 +20,10 @@ const Where in_case_file{"case.toml", "load.body", 3, 1};
 using Vertices = std::vector<double>;
 using Coordinates = std::array<double, 3>;
 
-std::vector<Enclosure> enclose(const std::string& text, const Vertices& vertices, int dim, int order)
+std::vector<problem::Enclosure> enclose(const std::string& text, const Vertices& vertices, int dim, int order)
 {
-  std::vector<Enclosure> coefficients(order + 1);
-  Formula(text, in_case_file).enclose(vertices, dim, coefficients);
+  std::vector<problem::Enclosure> coefficients(order + 1);
+  problem::Formula(text, in_case_file).enclose(vertices, dim, coefficients);
   return coefficients;
 }
 
@@ -119,7 +119,8 @@ Series taylor_series(const FormulaTree& f, const Coordinates& xi, const Coordina
 
 /// Whether `enclosure` holds a value within rounding of `x`. It is asked where rounding decides: in y == x -
 /// (x - y).
-bool contains_near(const Enclosure& enclosure, const Formula& formula, const Coordinates& x, int dim)
+bool contains_near(const problem::Enclosure& enclosure, const problem::Formula& formula, const Coordinates& x,
+                   int dim)
 {
   for (int k = 0; k < dim; ++k)
     for (int i = -8; i <= 8; ++i)
@@ -149,9 +150,9 @@ TEST_P(Enclosures, HoldTheValues)
   for (int i = 0; i < 6000; ++i)
   {
     const std::string text = random.text(random.tree(1 + i % 4, false));
-    const Formula formula(text, in_case_file);
+    const problem::Formula formula(text, in_case_file);
     const Vertices vertices = random_simplex(random, dim, n_vertices);
-    std::array<Enclosure, 3> coefficients;
+    std::array<problem::Enclosure, 3> coefficients;
     formula.enclose(vertices, dim, coefficients);
     if (!coefficients[0].bounded()) continue;
     ++n_bounded;
@@ -178,7 +179,7 @@ TEST_P(Enclosures, HoldTheDerivatives)
     const FormulaTree tree = random.tree(1 + i % 4, i % 2 == 0);
     const std::string text = random.text(tree);
     const Vertices vertices = random_simplex(random, dim, n_vertices);
-    const std::vector<Enclosure> coefficients = enclose(text, vertices, dim, max_order);
+    const std::vector<problem::Enclosure> coefficients = enclose(text, vertices, dim, max_order);
     const Coordinates c = centre_of(vertices, dim);
     for (int j = 0; j < 3; ++j)
     {
@@ -211,7 +212,7 @@ TEST_P(Enclosures, BoundTaylorsRemainder)
   {
     const FormulaTree tree = random.tree(1 + i % 4, true);
     const Vertices vertices = random_simplex(random, dim, n_vertices);
-    const std::vector<Enclosure> coefficients = enclose(random.text(tree), vertices, dim, max_order);
+    const std::vector<problem::Enclosure> coefficients = enclose(random.text(tree), vertices, dim, max_order);
     const Coordinates c = centre_of(vertices, dim);
     const Coordinates x = random_point(random, vertices, dim);
     const Series series = taylor_series(tree, c, {x[0] - c[0], x[1] - c[1], x[2] - c[2]});

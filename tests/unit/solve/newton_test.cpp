@@ -40,7 +40,7 @@ std::string pressed_block(int p, const std::string& law)
 }
 
 template <int dim>
-MeshData<dim> block()
+mesh::MeshData<dim> block()
 {
   if constexpr (dim == 2)
     return renumbered(box<2>({0, 0}, {2, 1}, {8, 4}), 1);
@@ -54,7 +54,7 @@ double imbalance(const DiscreteCase<dim>& c, std::span<const double> u, std::spa
 {
   std::vector<double> forces(c.form.load().begin(), c.form.load().end());
   c.form.add_contact_load(t, forces);
-  const std::vector<double> rest = sum(apply_stiffness<dim>(c.problem, c.space, u), -1, forces);
+  const std::vector<double> rest = sum(contact::apply_stiffness<dim>(c.problem, c.space, u), -1, forces);
   return norm(free_part(c.form.constraints(), rest)) / norm(free_part(c.form.constraints(), c.form.load()));
 }
 
@@ -63,8 +63,8 @@ void expect_solved(int p, const std::string& law)
 {
   DiscreteCase<dim> c(pressed_block<dim>(p, law), block<dim>());
   c.config.newton.tolerance = 1e-11;
-  const NewtonResult<dim> result = c.solve();
-  ASSERT_EQ(result.status, NewtonStatus::converged) << result.message;
+  const solve::NewtonResult<dim> result = c.solve();
+  ASSERT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_TRUE(result.message.empty());
   EXPECT_LE(result.steps.size(), 20u);
   EXPECT_LE(result.steps.back().residual, 1e-11);
@@ -89,7 +89,7 @@ TEST(Newton, SolvesEveryLaw)
 /// a(u^k, v) - (t^k, v)_C = L(v) at every iterate, converged or not, whatever the damping. Returns the
 /// smallest damping that occurred.
 template <int dim>
-double expect_balance_at_every_iterate(const std::string& toml, const MeshData<dim>& mesh, bool damping)
+double expect_balance_at_every_iterate(const std::string& toml, const mesh::MeshData<dim>& mesh, bool damping)
 {
   DiscreteCase<dim> c(toml, mesh);
   c.config.newton.damping = damping;
@@ -97,10 +97,10 @@ double expect_balance_at_every_iterate(const std::string& toml, const MeshData<d
   for (int k = 1; k <= 9; ++k)
   {
     c.config.newton.max_steps = k;
-    const NewtonResult<dim> result = c.solve();
+    const solve::NewtonResult<dim> result = c.solve();
     EXPECT_LE(imbalance<dim>(c, result.u, result.traction), 1e-10) << "iterate " << k;
     smallest = std::min(smallest, result.steps.back().damping);
-    if (result.status != NewtonStatus::too_many_steps) break;
+    if (result.status != solve::NewtonStatus::too_many_steps) break;
     EXPECT_EQ(result.steps.size(), static_cast<std::size_t>(k));
     EXPECT_GT(imbalance<dim>(c, result.u, c.form.traction(result.u)), 1e-10) << "iterate " << k;
   }
@@ -135,15 +135,15 @@ TEST(Newton, EveryLinearSolverGivesTheSameSolution)
   {
     DiscreteCase<3> c(pressed_block<3>(2, law), block<3>());
     c.config.newton.tolerance = 1e-12;
-    c.config.solver.package = DirectPackage::mumps;
-    const NewtonResult<3> mumps = c.solve();
-    c.config.solver.package = DirectPackage::umfpack;
-    const NewtonResult<3> umfpack = c.solve();
-    c.config.solver.method = LinearMethod::iterative;
-    const NewtonResult<3> multigrid = c.solve();
-    for (const NewtonResult<3>* result : {&mumps, &umfpack, &multigrid})
+    c.config.solver.package = case_file::DirectPackage::mumps;
+    const solve::NewtonResult<3> mumps = c.solve();
+    c.config.solver.package = case_file::DirectPackage::umfpack;
+    const solve::NewtonResult<3> umfpack = c.solve();
+    c.config.solver.method = case_file::LinearMethod::iterative;
+    const solve::NewtonResult<3> multigrid = c.solve();
+    for (const solve::NewtonResult<3>* result : {&mumps, &umfpack, &multigrid})
     {
-      ASSERT_EQ(result->status, NewtonStatus::converged) << law << ": " << result->message;
+      ASSERT_EQ(result->status, solve::NewtonStatus::converged) << law << ": " << result->message;
       EXPECT_LE(distance(result->u, mumps.u), 1e-9 * norm(mumps.u)) << law;
     }
   }
@@ -157,14 +157,15 @@ TEST(Newton, KeptFactorsDoNotChangeTheIterates)
   {
     DiscreteCase<2> c(pressed_block<2>(2, law), block<2>());
     c.config.newton.damping = false;
-    const NewtonResult<2> together = c.solve();
-    ASSERT_EQ(together.status, NewtonStatus::converged);
-    EXPECT_FALSE(std::ranges::all_of(together.steps, &NewtonStep::factorised)) << law;
+    const solve::NewtonResult<2> together = c.solve();
+    ASSERT_EQ(together.status, solve::NewtonStatus::converged);
+    EXPECT_FALSE(std::ranges::all_of(together.steps, &solve::NewtonStep::factorised)) << law;
     c.config.newton.max_steps = 1;
     std::vector<double> u;
     for (std::size_t k = 0; k < together.steps.size(); ++k)
     {
-      const NewtonResult<2> one = tribound::solve<2>(c.form, u, c.config.newton, c.config.solver);
+      const solve::NewtonResult<2> one =
+          tribound::solve::solve<2>(c.form, u, c.config.newton, c.config.solver);
       EXPECT_TRUE(one.steps.back().factorised);
       u = one.u;
     }
@@ -175,10 +176,10 @@ TEST(Newton, KeptFactorsDoNotChangeTheIterates)
 TEST(Newton, StartsFromAGivenVector)
 {
   DiscreteCase<2> c(pressed_block<2>(2, laws[2]), block<2>());
-  const NewtonResult<2> from_scratch = c.solve();
-  const NewtonResult<2> restarted =
-      tribound::solve<2>(c.form, from_scratch.u, c.config.newton, c.config.solver);
-  ASSERT_EQ(restarted.status, NewtonStatus::converged);
+  const solve::NewtonResult<2> from_scratch = c.solve();
+  const solve::NewtonResult<2> restarted =
+      tribound::solve::solve<2>(c.form, from_scratch.u, c.config.newton, c.config.solver);
+  ASSERT_EQ(restarted.status, solve::NewtonStatus::converged);
   EXPECT_EQ(restarted.steps.size(), 1u);  // one step at least
   EXPECT_LE(distance(restarted.u, from_scratch.u), 1e-8 * norm(from_scratch.u));
   EXPECT_LE(imbalance<2>(c, restarted.u, restarted.traction), 1e-10);
@@ -188,12 +189,13 @@ TEST(Newton, ReportsEachStep)
 {
   const DiscreteCase<2> c(pressed_block<2>(1, laws[1]), block<2>());
   std::vector<double> residuals;
-  const NewtonResult<2> result = tribound::solve<2>(c.form, {}, c.config.newton, c.config.solver,
-                                                    [&](const NewtonIterate<2>& iterate)
-                                                    {
-                                                      residuals.push_back(iterate.step.residual);
-                                                      return false;
-                                                    });
+  const solve::NewtonResult<2> result =
+      tribound::solve::solve<2>(c.form, {}, c.config.newton, c.config.solver,
+                                [&](const solve::NewtonIterate<2>& iterate)
+                                {
+                                  residuals.push_back(iterate.step.residual);
+                                  return false;
+                                });
   ASSERT_EQ(residuals.size(), result.steps.size());
   for (std::size_t k = 0; k < residuals.size(); ++k) EXPECT_EQ(residuals[k], result.steps[k].residual);
 }
@@ -202,8 +204,8 @@ TEST(Newton, SaysThatTheStepsDidNotSuffice)
 {
   DiscreteCase<2> c(pressed_block<2>(1, laws[2]), block<2>());
   c.config.newton.max_steps = 2;
-  const NewtonResult<2> result = c.solve();
-  EXPECT_EQ(result.status, NewtonStatus::too_many_steps);
+  const solve::NewtonResult<2> result = c.solve();
+  EXPECT_EQ(result.status, solve::NewtonStatus::too_many_steps);
   EXPECT_EQ(result.steps.size(), 2u);
   EXPECT_THAT(result.message, HasSubstr("step 2 was the last"));
 }
@@ -223,8 +225,8 @@ TEST(Newton, NoLoadNoDisplacement)
       "degree = 2\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = [0, 0]\n"
       "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }",
       block<2>());
-  const NewtonResult<2> result = c.solve();
-  EXPECT_EQ(result.status, NewtonStatus::converged) << result.message;
+  const solve::NewtonResult<2> result = c.solve();
+  EXPECT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_EQ(norm(result.u), 0);
 }
 
@@ -232,19 +234,19 @@ TEST(Newton, NoLoadNoDisplacement)
 /// the first step, closed and sticking, leaves no residual. The contact is open all the same.
 TEST(Newton, ConvergedMeansThatTheTractionIsThatOfTheSolution)
 {
-  MeshData<2> data{.vertices = {{0, 0}, {1, 0}, {0.5, 1}, {0.5, 0.4}},
-                   .cells = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
-                   .regions = {0, 0, 0},
-                   .facets = {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}},
-                   .region_names = {"body"},
-                   .boundary_names = {"bottom", "sides"},
-                   .source = {}};
+  mesh::MeshData<2> data{.vertices = {{0, 0}, {1, 0}, {0.5, 1}, {0.5, 0.4}},
+                         .cells = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
+                         .regions = {0, 0, 0},
+                         .facets = {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}},
+                         .region_names = {"body"},
+                         .boundary_names = {"bottom", "sides"},
+                         .source = {}};
   const DiscreteCase<2> c(
       "degree = 1\nmaterial = { E = 1, nu = 0.3 }\nboundary.sides.displacement = [\"0.01*x\", 0]\n"
       "boundary.bottom.contact = { friction = \"none\", gap = 0.1 }",
       data);
-  const NewtonResult<2> result = c.solve();
-  ASSERT_EQ(result.status, NewtonStatus::converged) << result.message;
+  const solve::NewtonResult<2> result = c.solve();
+  ASSERT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_EQ(result.steps.size(), 2u);
   for (const Point<2>& t : result.traction) EXPECT_LE(t.norm(), 1e-12);
 }

@@ -7,7 +7,7 @@
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -28,7 +28,7 @@ struct Resultant
     if constexpr (dim == 2)
       moment[0] += arm[0] * f[1] - arm[1] * f[0];
     else
-      moment += cross(arm, f);
+      moment += mesh::cross(arm, f);
   }
 };
 
@@ -41,32 +41,32 @@ struct Loads
 
 /// (f, .) of every region and (g_N, .)_N of every boundary, with the rules of L(v).
 template <int dim>
-Loads<dim> integrate_loads(const NitscheForm<dim>& form, const Point<dim>& about)
+Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<dim>& about)
 {
-  const Problem<dim>& problem = form.problem();
-  const Mesh<dim>& mesh = form.space().mesh();
+  const problem::Problem<dim>& problem = form.problem();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   Loads<dim> loads;
   loads.regions.resize(problem.region_names().size());
   loads.boundaries.resize(problem.boundaries().size());
-  const Quadrature<dim>& rule = form.data().cell_rule();
+  const fem::Quadrature<dim>& rule = form.data().cell_rule();
   std::vector<Point<dim>> f(rule.size());
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     if (!form.data().has_body_force(c)) continue;
-    const CellMap<dim> map = cell_map(mesh, c);
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     form.data().body_force(c, f);
     for (int q = 0; q < rule.size(); ++q)
       loads.regions[mesh.region(c)].add(map(rule.points[q]) - about, rule.weights[q] * map.det * f[q]);
   }
-  const Quadrature<dim - 1>& facet_rule = form.facet_rule();
+  const fem::Quadrature<dim - 1>& facet_rule = form.facet_rule();
   std::vector<Point<dim>> g(facet_rule.size());
   for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
-    const BoundaryFacet& facet = mesh.boundary()[k];
+    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
-    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
     const double scale =
-        facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
+        mesh::facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
     form.data().traction(k, g);
     for (int q = 0; q < facet_rule.size(); ++q)
       loads.boundaries[facet.tag].add(map(facet_rule.points[q]) - about,
@@ -77,36 +77,36 @@ Loads<dim> integrate_loads(const NitscheForm<dim>& form, const Point<dim>& about
 
 /// The facet rule on all facets of the reference cell, facet by facet.
 template <int dim>
-std::vector<Point<dim>> points_on_facets(const Quadrature<dim - 1>& rule)
+std::vector<Point<dim>> points_on_facets(const fem::Quadrature<dim - 1>& rule)
 {
   std::vector<Point<dim>> points;
   for (int local = 0; local <= dim; ++local)
-    for (const Point<dim - 1>& s : rule.points) points.push_back(facet_to_cell<dim>(local, s));
+    for (const Point<dim - 1>& s : rule.points) points.push_back(mesh::facet_to_cell<dim>(local, s));
   return points;
 }
 
 /// The integral of sigma_h n over every boundary, free components left out where a displacement is given.
 template <int dim>
-std::vector<Resultant<dim>> integrate_tractions(const NitscheForm<dim>& form, const Stress<dim>& stress,
-                                                const Point<dim>& about)
+std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>& form,
+                                                const Stress<dim>& stress, const Point<dim>& about)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Quadrature<dim - 1> rule = quadrature<dim - 1>(stress.degree + 1);  // sigma_h times x
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(stress.degree + 1);  // sigma_h times x
   const FrameTable<dim> table(stress.degree, points_on_facets<dim>(rule));
   const int n = table.n_points();
   std::vector<Resultant<dim>> result(form.problem().boundaries().size());
   std::vector<double> block(stress.block_size());
   std::vector<double> sigma(static_cast<std::size_t>(dim) * dim * n);
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
-    const BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
     if (facet.tag < 0 || (!condition.contact && !condition.fixes_any())) continue;
     std::ranges::copy(stress.dis_in(facet.cell), block.begin());
     for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
       for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
     table.evaluate(make_frame(mesh, facet.cell), block, sigma);
-    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     for (int q = 0; q < rule.size(); ++q)
     {
       Point<dim> t = Point<dim>::Zero();
@@ -121,7 +121,7 @@ std::vector<Resultant<dim>> integrate_tractions(const NitscheForm<dim>& form, co
 }
 
 template <int dim>
-std::string load_source(const BoundaryCondition<dim>& condition)
+std::string load_source(const problem::BoundaryCondition<dim>& condition)
 {
   const bool traction = std::ranges::any_of(condition.traction, [](const auto& t) { return !t.is_zero(); });
   if (!condition.pressure) return "traction";
@@ -168,13 +168,13 @@ std::string moment_note(const Balance& balance)
 }
 
 template <int dim>
-Point<dim> centroid(const Mesh<dim>& mesh)
+Point<dim> centroid(const mesh::Mesh<dim>& mesh)
 {
   Point<dim> sum = Point<dim>::Zero();
   double volume = 0;
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(mesh, c);
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     sum += map.det * map(Point<dim>::Constant(1.0 / (dim + 1)));
     volume += map.det;
   }
@@ -182,9 +182,9 @@ Point<dim> centroid(const Mesh<dim>& mesh)
 }
 
 template <int dim>
-Balance balance(const NitscheForm<dim>& form, const Stress<dim>& stress, const Point<dim>& about)
+Balance balance(const contact::NitscheForm<dim>& form, const Stress<dim>& stress, const Point<dim>& about)
 {
-  const Problem<dim>& problem = form.problem();
+  const problem::Problem<dim>& problem = form.problem();
   const Loads<dim> loads = integrate_loads<dim>(form, about);
   const std::vector<Resultant<dim>> tractions = integrate_tractions<dim>(form, stress, about);
   Balance result{{about.begin(), about.end()}, {}};
@@ -214,9 +214,9 @@ Balance balance(const NitscheForm<dim>& form, const Stress<dim>& stress, const P
   return result;
 }
 
-template Point<2> centroid(const Mesh<2>&);
-template Point<3> centroid(const Mesh<3>&);
-template Balance balance(const NitscheForm<2>&, const Stress<2>&, const Point<2>&);
-template Balance balance(const NitscheForm<3>&, const Stress<3>&, const Point<3>&);
+template Point<2> centroid(const mesh::Mesh<2>&);
+template Point<3> centroid(const mesh::Mesh<3>&);
+template Balance balance(const contact::NitscheForm<2>&, const Stress<2>&, const Point<2>&);
+template Balance balance(const contact::NitscheForm<3>&, const Stress<3>&, const Point<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::certify

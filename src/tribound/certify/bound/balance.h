@@ -11,7 +11,7 @@
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 enum class BalanceKind
@@ -48,13 +48,13 @@ struct Balance
 
 /// The centroid of the body.
 template <int dim>
-[[nodiscard]] Point<dim> centroid(const Mesh<dim>& mesh);
+[[nodiscard]] Point<dim> centroid(const mesh::Mesh<dim>& mesh);
 
 /// Loads, reactions, contact forces and their sum, which vanishes up to rounding and the linear solver's
 /// accuracy. Rows come in the order of BalanceKind, regions and boundaries in their own; what carries nothing
 /// has none.
 template <int dim>
-[[nodiscard]] Balance balance(const NitscheForm<dim>& form, const Stress<dim>& stress,
+[[nodiscard]] Balance balance(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
                               const Point<dim>& about);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -10,7 +10,7 @@
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 const char* to_string(RunStatus status)
@@ -31,7 +31,7 @@ const char* to_string(RunStatus status)
   return "uncertified";
 }
 
-bool is_round_off(const Bound& bound, const StressNorms& norms)
+bool is_round_off(const Bound& bound, const contact::StressNorms& norms)
 {
   return bound.total_sharp <= norms.round_off && norms.sigma <= norms.round_off;
 }
@@ -45,8 +45,8 @@ std::string identity_violation(double defect)
       defect, identity_limit);
 }
 
-Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree, const StressNorms& norms,
-              double tolerance)
+Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
+              const contact::StressNorms& norms, double tolerance)
 {
   if (!std::isfinite(bound.total_sharp) || !std::isfinite(norms.sigma))
     return {RunStatus::not_certified, "the bound is not a finite number"};
@@ -66,11 +66,12 @@ namespace
 
 /// What is known of the continuous problem under the friction laws in use.
 template <int dim>
-std::string describe_law(const Problem<dim>& problem)
+std::string describe_law(const problem::Problem<dim>& problem)
 {
   bool coulomb = false;
-  for (const BoundaryCondition<dim>& boundary : problem.boundaries())
-    coulomb = coulomb || (boundary.contact && std::holds_alternative<Coulomb>(boundary.contact->friction));
+  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
+    coulomb = coulomb ||
+              (boundary.contact && std::holds_alternative<case_file::Coulomb>(boundary.contact->friction));
   if (!problem.has_contact()) return "linear elasticity: the solution exists and is unique";
   if (coulomb)
     return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "
@@ -79,7 +80,7 @@ std::string describe_law(const Problem<dim>& problem)
 }
 
 /// What was done about data that are no polynomials.
-std::string describe_data(const DataEffort& effort, int degree)
+std::string describe_data(const contact::DataEffort& effort, int degree)
 {
   std::string exact = fmt::format(
       "loads, gaps and thresholds that are polynomials of degree {} are integrated exactly", degree);
@@ -95,12 +96,12 @@ std::string describe_data(const DataEffort& effort, int degree)
 
 /// How the integrals in the bound are evaluated.
 template <int dim>
-std::string describe_quadrature(const NitscheForm<dim>& form, ContactRule rule)
+std::string describe_quadrature(const contact::NitscheForm<dim>& form, case_file::ContactRule rule)
 {
   std::string text = describe_data(form.data().effort(), form.space().degree() + 2);
   if (!form.problem().has_contact()) return text;
   return text +
-         (rule == ContactRule::resolved
+         (rule == case_file::ContactRule::resolved
               ? "; cnt and frc on facets with a kink of the traction are subdivided until they settle"
               : "; cnt and frc with the plain rule, which is not rigorous on facets with a kink of the "
                 "traction (certify.contact_rule = \"reference\")");
@@ -109,20 +110,21 @@ std::string describe_quadrature(const NitscheForm<dim>& form, ContactRule rule)
 }  // namespace
 
 template <int dim>
-double dirichlet_interpolation_error(const NitscheForm<dim>& form)
+double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form)
 {
-  const LagrangeSpace<dim>& space = form.space();
-  const FacetTabulation<dim> table = tabulate_on_facets<dim>(space.basis(), form.facet_rule().points);
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const fem::FacetTabulation<dim> table =
+      fem::tabulate_on_facets<dim>(space.basis(), form.facet_rule().points);
   double largest = 0;
-  for (const BoundaryFacet& facet : space.mesh().boundary())
+  for (const mesh::BoundaryFacet& facet : space.mesh().boundary())
   {
-    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     if (!boundary.fixes_any()) continue;
-    const FacetMap<dim> map = facet_map(space.mesh(), facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(space.mesh(), facet.cell, facet.local);
     for (int q = 0; q < form.n_facet_points(); ++q)
     {
-      const Point<dim> interpolant = value_at<dim>(space.cell_nodes(facet.cell), form.constraints().values,
-                                                   table.on_facet[facet.local].values_at(q));
+      const Point<dim> interpolant = contact::value_at<dim>(
+          space.cell_nodes(facet.cell), form.constraints().values, table.on_facet[facet.local].values_at(q));
       const Point<dim> x = map(table.points[q]);
       for (int c = 0; c < dim; ++c)
         if (boundary.fixes(c))
@@ -138,19 +140,19 @@ namespace
 /// How far the value at a node of a facet may be from what the formula is on any side of it: more than
 /// rounding where the formula jumps there.
 template <int dim>
-double jump_at_nodes(const NitscheForm<dim>& form, const BoundaryFacet& facet, int component)
+double jump_at_nodes(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& facet, int component)
 {
-  const LagrangeSpace<dim>& space = form.space();
-  const Expression& u_D = *form.problem().boundary(facet.tag).displacement[component];
-  const FacetMap<dim> map = facet_map(space.mesh(), facet.cell, facet.local);
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const problem::Expression& u_D = *form.problem().boundary(facet.tag).displacement[component];
+  const mesh::FacetMap<dim> map = mesh::facet_map(space.mesh(), facet.cell, facet.local);
   double largest = 0;
   for (int i = 0; i < space.basis().n_nodes(); ++i)
   {
     if (space.basis().node(i)[facet.local] > 0) continue;
-    const Point<dim> x = map(cell_to_facet<dim>(facet.local, space.basis().node_point(i)));
+    const Point<dim> x = map(mesh::cell_to_facet<dim>(facet.local, space.basis().node_point(i)));
     const double value = form.constraints().values[dim * space.cell_nodes(facet.cell)[i] + component];
-    std::array<Enclosure, 1> near;
-    u_D.enclose({x.data(), dim}, dim, near, Sides::around);
+    std::array<problem::Enclosure, 1> near;
+    u_D.enclose({x.data(), dim}, dim, near, problem::Sides::around);
     largest = std::max({largest, near[0].upper - value, value - near[0].lower});
   }
   return largest;
@@ -160,22 +162,24 @@ double jump_at_nodes(const NitscheForm<dim>& form, const BoundaryFacet& facet, i
 /// degree p. Then the interpolant is nowhere farther than delta + Lambda delta' from u_D. If delta is that on
 /// the closed facet, delta' = delta; otherwise delta' is larger by what v differs from the values inside.
 template <int dim>
-double interpolation_bound(const NitscheForm<dim>& form, const BoundaryFacet& facet, int component)
+double interpolation_bound(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& facet,
+                           int component)
 {
   // Of equispaced nodes on triangles, p = 1, ..., 4, rounded up; those on segments have smaller ones.
   constexpr std::array<double, 5> lebesgue = {1, 1, 1.67, 2.28, 3.48};
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   const int p = form.space().degree();
-  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(facet.cell), facet.local));
-  const auto distance = [&](Sides sides)
+  const auto points =
+      mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+  const auto distance = [&](problem::Sides sides)
   {
-    std::array<Enclosure, 6> taylor;
+    std::array<problem::Enclosure, 6> taylor;
     form.problem().boundary(facet.tag).displacement[component]->enclose(
         std::span(points[0].data(), dim * points.size()), dim, std::span(taylor).first(p + 2), sides);
-    return distance_from_polynomials(taylor, p + 1);
+    return contact::distance_from_polynomials(taylor, p + 1);
   };
-  const double closed = distance(Sides::closed);
-  const double inside = distance(Sides::inside);
+  const double closed = distance(problem::Sides::closed);
+  const double inside = distance(problem::Sides::inside);
   if (inside == closed) return (1 + lebesgue[p]) * closed;
   return std::min((1 + lebesgue[p]) * closed,
                   (1 + lebesgue[p]) * inside + lebesgue[p] * jump_at_nodes(form, facet, component));
@@ -184,12 +188,12 @@ double interpolation_bound(const NitscheForm<dim>& form, const BoundaryFacet& fa
 }  // namespace
 
 template <int dim>
-double dirichlet_interpolation_bound(const NitscheForm<dim>& form)
+double dirichlet_interpolation_bound(const contact::NitscheForm<dim>& form)
 {
   double largest = 0;
-  for (const BoundaryFacet& facet : form.space().mesh().boundary())
+  for (const mesh::BoundaryFacet& facet : form.space().mesh().boundary())
   {
-    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     for (int c = 0; c < dim; ++c)
       if (boundary.fixes(c) && boundary.displacement[c]->degree() > form.space().degree())
         largest = std::max(largest, interpolation_bound(form, facet, c));
@@ -198,7 +202,7 @@ double dirichlet_interpolation_bound(const NitscheForm<dim>& form)
 }
 
 template <int dim>
-Statements statements(const NitscheForm<dim>& form, ContactRule rule,
+Statements statements(const contact::NitscheForm<dim>& form, case_file::ContactRule rule,
                       const std::optional<FriedrichsConstant>& friedrichs)
 {
   constexpr double pi = std::numbers::pi;
@@ -229,7 +233,7 @@ Statements statements(const NitscheForm<dim>& form, ContactRule rule,
       {"geometry", "facets are straight"},
       {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
 
-  if (rule == ContactRule::reference && form.problem().has_contact())
+  if (rule == case_file::ContactRule::reference && form.problem().has_contact())
     result.not_covered.emplace_back(
         "contact and friction conditions on facets where the contact law has a kink: there the plain rule is "
         "no bound (certify.contact_rule = \"reference\")");
@@ -242,11 +246,13 @@ Statements statements(const NitscheForm<dim>& form, ContactRule rule,
   return result;
 }
 
-template Statements statements(const NitscheForm<2>&, ContactRule, const std::optional<FriedrichsConstant>&);
-template Statements statements(const NitscheForm<3>&, ContactRule, const std::optional<FriedrichsConstant>&);
-template double dirichlet_interpolation_bound(const NitscheForm<2>&);
-template double dirichlet_interpolation_bound(const NitscheForm<3>&);
-template double dirichlet_interpolation_error(const NitscheForm<2>&);
-template double dirichlet_interpolation_error(const NitscheForm<3>&);
+template Statements statements(const contact::NitscheForm<2>&, case_file::ContactRule,
+                               const std::optional<FriedrichsConstant>&);
+template Statements statements(const contact::NitscheForm<3>&, case_file::ContactRule,
+                               const std::optional<FriedrichsConstant>&);
+template double dirichlet_interpolation_bound(const contact::NitscheForm<2>&);
+template double dirichlet_interpolation_bound(const contact::NitscheForm<3>&);
+template double dirichlet_interpolation_error(const contact::NitscheForm<2>&);
+template double dirichlet_interpolation_error(const contact::NitscheForm<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::certify

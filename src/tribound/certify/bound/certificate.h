@@ -13,7 +13,7 @@
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 enum class RunStatus
@@ -39,12 +39,12 @@ struct Verdict
 
 /// Whether sigma(u) and the bound of its error are nothing but rounding: the exact stress is zero as far as
 /// can be known, and what the identities say relative to it means nothing.
-[[nodiscard]] bool is_round_off(const Bound& bound, const StressNorms& norms);
+[[nodiscard]] bool is_round_off(const Bound& bound, const contact::StressNorms& norms);
 
 /// Certified if the stress is nothing but rounding, or the identities hold to identity_limit and
 /// bound.total_sharp <= tolerance * ||sigma(u)||; numbers that are not finite are never certified.
 [[nodiscard]] Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
-                            const StressNorms& norms, double tolerance);
+                            const contact::StressNorms& norms, double tolerance);
 
 /// Why what was computed is no bound: an identity is violated by more than identity_limit; empty when all
 /// hold. `defect`: IdentityDefects::largest.
@@ -62,17 +62,17 @@ struct Statements
 
 /// C_F is given where the bound contains it.
 template <int dim>
-[[nodiscard]] Statements statements(const NitscheForm<dim>& form, ContactRule rule,
+[[nodiscard]] Statements statements(const contact::NitscheForm<dim>& form, case_file::ContactRule rule,
                                     const std::optional<FriedrichsConstant>& friedrichs = {});
 
 /// The largest |u_D - I u_D| at the points of the facet rule, I the interpolation at the nodes, in a fixed
 /// component on Gamma_D; length.
 template <int dim>
-[[nodiscard]] double dirichlet_interpolation_error(const NitscheForm<dim>& form);
+[[nodiscard]] double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form);
 
 /// An upper bound of it anywhere: on a facet (1 + Lambda) times an enclosed distance of u_D from P^p, Lambda
 /// the Lebesgue constant of the nodes, and Lambda times what u_D may jump by at a node.
 template <int dim>
-[[nodiscard]] double dirichlet_interpolation_bound(const NitscheForm<dim>& form);
+[[nodiscard]] double dirichlet_interpolation_bound(const contact::NitscheForm<dim>& form);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -9,7 +9,7 @@
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 double IdentityDefects::largest(int degree) const
@@ -29,23 +29,23 @@ struct Tables
 {
   int n;       ///< dim P^p(T)
   int n_less;  ///< dim P^{p-1}(T)
-  Quadrature<dim> data_rule;
+  fem::Quadrature<dim> data_rule;
   std::array<std::vector<double>, dim> derivative;    ///< (d_k phi_j, chi_i), [i * n + j]
-  Quadrature<dim - 1> jump_rule;                      ///< exact to degree 2p
+  fem::Quadrature<dim - 1> jump_rule;                 ///< exact to degree 2p
   std::array<std::vector<double>, dim + 1> on_facet;  ///< phi at its points, [q * n + j]
 
   explicit Tables(int degree)
-      : n(polynomial_dimension(dim, degree)),
-        n_less(polynomial_dimension(dim, degree - 1)),
-        data_rule(quadrature<dim>(data_quadrature_degree(degree))),
-        jump_rule(quadrature<dim - 1>(2 * degree))
+      : n(fem::polynomial_dimension(dim, degree)),
+        n_less(fem::polynomial_dimension(dim, degree - 1)),
+        data_rule(fem::quadrature<dim>(fem::data_quadrature_degree(degree))),
+        jump_rule(fem::quadrature<dim - 1>(2 * degree))
   {
     std::vector<double> phi(n);
     std::vector<Point<dim>> gradients(n);
     for (auto& matrix : derivative) matrix.assign(static_cast<std::size_t>(n_less) * n, 0.0);
     for (int q = 0; q < data_rule.size(); ++q)
     {
-      orthonormal_gradients<dim>(degree, data_rule.points[q], phi, gradients);
+      fem::orthonormal_gradients<dim>(degree, data_rule.points[q], phi, gradients);
       for (int k = 0; k < dim; ++k)
         for (int i = 0; i < n_less; ++i)
           for (int j = 0; j < n; ++j)
@@ -54,7 +54,7 @@ struct Tables
     for (int f = 0; f <= dim; ++f)
       for (const Point<dim - 1>& s : jump_rule.points)
       {
-        orthonormal_values<dim>(degree, facet_to_cell<dim>(f, s), phi);
+        fem::orthonormal_values<dim>(degree, mesh::facet_to_cell<dim>(f, s), phi);
         on_facet[f].insert(on_facet[f].end(), phi.begin(), phi.end());
       }
   }
@@ -66,7 +66,7 @@ template <int dim>
 class CellStress
 {
  public:
-  CellStress(const Mesh<dim>& mesh, const Stress<dim>& stress, Index cell)
+  CellStress(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, Index cell)
       : degree_(stress.degree),
         n_(stress.n),
         coefficients_(stress.dis_in(cell).begin(), stress.dis_in(cell).end()),
@@ -84,7 +84,7 @@ class CellStress
   /// The basis of P^{p-1}(T) at a point of space, up to the factor 1/sqrt(det J).
   void truncated_basis_at(const Point<dim>& x, std::span<double> values) const
   {
-    orthonormal_values<dim>(degree_ - 1, inverse_ * (x - origin_), values);
+    fem::orthonormal_values<dim>(degree_ - 1, inverse_ * (x - origin_), values);
   }
   /// Which of the ascending vertices lies opposite to the facet, the cell's vertex `opposite` being that one.
   [[nodiscard]] int facet_opposite(Index opposite) const
@@ -115,7 +115,7 @@ class CellStress
   [[nodiscard]] Point<dim> normal_trace_at(const Point<dim>& x, const Point<dim>& normal) const
   {
     std::vector<double> values(n_);
-    orthonormal_values<dim>(degree_, inverse_ * (x - origin_), values);
+    fem::orthonormal_values<dim>(degree_, inverse_ * (x - origin_), values);
     return normal_trace(values.data(), normal);
   }
 
@@ -152,7 +152,7 @@ class CellStress
   int degree_;
   int n_;
   std::vector<double> coefficients_;
-  Cell<dim> vertices_;  ///< ascending
+  mesh::Cell<dim> vertices_;  ///< ascending
   Point<dim> origin_;
   Tensor<dim> jacobian_;
   Tensor<dim> inverse_;
@@ -162,8 +162,9 @@ class CellStress
 /// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The rule has its points where L(v)
 /// has them, in the numbering of the cell: collapsed rules are not symmetric.
 template <int dim>
-double squared_divergence_defect(const DiscreteData<dim>& data, Index cell, const Tables<dim>& tables,
-                                 const CellStress<dim>& sigma, const CellMap<dim>& map)
+double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index cell,
+                                 const Tables<dim>& tables, const CellStress<dim>& sigma,
+                                 const mesh::CellMap<dim>& map)
 {
   std::vector<Point<dim>> moments = sigma.divergence(tables);
   if (data.has_body_force(cell))
@@ -185,17 +186,18 @@ double squared_divergence_defect(const DiscreteData<dim>& data, Index cell, cons
 
 /// sum over the free components of ||Pi^p_F (sigma_h n - t)||_F^2 with t at the points x of the rule.
 template <int dim>
-double squared_trace_defect(const CellStress<dim>& sigma, int degree, const Quadrature<dim - 1>& rule,
+double squared_trace_defect(const CellStress<dim>& sigma, int degree, const fem::Quadrature<dim - 1>& rule,
                             std::span<const Point<dim>> x, std::span<const Point<dim>> t,
-                            const FacetGeometry<dim>& geometry, const BoundaryCondition<dim>& boundary)
+                            const mesh::FacetGeometry<dim>& geometry,
+                            const problem::BoundaryCondition<dim>& boundary)
 {
-  const int n = polynomial_dimension(dim - 1, degree);
+  const int n = fem::polynomial_dimension(dim - 1, degree);
   const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
   std::vector<double> theta(n);
   std::vector<Point<dim>> moments(n, Point<dim>::Zero());
   for (int q = 0; q < rule.size(); ++q)
   {
-    orthonormal_values<dim - 1>(degree, rule.points[q], theta);
+    fem::orthonormal_values<dim - 1>(degree, rule.points[q], theta);
     const Point<dim> value = sigma.normal_trace_at(x[q], geometry.normal) - t[q];
     for (int i = 0; i < n; ++i) moments[i] += rule.weights[q] * std::sqrt(scale) * theta[i] * value;
   }
@@ -208,18 +210,18 @@ double squared_trace_defect(const CellStress<dim>& sigma, int degree, const Quad
 
 /// Sums of squares on the cells, and the square of the norm of sigma_h.
 template <int dim>
-double check_cells(const NitscheForm<dim>& form, const Stress<dim>& stress, const Tables<dim>& tables,
-                   IdentityDefects& squares)
+double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                   const Tables<dim>& tables, IdentityDefects& squares)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   double norm_squared = 0;
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     const CellStress<dim> sigma(mesh, stress, c);
     norm_squared += sigma.squared_norm();
     squares.symmetry += sigma.squared_skew_part(tables.n_less);
-    squares.divergence += std::pow(cell_diameter(mesh, c), 2) *
-                          squared_divergence_defect(form.data(), c, tables, sigma, cell_map(mesh, c));
+    squares.divergence += std::pow(mesh::cell_diameter(mesh, c), 2) *
+                          squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c));
   }
   return norm_squared;
 }
@@ -227,9 +229,9 @@ double check_cells(const NitscheForm<dim>& form, const Stress<dim>& stress, cons
 /// sum h_F ||[sigma_h n]||_F^2 over the facets between two cells. Seen from both, the vertices of the facet
 /// come in the same, ascending order.
 template <int dim>
-double check_jumps(const Mesh<dim>& mesh, const Stress<dim>& stress, const Tables<dim>& tables)
+double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const Tables<dim>& tables)
 {
-  const Topology<dim>& topology = mesh.topology();
+  const mesh::Topology<dim>& topology = mesh.topology();
   const auto opposite = [&](Index cell, Index facet)
   {
     const auto& facets = topology.cell_facets[cell];
@@ -242,7 +244,7 @@ double check_jumps(const Mesh<dim>& mesh, const Stress<dim>& stress, const Table
       const Index facet = topology.cell_facets[c][local];
       const auto& [first, second] = topology.facet_cells[facet];
       if (first != c || second < 0) continue;
-      const FacetGeometry<dim> geometry = facet_geometry(mesh, c, local);
+      const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, c, local);
       const CellStress<dim> here(mesh, stress, first);
       const CellStress<dim> there(mesh, stress, second);
       const double* const phi_here = tables.on_facet[here.facet_opposite(opposite(first, facet))].data();
@@ -257,19 +259,19 @@ double check_jumps(const Mesh<dim>& mesh, const Stress<dim>& stress, const Table
 }
 
 template <int dim>
-void check_boundary(const NitscheForm<dim>& form, std::span<const Point<dim>> t, const Stress<dim>& stress,
-                    IdentityDefects& squares)
+void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t,
+                    const Stress<dim>& stress, IdentityDefects& squares)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Quadrature<dim - 1>& rule = form.facet_rule();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   std::size_t contact_point = 0;
   std::vector<Point<dim>> traction(rule.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
-    const BoundaryFacet& facet = mesh.boundary()[number];
-    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
-    const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
     std::vector<Point<dim>> x;
     for (const Point<dim - 1>& s : rule.points) x.push_back(map(s));
     if (boundary.contact)
@@ -286,7 +288,7 @@ void check_boundary(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
 }  // namespace
 
 template <int dim>
-IdentityDefects check_identities(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
+IdentityDefects check_identities(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t,
                                  const Stress<dim>& stress)
 {
   const Tables<dim> tables(stress.degree);
@@ -299,7 +301,9 @@ IdentityDefects check_identities(const NitscheForm<dim>& form, std::span<const P
           relative(squares.contact), relative(squares.symmetry)};
 }
 
-template IdentityDefects check_identities(const NitscheForm<2>&, std::span<const Point<2>>, const Stress<2>&);
-template IdentityDefects check_identities(const NitscheForm<3>&, std::span<const Point<3>>, const Stress<3>&);
+template IdentityDefects check_identities(const contact::NitscheForm<2>&, std::span<const Point<2>>,
+                                          const Stress<2>&);
+template IdentityDefects check_identities(const contact::NitscheForm<3>&, std::span<const Point<3>>,
+                                          const Stress<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -9,7 +9,7 @@
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Norms of what should vanish, each relative to ||sigma_h||, with powers of h_T or h_F that make it a
@@ -28,7 +28,7 @@ struct IdentityDefects
 
 /// t: the running traction t^k at the contact points of the form.
 template <int dim>
-[[nodiscard]] IdentityDefects check_identities(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
-                                               const Stress<dim>& stress);
+[[nodiscard]] IdentityDefects check_identities(const contact::NitscheForm<dim>& form,
+                                               std::span<const Point<dim>> t, const Stress<dim>& stress);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -7,7 +7,7 @@
 #include "tribound/contact/nitsche/traction.h"
 #include "tribound/fem/polynomials.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -38,15 +38,15 @@ std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
 
 /// h_F |F| / |Fhat|.
 template <int dim>
-double norm_scale(const ContactFacet<dim>& contact)
+double norm_scale(const contact::ContactFacet<dim>& contact)
 {
   return contact.geometry.diameter * contact.geometry.measure * (dim - 1);
 }
 
 /// Adds h_F ||t^n||_F^2 and h_F ||t^t||_F^2 of a traction with the given coefficients.
 template <int dim>
-void add_squares(std::span<const Point<dim>> traction, const ContactFacet<dim>& contact, double& normal_part,
-                 double& tangential_part)
+void add_squares(std::span<const Point<dim>> traction, const contact::ContactFacet<dim>& contact,
+                 double& normal_part, double& tangential_part)
 {
   const Point<dim>& n = contact.geometry.normal;
   for (const Point<dim>& coefficient : traction)
@@ -60,24 +60,24 @@ void add_squares(std::span<const Point<dim>> traction, const ContactFacet<dim>& 
 }  // namespace
 
 template <int dim>
-ContactTerms<dim>::ContactTerms(const NitscheForm<dim>& form, ContactRule rule)
+ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, case_file::ContactRule rule)
     : form_(form),
       rule_(rule),
-      space_table_(tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
-      n_(polynomial_dimension(dim - 1, form.space().degree())),
+      space_table_(fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
+      n_(fem::polynomial_dimension(dim - 1, form.space().degree())),
       kinks_(form.facet_rule(), form.space().degree() + 2)
 {
-  const Quadrature<dim - 1>& points = form.facet_rule();
+  const fem::Quadrature<dim - 1>& points = form.facet_rule();
   for (int local = 0; local <= dim; ++local)
   {
     std::vector<Point<dim>> in_cell;
-    for (const FacetPoint& s : points.points) in_cell.push_back(facet_to_cell<dim>(local, s));
+    for (const FacetPoint& s : points.points) in_cell.push_back(mesh::facet_to_cell<dim>(local, s));
     stress_table_.emplace_back(form.space().degree(), in_cell);
   }
   theta_.resize(static_cast<std::size_t>(n_) * points.size());
   for (int q = 0; q < points.size(); ++q)
-    orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
-                                std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+    fem::orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
+                                     std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
 }
 
 /// Coefficients of a polynomial of degree p on the facet from its values at the points of the rule.
@@ -111,17 +111,18 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<di
 {
   const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
   const Point<dim>& n = geometry.normal;
-  const LagrangeSpace<dim>& space = form_.space();
-  const Material& material = form_.problem().material(space.mesh().region(facet.cell));
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  const problem::Material& material = form_.problem().material(space.mesh().region(facet.cell));
   const std::span<const Index> nodes = space.cell_nodes(facet.cell);
-  const Tabulation<dim>& table = space_table_.on_facet[facet.local];
-  const Tensor<dim> inverse_transpose = cell_map(space.mesh(), facet.cell).inverse_transpose;
+  const fem::Tabulation<dim>& table = space_table_.on_facet[facet.local];
+  const Tensor<dim> inverse_transpose = mesh::cell_map(space.mesh(), facet.cell).inverse_transpose;
   const int n_points = form_.n_facet_points();
 
   std::vector<Point<dim>> values(n_points);
   for (int q = 0; q < n_points; ++q)
-    values[q] = augmented_traction<dim>(material, gamma, 0, n, value_at<dim>(nodes, u, table.values_at(q)),
-                                        gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
+    values[q] = contact::augmented_traction<dim>(
+        material, gamma, 0, n, contact::value_at<dim>(nodes, u, table.values_at(q)),
+        contact::gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
   return {project(values), normal_trace(k, stress.dis_in(facet.cell))};
 }
 
@@ -130,20 +131,20 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
 {
   const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
   const Point<dim>& n = geometry.normal;
-  const FacetMap<dim> map = facet_map(form_.space().mesh(), facet.cell, facet.local);
-  const Quadrature<dim - 1>& rule = form_.facet_rule();
-  std::array<double, polynomial_dimension(dim - 1, 4)> theta;
-  const FrictionLaw& law = contact->friction;
+  const mesh::FacetMap<dim> map = mesh::facet_map(form_.space().mesh(), facet.cell, facet.local);
+  const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
+  std::array<double, fem::polynomial_dimension(dim - 1, 4)> theta;
+  const case_file::FrictionLaw& law = contact->friction;
   Integrals result;
   std::vector<Point<dim>> augmented(rule.size());
   std::vector<double> thresholds(rule.size());
   double round_off = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
-    const FacetPoint s = point_in<dim - 1>(piece, rule.points[q]);
-    orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
+    const FacetPoint s = fem::point_in<dim - 1>(piece, rule.points[q]);
+    fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
     const Point<dim> x = map(s);
-    const double closing = gamma * gap_at<dim>(*contact, x);
+    const double closing = gamma * problem::gap_at<dim>(*contact, x);
     Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
@@ -152,12 +153,12 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
       dis += theta[i] * fields.dis[i];
     }
     augmented[q] = p;
-    thresholds[q] = threshold_if_any<dim>(law, x);
+    thresholds[q] = contact::threshold_if_any<dim>(law, x);
     round_off = std::max(round_off, 1e-14 * (p.norm() + closing));
 
-    const Point<dim> difference = contact_traction<dim>(law, thresholds[q], p, n) - dis;
+    const Point<dim> difference = contact::contact_traction<dim>(law, thresholds[q], p, n) - dis;
     const double normal = difference.dot(n);
-    const double weight = fraction<dim - 1>(piece) * rule.weights[q];
+    const double weight = fem::fraction<dim - 1>(piece) * rule.weights[q];
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
@@ -176,7 +177,7 @@ auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, con
   {
     result.values[i] = integrate(k, fields, result.pieces[i]);
     sum += result.values[i];
-    result.change += fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
+    result.change += fem::fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
   }
   result.change += std::abs(sum.normal - whole.normal) + std::abs(sum.tangential - whole.tangential);
   return result;
@@ -185,7 +186,8 @@ auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, con
 /// Halves the parts that may have a kink, and of these those again, until that changes nothing any more. What
 /// it did change last, where there is no end of it, is added.
 template <int dim>
-void ContactTerms<dim>::settle(int k, const Fields& fields, std::span<const ContactDatumPart<dim>> parts,
+void ContactTerms<dim>::settle(int k, const Fields& fields,
+                               std::span<const contact::ContactDatumPart<dim>> parts,
                                std::span<Integrals> integrals) const
 {
   std::vector<Halved> active;
@@ -229,14 +231,14 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
                                              const Stress<dim>& stress) const
 {
   const Fields on_facet = fields(k, u, stress);
-  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  const contact::ContactFacet<dim>& contact = form_.contact_facets()[k];
   ContactSquares result = linearisation(k, stress);
-  const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
-  std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
+  const contact::ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
+  std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
   if (parts.empty()) parts = std::span(&whole, 1);
   std::vector<Integrals> integrals;
   for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));
-  if (rule_ == ContactRule::resolved) settle(k, on_facet, parts, integrals);
+  if (rule_ == case_file::ContactRule::resolved) settle(k, on_facet, parts, integrals);
   for (std::size_t i = 0; i < parts.size(); ++i) add_part(contact, parts[i], integrals[i], result);
   if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
     add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
@@ -247,17 +249,18 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
 /// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
 /// the rule and at most 2 |K|^{1/2} times what the remainders change.
 template <int dim>
-void ContactTerms<dim>::add_part(const ContactFacet<dim>& contact, const ContactDatumPart<dim>& part,
-                                 const Integrals& integrals, ContactSquares& squares) const
+void ContactTerms<dim>::add_part(const contact::ContactFacet<dim>& contact,
+                                 const contact::ContactDatumPart<dim>& part, const Integrals& integrals,
+                                 ContactSquares& squares) const
 {
   const double scale = norm_scale(contact);
   const double missed =
-      2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fraction<dim - 1>(part.part));
+      2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fem::fraction<dim - 1>(part.part));
   // Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
   // polynomial up to gamma delta, with which it was seen at the points, too.
   const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * contact.gamma * part.gap;
   const double pressure = open ? 0 : contact.gamma * part.gap;
-  const auto* coulomb = std::get_if<Coulomb>(&contact.contact->friction);
+  const auto* coulomb = std::get_if<case_file::Coulomb>(&contact.contact->friction);
   const double limit = coulomb ? coulomb->coefficient * pressure : part.threshold;
   squares.cnt += std::pow(std::sqrt(scale * integrals.normal) + missed * pressure, 2);
   squares.frc += std::pow(std::sqrt(scale * integrals.tangential) + missed * limit, 2);
@@ -266,7 +269,7 @@ void ContactTerms<dim>::add_part(const ContactFacet<dim>& contact, const Contact
 template <int dim>
 ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress) const
 {
-  const ContactFacet<dim>& contact = form_.contact_facets()[k];
+  const contact::ContactFacet<dim>& contact = form_.contact_facets()[k];
   ContactSquares result;
   add_squares<dim>(normal_trace(k, stress.lin_in(contact.facet.cell)), contact, result.lin2n, result.lin2t);
   return result;
@@ -275,4 +278,4 @@ ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress
 template class ContactTerms<2>;
 template class ContactTerms<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -12,7 +12,7 @@
 #include "tribound/certify/equilibrate/frame_table.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Squares of the components on one facet F of Gamma_C.
@@ -33,7 +33,7 @@ template <int dim>
 class ContactTerms
 {
  public:
-  ContactTerms(const NitscheForm<dim>& form, ContactRule rule);
+  ContactTerms(const contact::NitscheForm<dim>& form, case_file::ContactRule rule);
 
   /// On contact facet k of the form for the iterate u.
   [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Stress<dim>& stress) const;
@@ -42,7 +42,7 @@ class ContactTerms
 
  private:
   using FacetPoint = Point<dim - 1>;
-  using Piece = Part<dim - 1>;  ///< of the reference facet
+  using Piece = fem::Part<dim - 1>;  ///< of the reference facet
 
   /// Vector polynomials of degree p on a facet in the orthonormal basis of the reference facet.
   struct Fields
@@ -79,20 +79,20 @@ class ContactTerms
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Stress<dim>& stress) const;
   [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> values) const;
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
-  void add_part(const ContactFacet<dim>& contact, const ContactDatumPart<dim>& part,
+  void add_part(const contact::ContactFacet<dim>& contact, const contact::ContactDatumPart<dim>& part,
                 const Integrals& integrals, ContactSquares& squares) const;
   [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                              const Integrals& whole) const;
-  void settle(int k, const Fields& fields, std::span<const ContactDatumPart<dim>> parts,
+  void settle(int k, const Fields& fields, std::span<const contact::ContactDatumPart<dim>> parts,
               std::span<Integrals> integrals) const;
 
-  const NitscheForm<dim>& form_;
-  ContactRule rule_;
-  FacetTabulation<dim> space_table_;           ///< of the space at the points of the facet rule
+  const contact::NitscheForm<dim>& form_;
+  case_file::ContactRule rule_;
+  fem::FacetTabulation<dim> space_table_;      ///< of the space at the points of the facet rule
   std::vector<FrameTable<dim>> stress_table_;  ///< of the stress there, per local facet
   std::vector<double> theta_;                  ///< basis on the facet there, [q * n + i]
   int n_;                                      ///< dim P^p(F)
   KinkFinder<dim> kinks_;  ///< for P^{p+2}, in which P^n is up to the remainder of the gap
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

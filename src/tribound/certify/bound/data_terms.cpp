@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -23,38 +23,38 @@ double trace_constant(double h, double facet_measure, double volume)
 /// P the vertex opposite to F, (m, v)_F = |F|/|T| (m, v + (x - P) . grad v / d)_T, the first term like that
 /// of a body force and the second at most |m| |F|/|T| h_T |T|^{1/2} / d ||grad v||_T.
 template <int dim>
-DataTerms data_terms(const NitscheForm<dim>& form)
+DataTerms data_terms(const contact::NitscheForm<dim>& form)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const DiscreteData<dim>& data = form.data();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const contact::DiscreteData<dim>& data = form.data();
   std::vector<double> missed(mesh.n_cells(), 0.0);  // of the integrals of loads on the cell and its facets
   DataTerms terms{std::vector<double>(mesh.n_cells(), 0.0), std::vector<double>(mesh.n_cells(), 0.0), 0};
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     const auto [oscillation, mean] = data.body_remainder(c);
     missed[c] = mean;
-    if (oscillation > 0) terms.osc[c] = cell_diameter(mesh, c) / std::numbers::pi * oscillation;
+    if (oscillation > 0) terms.osc[c] = mesh::cell_diameter(mesh, c) / std::numbers::pi * oscillation;
   }
   for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
     const auto [oscillation, mean] = data.traction_remainder(k);
     if (oscillation == 0 && mean == 0) continue;
-    const BoundaryFacet& facet = mesh.boundary()[k];
-    const double h = cell_diameter(mesh, facet.cell);
-    const double volume = cell_map(mesh, facet.cell).det / (dim == 2 ? 2 : 6);
-    const double measure = facet_geometry(mesh, facet.cell, facet.local).measure;
+    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
+    const double h = mesh::cell_diameter(mesh, facet.cell);
+    const double volume = mesh::cell_map(mesh, facet.cell).det / (dim == 2 ? 2 : 6);
+    const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
     missed[facet.cell] += mean;
     terms.neu[facet.cell] +=
         trace_constant<dim>(h, measure, volume) * oscillation + h / dim * mean / std::sqrt(volume);
   }
   double squares = 0;
   for (Index c = 0; c < mesh.n_cells(); ++c)
-    if (missed[c] > 0) squares += missed[c] * missed[c] / (cell_map(mesh, c).det / (dim == 2 ? 2 : 6));
+    if (missed[c] > 0) squares += missed[c] * missed[c] / (mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6));
   terms.missed = std::sqrt(squares);
   return terms;
 }
 
-template DataTerms data_terms(const NitscheForm<2>&);
-template DataTerms data_terms(const NitscheForm<3>&);
+template DataTerms data_terms(const contact::NitscheForm<2>&);
+template DataTerms data_terms(const contact::NitscheForm<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::certify

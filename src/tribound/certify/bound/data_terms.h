@@ -7,7 +7,7 @@
 
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Per cell osc and neu; stress units times length^(dim/2).
@@ -21,6 +21,6 @@ struct DataTerms
 
 /// Upper bounds where the data are no polynomials: contact/nitsche/discrete_data.h.
 template <int dim>
-[[nodiscard]] DataTerms data_terms(const NitscheForm<dim>& form);
+[[nodiscard]] DataTerms data_terms(const contact::NitscheForm<dim>& form);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -7,7 +7,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 double BoundComponents::body() const
@@ -54,18 +54,18 @@ void add_up(Estimate& estimate, double quad)
 }  // namespace
 
 template <int dim>
-Estimator<dim>::Estimator(const NitscheForm<dim>& form, ContactRule rule,
+Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, case_file::ContactRule rule,
                           const std::optional<FriedrichsConstant>& known)
     : form_(form),
       data_(data_terms(form)),
       friedrichs_(known),
       contact_(form, rule),
-      rule_(quadrature<dim>(2 * form.space().degree())),
+      rule_(fem::quadrature<dim>(2 * form.space().degree())),
       stress_table_(form.space().degree(), rule_.points)
 {
   if (data_.missed > 0 && !friedrichs_)
     friedrichs_ = friedrichs_constant(form.problem(), form.space().mesh());
-  const Tabulation<dim> table = form.space().basis().tabulate(rule_.points);
+  const fem::Tabulation<dim> table = form.space().basis().tabulate(rule_.points);
   const int n_points = rule_.size();
   gradient_.resize(static_cast<std::size_t>(dim) * table.n_nodes * n_points);
   for (int q = 0; q < n_points; ++q)
@@ -112,8 +112,8 @@ template <int dim>
 void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                                   Estimate& result) const
 {
-  const LagrangeSpace<dim>& space = form_.space();
-  const Mesh<dim>& mesh = space.mesh();
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   const int n_points = rule_.size();
 #pragma omp parallel num_threads(n_threads)
   {
@@ -135,8 +135,8 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
             for (int q = 0; q < n_points; ++q) sum[q] += value * row[q];
           }
 
-      const CellMap<dim> map = cell_map(mesh, c);
-      const Material& material = form_.problem().material(mesh.region(c));
+      const mesh::CellMap<dim> map = cell_map(mesh, c);
+      const problem::Material& material = form_.problem().material(mesh.region(c));
       double squares = 0;
       for (int q = 0; q < n_points; ++q)
       {
@@ -148,7 +148,8 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
             reference(r, s) = derivative[(r * dim + s) * n_points + q];
             equilibrated(r, s) = dis[(r * dim + s) * n_points + q];
           }
-        const Tensor<dim> discrete = sigma<dim>(material, reference * map.inverse_transpose.transpose());
+        const Tensor<dim> discrete =
+            contact::sigma<dim>(material, reference * map.inverse_transpose.transpose());
         squares += rule_.weights[q] * (equilibrated - discrete).squaredNorm();
       }
       result.cells[c].str = std::sqrt(map.det * squares);
@@ -187,4 +188,4 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
 template class Estimator<2>;
 template class Estimator<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

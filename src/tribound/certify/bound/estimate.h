@@ -13,7 +13,7 @@
 #include "tribound/certify/bound/data_terms.h"
 #include "tribound/certify/bound/friedrichs.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Global or cell values of the components; stress units times length^(dim/2).
@@ -105,7 +105,8 @@ class Estimator
  public:
   /// Evaluates what depends on the data alone. C_F may be `known` from a mesh of which the form's is a
   /// refinement; it is computed if it is needed and is not.
-  explicit Estimator(const NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved,
+  explicit Estimator(const contact::NitscheForm<dim>& form,
+                     case_file::ContactRule rule = case_file::ContactRule::resolved,
                      const std::optional<FriedrichsConstant>& known = {});
 
   /// C_F, where it is known.
@@ -124,11 +125,11 @@ class Estimator
                     Estimate& result) const;
   void contact_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
 
-  const NitscheForm<dim>& form_;
+  const contact::NitscheForm<dim>& form_;
   DataTerms data_;
   std::optional<FriedrichsConstant> friedrichs_;
   ContactTerms<dim> contact_;
-  Quadrature<dim> rule_;          ///< exact to degree 2p
+  fem::Quadrature<dim> rule_;     ///< exact to degree 2p
   FrameTable<dim> stress_table_;  ///< basis of the stress at its points
   std::vector<double>
       gradient_;  ///< reference derivatives of the space's basis, [(k n_nodes + i) n_points + q]
@@ -136,10 +137,11 @@ class Estimator
 
 /// The components of one iterate.
 template <int dim>
-[[nodiscard]] Estimate estimate(const NitscheForm<dim>& form, std::span<const double> u,
-                                const Stress<dim>& stress, ContactRule rule = ContactRule::resolved)
+[[nodiscard]] Estimate estimate(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                const Stress<dim>& stress,
+                                case_file::ContactRule rule = case_file::ContactRule::resolved)
 {
   return Estimator<dim>(form, rule)(u, stress);
 }
 
-}  // namespace tribound
+}  // namespace tribound::certify

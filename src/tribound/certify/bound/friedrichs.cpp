@@ -14,7 +14,7 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/refine.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -35,7 +35,7 @@ constexpr double kappa_squared()
 template <int dim>
 struct ProofMesh
 {
-  const Mesh<dim>& mesh;
+  const mesh::Mesh<dim>& mesh;
   double facet_scale;  ///< h_F of the facet of the given mesh / diameter of its part here
 };
 
@@ -44,16 +44,17 @@ struct Pencil
 {
   Index n = 0;
   std::vector<Index> number;  ///< of each facet, -1 where fixed
-  Triplets a;
+  contact::Triplets a;
   std::vector<double> m;  ///< the values of M
 };
 
 /// 1 for each facet on which Gamma_D fixes the component.
 template <int dim>
-std::vector<char> fixed_facets(const Problem<dim>& problem, const Mesh<dim>& mesh, int component)
+std::vector<char> fixed_facets(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                               int component)
 {
   std::vector<char> fixed(mesh.topology().facets.size(), 0);
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
     if (problem.boundary(facet.tag).fixes(component))
       fixed[mesh.topology().cell_facets[facet.cell][facet.local]] = 1;
   return fixed;
@@ -62,9 +63,10 @@ std::vector<char> fixed_facets(const Problem<dim>& problem, const Mesh<dim>& mes
 /// A = sum_T (grad ., grad .)_T + sum_{F in C} (|F|/h_F) mean_F(.) mean_F(.), M = sum_T (., .)_T of the
 /// Crouzeix-Raviart functions phi_i = 1 - d lambda_i, which have mean 1 on facet i and 0 on the others.
 template <int dim>
-Pencil assemble(const Problem<dim>& problem, const ProofMesh<dim>& proof, const std::vector<char>& fixed)
+Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof,
+                const std::vector<char>& fixed)
 {
-  const Mesh<dim>& mesh = proof.mesh;
+  const mesh::Mesh<dim>& mesh = proof.mesh;
   const auto& cell_facets = mesh.topology().cell_facets;
   Pencil pencil;
   std::vector<Index>& number = pencil.number;
@@ -85,7 +87,7 @@ Pencil assemble(const Problem<dim>& problem, const ProofMesh<dim>& proof, const 
       static_cast<double>(dim * dim) / ((dim + 1) * (dim + 2));  // d^2 (lambda_i, lambda_j)
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(mesh, c);
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     const double volume = map.det / (dim == 2 ? 2 : 6);
     std::array<Point<dim>, dim + 1> gradients;  // of -lambda_i
     gradients[0] = map.inverse_transpose.rowwise().sum();
@@ -96,10 +98,10 @@ Pencil assemble(const Problem<dim>& problem, const ProofMesh<dim>& proof, const 
             dim * dim * volume * gradients[i].dot(gradients[j]),
             volume * (1 - 2.0 * dim / (dim + 1) + mass * (i == j ? 2 : 1)));
   }
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     if (!problem.boundary(facet.tag).contact) continue;
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const Index i = number[cell_facets[facet.cell][facet.local]];
     add(i, i, geometry.measure / (proof.facet_scale * geometry.diameter), 0);
   }
@@ -116,11 +118,11 @@ double dot(std::span<const double> x, std::span<const double> y)
 /// An approximation of the smallest eigenvalue of A w = lambda M w: the largest of A^{-1} M by Lanczos'
 /// method in the inner product of M. Without orthogonalisation: lost orthogonality repeats eigenvalues and
 /// does not spoil the extreme ones [Paige80].
-double smallest_eigenvalue(const SparseMatrix& a, const SparseMatrix& m, int dim)
+double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::SparseMatrix& m, int dim)
 {
   constexpr int max_steps = 200;
   constexpr double accuracy = 1e-9;
-  const SparseCholesky cholesky(a, dim);
+  const algebra::SparseCholesky cholesky(a, dim);
   if (!cholesky.positive_definite()) return 0;
   const auto n = static_cast<std::size_t>(a.size());
   std::vector<double> v(n, 1.0);
@@ -179,8 +181,8 @@ double rounding(const Pencil& pencil, double lambda)
 double proved_theta(Pencil pencil, int dim)
 {
   if (pencil.n == 0) return std::numeric_limits<double>::infinity();  // no function is left
-  SparseMatrix shifted(pencil.n, 1, pencil.a);
-  Triplets mass{pencil.a.rows, pencil.a.cols, pencil.m};
+  algebra::SparseMatrix shifted(pencil.n, 1, pencil.a);
+  contact::Triplets mass{pencil.a.rows, pencil.a.cols, pencil.m};
   const double lambda = smallest_eigenvalue(shifted, {pencil.n, 1, std::move(mass)}, dim);
   std::vector<double> values(pencil.m.size());
   for (double shortfall = std::max(1e-6, rounding(pencil, lambda)); shortfall < 1; shortfall *= 10)
@@ -188,7 +190,7 @@ double proved_theta(Pencil pencil, int dim)
     const double theta = (1 - shortfall) * lambda;
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = pencil.a.values[k] - theta * pencil.m[k];
     shifted.set_values(values);
-    if (SparseCholesky(shifted, dim).positive_definite()) return theta;
+    if (algebra::SparseCholesky(shifted, dim).positive_definite()) return theta;
   }
   return 0;
 }
@@ -201,7 +203,7 @@ std::vector<double> potential_means(Pencil pencil)
   const auto n = static_cast<std::size_t>(pencil.n);
   std::vector<double> r(n, 0.0);
   for (std::size_t k = 0; k < pencil.m.size(); ++k) r[pencil.a.rows[k]] += pencil.m[k];
-  const SparseMatrix a(pencil.n, 1, std::move(pencil.a));
+  const algebra::SparseMatrix a(pencil.n, 1, std::move(pencil.a));
   const std::vector<double> diagonal = a.diagonal();
   std::vector<double> x(n, 0.0);
   std::vector<double> z(n);
@@ -233,7 +235,7 @@ std::vector<double> potential_means(Pencil pencil)
 /// The smallest theta(fixed facets, pencil) of all components. Components that are fixed on the same facets
 /// have the same.
 template <int dim, class Theta>
-double theta_of_components(const Problem<dim>& problem, const ProofMesh<dim>& proof, Theta theta)
+double theta_of_components(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof, Theta theta)
 {
   std::array<std::vector<char>, dim> fixed;
   double smallest = std::numeric_limits<double>::infinity();
@@ -250,7 +252,7 @@ double theta_of_components(const Problem<dim>& problem, const ProofMesh<dim>& pr
 /// needed: the interpolant I w with the facet means of w has ||w - I w|| <= kappa H ||grad(w - I w)||, grad I
 /// w is the cell means of grad w, and ||w||_F^2 >= |F| mean_F(w)^2.
 template <int dim>
-FriedrichsConstant constant_on(const Problem<dim>& problem, const ProofMesh<dim>& proof)
+FriedrichsConstant constant_on(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof)
 {
   FriedrichsConstant result{};
   result.theta = theta_of_components(problem, proof,
@@ -258,21 +260,21 @@ FriedrichsConstant constant_on(const Problem<dim>& problem, const ProofMesh<dim>
                                      { return proved_theta(std::move(pencil), dim); });
   result.cells = proof.mesh.n_cells();
   for (Index c = 0; c < result.cells; ++c)
-    result.mesh_size = std::max(result.mesh_size, cell_diameter(proof.mesh, c));
+    result.mesh_size = std::max(result.mesh_size, mesh::cell_diameter(proof.mesh, c));
   result.value = std::sqrt(1 / result.theta + kappa_squared<dim>() * result.mesh_size * result.mesh_size);
   return result;
 }
 
 /// Whether every body has Gamma_D or Gamma_C in every component.
 template <int dim>
-bool holds_every_component(const Problem<dim>& problem, const Mesh<dim>& mesh)
+bool holds_every_component(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
-  const std::vector<Body<dim>> bodies = find_bodies(LagrangeSpace<dim>(mesh, 1));
+  const std::vector<contact::Body<dim>> bodies = contact::find_bodies(fem::LagrangeSpace<dim>(mesh, 1));
   return std::ranges::all_of(bodies,
-                             [&](const Body<dim>& body)
+                             [&](const contact::Body<dim>& body)
                              {
                                std::array<bool, dim> held{};
-                               for (const BoundaryFacet& facet : body.facets)
+                               for (const mesh::BoundaryFacet& facet : body.facets)
                                  for (int a = 0; a < dim; ++a)
                                    held[a] = held[a] || problem.boundary(facet.tag).fixes(a) ||
                                              problem.boundary(facet.tag).contact;
@@ -281,7 +283,7 @@ bool holds_every_component(const Problem<dim>& problem, const Mesh<dim>& mesh)
 }
 
 template <int dim>
-FriedrichsConstant without_factors(const Problem<dim>& problem, const Mesh<dim>& mesh)
+FriedrichsConstant without_factors(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   const double theta = theta_of_components<dim>(
       problem, {mesh, 1},
@@ -291,13 +293,14 @@ FriedrichsConstant without_factors(const Problem<dim>& problem, const Mesh<dim>&
 }
 
 template <int dim>
-FriedrichsConstant with_factors(const Problem<dim>& problem, const Mesh<dim>& mesh, Index most_cells)
+FriedrichsConstant with_factors(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                Index most_cells)
 {
   const FriedrichsConstant here = constant_on<dim>(problem, {mesh, 1});
   if (here.value * here.value <= 2 / here.theta) return here;
   // kappa^2 H^2 > 1/theta: a finer mesh, for the proof alone. The norm keeps the h_F of the given mesh.
-  if (count_after_refinement(mesh, 1).cells > most_cells) return here;
-  const Refined<dim> refined = refine_uniformly(mesh);
+  if (mesh::count_after_refinement(mesh, 1).cells > most_cells) return here;
+  const mesh::Refined<dim> refined = mesh::refine_uniformly(mesh);
   const FriedrichsConstant finer = constant_on<dim>(problem, {refined.mesh, 2});
   return finer.value < here.value ? finer : here;
 }
@@ -305,7 +308,7 @@ FriedrichsConstant with_factors(const Problem<dim>& problem, const Mesh<dim>& me
 }  // namespace
 
 template <int dim>
-FriedrichsConstant friedrichs_constant(const Problem<dim>& problem, const Mesh<dim>& mesh,
+FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                        Index most_cells_factorised)
 {
   if (!holds_every_component(problem, mesh))
@@ -321,7 +324,7 @@ FriedrichsConstant friedrichs_constant(const Problem<dim>& problem, const Mesh<d
   }
 }
 
-template FriedrichsConstant friedrichs_constant(const Problem<2>&, const Mesh<2>&, Index);
-template FriedrichsConstant friedrichs_constant(const Problem<3>&, const Mesh<3>&, Index);
+template FriedrichsConstant friedrichs_constant(const problem::Problem<2>&, const mesh::Mesh<2>&, Index);
+template FriedrichsConstant friedrichs_constant(const problem::Problem<3>&, const mesh::Mesh<3>&, Index);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -10,7 +10,7 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// C_F^2 = 1/theta + kappa^2 H^2 with kappa < 0.3 in 2D, 0.34 in 3D.
@@ -35,7 +35,7 @@ inline constexpr Index most_cells_factorised_3d = 100'000;
 /// the proof does without factors, too.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(
-    const Problem<dim>& problem, const Mesh<dim>& mesh,
+    const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
     Index most_cells_factorised = dim == 3 ? most_cells_factorised_3d : std::numeric_limits<Index>::max());
 
-}  // namespace tribound
+}  // namespace tribound::certify

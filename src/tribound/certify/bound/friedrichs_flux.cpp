@@ -8,7 +8,7 @@
 
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -18,13 +18,13 @@ namespace
 /// -grad phi_h + (x - x_T) / d of the Crouzeix-Raviart solution phi_h; seen from the two cells of a facet,
 /// the mean of both.
 template <int dim>
-std::vector<double> potential_fluxes(const Mesh<dim>& mesh, std::span<const double> means)
+std::vector<double> potential_fluxes(const mesh::Mesh<dim>& mesh, std::span<const double> means)
 {
-  const Topology<dim>& topology = mesh.topology();
+  const mesh::Topology<dim>& topology = mesh.topology();
   std::vector<double> fluxes(means.size(), 0.0);
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(mesh, c);
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     const double volume = map.det / (dim == 2 ? 2 : 6);
     std::array<Point<dim>, dim + 1> hat_gradients;
     hat_gradients[0] = -map.inverse_transpose.rowwise().sum();
@@ -45,15 +45,15 @@ std::vector<double> potential_fluxes(const Mesh<dim>& mesh, std::span<const doub
 
 /// What the flux of q through each facet may not exceed: infinity but for the boundary.
 template <int dim>
-std::vector<double> largest_fluxes(const Problem<dim>& problem, const Mesh<dim>& mesh,
+std::vector<double> largest_fluxes(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                    std::span<const char> fixed)
 {
   std::vector<double> largest(fixed.size(), std::numeric_limits<double>::infinity());
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     const Index f = mesh.topology().cell_facets[facet.cell][facet.local];
     if (fixed[f]) continue;
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     largest[f] = problem.boundary(facet.tag).contact ? geometry.measure / geometry.diameter : 0;
   }
   return largest;
@@ -61,14 +61,14 @@ std::vector<double> largest_fluxes(const Problem<dim>& problem, const Mesh<dim>&
 
 /// min(div q - |q|^2): div q is constant in each cell, |q| largest at a vertex. 0 where q is not finite.
 template <int dim>
-double smallest_value(const Mesh<dim>& mesh, std::span<const double> fluxes)
+double smallest_value(const mesh::Mesh<dim>& mesh, std::span<const double> fluxes)
 {
-  const Topology<dim>& topology = mesh.topology();
+  const mesh::Topology<dim>& topology = mesh.topology();
   double smallest = std::numeric_limits<double>::infinity();
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const auto points = points_of(mesh.vertices(), mesh.cell(c));
-    const double volume = determinant<dim>(points) / (dim == 2 ? 2 : 6);
+    const auto points = mesh::points_of(mesh.vertices(), mesh.cell(c));
+    const double volume = mesh::determinant<dim>(points) / (dim == 2 ? 2 : 6);
     std::array<double, dim + 1> outward;
     double divergence = 0;
     for (int i = 0; i <= dim; ++i)
@@ -92,8 +92,8 @@ double smallest_value(const Mesh<dim>& mesh, std::span<const double> fluxes)
 }  // namespace
 
 template <int dim>
-double flux_theta(const Problem<dim>& problem, const Mesh<dim>& mesh, std::span<const char> fixed,
-                  std::span<const double> means)
+double flux_theta(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                  std::span<const char> fixed, std::span<const double> means)
 {
   const std::vector<double> potential = potential_fluxes(mesh, means);
   const std::vector<double> largest = largest_fluxes(problem, mesh, fixed);
@@ -111,7 +111,9 @@ double flux_theta(const Problem<dim>& problem, const Mesh<dim>& mesh, std::span<
   return theta;
 }
 
-template double flux_theta(const Problem<2>&, const Mesh<2>&, std::span<const char>, std::span<const double>);
-template double flux_theta(const Problem<3>&, const Mesh<3>&, std::span<const char>, std::span<const double>);
+template double flux_theta(const problem::Problem<2>&, const mesh::Mesh<2>&, std::span<const char>,
+                           std::span<const double>);
+template double flux_theta(const problem::Problem<3>&, const mesh::Mesh<3>&, std::span<const char>,
+                           std::span<const double>);
 
-}  // namespace tribound
+}  // namespace tribound::certify

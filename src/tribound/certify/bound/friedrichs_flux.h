@@ -8,7 +8,7 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// theta > 0 with theta ||w||^2 <= ||grad w||^2 + sum_{F in C} (1/h_F) ||w||_F^2 for all w that vanish where
@@ -22,7 +22,7 @@ namespace tribound
 /// so theta = min(div q - |q|^2) [Protter60]. q = -grad(phi) / (phi + c) in the lowest-order
 /// Raviart-Thomas space, with the best of several constants c.
 template <int dim>
-[[nodiscard]] double flux_theta(const Problem<dim>& problem, const Mesh<dim>& mesh,
+[[nodiscard]] double flux_theta(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                 std::span<const char> fixed, std::span<const double> means);
 
-}  // namespace tribound
+}  // namespace tribound::certify

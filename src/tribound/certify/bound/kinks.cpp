@@ -7,7 +7,7 @@
 #include "tribound/contact/nitsche/traction.h"
 #include "tribound/fem/bernstein.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -57,18 +57,18 @@ Range slip_range(const Columns<dim>& at_points, const Columns<dim>& coefficients
 }  // namespace
 
 template <int dim>
-KinkFinder<dim>::KinkFinder(const Quadrature<dim - 1>& rule, int degree)
-    : to_bernstein_(bernstein_from_points<dim - 1>(rule, degree)),
+KinkFinder<dim>::KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree)
+    : to_bernstein_(fem::bernstein_from_points<dim - 1>(rule, degree)),
       amplification_(matrix(to_bernstein_, rule.size()).cwiseAbs().rowwise().sum().maxCoeff())
 {
 }
 
 template <int dim>
-Kinks KinkFinder<dim>::operator()(const FrictionLaw& law, const Point<dim>& normal,
+Kinks KinkFinder<dim>::operator()(const case_file::FrictionLaw& law, const Point<dim>& normal,
                                   std::span<const Point<dim>> p, std::span<const double> threshold,
                                   double noise) const
 {
-  const auto* coulomb = std::get_if<Coulomb>(&law);
+  const auto* coulomb = std::get_if<case_file::Coulomb>(&law);
   Columns<dim> at_points(p.size(), dim + 2);
   for (std::size_t q = 0; q < p.size(); ++q)
   {
@@ -83,7 +83,7 @@ Kinks KinkFinder<dim>::operator()(const FrictionLaw& law, const Point<dim>& norm
                        at_points.col(0).minCoeff(), at_points.col(0).maxCoeff()};
   Kinks result{pressing.changes_sign(noise), pressing.hidden(), pressing.lowest};
   const bool rubs =
-      !std::holds_alternative<Frictionless>(law) && coefficients.col(dim + 1).maxCoeff() > noise;
+      !std::holds_alternative<case_file::Frictionless>(law) && coefficients.col(dim + 1).maxCoeff() > noise;
   if (!rubs) return result;
   const Range slipping = slip_range<dim>(at_points, coefficients);
   result.possible = result.possible || slipping.changes_sign(noise);
@@ -94,4 +94,4 @@ Kinks KinkFinder<dim>::operator()(const FrictionLaw& law, const Point<dim>& norm
 template class KinkFinder<2>;
 template class KinkFinder<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -9,7 +9,7 @@
 #include "tribound/fem/quadrature.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// What is known of T(u) on a piece of a contact facet.
@@ -28,10 +28,10 @@ template <int dim>
 class KinkFinder
 {
  public:
-  KinkFinder(const Quadrature<dim - 1>& rule, int degree);
+  KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree);
 
   /// Values of size `noise` or less, the round-off of P, are no sign of anything.
-  [[nodiscard]] Kinks operator()(const FrictionLaw& law, const Point<dim>& normal,
+  [[nodiscard]] Kinks operator()(const case_file::FrictionLaw& law, const Point<dim>& normal,
                                  std::span<const Point<dim>> p, std::span<const double> threshold,
                                  double noise) const;
 
@@ -43,4 +43,4 @@ class KinkFinder
   double amplification_ = 0;
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

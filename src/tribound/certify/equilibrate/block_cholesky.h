@@ -14,7 +14,7 @@
 
 #include "tribound/certify/equilibrate/small_dense.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Usage: reset, connect, order; then the blocks have the names that order() gave them: add to them, factor,
@@ -192,4 +192,4 @@ class BlockCholesky
   std::vector<std::array<double, n>> reciprocal_;  ///< of the diagonal of U
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

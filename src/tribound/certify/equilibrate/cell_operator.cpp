@@ -3,7 +3,7 @@
 #include "tribound/certify/equilibrate/too_flat.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 template <int dim, int p>
@@ -205,7 +205,7 @@ StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& fr
 }
 
 template <int dim, int p>
-DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const Material& material,
+DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const problem::Material& material,
                                        std::span<const Index> nodes, std::span<const double> u)
 {
   using S = Sizes<dim, p>;
@@ -227,7 +227,7 @@ DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const Material& 
     Tensor<dim> hat;
     for (int k = 0; k < dim; ++k)
       for (int a = 0; a < dim; ++a) hat(a, k) = scale * gradient[k][a][j];
-    const Tensor<dim> stress = sigma<dim>(material, hat * frame.inverse);
+    const Tensor<dim> stress = contact::sigma<dim>(material, hat * frame.inverse);
     for (int r = 0; r < dim; ++r)
       for (int c = 0; c < dim; ++c) result[(dim * r + c) * S::multiplier + j] = stress(r, c);
   }
@@ -243,21 +243,21 @@ template class CellOperator<3, 2>;
 template class CellOperator<3, 3>;
 template class CellOperator<3, 4>;
 
-template DiscreteStress<2, 1> discrete_stress<2, 1>(const Frame<2>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<2, 2> discrete_stress<2, 2>(const Frame<2>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<2, 3> discrete_stress<2, 3>(const Frame<2>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<2, 4> discrete_stress<2, 4>(const Frame<2>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<3, 1> discrete_stress<3, 1>(const Frame<3>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<3, 2> discrete_stress<3, 2>(const Frame<3>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<3, 3> discrete_stress<3, 3>(const Frame<3>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
-template DiscreteStress<3, 4> discrete_stress<3, 4>(const Frame<3>&, const Material&, std::span<const Index>,
-                                                    std::span<const double>);
+template DiscreteStress<2, 1> discrete_stress<2, 1>(const Frame<2>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<2, 2> discrete_stress<2, 2>(const Frame<2>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<2, 3> discrete_stress<2, 3>(const Frame<2>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<2, 4> discrete_stress<2, 4>(const Frame<2>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<3, 1> discrete_stress<3, 1>(const Frame<3>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<3, 2> discrete_stress<3, 2>(const Frame<3>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<3, 3> discrete_stress<3, 3>(const Frame<3>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
+template DiscreteStress<3, 4> discrete_stress<3, 4>(const Frame<3>&, const problem::Material&,
+                                                    std::span<const Index>, std::span<const double>);
 
-}  // namespace tribound
+}  // namespace tribound::certify

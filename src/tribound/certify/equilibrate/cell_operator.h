@@ -11,8 +11,8 @@
 ///
 /// B_L B_L^T = 2 I, so the rotations go first; then B_U B_U^T becomes A = B_U B_U^T - B_U B_L^T B_L B_U^T / 2
 /// and C becomes C_U - B_U B_L^T C_L / 2, both of size dim * dim P^{p-1}; N N^T becomes N N^T - C_L^T C_L
-/// / 2. All of these are sums of a few reference matrices (certify/equilibrate/reference.h), and for the stress itself
-/// the rotations only mean that its truncation to P^{p-1} is symmetric, up to w (p = 1).
+/// / 2. All of these are sums of a few reference matrices (certify/equilibrate/reference.h), and for the
+/// stress itself the rotations only mean that its truncation to P^{p-1} is symmetric, up to w (p = 1).
 
 #include <array>
 #include <span>
@@ -21,7 +21,7 @@
 #include "tribound/certify/equilibrate/reference.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// The rotation pairs (r, c), r < c, in the order of Lambda.
@@ -97,7 +97,8 @@ template <int dim, int p>
 
 /// sigma(u) in a cell in the orthonormal basis of P^{p-1}; nodes in the order of the space's basis.
 template <int dim, int p>
-[[nodiscard]] DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const Material& material,
+[[nodiscard]] DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame,
+                                                     const problem::Material& material,
                                                      std::span<const Index> nodes, std::span<const double> u);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -13,7 +13,7 @@
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Moments of psi_a f on U for every vertex of every cell, or nothing where f = 0.
@@ -23,10 +23,10 @@ class BodyMoments
  public:
   using Vector = DenseVector<Sizes<dim, p>::u>;
 
-  explicit BodyMoments(const NitscheForm<dim>& form)
+  explicit BodyMoments(const contact::NitscheForm<dim>& form)
   {
-    const Mesh<dim>& mesh = form.space().mesh();
-    const Quadrature<dim>& rule = form.data().cell_rule();
+    const mesh::Mesh<dim>& mesh = form.space().mesh();
+    const fem::Quadrature<dim>& rule = form.data().cell_rule();
     std::vector<Point<dim>> f(rule.size());
     std::vector<Table> tables;  // by permutation_number(frame.local), filled when first needed
     for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -58,12 +58,12 @@ class BodyMoments
   struct Table
   {
     Table() = default;
-    Table(const Quadrature<dim>& rule, const std::array<int, dim + 1>& local) : chi(m * rule.size())
+    Table(const fem::Quadrature<dim>& rule, const std::array<int, dim + 1>& local) : chi(m * rule.size())
     {
       for (int q = 0; q < rule.size(); ++q)
       {
         points.push_back(in_frame<dim>(local, rule.points[q]));
-        orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
+        fem::orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
       }
     }
     std::vector<Point<dim>> points;
@@ -88,7 +88,7 @@ class BodyMoments
 template <int dim, int p>
 struct CellSource
 {
-  const NitscheForm<dim>& form;
+  const contact::NitscheForm<dim>& form;
   std::span<const double> u;
   const BodyMoments<dim, p>& body;
   const RepeatedShapes<dim, p>& shapes;
@@ -96,7 +96,7 @@ struct CellSource
   /// The Schur complement is only made if `for_patches`.
   void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
   {
-    const LagrangeSpace<dim>& space = form.space();
+    const fem::LagrangeSpace<dim>& space = form.space();
     cell.frame = make_frame(space.mesh(), c);
     find_operator(c, cell, for_patches);
     cell.sigma = discrete_stress<dim, p>(cell.frame, form.problem().material(space.mesh().region(c)),
@@ -169,4 +169,4 @@ class CellWindow
   std::vector<int> free_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -14,7 +14,7 @@
 #include "tribound/certify/equilibrate/patch.h"
 #include "tribound/certify/equilibrate/vertex_stretches.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -27,7 +27,7 @@ template <int dim, int p>
 class Equilibration
 {
  public:
-  Equilibration(const Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<dim, p>& source,
+  Equilibration(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<dim, p>& source,
                 const VertexStretches& stretches, bool with_dis)
       : mesh_(mesh),
         data_(data),
@@ -58,7 +58,7 @@ class Equilibration
   void recover_shared_cells(int stretch);
   void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
 
-  const Mesh<dim>& mesh_;
+  const mesh::Mesh<dim>& mesh_;
   const FacetData<dim, p>& data_;
   const CellSource<dim, p>& source_;
   const VertexStretches& stretches_;
@@ -106,7 +106,7 @@ void Equilibration<dim, p>::in_parallel(Work work)
 template <int dim, int p>
 void Equilibration<dim, p>::solve_patches(int stretch)
 {
-  const Topology<dim>& topology = mesh_.topology();
+  const mesh::Topology<dim>& topology = mesh_.topology();
   const auto in_stretch = [&](Index v) { return stretches_.stretch[v] == stretch; };
   Window window(source_, data_.n_parts());
   Patch<dim, p> patch(mesh_, data_);
@@ -200,7 +200,7 @@ template <int dim, int p>
 class MeshEquilibrator : public Equilibrator<dim>::Implementation
 {
  public:
-  MeshEquilibrator(const NitscheForm<dim>& form, int n_threads)
+  MeshEquilibrator(const contact::NitscheForm<dim>& form, int n_threads)
       : form_(form),
         mesh_(form.space().mesh()),
         n_threads_(n_threads > 0 ? n_threads : omp_get_max_threads()),
@@ -226,8 +226,8 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
   }
 
  private:
-  const NitscheForm<dim>& form_;
-  const Mesh<dim>& mesh_;
+  const contact::NitscheForm<dim>& form_;
+  const mesh::Mesh<dim>& mesh_;
   int n_threads_;
   BodyMoments<dim, p> body_;
   RepeatedShapes<dim, p> shapes_;
@@ -238,7 +238,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
 }  // namespace
 
 template <int dim>
-Equilibrator<dim>::Equilibrator(const NitscheForm<dim>& form, int n_threads)
+Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_threads)
 {
   switch (form.space().degree())
   {
@@ -275,4 +275,4 @@ Stress<dim> Equilibrator<dim>::linearisation(std::span<const double> u, std::spa
 template class Equilibrator<2>;
 template class Equilibrator<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -9,7 +9,7 @@
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Rebuilds the stress of the iterates on one mesh. What they share is made once: the order in which the
@@ -23,7 +23,7 @@ class Equilibrator
 {
  public:
   /// The form must outlive the object.
-  explicit Equilibrator(const NitscheForm<dim>& form, int n_threads = 0);
+  explicit Equilibrator(const contact::NitscheForm<dim>& form, int n_threads = 0);
   ~Equilibrator();
   Equilibrator(const Equilibrator&) = delete;
   Equilibrator& operator=(const Equilibrator&) = delete;
@@ -47,10 +47,10 @@ class Equilibrator
 
 /// The stress of one iterate.
 template <int dim>
-[[nodiscard]] Stress<dim> equilibrate(const NitscheForm<dim>& form, std::span<const double> u,
+[[nodiscard]] Stress<dim> equilibrate(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                       std::span<const Point<dim>> t, int n_threads = 0, double delta = 0)
 {
   return Equilibrator<dim>(form, n_threads)(u, t, delta);
 }
 
-}  // namespace tribound
+}  // namespace tribound::certify

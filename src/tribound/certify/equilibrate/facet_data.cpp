@@ -6,7 +6,7 @@
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -24,7 +24,7 @@ struct FacetTable
 };
 
 template <int dim, int p>
-FacetTable<dim, p> make_table(const std::array<int, dim>& order, const Quadrature<dim - 1>& rule)
+FacetTable<dim, p> make_table(const std::array<int, dim>& order, const fem::Quadrature<dim - 1>& rule)
 {
   FacetTable<dim, p> table{order, {}, {}};
   for (const Point<dim - 1>& s : rule.points)
@@ -37,7 +37,7 @@ FacetTable<dim, p> make_table(const std::array<int, dim>& order, const Quadratur
     Point<dim - 1> sorted;
     for (int i = 1; i < dim; ++i) sorted[i - 1] = hat[i];
     table.hat.push_back(hat);
-    orthonormal_values<dim - 1>(p, sorted, table.basis.emplace_back());
+    fem::orthonormal_values<dim - 1>(p, sorted, table.basis.emplace_back());
   }
   return table;
 }
@@ -46,7 +46,7 @@ template <int dim, int p>
 class FacetTables
 {
  public:
-  explicit FacetTables(const Quadrature<dim - 1>& rule) : rule_(rule) {}
+  explicit FacetTables(const fem::Quadrature<dim - 1>& rule) : rule_(rule) {}
 
   /// The table of local facet `local` of the frame's cell (numbered as in Mesh::cell).
   const FacetTable<dim, p>& operator()(const Frame<dim>& frame, int local)
@@ -60,7 +60,7 @@ class FacetTables
   }
 
  private:
-  const Quadrature<dim - 1>& rule_;
+  const fem::Quadrature<dim - 1>& rule_;
   std::vector<FacetTable<dim, p>> tables_;
 };
 
@@ -79,14 +79,14 @@ void add_point(typename FacetData<dim, p>::Moments& moments, const FacetTable<di
 }  // namespace
 
 template <int dim, int p>
-FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const double> u,
+FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u,
                              std::span<const Point<dim>> t, double delta)
     : number_(form.space().mesh().topology().facets.size(), -1),
       on_contact_(form.space().mesh().n_vertices(), 0),
       n_parts_(delta > 0 ? 3 : 2)
 {
-  const Mesh<dim>& mesh = form.space().mesh();
-  const Quadrature<dim - 1>& rule = form.facet_rule();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   FacetTables<dim, p> tables(rule);
   const std::vector<Point<dim>> t_u = form.traction(u);
   const std::vector<Point<dim>> t_delta = delta > 0 ? form.traction(u, delta) : t_u;
@@ -94,8 +94,8 @@ FacetData<dim, p>::FacetData(const NitscheForm<dim>& form, std::span<const doubl
   std::vector<Point<dim>> load(rule.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
-    const BoundaryFacet& facet = mesh.boundary()[number];
-    const BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     Condition& condition = conditions_.emplace_back();
     number_[mesh.topology().cell_facets[facet.cell][facet.local]] = static_cast<int>(conditions_.size()) - 1;
     for (int c = 0; c < dim; ++c) condition.fixed[c] = boundary.fixes(c);
@@ -146,4 +146,4 @@ template class FacetData<3, 2>;
 template class FacetData<3, 3>;
 template class FacetData<3, 4>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -11,7 +11,7 @@
 #include "tribound/certify/equilibrate/reference.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Conditions and tractions on the boundary facets. Moments (psi_a t, theta_i)_F are taken with the reference
@@ -27,7 +27,7 @@ class FacetData
 
   /// u is the Newton iterate and t its running traction t^k at the contact points of the form; T_delta is
   /// what Newton's method linearises.
-  FacetData(const NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
+  FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
             double delta);
 
   [[nodiscard]] bool is_boundary(Index facet) const { return number_[facet] >= 0; }
@@ -77,4 +77,4 @@ class FacetData
   int n_parts_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

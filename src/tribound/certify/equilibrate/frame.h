@@ -12,13 +12,13 @@
 #include "tribound/base/types.h"
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 template <int dim>
 struct Frame
 {
-  Cell<dim> vertices;                     ///< ascending
+  mesh::Cell<dim> vertices;               ///< ascending
   std::array<int, dim + 1> local;         ///< local[i]: position of vertices[i] in Mesh::cell
   Point<dim> origin;                      ///< of vertices[0]
   Tensor<dim> jacobian;                   ///< x = origin + J xhat
@@ -66,7 +66,7 @@ template <int dim>
 }
 
 template <int dim>
-[[nodiscard]] Cell<dim> sorted_vertices(Cell<dim> cell)
+[[nodiscard]] mesh::Cell<dim> sorted_vertices(mesh::Cell<dim> cell)
 {
   std::ranges::sort(cell);
   return cell;
@@ -74,7 +74,7 @@ template <int dim>
 
 /// J with x = x_0 + J xhat for the cell with these vertices.
 template <int dim>
-[[nodiscard]] Tensor<dim> jacobian_of(const Mesh<dim>& mesh, const Cell<dim>& vertices)
+[[nodiscard]] Tensor<dim> jacobian_of(const mesh::Mesh<dim>& mesh, const mesh::Cell<dim>& vertices)
 {
   Tensor<dim> jacobian;
   for (int j = 0; j < dim; ++j) jacobian.col(j) = mesh.vertex(vertices[j + 1]) - mesh.vertex(vertices[0]);
@@ -82,10 +82,10 @@ template <int dim>
 }
 
 template <int dim>
-[[nodiscard]] Frame<dim> make_frame(const Mesh<dim>& mesh, Index c)
+[[nodiscard]] Frame<dim> make_frame(const mesh::Mesh<dim>& mesh, Index c)
 {
   Frame<dim> frame;
-  const Cell<dim>& cell = mesh.cell(c);
+  const mesh::Cell<dim>& cell = mesh.cell(c);
   for (int i = 0; i <= dim; ++i) frame.local[i] = i;
   std::ranges::sort(frame.local, {}, [&](int i) { return cell[i]; });
   for (int i = 0; i <= dim; ++i) frame.vertices[i] = cell[frame.local[i]];
@@ -104,4 +104,4 @@ template <int dim>
   return frame;
 }
 
-}  // namespace tribound
+}  // namespace tribound::certify

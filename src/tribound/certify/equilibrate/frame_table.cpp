@@ -6,12 +6,12 @@
 
 #include "tribound/fem/polynomials.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 template <int dim>
 FrameTable<dim>::FrameTable(int degree, std::span<const Point<dim>> points)
-    : n_points_(static_cast<int>(points.size())), n_(polynomial_dimension(dim, degree))
+    : n_points_(static_cast<int>(points.size())), n_(fem::polynomial_dimension(dim, degree))
 {
   std::array<int, dim + 1> local;
   for (int i = 0; i <= dim; ++i) local[i] = i;
@@ -21,7 +21,7 @@ FrameTable<dim>::FrameTable(int degree, std::span<const Point<dim>> points)
     std::vector<double>& values = basis_.emplace_back(static_cast<std::size_t>(n_) * n_points_);
     for (int q = 0; q < n_points_; ++q)
     {
-      orthonormal_values<dim>(degree, in_frame<dim>(local, points[q]), at_point);
+      fem::orthonormal_values<dim>(degree, in_frame<dim>(local, points[q]), at_point);
       for (int j = 0; j < n_; ++j) values[j * n_points_ + q] = at_point[j];
     }
   } while (std::next_permutation(local.begin(), local.end()));
@@ -50,4 +50,4 @@ void FrameTable<dim>::evaluate(const Frame<dim>& frame, std::span<const double> 
 template class FrameTable<2>;
 template class FrameTable<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -10,7 +10,7 @@
 #include "tribound/certify/equilibrate/frame.h"
 #include "tribound/certify/equilibrate/stress.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Values of the orthonormal basis of P^degree(T), up to the factor 1/sqrt(det J).
@@ -33,4 +33,4 @@ class FrameTable
   std::vector<std::vector<double>> basis_;  ///< [permutation_number(frame.local)][j * n_points + q]
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

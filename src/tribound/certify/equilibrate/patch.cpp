@@ -5,7 +5,7 @@
 
 #include "tribound/certify/equilibrate/too_flat.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 template <int dim, int p>
@@ -267,4 +267,4 @@ template class Patch<3, 2>;
 template class Patch<3, 3>;
 template class Patch<3, 4>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

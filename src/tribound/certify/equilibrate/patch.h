@@ -12,7 +12,7 @@
 #include "tribound/certify/equilibrate/facet_data.h"
 #include "tribound/certify/equilibrate/prepared_cell.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// The problems of a vertex: discretisation, linearisation and, for delta > 0, regularisation, numbers 0, 1
@@ -23,7 +23,7 @@ class Patch
  public:
   using S = Sizes<dim, p>;
 
-  Patch(const Mesh<dim>& mesh, const FacetData<dim, p>& data) : mesh_(mesh), data_(data) {}
+  Patch(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data) : mesh_(mesh), data_(data) {}
 
   /// Starts the patch of a vertex.
   void begin(Index vertex);
@@ -90,7 +90,7 @@ class Patch
   [[nodiscard]] double traction_work(int problem, int motion) const;
   [[nodiscard]] const typename FacetData<dim, p>::FacetVector* traction(Index facet, int problem) const;
 
-  const Mesh<dim>& mesh_;
+  const mesh::Mesh<dim>& mesh_;
   const FacetData<dim, p>& data_;
   Index vertex_ = 0;
   int n_problems_ = 0;  ///< 1 off Gamma_C: there the data of lin and reg vanish
@@ -107,4 +107,4 @@ class Patch
   std::array<std::vector<FacetVector>, max_problems> x_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

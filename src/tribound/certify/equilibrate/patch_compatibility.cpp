@@ -3,7 +3,7 @@
 
 #include "tribound/certify/equilibrate/patch.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 template <int dim, int p>
@@ -166,4 +166,4 @@ template void Patch<3, 2>::make_compatible();
 template void Patch<3, 3>::make_compatible();
 template void Patch<3, 4>::make_compatible();
 
-}  // namespace tribound
+}  // namespace tribound::certify

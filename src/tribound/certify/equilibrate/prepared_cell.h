@@ -11,7 +11,7 @@
 #include "tribound/certify/equilibrate/repeated_shapes.h"
 #include "tribound/certify/equilibrate/rigid.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 template <int dim, int p>
@@ -104,4 +104,4 @@ void add_moments(DenseVector<Sizes<dim, p>::u>& moments, const PreparedCell<dim,
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::certify

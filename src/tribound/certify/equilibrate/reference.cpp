@@ -6,7 +6,7 @@
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -17,13 +17,13 @@ template <int dim, int p>
 void integrate_cell(Reference<dim, p>& r)
 {
   using S = Sizes<dim, p>;
-  const Quadrature<dim> rule = quadrature<dim>(2 * p);
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * p);
   std::vector<double> values(S::stress);
   std::vector<Point<dim>> gradients(S::stress);
   for (int q = 0; q < rule.size(); ++q)
   {
-    orthonormal_gradients<dim>(p, rule.points[q], values, gradients);
-    const auto lambda = barycentric<dim>(rule.points[q]);
+    fem::orthonormal_gradients<dim>(p, rule.points[q], values, gradients);
+    const auto lambda = fem::barycentric<dim>(rule.points[q]);
     for (int i = 0; i < S::multiplier; ++i)
     {
       const double weight = rule.weights[q] * values[i];
@@ -43,20 +43,20 @@ template <int dim, int p>
 void integrate_facets(Reference<dim, p>& r)
 {
   using S = Sizes<dim, p>;
-  const Quadrature<dim - 1> rule = quadrature<dim - 1>(2 * p);
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * p);
   std::vector<double> values(S::stress);
   std::vector<double> theta(S::facet);
   for (int q = 0; q < rule.size(); ++q)
   {
-    orthonormal_values<dim - 1>(p, rule.points[q], theta);
-    const auto on_facet = barycentric<dim - 1>(rule.points[q]);
+    fem::orthonormal_values<dim - 1>(p, rule.points[q], theta);
+    const auto on_facet = fem::barycentric<dim - 1>(rule.points[q]);
     for (int i = 0; i < S::facet; ++i)
       for (int v = 0; v < dim; ++v) r.facet_hat_moment(i, v) += rule.weights[q] * theta[i] * on_facet[v];
     for (int f = 0; f <= dim; ++f)
     {
-      const Point<dim> x = facet_to_cell<dim>(f, rule.points[q]);
-      orthonormal_values<dim>(p, x, values);
-      auto lambda = barycentric<dim>(x);
+      const Point<dim> x = mesh::facet_to_cell<dim>(f, rule.points[q]);
+      fem::orthonormal_values<dim>(p, x, values);
+      auto lambda = fem::barycentric<dim>(x);
       lambda[f] = 0;  // exactly
       for (int i = 0; i < S::facet; ++i)
       {
@@ -74,7 +74,7 @@ template <int dim, int p>
 void differentiate_nodal_basis(Reference<dim, p>& r)
 {
   using S = Sizes<dim, p>;
-  const LagrangeBasis<dim> basis(p);
+  const fem::LagrangeBasis<dim> basis(p);
   const int n = basis.n_nodes();
   std::array<int, dim + 1> local;
   for (int i = 0; i <= dim; ++i) local[i] = i;
@@ -86,7 +86,7 @@ void differentiate_nodal_basis(Reference<dim, p>& r)
     {
       Point<dim> x;
       for (int j = 0; j < dim; ++j) x[j] = static_cast<double>(basis.node(i)[local[j + 1]]) / p;
-      orthonormal_values<dim>(p, x, values);
+      fem::orthonormal_values<dim>(p, x, values);
       for (int j = 0; j < n; ++j) vandermonde(i, j) = values[j];
     }
     const Eigen::MatrixXd coefficients = vandermonde.inverse();  // of nodal function j in phi: column j
@@ -155,4 +155,4 @@ template const Reference<3, 2>& reference<3, 2>();
 template const Reference<3, 3>& reference<3, 3>();
 template const Reference<3, 4>& reference<3, 4>();
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -13,23 +13,23 @@
 #include "tribound/fem/lagrange.h"
 #include "tribound/fem/polynomials.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Sizes of the Arnold-Falk-Winther spaces of degree p on one cell.
 template <int dim, int p>
 struct Sizes
 {
-  static constexpr int stress = polynomial_dimension(dim, p);  ///< dim P^p(T): one entry of sigma
+  static constexpr int stress = fem::polynomial_dimension(dim, p);  ///< dim P^p(T): one entry of sigma
   static constexpr int multiplier =
-      polynomial_dimension(dim, p - 1);                           ///< dim P^{p-1}(T): one entry of U, Lambda
-  static constexpr int facet = polynomial_dimension(dim - 1, p);  ///< dim P^p(F)
-  static constexpr int pairs = dim * (dim - 1) / 2;               ///< entries of a skew tensor
-  static constexpr int u = dim * multiplier;                      ///< dim U
-  static constexpr int rotation = pairs * multiplier;             ///< dim Lambda
-  static constexpr int block = dim * facet;                       ///< multipliers of one facet
-  static constexpr int rigid = dim + pairs;                       ///< rigid motions
-  static constexpr int affine = std::min(multiplier, dim + 1);    ///< functions chi of degree <= 1
+      fem::polynomial_dimension(dim, p - 1);  ///< dim P^{p-1}(T): one entry of U, Lambda
+  static constexpr int facet = fem::polynomial_dimension(dim - 1, p);  ///< dim P^p(F)
+  static constexpr int pairs = dim * (dim - 1) / 2;                    ///< entries of a skew tensor
+  static constexpr int u = dim * multiplier;                           ///< dim U
+  static constexpr int rotation = pairs * multiplier;                  ///< dim Lambda
+  static constexpr int block = dim * facet;                            ///< multipliers of one facet
+  static constexpr int rigid = dim + pairs;                            ///< rigid motions
+  static constexpr int affine = std::min(multiplier, dim + 1);         ///< functions chi of degree <= 1
 };
 
 /// Reference matrices. phi: orthonormal basis of P^p, chi: its part of degree p-1 (both on the cell), theta:
@@ -70,4 +70,4 @@ struct Reference
 template <int dim, int p>
 [[nodiscard]] const Reference<dim, p>& reference();
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -13,7 +13,7 @@
 #include "tribound/certify/equilibrate/cell_operator.h"
 #include "tribound/certify/equilibrate/too_flat.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// The outer facet o of a patch's cell eliminated: S(o, o) = U(o, o)^T U(o, o), U(o, f) = U(o, o)^{-T} S(o,
@@ -82,7 +82,7 @@ template <int dim, int p>
 class RepeatedShapes
 {
  public:
-  explicit RepeatedShapes(const Mesh<dim>& mesh) : number_(mesh.n_cells(), -1)
+  explicit RepeatedShapes(const mesh::Mesh<dim>& mesh) : number_(mesh.n_cells(), -1)
   {
     std::vector<Index> first;  // cell of each shape
     std::vector<int> count;
@@ -112,7 +112,7 @@ class RepeatedShapes
 
   /// Numbers the shapes by their first cell; the same on every run. Shapes are equal if the rounding of the
   /// coordinates explains the difference, and if the identities of the stress cannot feel it.
-  void classify(const Mesh<dim>& mesh, std::vector<Index>& first, std::vector<int>& count)
+  void classify(const mesh::Mesh<dim>& mesh, std::vector<Index>& first, std::vector<int>& count)
   {
     double largest = 0;
     for (const Point<dim>& x : mesh.vertices()) largest = std::max(largest, x.cwiseAbs().maxCoeff());
@@ -152,4 +152,4 @@ class RepeatedShapes
   std::vector<std::unique_ptr<RepeatedShape<dim, p>>> shapes_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -78,4 +78,4 @@ RigidMotions<dim>::RigidMotions(const Point<dim>& centre, double size,
 template class RigidMotions<2>;
 template class RigidMotions<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

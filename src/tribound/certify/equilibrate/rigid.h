@@ -9,7 +9,7 @@
 #include "tribound/base/types.h"
 #include "tribound/certify/equilibrate/cell_operator.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// A Dirichlet facet at the vertex: its vertices and the components fixed there.
@@ -58,4 +58,4 @@ class RigidMotions
   std::array<RigidField<dim>, n_all> motions_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// Doubles of a vector; the compiler splits or joins them where the processor's registers have another width.
@@ -236,4 +236,4 @@ void subtract_times(double* y, const double* a, int stride, const double* x)
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -9,7 +9,7 @@
 #include "tribound/certify/equilibrate/frame.h"
 #include "tribound/mesh/describe.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// The longest edge over the smallest height.
@@ -36,7 +36,7 @@ template <int dim>
           ? fmt::format("a cell there is {:.2g} times as long as high: mesh again, with rounder cells",
                         slenderness)
           : std::string("numbers there differ by too many powers of ten: check units, sizes and materials");
-  return SolveError(fmt::format("there is no equilibrated stress at {}: {}", describe(place), why));
+  return SolveError(fmt::format("there is no equilibrated stress at {}: {}", mesh::describe(place), why));
 }
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -13,7 +13,7 @@ namespace
 /// The vertices along a space-filling curve (Morton order): the cells that a stretch of it needs at a time
 /// are few.
 template <int dim>
-std::vector<Index> by_locality(const Mesh<dim>& mesh, std::span<const Index> vertices, int n_threads)
+std::vector<Index> by_locality(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices, int n_threads)
 {
   Point<dim> lower = mesh.vertex(0);
   Point<dim> upper = mesh.vertex(0);
@@ -44,7 +44,7 @@ std::vector<Index> by_locality(const Mesh<dim>& mesh, std::span<const Index> ver
 }  // namespace
 
 template <int dim>
-VertexStretches stretches_of(const Mesh<dim>& mesh, std::span<const Index> vertices, int n)
+VertexStretches stretches_of(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices, int n)
 {
   VertexStretches result;
   result.order = by_locality(mesh, vertices, n);
@@ -70,7 +70,7 @@ VertexStretches stretches_of(const Mesh<dim>& mesh, std::span<const Index> verti
   return result;
 }
 
-template VertexStretches stretches_of(const Mesh<2>&, std::span<const Index>, int);
-template VertexStretches stretches_of(const Mesh<3>&, std::span<const Index>, int);
+template VertexStretches stretches_of(const mesh::Mesh<2>&, std::span<const Index>, int);
+template VertexStretches stretches_of(const mesh::Mesh<3>&, std::span<const Index>, int);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -8,7 +8,7 @@
 
 #include "tribound/mesh/mesh.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// The vertices whose patches are solved, in stretches, one for each thread.
@@ -25,6 +25,7 @@ struct VertexStretches
 
 /// Divides the vertices, sorted along a space-filling curve, into `n` stretches of equal length.
 template <int dim>
-[[nodiscard]] VertexStretches stretches_of(const Mesh<dim>& mesh, std::span<const Index> vertices, int n);
+[[nodiscard]] VertexStretches stretches_of(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices,
+                                           int n);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -6,7 +6,7 @@
 #include "tribound/fem/nested.h"
 #include "tribound/fem/polynomials.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -17,10 +17,10 @@ constexpr int contact_cuts = 4;
 
 /// The rule of the given degree on each of the cuts^k equal parts of the reference simplex, k = 1, 2.
 template <int k>
-Quadrature<k> composite_rule(int degree, int cuts)
+fem::Quadrature<k> composite_rule(int degree, int cuts)
 {
-  const Quadrature<k> rule = quadrature<k>(degree);
-  Quadrature<k> composite;
+  const fem::Quadrature<k> rule = fem::quadrature<k>(degree);
+  fem::Quadrature<k> composite;
   const auto add = [&](const Point<k>& corner, double size)  // size < 0: turned by 180 degrees
   {
     for (int q = 0; q < rule.size(); ++q)
@@ -44,10 +44,10 @@ Quadrature<k> composite_rule(int degree, int cuts)
 
 /// (d_a phi_i, d_b phi_j) on the reference cell: [i * n + j].
 template <int dim>
-std::vector<Tensor<dim>> reference_gradients(const LagrangeBasis<dim>& basis)
+std::vector<Tensor<dim>> reference_gradients(const fem::LagrangeBasis<dim>& basis)
 {
-  const Quadrature<dim> rule = quadrature<dim>(2 * basis.degree() - 2);
-  const Tabulation<dim> table = basis.tabulate(rule.points);
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * basis.degree() - 2);
+  const fem::Tabulation<dim> table = basis.tabulate(rule.points);
   const int n = basis.n_nodes();
   std::vector<Tensor<dim>> result(static_cast<std::size_t>(n) * n, Tensor<dim>::Zero());
   for (int q = 0; q < rule.size(); ++q)
@@ -60,10 +60,10 @@ std::vector<Tensor<dim>> reference_gradients(const LagrangeBasis<dim>& basis)
 
 /// (phi_j, phi_i) on the reference facet, for each local facet: [i * n + j].
 template <int dim>
-std::array<std::vector<double>, dim + 1> reference_facet_masses(const LagrangeBasis<dim>& basis)
+std::array<std::vector<double>, dim + 1> reference_facet_masses(const fem::LagrangeBasis<dim>& basis)
 {
-  const Quadrature<dim - 1> rule = quadrature<dim - 1>(2 * basis.degree());
-  const FacetTabulation<dim> table = tabulate_on_facets<dim>(basis, rule.points);
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * basis.degree());
+  const fem::FacetTabulation<dim> table = fem::tabulate_on_facets<dim>(basis, rule.points);
   const int n = basis.n_nodes();
   std::array<std::vector<double>, dim + 1> masses;
   for (int facet = 0; facet <= dim; ++facet)
@@ -81,7 +81,7 @@ std::array<std::vector<double>, dim + 1> reference_facet_masses(const LagrangeBa
 
 /// Adds the entries of a cell that lie between free nodes, and all diagonal ones.
 void add_block(std::span<const Index> nodes, const std::vector<char>& fixed, std::span<const double> block,
-               Triplets& entries)
+               contact::Triplets& entries)
 {
   const std::size_t n = nodes.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -92,9 +92,9 @@ void add_block(std::span<const Index> nodes, const std::vector<char>& fixed, std
 }  // namespace
 
 template <int dim>
-DualNorm<dim>::DualNorm(const NitscheForm<dim>& form, const RicherSpace& richer)
+DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace& richer)
     : form_(form),
-      refined_(refine_uniformly(form.space().mesh(), richer.refinements)),
+      refined_(mesh::refine_uniformly(form.space().mesh(), richer.refinements)),
       space_(refined_.mesh, richer.degree)
 {
   assert(richer.degree >= form.space().degree());
@@ -106,21 +106,21 @@ DualNorm<dim>::DualNorm(const NitscheForm<dim>& form, const RicherSpace& richer)
 template <int dim>
 void DualNorm<dim>::find_contact_parts()
 {
-  const Mesh<dim>& mesh = form_.space().mesh();
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
   std::vector<std::array<int, dim + 1>> whole(mesh.n_cells());  // number of the contact facet, or -1
   for (auto& facets : whole) facets.fill(-1);
   for (std::size_t k = 0; k < form_.contact_facets().size(); ++k)
   {
-    const BoundaryFacet& facet = form_.contact_facets()[k].facet;
+    const mesh::BoundaryFacet& facet = form_.contact_facets()[k].facet;
     whole[facet.cell][facet.local] = static_cast<int>(k);
   }
-  for (const BoundaryFacet& facet : refined_.mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : refined_.mesh.boundary())
   {
     if (!form_.problem().boundary(facet.tag).contact) continue;
-    const Point<dim> centre = cell_map(
-        refined_.mesh, facet.cell)(facet_to_cell<dim>(facet.local, Point<dim - 1>::Constant(1.0 / dim)));
+    const Point<dim> centre = mesh::cell_map(refined_.mesh, facet.cell)(
+        mesh::facet_to_cell<dim>(facet.local, Point<dim - 1>::Constant(1.0 / dim)));
     const Index ancestor = refined_.ancestor(facet.cell);
-    const auto lambda = barycentric<dim>(reference_point(cell_map(mesh, ancestor), centre));
+    const auto lambda = fem::barycentric<dim>(fem::reference_point(mesh::cell_map(mesh, ancestor), centre));
     const auto local = std::ranges::min_element(lambda) - lambda.begin();
     assert(whole[ancestor][local] >= 0);
     contact_parts_.push_back({facet, whole[ancestor][local]});
@@ -130,7 +130,7 @@ void DualNorm<dim>::find_contact_parts()
 template <int dim>
 void DualNorm<dim>::find_operators()
 {
-  const Constraints constraints = dirichlet(form_.problem(), space_);
+  const fem::Constraints constraints = fem::dirichlet(form_.problem(), space_);
   for (int a = 0; a < dim; ++a)
   {
     std::vector<char> fixed(space_.n_nodes());
@@ -141,28 +141,29 @@ void DualNorm<dim>::find_operators()
     else
       operators_.push_back({std::move(fixed), {a}, nullptr, nullptr});
   }
-  const SolverConfig direct{.method = LinearMethod::direct, .package = DirectPackage::mumps};
+  const case_file::SolverConfig direct{.method = case_file::LinearMethod::direct,
+                                       .package = case_file::DirectPackage::mumps};
   for (Operator& op : operators_)
   {
-    op.matrix = std::make_unique<SparseMatrix>(matrix(op.fixed));
-    op.solver =
-        std::make_unique<LinearSolver>(direct, std::span<const Point<dim>>(), MatrixKind::positive_definite);
+    op.matrix = std::make_unique<algebra::SparseMatrix>(matrix(op.fixed));
+    op.solver = std::make_unique<algebra::LinearSolver>(direct, std::span<const Point<dim>>(),
+                                                        algebra::MatrixKind::positive_definite);
   }
 }
 
 /// (grad phi_j, grad phi_i) + sum_{F in C} (1/h_F) (phi_j, phi_i)_F between free nodes; the diagonal
 /// everywhere.
 template <int dim>
-SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
+algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
 {
   const int n = space_.basis().n_nodes();
-  Triplets entries;
+  contact::Triplets entries;
   entries.reserve(static_cast<std::size_t>(space_.mesh().n_cells()) * n * n);
   std::vector<double> block(static_cast<std::size_t>(n) * n);
   const std::vector<Tensor<dim>> reference = reference_gradients(space_.basis());
   for (Index c = 0; c < space_.mesh().n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(space_.mesh(), c);
+    const mesh::CellMap<dim> map = mesh::cell_map(space_.mesh(), c);
     const Tensor<dim> metric = map.det * (map.inverse_transpose.transpose() * map.inverse_transpose);
     for (std::size_t k = 0; k < block.size(); ++k) block[k] = metric.cwiseProduct(reference[k]).sum();
     add_block(space_.cell_nodes(c), fixed, block, entries);
@@ -171,7 +172,7 @@ SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
   const auto masses = reference_facet_masses(space_.basis());
   for (const auto& [facet, whole] : contact_parts_)
   {
-    const double area = facet_geometry(space_.mesh(), facet.cell, facet.local).measure * (dim - 1);
+    const double area = mesh::facet_geometry(space_.mesh(), facet.cell, facet.local).measure * (dim - 1);
     const double h_F = form_.contact_facets()[whole].geometry.diameter;
     for (std::size_t k = 0; k < block.size(); ++k) block[k] = area / h_F * masses[facet.local][k];
     add_block(space_.cell_nodes(facet.cell), fixed, block, entries);
@@ -183,26 +184,26 @@ SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
 template <int dim>
 void DualNorm<dim>::add_contact_load(std::span<const double> u, std::span<double> vector) const
 {
-  const Quadrature<dim - 1> rule =
-      composite_rule<dim - 1>(data_quadrature_degree(space_.degree()), contact_cuts);
-  const FacetTabulation<dim> values = tabulate_on_facets<dim>(space_.basis(), rule.points);
-  FacetTabulation<dim> table;  // the form's basis at the same points
+  const fem::Quadrature<dim - 1> rule =
+      composite_rule<dim - 1>(fem::data_quadrature_degree(space_.degree()), contact_cuts);
+  const fem::FacetTabulation<dim> values = fem::tabulate_on_facets<dim>(space_.basis(), rule.points);
+  fem::FacetTabulation<dim> table;  // the form's basis at the same points
   for (const auto& [facet, whole] : contact_parts_)
   {
-    const BoundaryFacet& ancestor = form_.contact_facets()[whole].facet;
-    const CellMap<dim> map = cell_map(refined_.mesh, facet.cell);
-    const CellMap<dim> ancestor_map = cell_map(form_.space().mesh(), ancestor.cell);
+    const mesh::BoundaryFacet& ancestor = form_.contact_facets()[whole].facet;
+    const mesh::CellMap<dim> map = mesh::cell_map(refined_.mesh, facet.cell);
+    const mesh::CellMap<dim> ancestor_map = mesh::cell_map(form_.space().mesh(), ancestor.cell);
     std::vector<Point<dim>> points;
     table.points.clear();
     for (const Point<dim - 1>& s : rule.points)
     {
-      points.push_back(reference_point(ancestor_map, map(facet_to_cell<dim>(facet.local, s))));
-      table.points.push_back(cell_to_facet<dim>(ancestor.local, points.back()));
+      points.push_back(fem::reference_point(ancestor_map, map(mesh::facet_to_cell<dim>(facet.local, s))));
+      table.points.push_back(mesh::cell_to_facet<dim>(ancestor.local, points.back()));
     }
     table.on_facet[ancestor.local] = form_.space().basis().tabulate(points);
-    const std::vector<ContactState<dim>> states = form_.contact_states(u, whole, table);
+    const std::vector<contact::ContactState<dim>> states = form_.contact_states(u, whole, table);
 
-    const double area = facet_geometry(refined_.mesh, facet.cell, facet.local).measure * (dim - 1);
+    const double area = mesh::facet_geometry(refined_.mesh, facet.cell, facet.local).measure * (dim - 1);
     const std::span<const Index> nodes = space_.cell_nodes(facet.cell);
     for (int q = 0; q < rule.size(); ++q)
     {
@@ -219,9 +220,9 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
 {
   constexpr double share = 1e-5;  // of the effect of the data: well below any bound
   if (load_.empty())
-    load_ = assemble_load(
-        DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(), form_.gamma0(), {.share = share}),
-        space_);
+    load_ = contact::assemble_load(contact::DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(),
+                                                              form_.gamma0(), {.share = share}),
+                                   space_);
   return residual(u, load_);
 }
 
@@ -229,8 +230,8 @@ template <int dim>
 std::vector<double> DualNorm<dim>::residual(std::span<const double> u, std::span<const double> load) const
 {
   std::vector<double> r(load.begin(), load.end());
-  const std::vector<double> internal = apply_stiffness<dim>(
-      form_.problem(), space_, nested_interpolant<dim>(form_.space(), u, refined_, space_));
+  const std::vector<double> internal = contact::apply_stiffness<dim>(
+      form_.problem(), space_, fem::nested_interpolant<dim>(form_.space(), u, refined_, space_));
   for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal[i];
   add_contact_load(u, r);
   return r;
@@ -270,4 +271,4 @@ double DualNorm<dim>::of(std::span<const double> r)
 template class DualNorm<2>;
 template class DualNorm<3>;
 
-}  // namespace tribound
+}  // namespace tribound::certify

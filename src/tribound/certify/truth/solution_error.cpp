@@ -8,7 +8,7 @@
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/overlay.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 namespace
@@ -19,34 +19,36 @@ template <int dim>
 class CellGradients
 {
  public:
-  CellGradients(const LagrangeSpace<dim>& space, std::span<const double> u, const Quadrature<dim>& rule)
+  CellGradients(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+                const fem::Quadrature<dim>& rule)
       : space_(&space), u_(u), on_cell_(space.basis().tabulate(rule.points)), values_(rule.size())
   {
   }
 
   /// In the cell with the map `map`, at `points`, those of the rule on the cell `inside` it. Valid until the
   /// next call.
-  std::span<const Tensor<dim>> at(Index cell, const CellMap<dim>& map, const CellMap<dim>& inside,
+  std::span<const Tensor<dim>> at(Index cell, const mesh::CellMap<dim>& map, const mesh::CellMap<dim>& inside,
                                   std::span<const Point<dim>> points)
   {
     if (map.origin == inside.origin && map.jacobian == inside.jacobian) return evaluate(cell, map, on_cell_);
     in_cell_.clear();
-    for (const Point<dim>& x : points) in_cell_.push_back(reference_point(map, x));
+    for (const Point<dim>& x : points) in_cell_.push_back(fem::reference_point(map, x));
     return evaluate(cell, map, space_->basis().tabulate(in_cell_));
   }
 
  private:
-  std::span<const Tensor<dim>> evaluate(Index cell, const CellMap<dim>& map, const Tabulation<dim>& table)
+  std::span<const Tensor<dim>> evaluate(Index cell, const mesh::CellMap<dim>& map,
+                                        const fem::Tabulation<dim>& table)
   {
     for (int q = 0; q < table.n_points; ++q)
-      values_[q] =
-          gradient_at<dim>(space_->cell_nodes(cell), u_, table.gradients_at(q), map.inverse_transpose);
+      values_[q] = contact::gradient_at<dim>(space_->cell_nodes(cell), u_, table.gradients_at(q),
+                                             map.inverse_transpose);
     return values_;
   }
 
-  const LagrangeSpace<dim>* space_;
+  const fem::LagrangeSpace<dim>* space_;
   std::span<const double> u_;
-  Tabulation<dim> on_cell_;
+  fem::Tabulation<dim> on_cell_;
   std::vector<Point<dim>> in_cell_;
   std::vector<Tensor<dim>> values_;
 };
@@ -66,31 +68,32 @@ double take_roots(std::vector<double>& squares)
 }  // namespace
 
 template <int dim>
-LocalError solution_error(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                          std::span<const double> u, const LagrangeSpace<dim>& reference_space,
+LocalError solution_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                          std::span<const double> u, const fem::LagrangeSpace<dim>& reference_space,
                           std::span<const double> u_ref)
 {
-  const Quadrature<dim> rule = quadrature<dim>(2 * std::max(space.degree(), reference_space.degree()) - 2);
+  const fem::Quadrature<dim> rule =
+      fem::quadrature<dim>(2 * std::max(space.degree(), reference_space.degree()) - 2);
   CellGradients<dim> gradients(space, u, rule);
   CellGradients<dim> reference_gradients(reference_space, u_ref, rule);
   LocalError error;
   error.energy.resize(space.mesh().n_cells(), 0.0);
   error.stress.resize(space.mesh().n_cells(), 0.0);
   std::vector<Point<dim>> points(rule.size());
-  for (const auto& [cell, reference_cell] : overlay(space.mesh(), reference_space.mesh()))
+  for (const auto& [cell, reference_cell] : mesh::overlay(space.mesh(), reference_space.mesh()))
   {
-    const CellMap<dim> own = cell_map(space.mesh(), cell);
-    const CellMap<dim> reference = cell_map(reference_space.mesh(), reference_cell);
-    const CellMap<dim>& smaller = own.det < reference.det ? own : reference;
+    const mesh::CellMap<dim> own = mesh::cell_map(space.mesh(), cell);
+    const mesh::CellMap<dim> reference = mesh::cell_map(reference_space.mesh(), reference_cell);
+    const mesh::CellMap<dim>& smaller = own.det < reference.det ? own : reference;
     std::ranges::transform(rule.points, points.begin(), smaller);
     const std::span<const Tensor<dim>> values = gradients.at(cell, own, smaller, points);
     const std::span<const Tensor<dim>> expected =
         reference_gradients.at(reference_cell, reference, smaller, points);
-    const Material& material = problem.material(space.mesh().region(cell));
+    const problem::Material& material = problem.material(space.mesh().region(cell));
     for (int q = 0; q < rule.size(); ++q)
     {
       const Tensor<dim> difference = values[q] - expected[q];
-      const Tensor<dim> stress = sigma<dim>(material, difference);
+      const Tensor<dim> stress = contact::sigma<dim>(material, difference);
       error.energy[cell] += rule.weights[q] * smaller.det * stress.cwiseProduct(difference).sum();
       error.stress[cell] += rule.weights[q] * smaller.det * stress.squaredNorm();
     }
@@ -100,9 +103,11 @@ LocalError solution_error(const Problem<dim>& problem, const LagrangeSpace<dim>&
   return error;
 }
 
-template LocalError solution_error(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>,
-                                   const LagrangeSpace<2>&, std::span<const double>);
-template LocalError solution_error(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>,
-                                   const LagrangeSpace<3>&, std::span<const double>);
+template LocalError solution_error(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                   std::span<const double>, const fem::LagrangeSpace<2>&,
+                                   std::span<const double>);
+template LocalError solution_error(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                   std::span<const double>, const fem::LagrangeSpace<3>&,
+                                   std::span<const double>);
 
-}  // namespace tribound
+}  // namespace tribound::certify

@@ -10,7 +10,7 @@
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// The distance of u from a reference, and its share of every cell of the mesh of u: the squares of the
@@ -25,8 +25,9 @@ struct LocalError
 /// Integrated exactly over the common refinement of the meshes, which come from one mesh by bisect(). Either
 /// degree may be the higher one. Throws std::invalid_argument for other meshes.
 template <int dim>
-[[nodiscard]] LocalError solution_error(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                                        std::span<const double> u, const LagrangeSpace<dim>& reference_space,
+[[nodiscard]] LocalError solution_error(const problem::Problem<dim>& problem,
+                                        const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+                                        const fem::LagrangeSpace<dim>& reference_space,
                                         std::span<const double> u_ref);
 
-}  // namespace tribound
+}  // namespace tribound::certify

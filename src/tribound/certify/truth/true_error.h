@@ -18,7 +18,7 @@
 #include "tribound/mesh/refine.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::certify
 {
 
 /// How rich a space the truth is looked for in.
@@ -30,7 +30,7 @@ struct RicherSpace
 
 /// Degrees of freedom of the vector-valued space on the mesh refined so, fixed ones included.
 template <int dim>
-[[nodiscard]] double count_dofs(const Mesh<dim>& mesh, const RicherSpace& space);
+[[nodiscard]] double count_dofs(const mesh::Mesh<dim>& mesh, const RicherSpace& space);
 
 /// The dual norm of the residual of functions of one discrete problem, from below.
 ///
@@ -47,7 +47,7 @@ template <int dim>
 class DualNorm
 {
  public:
-  DualNorm(const NitscheForm<dim>& form, const RicherSpace& richer);
+  DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace& richer);
   DualNorm(const DualNorm&) = delete;
   DualNorm& operator=(const DualNorm&) = delete;
 
@@ -58,7 +58,7 @@ class DualNorm
   [[nodiscard]] double of(std::span<const double> functional);
 
   /// W, fixed degrees of freedom included.
-  [[nodiscard]] const LagrangeSpace<dim>& space() const { return space_; }
+  [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return space_; }
   /// <R(u), phi_i> for every degree of freedom of W.
   [[nodiscard]] std::vector<double> residual(std::span<const double> u);
   /// The same with the given values for L(phi_i).
@@ -70,24 +70,24 @@ class DualNorm
   {
     std::vector<char> fixed;  ///< per node
     std::vector<int> components;
-    std::unique_ptr<SparseMatrix> matrix;
-    std::unique_ptr<LinearSolver> solver;
+    std::unique_ptr<algebra::SparseMatrix> matrix;
+    std::unique_ptr<algebra::LinearSolver> solver;
   };
   /// A facet of the refined mesh on Gamma_C.
   struct ContactPart
   {
-    BoundaryFacet facet;
+    mesh::BoundaryFacet facet;
     int whole;  ///< number of the contact facet of the form that contains it
   };
 
   void find_contact_parts();
   void find_operators();
-  [[nodiscard]] SparseMatrix matrix(const std::vector<char>& fixed) const;
+  [[nodiscard]] algebra::SparseMatrix matrix(const std::vector<char>& fixed) const;
   void add_contact_load(std::span<const double> u, std::span<double> vector) const;
 
-  const NitscheForm<dim>& form_;
-  Refined<dim> refined_;
-  LagrangeSpace<dim> space_;
+  const contact::NitscheForm<dim>& form_;
+  mesh::Refined<dim> refined_;
+  fem::LagrangeSpace<dim> space_;
   std::vector<double> load_;  ///< L(phi_i), when it has been needed
   std::vector<ContactPart> contact_parts_;
   std::vector<Operator> operators_;
@@ -95,7 +95,8 @@ class DualNorm
 
 /// bound / dual_norm, which the theorem says is at least 1; nothing where both are below norms.round_off or
 /// 1e-10 ||sigma(u)||, the size of the round-off to which the identities behind the bound hold.
-[[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm, const StressNorms& norms);
+[[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm,
+                                                const contact::StressNorms& norms);
 
 /// The distance of a discrete solution from a much richer one.
 struct SolutionError
@@ -117,8 +118,9 @@ struct RicherSolution
 /// Solves the form's problem in the richer space with Nitsche's parameter gamma0, data evaluated anew,
 /// starting from u, and measures u against the result.
 template <int dim>
-[[nodiscard]] RicherSolution compare_with_richer(const NitscheForm<dim>& form, std::span<const double> u,
-                                                 const RicherSpace& richer, double gamma0,
-                                                 const NewtonConfig& newton, const SolverConfig& solver);
+[[nodiscard]] RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form,
+                                                 std::span<const double> u, const RicherSpace& richer,
+                                                 double gamma0, const case_file::NewtonConfig& newton,
+                                                 const case_file::SolverConfig& solver);
 
-}  // namespace tribound
+}  // namespace tribound::certify

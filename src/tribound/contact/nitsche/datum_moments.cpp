@@ -12,7 +12,7 @@
 #include "tribound/base/error.h"
 #include "tribound/fem/polynomials.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -35,12 +35,12 @@ constexpr double factorial = k == 3 ? 6 : k;
 template <int k, int dim>
 double measure_of(const DatumPart<k, dim>& part, const SimplexMap<k, dim>& map)
 {
-  return map.measure * fraction<k>(part.part);
+  return map.measure * fem::fraction<k>(part.part);
 }
 
 /// The two halves of a part, cut at the middle of its longest edge.
 template <int k, int dim>
-std::array<Part<k>, 2> halves(const Part<k>& part, const SimplexMap<k, dim>& map)
+std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k, dim>& map)
 {
   int first = 0;
   int second = 1;
@@ -54,12 +54,12 @@ std::array<Part<k>, 2> halves(const Part<k>& part, const SimplexMap<k, dim>& map
       first = i;
       second = j;
     }
-  return split<k>(part, first, second, (part[first] + part[second]) / 2);
+  return fem::split<k>(part, first, second, (part[first] + part[second]) / 2);
 }
 
 }  // namespace
 
-double distance_from_polynomials(std::span<const Enclosure> taylor, int order)
+double distance_from_polynomials(std::span<const problem::Enclosure> taylor, int order)
 {
   double smallest = (taylor[0].upper - taylor[0].lower) / 2;
   for (int n = 1; n <= order; ++n) smallest = std::min(smallest, taylor[n].magnitude());
@@ -85,27 +85,27 @@ int Datum<dim>::degree() const
 template <int k, int dim>
 DatumMoments<k, dim>::DatumMoments(int p, int projected)
     : p_(p),
-      n_projected_(polynomial_dimension(k, projected)),
-      rule_(quadrature<k>(data_quadrature_degree(p))),
-      n_(polynomial_dimension(k, p + 1)),
+      n_projected_(fem::polynomial_dimension(k, projected)),
+      rule_(fem::quadrature<k>(fem::data_quadrature_degree(p))),
+      n_(fem::polynomial_dimension(k, p + 1)),
       theta_(static_cast<std::size_t>(n_) * rule_.size())
 {
   for (int q = 0; q < rule_.size(); ++q)
-    orthonormal_values<k>(p + 1, rule_.points[q],
-                          std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+    fem::orthonormal_values<k>(p + 1, rule_.points[q],
+                               std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
 }
 
 template <int k, int dim>
 auto DatumMoments<k, dim>::cut_at_switches(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
                                            int max_parts) const -> Parts
 {
-  std::vector<Part<k>> parts{reference_simplex<k>()};
+  std::vector<fem::Part<k>> parts{fem::reference_simplex<k>()};
   for (const auto& term : datum.terms)
-    for (const Affine& a : term.value->switches())
+    for (const problem::Affine& a : term.value->switches())
     {
       if (static_cast<int>(parts.size()) >= max_parts) break;  // what is not cut is enclosed
-      std::vector<Part<k>> finer;
-      for (const Part<k>& part : parts)
+      std::vector<fem::Part<k>> finer;
+      for (const fem::Part<k>& part : parts)
       {
         std::array<double, k + 1> values;
         double size = std::abs(a.b);
@@ -119,12 +119,12 @@ auto DatumMoments<k, dim>::cut_at_switches(const Datum<dim>& datum, const Simple
             size = std::max(size, std::abs(a.a[d] * x[d]));
           }
         }
-        cut<k>(part, values, rounding * size, finer);
+        fem::cut<k>(part, values, rounding * size, finer);
       }
       parts = std::move(finer);
     }
   Parts result;
-  for (const Part<k>& part : parts) result.push_back({part, {}, {}, {}});
+  for (const fem::Part<k>& part : parts) result.push_back({part, {}, {}, {}});
   return result;
 }
 
@@ -134,8 +134,8 @@ void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, 
                                    DatumPart<k, dim>& part) const
 {
   // One less than the degree of the rule: moments against affine weights are integrated as well.
-  const int order = std::min(data_quadrature_degree(p_), Formula::max_order);
-  std::array<Enclosure, Formula::max_order + 1> storage;
+  const int order = std::min(fem::data_quadrature_degree(p_), problem::Formula::max_order);
+  std::array<problem::Enclosure, problem::Formula::max_order + 1> storage;
   const auto taylor = std::span(storage).first(order + 1);
   std::array<double, (k + 1) * dim> vertices;
   for (int i = 0; i <= k; ++i)
@@ -168,7 +168,7 @@ void DatumMoments<k, dim>::require_bounds(const Datum<dim>& datum, const Simplex
   const auto is_bounded = [](const DatumPart<k, dim>& part) { return part.remainder.allFinite(); };
   const auto found = std::ranges::find_if_not(parts, is_bounded);
   if (found == parts.end()) return;
-  const Point<dim> x = map(point_in<k>(found->part, Point<k>::Constant(1.0 / (k + 1))));
+  const Point<dim> x = map(fem::point_in<k>(found->part, Point<k>::Constant(1.0 / (k + 1))));
   for (const auto& term : datum.terms)
   {
     DatumPart<k, dim> part = *found;
@@ -197,7 +197,7 @@ void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, d
   };
   // Smaller parts of the simplex, where roots start or poles lie, are nothing but rounding.
   const auto is_small = [](const DatumPart<k, dim>& part)
-  { return fraction<k>(part.part) < std::pow(smallest_edge, k); };
+  { return fem::fraction<k>(part.part) < std::pow(smallest_edge, k); };
   const auto is_unbounded = [](const DatumPart<k, dim>& part) { return !part.remainder.allFinite(); };
   while (static_cast<int>(parts.size()) < (std::ranges::any_of(parts, is_unbounded) ? most_parts : max_parts))
   {
@@ -221,7 +221,7 @@ void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, d
         finer.push_back(std::move(part));
         continue;
       }
-      for (const Part<k>& half : halves<k, dim>(part.part, map))
+      for (const fem::Part<k>& half : halves<k, dim>(part.part, map))
         enclose(datum, map, finer.emplace_back(DatumPart<k, dim>{half, {}, {}, {}}));
     }
     parts = std::move(finer);
@@ -240,8 +240,8 @@ std::vector<Point<dim>> DatumMoments<k, dim>::moments(const Parts& parts) const
       if (parts.size() == 1)
         theta = std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_);
       else
-        orthonormal_values<k>(p_ + 1, point_in<k>(part.part, rule_.points[q]), at_point);
-      const Point<dim> weighted = fraction<k>(part.part) * rule_.weights[q] * part.values[q];
+        fem::orthonormal_values<k>(p_ + 1, fem::point_in<k>(part.part, rule_.points[q]), at_point);
+      const Point<dim> weighted = fem::fraction<k>(part.part) * rule_.weights[q] * part.values[q];
       for (int j = 0; j < n_; ++j) result[j] += theta[j] * weighted;
     }
   return result;
@@ -256,13 +256,13 @@ double DatumMoments<k, dim>::oscillation(const Parts& parts, std::span<const Poi
   double missed = 0;
   for (const auto& part : parts)
   {
-    missed += 4 * part.remainder.squaredNorm() * measure * fraction<k>(part.part);
+    missed += 4 * part.remainder.squaredNorm() * measure * fem::fraction<k>(part.part);
     for (int q = 0; q < rule_.size(); ++q)
     {
       Point<dim> difference = part.values[q];
       if (parts.size() == 1)
         for (int j = 0; j < n_projected_; ++j) difference -= theta_[q * n_ + j] * moments[j];
-      squares += fraction<k>(part.part) * rule_.weights[q] * difference.squaredNorm();
+      squares += fem::fraction<k>(part.part) * rule_.weights[q] * difference.squaredNorm();
     }
   }
   if (parts.size() > 1)  // the rules on the parts are exact for products of the basis: ||f||^2 - ||Pi f||^2
@@ -295,7 +295,8 @@ DatumOnSimplex<k, dim> DatumMoments<k, dim>::operator()(const Datum<dim>& datum,
     parts.front().values = std::move(on_whole);
   else
     for (auto& part : parts)
-      for (const Point<k>& s : rule_.points) part.values.push_back(datum(map(point_in<k>(part.part, s))));
+      for (const Point<k>& s : rule_.points)
+        part.values.push_back(datum(map(fem::point_in<k>(part.part, s))));
   Point<dim> missed = Point<dim>::Zero();
   for (const auto& part : parts) missed += 2 * measure_of(part, map) * part.mean_remainder;
   result.mean = missed.norm();
@@ -322,4 +323,4 @@ template class DatumMoments<2, 2>;
 template class DatumMoments<2, 3>;
 template class DatumMoments<3, 3>;
 
-}  // namespace tribound
+}  // namespace tribound::contact

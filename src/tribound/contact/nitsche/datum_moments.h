@@ -18,7 +18,7 @@
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// f(x) = sum_j value_j(x) direction_j.
@@ -27,7 +27,7 @@ struct Datum
 {
   struct Term
   {
-    const Expression* value;
+    const problem::Expression* value;
     Point<dim> direction;
   };
   std::vector<Term> terms;
@@ -50,13 +50,13 @@ struct SimplexMap
 
 /// An upper bound of the distance of a formula from P^{order - 1} on a simplex, in the maximum norm, from its
 /// enclosures there: half the range, or the remainder of a Taylor polynomial.
-[[nodiscard]] double distance_from_polynomials(std::span<const Enclosure> taylor, int order);
+[[nodiscard]] double distance_from_polynomials(std::span<const problem::Enclosure> taylor, int order);
 
 /// A part of the simplex on which one rule integrates the datum.
 template <int k, int dim>
 struct DatumPart
 {
-  Part<k> part;
+  fem::Part<k> part;
   Point<dim> remainder;            ///< per component: the largest distance of f from P^{p+2}, an upper bound
   Point<dim> mean_remainder;       ///< the same from P^{2p+4}
   std::vector<Point<dim>> values;  ///< f at the points of the rule on the part
@@ -99,7 +99,7 @@ class DatumMoments
   /// The polynomial with the given moments at the points of the rule.
   void evaluate(std::span<const Point<dim>> moments, std::span<Point<dim>> values) const;
 
-  [[nodiscard]] const Quadrature<k>& rule() const { return rule_; }
+  [[nodiscard]] const fem::Quadrature<k>& rule() const { return rule_; }
 
  private:
   using Parts = std::vector<DatumPart<k, dim>>;
@@ -116,9 +116,9 @@ class DatumMoments
 
   int p_;
   int n_projected_;
-  Quadrature<k> rule_;
+  fem::Quadrature<k> rule_;
   int n_;                      ///< dim P^{p+1}
   std::vector<double> theta_;  ///< at the points of the rule, [q * n + j]
 };
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -9,7 +9,7 @@
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -23,7 +23,7 @@ constexpr double most_parts = 4096;
 
 /// The diagonal of the bounding box.
 template <int dim>
-double extent(const Mesh<dim>& mesh)
+double extent(const mesh::Mesh<dim>& mesh)
 {
   Point<dim> lower = mesh.vertex(0);
   Point<dim> upper = lower;
@@ -36,17 +36,17 @@ double extent(const Mesh<dim>& mesh)
 }
 
 template <int dim>
-SimplexMap<dim, dim> simplex_map(const Mesh<dim>& mesh, Index cell)
+SimplexMap<dim, dim> simplex_map(const mesh::Mesh<dim>& mesh, Index cell)
 {
-  const CellMap<dim> map = cell_map(mesh, cell);
+  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
   return {map.origin, map.jacobian, map.det / (dim == 2 ? 2 : 6)};
 }
 
 template <int dim>
-SimplexMap<dim - 1, dim> simplex_map(const Mesh<dim>& mesh, const BoundaryFacet& facet)
+SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
 {
-  const FacetMap<dim> map = facet_map(mesh, facet.cell, facet.local);
-  return {map.origin, map.jacobian, facet_geometry(mesh, facet.cell, facet.local).measure};
+  const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
+  return {map.origin, map.jacobian, mesh::facet_geometry(mesh, facet.cell, facet.local).measure};
 }
 
 /// An upper bound of |f| on a cell or facet; 0 where there is none.
@@ -54,11 +54,12 @@ template <int k, int dim>
 double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
 {
   std::array<double, (k + 1) * dim> vertices;
-  for (int i = 0; i <= k; ++i) std::ranges::copy(map(reference_simplex<k>()[i]), vertices.begin() + i * dim);
+  for (int i = 0; i <= k; ++i)
+    std::ranges::copy(map(fem::reference_simplex<k>()[i]), vertices.begin() + i * dim);
   Point<dim> size = Point<dim>::Zero();
   for (const auto& [value, direction] : datum.terms)
   {
-    std::array<Enclosure, 1> range;
+    std::array<problem::Enclosure, 1> range;
     value->enclose(vertices, dim, range);
     if (range[0].bounded()) size += range[0].magnitude() * direction.cwiseAbs();
   }
@@ -68,8 +69,8 @@ double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
 }  // namespace
 
 template <int dim>
-DiscreteData<dim>::DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree, double gamma0,
-                                const DataAccuracy& accuracy)
+DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
+                                double gamma0, const DataAccuracy& accuracy)
     : problem_(problem),
       mesh_(mesh),
       degree_(degree),
@@ -82,7 +83,8 @@ DiscreteData<dim>::DiscreteData(const Problem<dim>& problem, const Mesh<dim>& me
   double allowed = 0;
   if (effort_.formulas > 0)
     allowed = accuracy.absolute ? *accuracy.absolute : accuracy.share * largest_effect();
-  const double of_each = static_cast<double>(cell_rule().size()) * polynomial_dimension(dim, degree + 1) *
+  const double of_each = static_cast<double>(cell_rule().size()) *
+                         fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::size_t>(effort_.formulas, 1));
   max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts));
   represent_body_forces(allowed);
@@ -101,11 +103,11 @@ Datum<dim> DiscreteData<dim>::body_datum(Index cell) const
 }
 
 template <int dim>
-Datum<dim> DiscreteData<dim>::traction_datum(const BoundaryFacet& facet) const
+Datum<dim> DiscreteData<dim>::traction_datum(const mesh::BoundaryFacet& facet) const
 {
-  const BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
+  const problem::BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
   Datum<dim> datum;
-  Point<dim> against_normal = -facet_geometry(mesh_, facet.cell, facet.local).normal;
+  Point<dim> against_normal = -mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
   for (int i = 0; i < dim; ++i)
   {
     if (boundary.fixes(i))
@@ -119,12 +121,12 @@ Datum<dim> DiscreteData<dim>::traction_datum(const BoundaryFacet& facet) const
 }
 
 template <int dim>
-Datum<dim> DiscreteData<dim>::contact_datum(const BoundaryFacet& facet, double stiffness) const
+Datum<dim> DiscreteData<dim>::contact_datum(const mesh::BoundaryFacet& facet, double stiffness) const
 {
-  const Contact& contact = *problem_.boundary(facet.tag).contact;
+  const case_file::Contact& contact = *problem_.boundary(facet.tag).contact;
   Datum<dim> datum;
   datum.terms.push_back({&contact.gap, stiffness * Point<dim>::Unit(0)});
-  if (const auto* tresca = std::get_if<Tresca>(&contact.friction))
+  if (const auto* tresca = std::get_if<case_file::Tresca>(&contact.friction))
     datum.terms.push_back({&tresca->threshold, Point<dim>::Unit(1)});
   return datum;
 }
@@ -135,7 +137,7 @@ void DiscreteData<dim>::count_formulas()
   const auto count = [&](const Datum<dim>& datum) { effort_.formulas += datum.degree() > degree_ + 2; };
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c));
-  for (const BoundaryFacet& facet : mesh_.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh_.boundary())
     count(problem_.boundary(facet.tag).contact ? contact_datum(facet, 1) : traction_datum(facet));
 }
 
@@ -152,14 +154,14 @@ double DiscreteData<dim>::largest_effect() const
     const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
     body += map.measure * std::pow(largest_value(body_datum(c), map), 2);
     volume += map.measure;
-    const Material& material = problem_.material(mesh_.region(c));
+    const problem::Material& material = problem_.material(mesh_.region(c));
     stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
   }
   double traction = 0;
   double displacement = 0;
-  for (const BoundaryFacet& facet : mesh_.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh_.boundary())
   {
-    const BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
     if (!boundary.contact) traction += map.measure * std::pow(largest_value(traction_datum(facet), map), 2);
     Datum<dim> prescribed;
@@ -195,26 +197,27 @@ void DiscreteData<dim>::represent_body_forces(double accuracy)
   double volume = 0;
   for (Index c = 0; c < mesh_.n_cells(); ++c) volume += simplex_map(mesh_, c).measure;
   body_.remainders.resize(mesh_.n_cells());
-  parallel_for(body_.remainders.size(),
-               [&](std::size_t i)
-               {
-                 const auto c = static_cast<Index>(i);
-                 if (problem_.body_force_is_constant(mesh_.region(c))) return;
-                 const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
-                 const DatumWeights weights{cell_diameter(mesh_, c) / 3, size_ / std::sqrt(map.measure)};
-                 keep(body_, i,
-                      cell_moments_(body_datum(c), map, weights, accuracy * std::sqrt(map.measure / volume),
-                                    max_parts_));
-               });
+  parallel_for(
+      body_.remainders.size(),
+      [&](std::size_t i)
+      {
+        const auto c = static_cast<Index>(i);
+        if (problem_.body_force_is_constant(mesh_.region(c))) return;
+        const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
+        const DatumWeights weights{mesh::cell_diameter(mesh_, c) / 3, size_ / std::sqrt(map.measure)};
+        keep(body_, i,
+             cell_moments_(body_datum(c), map, weights, accuracy * std::sqrt(map.measure / volume),
+                           max_parts_));
+      });
 }
 
 template <int dim>
 void DiscreteData<dim>::represent_tractions(double accuracy)
 {
-  const std::span<const BoundaryFacet> facets = mesh_.boundary();
+  const std::span<const mesh::BoundaryFacet> facets = mesh_.boundary();
   double area = 0;
   bool varies = false;
-  for (const BoundaryFacet& facet : facets)
+  for (const mesh::BoundaryFacet& facet : facets)
   {
     area += simplex_map(mesh_, facet).measure;
     varies = varies || traction_datum(facet).degree() > 0;
@@ -229,7 +232,7 @@ void DiscreteData<dim>::represent_tractions(double accuracy)
         const Datum<dim> datum = traction_datum(facets[i]);
         if (datum.degree() == 0) return;
         const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
-        const DatumWeights weights{std::sqrt(cell_diameter(mesh_, facets[i].cell)),
+        const DatumWeights weights{std::sqrt(mesh::cell_diameter(mesh_, facets[i].cell)),
                                    size_ / std::sqrt(simplex_map(mesh_, facets[i].cell).measure)};
         keep(traction_, i,
              facet_moments_(datum, map, weights, accuracy * std::sqrt(map.measure / area), max_parts_));
@@ -239,17 +242,17 @@ void DiscreteData<dim>::represent_tractions(double accuracy)
 template <int dim>
 void DiscreteData<dim>::represent_contact(double accuracy)
 {
-  const std::span<const BoundaryFacet> facets = mesh_.boundary();
+  const std::span<const mesh::BoundaryFacet> facets = mesh_.boundary();
   double area = 0;
-  for (const BoundaryFacet& facet : facets)
+  for (const mesh::BoundaryFacet& facet : facets)
     if (problem_.boundary(facet.tag).contact) area += simplex_map(mesh_, facet).measure;
   parallel_for(facets.size(),
                [&](std::size_t i)
                {
-                 const BoundaryFacet& facet = facets[i];
+                 const mesh::BoundaryFacet& facet = facets[i];
                  if (!problem_.boundary(facet.tag).contact) return;
-                 const Material& material = problem_.material(mesh_.region(facet.cell));
-                 const double h = facet_geometry(mesh_, facet.cell, facet.local).diameter;
+                 const problem::Material& material = problem_.material(mesh_.region(facet.cell));
+                 const double h = mesh::facet_geometry(mesh_, facet.cell, facet.local).diameter;
                  const double stiffness = gamma0_ * penalty_modulus(material) / h;
                  const Datum<dim> datum = contact_datum(facet, stiffness);
                  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
@@ -272,17 +275,17 @@ void DiscreteData<dim>::represent_contact(double accuracy)
 
 /// Throws where gap or threshold is negative at a point of a rule.
 template <int dim>
-void DiscreteData<dim>::check_signs(const BoundaryFacet& facet,
+void DiscreteData<dim>::check_signs(const mesh::BoundaryFacet& facet,
                                     const DatumOnSimplex<dim - 1, dim>& found) const
 {
-  const Contact& contact = *problem_.boundary(facet.tag).contact;
+  const case_file::Contact& contact = *problem_.boundary(facet.tag).contact;
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
     {
       if (part.values[q].minCoeff() >= 0) continue;
-      const Point<dim> x = map(point_in<dim - 1>(part.part, facet_rule().points[q]));
-      (void)gap_at<dim>(contact, x);
+      const Point<dim> x = map(fem::point_in<dim - 1>(part.part, facet_rule().points[q]));
+      (void)problem::gap_at<dim>(contact, x);
       (void)threshold_if_any<dim>(contact.friction, x);
     }
 }
@@ -327,12 +330,12 @@ void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::s
     }
     return;
   }
-  const Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
+  const case_file::Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
   for (int q = 0; q < facet_rule().size(); ++q)
   {
     const Point<dim> x = map(facet_rule().points[q]);
-    gap[q] = gap_at<dim>(contact, x);
+    gap[q] = problem::gap_at<dim>(contact, x);
     threshold[q] = threshold_if_any<dim>(contact.friction, x);
   }
 }
@@ -347,4 +350,4 @@ std::span<const ContactDatumPart<dim>> DiscreteData<dim>::contact_parts(std::siz
 template class DiscreteData<2>;
 template class DiscreteData<3>;
 
-}  // namespace tribound
+}  // namespace tribound::contact

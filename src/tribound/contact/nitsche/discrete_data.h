@@ -14,7 +14,7 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// What a load loses on one cell or facet when it is replaced by its values at the points of a rule.
@@ -29,7 +29,7 @@ struct LoadRemainder
 template <int dim>
 struct ContactDatumPart
 {
-  Part<dim - 1> part;
+  fem::Part<dim - 1> part;
   double gap;        ///< length
   double threshold;  ///< stress
 };
@@ -60,11 +60,11 @@ class DiscreteData
   /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count with the
   /// stress gamma g, gamma Nitsche's parameter with the given gamma0. Throws InputError for
   /// a negative gap or threshold and for data that are not finite, naming the place.
-  DiscreteData(const Problem<dim>& problem, const Mesh<dim>& mesh, int degree, double gamma0,
+  DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree, double gamma0,
                const DataAccuracy& accuracy = {});
 
-  [[nodiscard]] const Quadrature<dim>& cell_rule() const { return cell_moments_.rule(); }
-  [[nodiscard]] const Quadrature<dim - 1>& facet_rule() const { return facet_moments_.rule(); }
+  [[nodiscard]] const fem::Quadrature<dim>& cell_rule() const { return cell_moments_.rule(); }
+  [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return facet_moments_.rule(); }
 
   [[nodiscard]] bool has_body_force(Index cell) const
   {
@@ -102,21 +102,21 @@ class DiscreteData
   };
 
   [[nodiscard]] Datum<dim> body_datum(Index cell) const;
-  [[nodiscard]] Datum<dim> traction_datum(const BoundaryFacet& facet) const;
+  [[nodiscard]] Datum<dim> traction_datum(const mesh::BoundaryFacet& facet) const;
   /// g in direction 0, as the stress `stiffness` g, and s in direction 1.
-  [[nodiscard]] Datum<dim> contact_datum(const BoundaryFacet& facet, double stiffness) const;
+  [[nodiscard]] Datum<dim> contact_datum(const mesh::BoundaryFacet& facet, double stiffness) const;
 
   void count_formulas();
   [[nodiscard]] double largest_effect() const;
   void represent_body_forces(double accuracy);
   void represent_tractions(double accuracy);
   void represent_contact(double accuracy);
-  void check_signs(const BoundaryFacet& facet, const DatumOnSimplex<dim - 1, dim>& found) const;
+  void check_signs(const mesh::BoundaryFacet& facet, const DatumOnSimplex<dim - 1, dim>& found) const;
   template <int k>
   void keep(Represented& represented, std::size_t place, DatumOnSimplex<k, dim>&& found);
 
-  const Problem<dim>& problem_;
-  const Mesh<dim>& mesh_;
+  const problem::Problem<dim>& problem_;
+  const mesh::Mesh<dim>& mesh_;
   int degree_;
   double gamma0_;
   DatumMoments<dim, dim> cell_moments_;
@@ -130,4 +130,4 @@ class DiscreteData
   DataEffort effort_;
 };
 
-}  // namespace tribound
+}  // namespace tribound::contact

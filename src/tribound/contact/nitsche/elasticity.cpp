@@ -10,7 +10,7 @@
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 void Triplets::reserve(std::size_t n)
@@ -25,10 +25,10 @@ namespace
 
 /// R_ij = integral over the reference cell of (grad phi_i)(grad phi_j)^T, [i * n + j].
 template <int dim>
-std::vector<Tensor<dim>> reference_stiffness(const LagrangeBasis<dim>& basis)
+std::vector<Tensor<dim>> reference_stiffness(const fem::LagrangeBasis<dim>& basis)
 {
-  const Quadrature<dim> rule = quadrature<dim>(2 * basis.degree() - 2);
-  const Tabulation<dim> table = basis.tabulate(rule.points);
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * basis.degree() - 2);
+  const fem::Tabulation<dim> table = basis.tabulate(rule.points);
   const int n = basis.n_nodes();
   std::vector<Tensor<dim>> reference(static_cast<std::size_t>(n) * n, Tensor<dim>::Zero());
   for (int q = 0; q < rule.size(); ++q)
@@ -44,7 +44,8 @@ std::vector<Tensor<dim>> reference_stiffness(const LagrangeBasis<dim>& basis)
 /// The block a(phi_j e_b, phi_i e_a) = lambda S_ab + mu S_ba + mu tr(S) delta_ab, where
 /// S = (d_a phi_i, d_b phi_j)_T = det J J^{-T} R_ij J^{-1}.
 template <int dim>
-Tensor<dim> stiffness_block(const Material& material, const CellMap<dim>& map, const Tensor<dim>& reference)
+Tensor<dim> stiffness_block(const problem::Material& material, const mesh::CellMap<dim>& map,
+                            const Tensor<dim>& reference)
 {
   const Tensor<dim> s = map.det * (map.inverse_transpose * reference * map.inverse_transpose.transpose());
   Tensor<dim> block = material.lambda * s + material.mu * s.transpose();
@@ -72,7 +73,7 @@ struct NodeCells
 };
 
 template <int dim>
-NodeCells cells_around_nodes(const LagrangeSpace<dim>& space)
+NodeCells cells_around_nodes(const fem::LagrangeSpace<dim>& space)
 {
   const Index n_cells = space.mesh().n_cells();
   NodeCells result{std::vector<Index>(space.n_nodes() + 1, 0), {}};
@@ -95,7 +96,7 @@ template <int dim>
 class BlockRow
 {
  public:
-  BlockRow(const Problem<dim>& problem, const LagrangeSpace<dim>& space)
+  BlockRow(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space)
       : problem_(&problem),
         space_(&space),
         reference_(reference_stiffness(space.basis())),
@@ -109,8 +110,8 @@ class BlockRow
     const int n = space_->basis().n_nodes();
     for (const auto& [c, i] : cells)
     {
-      const CellMap<dim> map = cell_map(space_->mesh(), c);
-      const Material& material = problem_->material(space_->mesh().region(c));
+      const mesh::CellMap<dim> map = mesh::cell_map(space_->mesh(), c);
+      const problem::Material& material = problem_->material(space_->mesh().region(c));
       const std::span<const Index> nodes = space_->cell_nodes(c);
       for (int j = 0; j < n; ++j)
         blocks_[place_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
@@ -134,8 +135,8 @@ class BlockRow
     blocks_.assign(neighbours_.size(), Tensor<dim>::Zero());
   }
 
-  const Problem<dim>* problem_;
-  const LagrangeSpace<dim>* space_;
+  const problem::Problem<dim>* problem_;
+  const fem::LagrangeSpace<dim>* space_;
   std::vector<Tensor<dim>> reference_;
   std::vector<Index> place_;  ///< per node: its place among the neighbours, or -1
   std::vector<Index> neighbours_;
@@ -145,8 +146,8 @@ class BlockRow
 }  // namespace
 
 template <int dim>
-Triplets stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                   const Constraints& constraints)
+Triplets stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                   const fem::Constraints& constraints)
 {
   const NodeCells cells = cells_around_nodes(space);
   BlockRow<dim> row(problem, space);
@@ -170,17 +171,17 @@ Triplets stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
 }
 
 template <int dim>
-std::vector<double> apply_stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                                    std::span<const double> u)
+std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
+                                    const fem::LagrangeSpace<dim>& space, std::span<const double> u)
 {
-  const Mesh<dim>& mesh = space.mesh();
-  const Quadrature<dim> rule = quadrature<dim>(2 * space.degree() - 2);
-  const Tabulation<dim> table = space.basis().tabulate(rule.points);
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
+  const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
   std::vector<double> result(space.n_dofs(), 0.0);
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(mesh, c);
-    const Material& material = problem.material(mesh.region(c));
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
+    const problem::Material& material = problem.material(mesh.region(c));
     const std::span<const Index> nodes = space.cell_nodes(c);
     for (int q = 0; q < rule.size(); ++q)
     {
@@ -216,15 +217,15 @@ double sum_of_terms(std::span<const Index> nodes, std::span<const double> u,
 
 /// The norm of 2 mu max |u| / size over the body, mu the smallest and size the distance of two vertices.
 template <int dim>
-double stress_that_matters(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+double stress_that_matters(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                            std::span<const double> u)
 {
-  const Mesh<dim>& mesh = space.mesh();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   double volume = 0;
   double mu = std::numeric_limits<double>::infinity();
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    volume += cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
+    volume += mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
     mu = std::min(mu, problem.material(mesh.region(c)).mu);
   }
   double size = 0;
@@ -238,12 +239,12 @@ double stress_that_matters(const Problem<dim>& problem, const LagrangeSpace<dim>
 }  // namespace
 
 template <int dim>
-StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          std::span<const double> u)
 {
-  const Mesh<dim>& mesh = space.mesh();
-  const Quadrature<dim> rule = quadrature<dim>(2 * space.degree() - 2);
-  const Tabulation<dim> table = space.basis().tabulate(rule.points);
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
+  const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
   // Rigid motions prescribed to boxes in 2D and 3D, p = 1 ... 4, nu = 0.3 and 0.4999, left a bound of up
   // to 42.
   constexpr double unit_round_offs = 1000;
@@ -252,8 +253,8 @@ StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& 
   double terms_squared = 0;
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const CellMap<dim> map = cell_map(mesh, c);
-    const Material& material = problem.material(mesh.region(c));
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
+    const problem::Material& material = problem.material(mesh.region(c));
     const std::span<const Index> nodes = space.cell_nodes(c);
     const double stiffest = 2 * material.mu + dim * material.lambda;
     for (int q = 0; q < rule.size(); ++q)
@@ -298,19 +299,19 @@ void add_point_load(std::span<const Index> nodes, std::span<const double> values
 }  // namespace
 
 template <int dim>
-std::vector<double> assemble_load(const DiscreteData<dim>& data, const LagrangeSpace<dim>& space)
+std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
 {
-  const Mesh<dim>& mesh = space.mesh();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   std::vector<double> load(space.n_dofs(), 0.0);
 
   // (f, phi_i)
-  const Quadrature<dim>& cell_rule = data.cell_rule();
-  const Tabulation<dim> cell_table = space.basis().tabulate(cell_rule.points);
+  const fem::Quadrature<dim>& cell_rule = data.cell_rule();
+  const fem::Tabulation<dim> cell_table = space.basis().tabulate(cell_rule.points);
   std::vector<Point<dim>> f(cell_rule.size());
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     if (!data.has_body_force(c)) continue;
-    const CellMap<dim> map = cell_map(mesh, c);
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     data.body_force(c, f);
     for (int q = 0; q < cell_rule.size(); ++q)
       add_point_load<dim>(space.cell_nodes(c), cell_table.values_at(q), cell_rule.weights[q] * map.det * f[q],
@@ -318,15 +319,16 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const LagrangeS
   }
 
   // (g_N, phi_i)_N
-  const Quadrature<dim - 1>& facet_rule = data.facet_rule();
-  const FacetTabulation<dim> facet_table = tabulate_on_facets<dim>(space.basis(), facet_rule.points);
+  const fem::Quadrature<dim - 1>& facet_rule = data.facet_rule();
+  const fem::FacetTabulation<dim> facet_table =
+      fem::tabulate_on_facets<dim>(space.basis(), facet_rule.points);
   std::vector<Point<dim>> g(facet_rule.size());
   for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
     if (!data.has_traction(k)) continue;
-    const BoundaryFacet& facet = mesh.boundary()[k];
+    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     const double scale =
-        facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
+        mesh::facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
     data.traction(k, g);
     for (int q = 0; q < facet_rule.size(); ++q)
       add_point_load<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
@@ -335,15 +337,19 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const LagrangeS
   return load;
 }
 
-template Triplets stiffness(const Problem<2>&, const LagrangeSpace<2>&, const Constraints&);
-template Triplets stiffness(const Problem<3>&, const LagrangeSpace<3>&, const Constraints&);
-template std::vector<double> apply_stiffness(const Problem<2>&, const LagrangeSpace<2>&,
+template Triplets stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                            const fem::Constraints&);
+template Triplets stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                            const fem::Constraints&);
+template std::vector<double> apply_stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                              std::span<const double>);
-template std::vector<double> apply_stiffness(const Problem<3>&, const LagrangeSpace<3>&,
+template std::vector<double> apply_stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                              std::span<const double>);
-template StressNorms stress_norms(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
-template StressNorms stress_norms(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
-template std::vector<double> assemble_load(const DiscreteData<2>&, const LagrangeSpace<2>&);
-template std::vector<double> assemble_load(const DiscreteData<3>&, const LagrangeSpace<3>&);
+template StressNorms stress_norms(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                  std::span<const double>);
+template StressNorms stress_norms(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                  std::span<const double>);
+template std::vector<double> assemble_load(const DiscreteData<2>&, const fem::LagrangeSpace<2>&);
+template std::vector<double> assemble_load(const DiscreteData<3>&, const fem::LagrangeSpace<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::contact

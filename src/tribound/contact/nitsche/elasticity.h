@@ -10,7 +10,7 @@
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 template <int dim>
@@ -18,7 +18,7 @@ class DiscreteData;
 
 /// sigma = lambda tr(eps) I + 2 mu eps with eps = sym(grad u).
 template <int dim>
-[[nodiscard]] Tensor<dim> sigma(const Material& material, const Tensor<dim>& gradient)
+[[nodiscard]] Tensor<dim> sigma(const problem::Material& material, const Tensor<dim>& gradient)
 {
   Tensor<dim> s = material.mu * (gradient + gradient.transpose());
   s.diagonal().array() += material.lambda * gradient.trace();
@@ -70,13 +70,14 @@ struct Triplets
 /// cells' own entries in 3D. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal alone, which
 /// decouples it without spoiling the scaling.
 template <int dim>
-[[nodiscard]] Triplets stiffness(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                                 const Constraints& constraints);
+[[nodiscard]] Triplets stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                 const fem::Constraints& constraints);
 
 /// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell.
 template <int dim>
-[[nodiscard]] std::vector<double> apply_stiffness(const Problem<dim>& problem,
-                                                  const LagrangeSpace<dim>& space, std::span<const double> u);
+[[nodiscard]] std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
+                                                  const fem::LagrangeSpace<dim>& space,
+                                                  std::span<const double> u);
 
 /// What the displacement u stores in the body.
 struct StressNorms
@@ -92,13 +93,13 @@ struct StressNorms
 };
 
 template <int dim>
-[[nodiscard]] StressNorms stress_norms(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                                       std::span<const double> u);
+[[nodiscard]] StressNorms stress_norms(const problem::Problem<dim>& problem,
+                                       const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
 /// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included. The data are
 /// those for the degree of the space.
 template <int dim>
 [[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,
-                                                const LagrangeSpace<dim>& space);
+                                                const fem::LagrangeSpace<dim>& space);
 
-}  // namespace tribound
+}  // namespace tribound::contact

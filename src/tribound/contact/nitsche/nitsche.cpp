@@ -6,7 +6,7 @@
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/contact/nitsche/traction.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -14,8 +14,8 @@ namespace
 
 /// Column (j, b) is sigma(phi_j e_b) n - gamma phi_j e_b.
 template <int dim>
-Tensor<dim> augmented_block(const Material& material, double gamma, const Point<dim>& n, double value,
-                            const Point<dim>& gradient)
+Tensor<dim> augmented_block(const problem::Material& material, double gamma, const Point<dim>& n,
+                            double value, const Point<dim>& gradient)
 {
   Tensor<dim> block = material.lambda * n * gradient.transpose() + material.mu * gradient * n.transpose();
   block.diagonal().array() += material.mu * gradient.dot(n) - gamma * value;
@@ -25,27 +25,27 @@ Tensor<dim> augmented_block(const Material& material, double gamma, const Point<
 }  // namespace
 
 template <int dim>
-NitscheForm<dim>::NitscheForm(const Problem<dim>& problem, const LagrangeSpace<dim>& space, double gamma0,
-                              const DataAccuracy& accuracy)
+NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                              double gamma0, const DataAccuracy& accuracy)
     : problem_(&problem),
       space_(&space),
       gamma0_(gamma0),
-      constraints_(dirichlet(problem, space)),
+      constraints_(fem::dirichlet(problem, space)),
       data_(problem, space.mesh(), space.degree(), gamma0, accuracy),
       load_(assemble_load(data_, space)),
       facet_rule_(data_.facet_rule()),
-      facet_table_(tabulate_on_facets<dim>(space.basis(), facet_rule_.points))
+      facet_table_(fem::tabulate_on_facets<dim>(space.basis(), facet_rule_.points))
 {
-  const Mesh<dim>& mesh = space.mesh();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   std::vector<double> gap(facet_rule_.size());
   std::vector<double> threshold(facet_rule_.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
-    const BoundaryFacet& facet = mesh.boundary()[number];
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
     const auto& contact = problem.boundary(facet.tag).contact;
     if (!contact) continue;
-    const Material& material = problem.material(mesh.region(facet.cell));
-    const FacetGeometry<dim> geometry = facet_geometry(mesh, facet.cell, facet.local);
+    const problem::Material& material = problem.material(mesh.region(facet.cell));
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const double gamma = gamma0 * penalty_modulus(material) / geometry.diameter;
     contact_facets_.push_back({facet, geometry, gamma, &*contact, number});
     data_.contact(number, gap, threshold);
@@ -57,7 +57,7 @@ NitscheForm<dim>::NitscheForm(const Problem<dim>& problem, const LagrangeSpace<d
 template <int dim>
 Tensor<dim> NitscheForm<dim>::inverse_transpose(std::size_t k) const
 {
-  return cell_map(space_->mesh(), contact_facets_[k].facet.cell).inverse_transpose;
+  return mesh::cell_map(space_->mesh(), contact_facets_[k].facet.cell).inverse_transpose;
 }
 
 template <int dim>
@@ -65,36 +65,37 @@ Point<dim> NitscheForm<dim>::augmented_traction(std::span<const double> u, std::
                                                 const Tensor<dim>& inverse_transpose) const
 {
   const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
-  const Tabulation<dim>& table = facet_table_.on_facet[facet.local];
+  const fem::Tabulation<dim>& table = facet_table_.on_facet[facet.local];
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
-  const Material& material = problem_->material(space_->mesh().region(facet.cell));
+  const problem::Material& material = problem_->material(space_->mesh().region(facet.cell));
   const Tensor<dim> gradient = gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose);
   const Point<dim> value = value_at<dim>(nodes, u, table.values_at(q));
   const double gap = gap_[k * facet_rule_.size() + q];
-  return tribound::augmented_traction<dim>(material, gamma, gap, geometry.normal, value, gradient);
+  return contact::augmented_traction<dim>(material, gamma, gap, geometry.normal, value, gradient);
 }
 
 template <int dim>
 Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_t k, std::size_t i,
                                                   const Point<dim>& augmented, double delta) const
 {
-  const FrictionLaw& law = contact_facets_[k].contact->friction;
+  const case_file::FrictionLaw& law = contact_facets_[k].contact->friction;
   const Point<dim>& n = contact_facets_[k].geometry.normal;
-  const bool frictionless = std::holds_alternative<Frictionless>(law);
+  const bool frictionless = std::holds_alternative<case_file::Frictionless>(law);
   if (kind == Linearisation::closed_sticking)
     return frictionless ? Tensor<dim>(n * n.transpose()) : Tensor<dim>::Identity();
 
   const double p_n = augmented.dot(n);
   const Point<dim> p_t = augmented - p_n * n;
   const double limit = friction_limit(law, threshold_[i], p_n, delta);
-  const double closed = negative_part_derivative(p_n, delta);
+  const double closed = problem::negative_part_derivative(p_n, delta);
   const Tensor<dim> tangential = Tensor<dim>::Identity() - n * n.transpose();
 
   Tensor<dim> derivative =
-      closed * n * n.transpose() + ball_projection_derivative<dim>(p_t, limit, delta) * tangential;
-  if (const auto* coulomb = std::get_if<Coulomb>(&law))  // D S_h[w] = -mu_F D[P^n]_- (sigma^n(w) - gamma w^n)
-    derivative -= coulomb->coefficient * closed * ball_projection_radius_derivative<dim>(p_t, limit, delta) *
-                  n.transpose();
+      closed * n * n.transpose() + problem::ball_projection_derivative<dim>(p_t, limit, delta) * tangential;
+  if (const auto* coulomb =
+          std::get_if<case_file::Coulomb>(&law))  // D S_h[w] = -mu_F D[P^n]_- (sigma^n(w) - gamma w^n)
+    derivative -= coulomb->coefficient * closed *
+                  problem::ball_projection_radius_derivative<dim>(p_t, limit, delta) * n.transpose();
   return derivative;
 }
 
@@ -162,10 +163,10 @@ void NitscheForm<dim>::add_contact_load(std::span<const Point<dim>> t, std::span
 }
 
 template <int dim>
-void NitscheForm<dim>::add_block_entries(const BoundaryFacet& facet, std::span<const Tensor<dim>> block,
+void NitscheForm<dim>::add_block_entries(const mesh::BoundaryFacet& facet, std::span<const Tensor<dim>> block,
                                          Triplets& entries) const
 {
-  const LagrangeBasis<dim>& basis = space_->basis();
+  const fem::LagrangeBasis<dim>& basis = space_->basis();
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
   const auto free_dof = [&](Index node, int a)
   { return constraints_.fixed[dim * node + a] ? -1 : dim * node + a; };
@@ -190,8 +191,8 @@ Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const d
   {
     const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
     const Tensor<dim> inverse = inverse_transpose(k);
-    const Tabulation<dim>& table = facet_table_.on_facet[facet.local];
-    const Material& material = problem_->material(space_->mesh().region(facet.cell));
+    const fem::Tabulation<dim>& table = facet_table_.on_facet[facet.local];
+    const problem::Material& material = problem_->material(space_->mesh().region(facet.cell));
     std::ranges::fill(block, Tensor<dim>::Zero());
     for (int q = 0; q < n_facet_points(); ++q)
     {
@@ -213,31 +214,32 @@ Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const d
 
 template <int dim>
 std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const double> u, int k,
-                                                                const FacetTabulation<dim>& table) const
+                                                                const fem::FacetTabulation<dim>& table) const
 {
   const auto& [facet, geometry, gamma, contact, number] = contact_facets_[k];
   const Point<dim>& n = geometry.normal;
-  const FacetMap<dim> map = facet_map(space_->mesh(), facet.cell, facet.local);
+  const mesh::FacetMap<dim> map = mesh::facet_map(space_->mesh(), facet.cell, facet.local);
   const Tensor<dim> inverse = inverse_transpose(k);
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
-  const Material& material = problem_->material(space_->mesh().region(facet.cell));
+  const problem::Material& material = problem_->material(space_->mesh().region(facet.cell));
 
   std::vector<ContactState<dim>> states;
   for (std::size_t q = 0; q < table.points.size(); ++q)
   {
-    const Tabulation<dim>& local = table.on_facet[facet.local];
+    const fem::Tabulation<dim>& local = table.on_facet[facet.local];
     const Point<dim> x = map(table.points[q]);
     const Point<dim> value = value_at<dim>(nodes, u, local.values_at(q));
     const Tensor<dim> gradient = gradient_at<dim>(nodes, u, local.gradients_at(q), inverse);
-    const double gap = gap_at<dim>(*contact, x);
+    const double gap = problem::gap_at<dim>(*contact, x);
     const double threshold = threshold_if_any<dim>(contact->friction, x);
-    const Point<dim> p = tribound::augmented_traction<dim>(material, gamma, gap, n, value, gradient);
+    const Point<dim> p = contact::augmented_traction<dim>(material, gamma, gap, n, value, gradient);
     const double p_n = p.dot(n);
     const double limit = friction_limit(contact->friction, threshold, p_n);
     ContactStatus status = (p - p_n * n).norm() <= limit ? ContactStatus::stick : ContactStatus::slip;
     if (p_n > 0) status = ContactStatus::open;
-    states.push_back({x, n, -negative_part(p_n), contact_traction<dim>(contact->friction, threshold, p, n),
-                      limit, status, gap - value.dot(n), value - value.dot(n) * n});
+    states.push_back({x, n, -problem::negative_part(p_n),
+                      contact_traction<dim>(contact->friction, threshold, p, n), limit, status,
+                      gap - value.dot(n), value - value.dot(n) * n});
   }
   return states;
 }
@@ -274,4 +276,4 @@ template class NitscheForm<3>;
 template ContactResultants<2> contact_resultants(const NitscheForm<2>&, std::span<const Point<2>>, int);
 template ContactResultants<3> contact_resultants(const NitscheForm<3>&, std::span<const Point<3>>, int);
 
-}  // namespace tribound
+}  // namespace tribound::contact

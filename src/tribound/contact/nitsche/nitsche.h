@@ -15,7 +15,7 @@
 #include "tribound/mesh/geometry.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 enum class ContactStatus
@@ -43,10 +43,10 @@ struct ContactState
 template <int dim>
 struct ContactFacet
 {
-  BoundaryFacet facet;
-  FacetGeometry<dim> geometry;
+  mesh::BoundaryFacet facet;
+  mesh::FacetGeometry<dim> geometry;
   double gamma;  ///< gamma_0 min(lambda + 2 mu, 34 mu) / h_F
-  const Contact* contact;
+  const case_file::Contact* contact;
   std::size_t number;  ///< in Mesh::boundary()
 };
 
@@ -66,19 +66,19 @@ class NitscheForm
 {
  public:
   /// `accuracy` and errors: as DiscreteData.
-  NitscheForm(const Problem<dim>& problem, const LagrangeSpace<dim>& space, double gamma0,
+  NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
               const DataAccuracy& accuracy = {});
 
-  [[nodiscard]] const Problem<dim>& problem() const { return *problem_; }
-  [[nodiscard]] const LagrangeSpace<dim>& space() const { return *space_; }
+  [[nodiscard]] const problem::Problem<dim>& problem() const { return *problem_; }
+  [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
   [[nodiscard]] const DiscreteData<dim>& data() const { return data_; }
-  [[nodiscard]] const Constraints& constraints() const { return constraints_; }
+  [[nodiscard]] const fem::Constraints& constraints() const { return constraints_; }
   [[nodiscard]] double gamma0() const { return gamma0_; }
   /// L(phi_i) for every degree of freedom, fixed ones included.
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
   [[nodiscard]] std::span<const ContactFacet<dim>> contact_facets() const { return contact_facets_; }
-  [[nodiscard]] const Quadrature<dim - 1>& facet_rule() const { return facet_rule_; }
+  [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return facet_rule_; }
   [[nodiscard]] int n_facet_points() const { return facet_rule_.size(); }
   [[nodiscard]] std::size_t n_contact_points() const { return contact_facets_.size() * facet_rule_.size(); }
 
@@ -96,7 +96,7 @@ class NitscheForm
 
   /// States on contact facet k at the points of `table`.
   [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, int k,
-                                                              const FacetTabulation<dim>& table) const;
+                                                              const fem::FacetTabulation<dim>& table) const;
 
  private:
   /// P(u) = sigma(u) n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
@@ -107,17 +107,17 @@ class NitscheForm
                                                 const Point<dim>& augmented, double delta) const;
   [[nodiscard]] Tensor<dim> inverse_transpose(std::size_t k) const;
   /// Appends the rows of the nodes on the facet; block [i * n_nodes + j] belongs to local nodes i and j.
-  void add_block_entries(const BoundaryFacet& facet, std::span<const Tensor<dim>> block,
+  void add_block_entries(const mesh::BoundaryFacet& facet, std::span<const Tensor<dim>> block,
                          Triplets& entries) const;
 
-  const Problem<dim>* problem_;
-  const LagrangeSpace<dim>* space_;
+  const problem::Problem<dim>* problem_;
+  const fem::LagrangeSpace<dim>* space_;
   double gamma0_;
-  Constraints constraints_;
+  fem::Constraints constraints_;
   DiscreteData<dim> data_;
   std::vector<double> load_;
-  Quadrature<dim - 1> facet_rule_;
-  FacetTabulation<dim> facet_table_;
+  fem::Quadrature<dim - 1> facet_rule_;
+  fem::FacetTabulation<dim> facet_table_;
   std::vector<ContactFacet<dim>> contact_facets_;
   std::vector<double> gap_;        ///< g at the contact points
   std::vector<double> threshold_;  ///< s at the contact points, 0 unless Tresca
@@ -138,4 +138,4 @@ template <int dim>
 [[nodiscard]] ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form,
                                                         std::span<const Point<dim>> t, int tag = -1);
 
-}  // namespace tribound
+}  // namespace tribound::contact

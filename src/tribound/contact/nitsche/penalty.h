@@ -7,16 +7,16 @@
 
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// The modulus in gamma: lambda + 2 mu, but not more than at nu = 16/33 = 0.485. Nearly incompressible
 /// materials would otherwise have a penalty of the size of lambda against everything that deforms, and
 /// Newton's method fails (docs/choosing.md).
-[[nodiscard]] inline double penalty_modulus(const Material& material)
+[[nodiscard]] inline double penalty_modulus(const problem::Material& material)
 {
   constexpr double largest = 34;  // of (lambda + 2 mu) / mu = (2 - 2 nu) / (1 - 2 nu)
   return std::min(material.lambda + 2 * material.mu, largest * material.mu);
 }
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -8,12 +8,12 @@
 #include "tribound/problem/problem.h"
 #include "tribound/problem/projection.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// P = sigma n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
 template <int dim>
-[[nodiscard]] Point<dim> augmented_traction(const Material& material, double gamma, double gap,
+[[nodiscard]] Point<dim> augmented_traction(const problem::Material& material, double gamma, double gap,
                                             const Point<dim>& n, const Point<dim>& u,
                                             const Tensor<dim>& gradient)
 {
@@ -21,31 +21,31 @@ template <int dim>
 }
 
 /// S_h for the normal part P^n: 0 | s | -mu_F [P^n]_{-,delta}.
-[[nodiscard]] inline double friction_limit(const FrictionLaw& law, double threshold, double p_n,
+[[nodiscard]] inline double friction_limit(const case_file::FrictionLaw& law, double threshold, double p_n,
                                            double delta = 0)
 {
-  if (std::holds_alternative<Tresca>(law)) return threshold;
-  if (const auto* coulomb = std::get_if<Coulomb>(&law))
-    return -coulomb->coefficient * negative_part(p_n, delta);
+  if (std::holds_alternative<case_file::Tresca>(law)) return threshold;
+  if (const auto* coulomb = std::get_if<case_file::Coulomb>(&law))
+    return -coulomb->coefficient * problem::negative_part(p_n, delta);
   return 0;
 }
 
 /// s(x) where the law is Tresca's, else 0.
 template <int dim>
-[[nodiscard]] double threshold_if_any(const FrictionLaw& law, const Point<dim>& x)
+[[nodiscard]] double threshold_if_any(const case_file::FrictionLaw& law, const Point<dim>& x)
 {
-  const auto* tresca = std::get_if<Tresca>(&law);
-  return tresca ? threshold_at<dim>(*tresca, x) : 0.0;
+  const auto* tresca = std::get_if<case_file::Tresca>(&law);
+  return tresca ? problem::threshold_at<dim>(*tresca, x) : 0.0;
 }
 
 /// T = [P^n]_- n + [P^t]_S from P; T_delta with the regularised projections for delta > 0.
 template <int dim>
-[[nodiscard]] Point<dim> contact_traction(const FrictionLaw& law, double threshold, const Point<dim>& p,
-                                          const Point<dim>& n, double delta = 0)
+[[nodiscard]] Point<dim> contact_traction(const case_file::FrictionLaw& law, double threshold,
+                                          const Point<dim>& p, const Point<dim>& n, double delta = 0)
 {
   const double p_n = p.dot(n);
   const double limit = friction_limit(law, threshold, p_n, delta);
-  return negative_part(p_n, delta) * n + ball_projection<dim>(p - p_n * n, limit, delta);
+  return problem::negative_part(p_n, delta) * n + problem::ball_projection<dim>(p - p_n * n, limit, delta);
 }
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -7,7 +7,7 @@
 
 #include "tribound/mesh/describe.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -15,7 +15,7 @@ namespace
 
 /// The number of its body for each cell, by flooding across facets.
 template <int dim>
-std::vector<int> label_cells(const Topology<dim>& topology)
+std::vector<int> label_cells(const mesh::Topology<dim>& topology)
 {
   std::vector<int> label(topology.cell_facets.size(), -1);
   int n_bodies = 0;
@@ -53,7 +53,7 @@ std::vector<int> spread(std::span<const int> cell_label, Index n, Numbers number
 
 /// Sets centre and size of the modes of every body.
 template <int dim>
-void measure(const Mesh<dim>& mesh, std::span<const int> vertex_label, std::vector<Body<dim>>& bodies)
+void measure(const mesh::Mesh<dim>& mesh, std::span<const int> vertex_label, std::vector<Body<dim>>& bodies)
 {
   std::vector<Index> n_vertices(bodies.size(), 0);
   for (Index v = 0; v < mesh.n_vertices(); ++v)
@@ -76,9 +76,9 @@ void measure(const Mesh<dim>& mesh, std::span<const int> vertex_label, std::vect
 }  // namespace
 
 template <int dim>
-std::vector<Body<dim>> find_bodies(const LagrangeSpace<dim>& space)
+std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space)
 {
-  const Mesh<dim>& mesh = space.mesh();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   const std::vector<int> cell_label = label_cells(mesh.topology());
   std::vector<Body<dim>> bodies(std::ranges::max(cell_label) + 1);
   measure<dim>(mesh,
@@ -106,17 +106,17 @@ std::vector<Body<dim>> find_bodies(const LagrangeSpace<dim>& space)
 }
 
 template <int dim>
-std::string describe(const Body<dim>& body, const Problem<dim>& problem, bool several)
+std::string describe(const Body<dim>& body, const problem::Problem<dim>& problem, bool several)
 {
   std::vector<std::string> names;
   for (const int region : body.regions) names.push_back("\"" + problem.region_names()[region] + "\"");
-  const std::string place = several ? fmt::format(" around {}", describe(body.modes.centre)) : "";
+  const std::string place = several ? fmt::format(" around {}", mesh::describe(body.modes.centre)) : "";
   return fmt::format("the body{} (region{} {})", place, names.size() > 1 ? "s" : "", fmt::join(names, ", "));
 }
 
-template std::vector<Body<2>> find_bodies(const LagrangeSpace<2>&);
-template std::vector<Body<3>> find_bodies(const LagrangeSpace<3>&);
-template std::string describe(const Body<2>&, const Problem<2>&, bool);
-template std::string describe(const Body<3>&, const Problem<3>&, bool);
+template std::vector<Body<2>> find_bodies(const fem::LagrangeSpace<2>&);
+template std::vector<Body<3>> find_bodies(const fem::LagrangeSpace<3>&);
+template std::string describe(const Body<2>&, const problem::Problem<2>&, bool);
+template std::string describe(const Body<3>&, const problem::Problem<3>&, bool);
 
-}  // namespace tribound
+}  // namespace tribound::contact

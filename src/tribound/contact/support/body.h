@@ -11,27 +11,27 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// A part of the mesh that is connected through facets. Bodies have no vertex in common.
 template <int dim>
 struct Body
 {
-  RigidModes<dim> modes;              ///< about the mean of the vertices, scaled by the farthest of them
-  std::vector<int> regions;           ///< ascending
-  std::vector<Index> nodes;           ///< of the space
-  std::vector<BoundaryFacet> facets;  ///< its part of the boundary
-  std::vector<std::size_t> numbers;   ///< of these facets in Mesh::boundary()
+  RigidModes<dim> modes;     ///< about the mean of the vertices, scaled by the farthest of them
+  std::vector<int> regions;  ///< ascending
+  std::vector<Index> nodes;  ///< of the space
+  std::vector<mesh::BoundaryFacet> facets;  ///< its part of the boundary
+  std::vector<std::size_t> numbers;         ///< of these facets in Mesh::boundary()
   std::vector<Index> cells;
 };
 
 /// All bodies, by ascending number of their first cell.
 template <int dim>
-[[nodiscard]] std::vector<Body<dim>> find_bodies(const LagrangeSpace<dim>& space);
+[[nodiscard]] std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space);
 
 /// `the body (region "steel")`; where there are several, `the body around (0.5, 1) (region "steel")`.
 template <int dim>
-[[nodiscard]] std::string describe(const Body<dim>& body, const Problem<dim>& problem, bool several);
+[[nodiscard]] std::string describe(const Body<dim>& body, const problem::Problem<dim>& problem, bool several);
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -6,7 +6,7 @@
 #include <map>
 #include <variant>
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -34,10 +34,10 @@ bool better(const Candidate& a, const Candidate& b)
 
 }  // namespace
 
-bool has_friction(const FrictionLaw& law)
+bool has_friction(const case_file::FrictionLaw& law)
 {
-  if (const auto* tresca = std::get_if<Tresca>(&law)) return !tresca->threshold.is_zero();
-  if (const auto* coulomb = std::get_if<Coulomb>(&law)) return coulomb->coefficient > 0;
+  if (const auto* tresca = std::get_if<case_file::Tresca>(&law)) return !tresca->threshold.is_zero();
+  if (const auto* coulomb = std::get_if<case_file::Coulomb>(&law)) return coulomb->coefficient > 0;
   return false;
 }
 
@@ -52,7 +52,7 @@ Eigen::MatrixXd BodySupport<dim>::dirichlet_gram() const
   constexpr int n = RigidModes<dim>::n_modes;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
   for_each_facet_vertex(
-      [&](const BoundaryCondition<dim>& condition, const Point<dim>&, const Point<dim>& x)
+      [&](const problem::BoundaryCondition<dim>& condition, const Point<dim>&, const Point<dim>& x)
       {
         const auto z = body_.modes.at(x);
         for (int a = 0; a < dim; ++a)
@@ -67,7 +67,7 @@ Eigen::MatrixXd BodySupport<dim>::contact_gram(bool with_friction) const
   constexpr int n_modes = RigidModes<dim>::n_modes;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_modes, n_modes);
   for_each_facet_vertex(
-      [&](const BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
+      [&](const problem::BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
       {
         if (!condition.contact) return;
         const auto z = body_.modes.at(x);
@@ -99,12 +99,12 @@ std::optional<Remedy> BodySupport<dim>::remedy(const Coefficients& motion) const
 {
   constexpr double negligible = 1e-12;
   std::map<std::pair<int, int>, Candidate> candidates;  // by boundary and component
-  for (const BoundaryFacet& facet : body_.facets)
+  for (const mesh::BoundaryFacet& facet : body_.facets)
   {
-    const BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
     if (facet.tag < 0 || condition.contact) continue;
-    const FacetGeometry<dim> geometry = facet_geometry(mesh_, facet.cell, facet.local);
-    for (const Index v : facet_vertices(mesh_.cell(facet.cell), facet.local))
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh_, facet.cell, facet.local);
+    for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
     {
       const Point<dim> z = body_.modes.at(mesh_.vertex(v)) * motion;
       for (int c = 0; c < dim; ++c)
@@ -133,4 +133,4 @@ std::optional<Remedy> BodySupport<dim>::remedy(const Coefficients& motion) const
 template class BodySupport<2>;
 template class BodySupport<3>;
 
-}  // namespace tribound
+}  // namespace tribound::contact

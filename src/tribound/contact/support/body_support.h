@@ -13,11 +13,11 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// Whether the law can resist sliding at all.
-[[nodiscard]] bool has_friction(const FrictionLaw& law);
+[[nodiscard]] bool has_friction(const case_file::FrictionLaw& law);
 
 /// A displacement component of a boundary that a motion changes, and that may be fixed to stop it.
 struct Remedy
@@ -38,7 +38,7 @@ class BodySupport
  public:
   using Coefficients = typename RigidModes<dim>::Coefficients;
 
-  BodySupport(const Problem<dim>& problem, const Mesh<dim>& mesh, const Body<dim>& body)
+  BodySupport(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, const Body<dim>& body)
       : problem_(problem), mesh_(mesh), body_(body)
   {
   }
@@ -64,8 +64,8 @@ class BodySupport
   [[nodiscard]] std::optional<Remedy> remedy(const Coefficients& motion) const;
 
  private:
-  const Problem<dim>& problem_;
-  const Mesh<dim>& mesh_;
+  const problem::Problem<dim>& problem_;
+  const mesh::Mesh<dim>& mesh_;
   const Body<dim>& body_;
 };
 
@@ -73,14 +73,14 @@ template <int dim>
 template <class Visit>
 void BodySupport<dim>::for_each_facet_vertex(Visit visit) const
 {
-  for (const BoundaryFacet& facet : body_.facets)
+  for (const mesh::BoundaryFacet& facet : body_.facets)
   {
-    const BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
+    const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
     if (!condition.contact && !condition.fixes_any()) continue;
-    const Point<dim> n = facet_geometry(mesh_, facet.cell, facet.local).normal;
-    for (const Index v : facet_vertices(mesh_.cell(facet.cell), facet.local))
+    const Point<dim> n = mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
+    for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
       visit(condition, n, mesh_.vertex(v));
   }
 }
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <vector>
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -84,4 +84,4 @@ Eigen::VectorXd remainder_outside_cone(const Eigen::MatrixXd& columns, const Eig
   return r;
 }
 
-}  // namespace tribound
+}  // namespace tribound::contact

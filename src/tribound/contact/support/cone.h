@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// b - C x for the x >= 0 that minimises |b - C x|: what is left of b after its projection on the cone of the
@@ -15,4 +15,4 @@ namespace tribound
 [[nodiscard]] Eigen::VectorXd remainder_outside_cone(const Eigen::MatrixXd& columns,
                                                      const Eigen::VectorXd& b);
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -9,7 +9,7 @@
 
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -75,7 +75,7 @@ auto RigidModes<dim>::at(const Point<dim>& x) const -> ModeMatrix
   if constexpr (dim == 2)
     m.col(2) = turned(arm);
   else
-    for (int a = 0; a < 3; ++a) m.col(3 + a) = cross(Point<3>::Unit(a), arm);
+    for (int a = 0; a < 3; ++a) m.col(3 + a) = mesh::cross(Point<3>::Unit(a), arm);
   return m;
 }
 
@@ -92,7 +92,7 @@ std::string RigidModes<dim>::describe(const Coefficients& motion) const
     return fmt::format("rotation about {}", in_words<2>(centre + size / w[0] * turned(t), scale));
   else
   {
-    const Point<3> foot = centre + size / w.squaredNorm() * cross(w, t);
+    const Point<3> foot = centre + size / w.squaredNorm() * mesh::cross(w, t);
     const std::string axis = fmt::format("about the axis through {} along {}", in_words<3>(foot, scale),
                                          in_words<3>(w.normalized(), 1));
     const bool advances = std::abs(t.dot(w)) > negligible * (t.squaredNorm() + w.squaredNorm());
@@ -134,4 +134,4 @@ template struct RigidModes<3>;
 template std::vector<RigidModes<2>::Coefficients> readable_basis<2>(const MotionBasis&);
 template std::vector<RigidModes<3>::Coefficients> readable_basis<3>(const MotionBasis&);
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -9,7 +9,7 @@
 
 #include "tribound/base/types.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// The rigid motions z(x) = t + w x (x - centre) / size of a body (2D: w turns in the plane), so that all
@@ -43,4 +43,4 @@ using MotionBasis = Eigen::MatrixXd;
 template <int dim>
 [[nodiscard]] std::vector<typename RigidModes<dim>::Coefficients> readable_basis(const MotionBasis& motions);
 
-}  // namespace tribound
+}  // namespace tribound::contact

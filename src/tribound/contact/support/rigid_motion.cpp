@@ -14,7 +14,7 @@
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 namespace
@@ -34,8 +34,8 @@ std::vector<Point<dim>> tangents(const Point<dim>& n)
   {
     Eigen::Index smallest = 0;
     n.cwiseAbs().minCoeff(&smallest);
-    const Point<3> first = cross(n, Point<3>::Unit(smallest)).normalized();
-    const Point<3> second = cross(n, first);
+    const Point<3> first = mesh::cross(n, Point<3>::Unit(smallest)).normalized();
+    const Point<3> second = mesh::cross(n, first);
     for (int i = 0; i < 8; ++i)
       directions.push_back(std::cos(i * std::numbers::pi / 4) * first +
                            std::sin(i * std::numbers::pi / 4) * second);
@@ -53,9 +53,9 @@ enum class ConeFriction
 
 /// The rule on the halves (2D) or quarters (3D) of the facet.
 template <int k>
-Quadrature<k> on_halves(const Quadrature<k>& rule)
+fem::Quadrature<k> on_halves(const fem::Quadrature<k>& rule)
 {
-  Quadrature<k> result;
+  fem::Quadrature<k> result;
   const auto add = [&](const Point<k>& origin, double scale)
   {
     for (int q = 0; q < rule.size(); ++q)
@@ -83,7 +83,7 @@ template <int dim>
 class BodyCheck
 {
  public:
-  BodyCheck(const Problem<dim>& problem, const Mesh<dim>& mesh, const DiscreteData<dim>& data,
+  BodyCheck(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, const DiscreteData<dim>& data,
             const Body<dim>& body, std::string name)
       : problem_(problem),
         mesh_(mesh),
@@ -103,7 +103,7 @@ class BodyCheck
   /// The work in each motion of the contact forces, one column for each generator of their cone.
   [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, ConeFriction friction) const;
   [[nodiscard]] FrictionWork tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
-                                         const Quadrature<dim - 1>& rule) const;
+                                         const fem::Quadrature<dim - 1>& rule) const;
   /// What the work of the loads in a motion may miss.
   [[nodiscard]] double missed_work(const Coefficients<dim>& motion) const;
   /// A motion in which the loads do more work than Tresca friction can take up, and contact and Coulomb
@@ -115,8 +115,8 @@ class BodyCheck
   [[nodiscard]] std::string hint(std::span<const Coefficients<dim>> free) const;
   [[noreturn]] void fail(const Coefficients<dim>& motion, const std::string& reason) const;
 
-  const Problem<dim>& problem_;
-  const Mesh<dim>& mesh_;
+  const problem::Problem<dim>& problem_;
+  const mesh::Mesh<dim>& mesh_;
   const DiscreteData<dim>& data_;
   const Body<dim>& body_;
   BodySupport<dim> support_;
@@ -131,7 +131,7 @@ std::string BodyCheck<dim>::hint(std::span<const Coefficients<dim>> free) const
     if (const std::optional<Remedy> remedy = support_.remedy(z))
       if (const std::string words = describe(*remedy); std::ranges::find(remedies, words) == remedies.end())
         remedies.push_back(words);
-  const auto has_smooth_contact = [&](const BoundaryFacet& facet)
+  const auto has_smooth_contact = [&](const mesh::BoundaryFacet& facet)
   {
     const auto& contact = problem_.boundary(facet.tag).contact;
     return contact && !has_friction(contact->friction);
@@ -170,13 +170,13 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFri
     if (work.norm() > 1e-12) generators.push_back(work.normalized());
   };
   support_.for_each_facet_vertex(
-      [&](const BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
+      [&](const problem::BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
       {
         if (!condition.contact) return;
-        const FrictionLaw& law = condition.contact->friction;
+        const case_file::FrictionLaw& law = condition.contact->friction;
         add(n, x);
         if (!has_friction(law)) return;
-        const auto* coulomb = std::get_if<Coulomb>(&law);
+        const auto* coulomb = std::get_if<case_file::Coulomb>(&law);
         if (!coulomb && friction == ConeFriction::no_tresca) return;
         const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
         for (const Point<dim>& t : tangents<dim>(n))
@@ -193,35 +193,35 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFri
 /// On the parts of the facets on which the rule integrates s; |z^t| is convex, the largest at a vertex.
 template <int dim>
 FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
-                                         const Quadrature<dim - 1>& rule) const
+                                         const fem::Quadrature<dim - 1>& rule) const
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
-  const ContactDatumPart<dim> whole{reference_simplex<dim - 1>(), 0, 0};
+  const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
   for (std::size_t k = 0; k < body_.facets.size(); ++k)
   {
-    const BoundaryFacet& facet = body_.facets[k];
+    const mesh::BoundaryFacet& facet = body_.facets[k];
     const auto& contact = problem_.boundary(facet.tag).contact;
-    const auto* tresca = contact ? std::get_if<Tresca>(&contact->friction) : nullptr;
+    const auto* tresca = contact ? std::get_if<case_file::Tresca>(&contact->friction) : nullptr;
     if (!tresca) continue;
-    const FacetMap<dim> map = facet_map(mesh_, facet.cell, facet.local);
-    const FacetGeometry<dim> geometry = facet_geometry(mesh_, facet.cell, facet.local);
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh_, facet.cell, facet.local);
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh_, facet.cell, facet.local);
     const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
     { return z_x - z_x.dot(geometry.normal) * geometry.normal; };
     const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(body_.numbers[k]);
     for (const auto& [part, gap, threshold] : parts.empty() ? std::span(&whole, 1) : parts)
     {
-      const double measure = geometry.measure * fraction<dim - 1>(part);
+      const double measure = geometry.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
       for (const Point<dim - 1>& s : part)
         largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
       result.missed += 2 * threshold * measure * largest;
       for (int q = 0; q < rule.size(); ++q)
       {
-        const Point<dim> x = map(point_in<dim - 1>(part, rule.points[q]));
+        const Point<dim> x = map(fem::point_in<dim - 1>(part, rule.points[q]));
         const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
         const Point<dim> z_t = tangential(at_x * z);
         if (z_t.norm() <= 1e-12 * z.norm()) continue;
-        const double force = measure * (dim - 1) * rule.weights[q] * threshold_at<dim>(*tresca, x);
+        const double force = measure * (dim - 1) * rule.weights[q] * problem::threshold_at<dim>(*tresca, x);
         result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
         result.most += force * z_t.norm();
       }
@@ -247,7 +247,7 @@ double BodyCheck<dim>::missed_work(const Coefficients<dim>& motion) const
     if (const double mean = data_.body_remainder(c).mean; mean > 0) missed += mean * largest(mesh_.cell(c));
   for (std::size_t k = 0; k < body_.facets.size(); ++k)
     if (const double mean = data_.traction_remainder(body_.numbers[k]).mean; mean > 0)
-      missed += mean * largest(facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
+      missed += mean * largest(mesh::facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
   return std::sqrt(dim) * missed;  // by components
 }
 
@@ -293,8 +293,8 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
 template <int dim>
 void BodyCheck<dim>::fail(const Coefficients<dim>& motion, const std::string& reason) const
 {
-  const auto facet = std::ranges::find_if(
-      body_.facets, [&](const BoundaryFacet& f) { return problem_.boundary(f.tag).contact.has_value(); });
+  const auto facet = std::ranges::find_if(body_.facets, [&](const mesh::BoundaryFacet& f)
+                                          { return problem_.boundary(f.tag).contact.has_value(); });
   throw InputError(problem_.boundary(facet->tag).where,
                    fmt::format("contact cannot hold {}: the loads drive it into {}; {}", name_,
                                body_.modes.describe(motion), reason),
@@ -341,7 +341,7 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
 }  // namespace
 
 template <int dim>
-void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          const DiscreteData<dim>& data, std::span<const double> load)
 {
   constexpr double relative_round_off = 1e-11;
@@ -364,9 +364,9 @@ void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& 
   }
 }
 
-template void check_rigid_motions(const Problem<2>&, const LagrangeSpace<2>&, const DiscreteData<2>&,
-                                  std::span<const double>);
-template void check_rigid_motions(const Problem<3>&, const LagrangeSpace<3>&, const DiscreteData<3>&,
-                                  std::span<const double>);
+template void check_rigid_motions(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                  const DiscreteData<2>&, std::span<const double>);
+template void check_rigid_motions(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                  const DiscreteData<3>&, std::span<const double>);
 
-}  // namespace tribound
+}  // namespace tribound::contact

@@ -10,7 +10,7 @@
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::contact
 {
 
 /// Throws InputError naming the body and the motion when a part of the mesh that is connected through facets
@@ -26,7 +26,7 @@ namespace tribound
 /// Bodies that displacement conditions hold by themselves pass at once.
 /// `load`: L(phi_i) for every degree of freedom, up to the remainders of the data.
 template <int dim>
-void check_rigid_motions(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          const DiscreteData<dim>& data, std::span<const double> load);
 
-}  // namespace tribound
+}  // namespace tribound::contact

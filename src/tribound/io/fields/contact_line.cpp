@@ -9,7 +9,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/csv.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -21,7 +21,8 @@ using Chain = std::vector<ChainLink>;
 class FacetGraph
 {
  public:
-  FacetGraph(const NitscheForm<2>& form, int tag) : form_(form), visited_(form.contact_facets().size(), 0)
+  FacetGraph(const contact::NitscheForm<2>& form, int tag)
+      : form_(form), visited_(form.contact_facets().size(), 0)
   {
     for (int k = 0; k < static_cast<int>(visited_.size()); ++k)
       if (form.contact_facets()[k].facet.tag == tag)
@@ -50,8 +51,8 @@ class FacetGraph
   /// The vertices of a facet along its reference coordinate.
   [[nodiscard]] std::array<Index, 2> ends(int facet) const
   {
-    const BoundaryFacet& f = form_.contact_facets()[facet].facet;
-    const Cell<2>& cell = form_.space().mesh().cell(f.cell);
+    const mesh::BoundaryFacet& f = form_.contact_facets()[facet].facet;
+    const mesh::Cell<2>& cell = form_.space().mesh().cell(f.cell);
     return {cell[f.local == 0 ? 1 : 0], cell[f.local == 2 ? 1 : 2]};
   }
 
@@ -83,7 +84,7 @@ class FacetGraph
     }
   }
 
-  const NitscheForm<2>& form_;
+  const contact::NitscheForm<2>& form_;
   std::vector<char> visited_;
   std::map<Index, std::vector<int>> facets_at_;
 };
@@ -108,11 +109,11 @@ void add_point(CsvTable& table, const Point<dim>& x, double round_off = 0)
 template <int dim>
 struct Rows
 {
-  Rows(const NitscheForm<dim>& f, std::span<const double> displacement, int number)
+  Rows(const contact::NitscheForm<dim>& f, std::span<const double> displacement, int number)
       : form(f),
         u(displacement),
         level(number),
-        at_rule(tabulate_on_facets<dim>(f.space().basis(), f.facet_rule().points))
+        at_rule(fem::tabulate_on_facets<dim>(f.space().basis(), f.facet_rule().points))
   {
     double size = 0;
     for (const Point<dim>& x : f.space().mesh().vertices()) size = std::max(size, x.cwiseAbs().maxCoeff());
@@ -120,9 +121,10 @@ struct Rows
   }
 
   /// `arc` is absent in 3D.
-  void add(CsvTable& table, int facet, int q, const ContactState<dim>& state, const double* arc) const
+  void add(CsvTable& table, int facet, int q, const contact::ContactState<dim>& state,
+           const double* arc) const
   {
-    const ContactFacet<dim>& contact = form.contact_facets()[facet];
+    const contact::ContactFacet<dim>& contact = form.contact_facets()[facet];
     table.add(form.problem().boundary(contact.facet.tag).name);
     table.add(facet);
     add_point<dim>(table, state.point, round_off);
@@ -140,16 +142,16 @@ struct Rows
   }
 
   static constexpr double relative_round_off = 1e-14;
-  const NitscheForm<dim>& form;
+  const contact::NitscheForm<dim>& form;
   std::span<const double> u;
   int level;
-  FacetTabulation<dim> at_rule;
+  fem::FacetTabulation<dim> at_rule;
   double round_off = 0;  ///< of coordinates
 };
 
 void add_chains(CsvTable& table, const Rows<2>& rows, int tag)
 {
-  const Quadrature<1>& rule = rows.form.facet_rule();
+  const fem::Quadrature<1>& rule = rows.form.facet_rule();
   std::vector<int> along(rule.size());
   for (int q = 0; q < rule.size(); ++q) along[q] = q;
   std::ranges::sort(along, {}, [&rule](int q) { return rule.points[q][0]; });
@@ -181,7 +183,7 @@ void add_facets(CsvTable& table, const Rows<3>& rows, int tag)
 
 }  // namespace
 
-std::vector<ChainLink> contact_chains(const NitscheForm<2>& form, int tag)
+std::vector<ChainLink> contact_chains(const contact::NitscheForm<2>& form, int tag)
 {
   std::vector<ChainLink> links;
   double arc = 0.0;
@@ -196,7 +198,7 @@ std::vector<ChainLink> contact_chains(const NitscheForm<2>& form, int tag)
 }
 
 template <int dim>
-std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level)
+std::string contact_csv(const contact::NitscheForm<dim>& form, std::span<const double> u, int level)
 {
   CsvTable table(columns<dim>());
   const Rows<dim> rows(form, u, level);
@@ -212,17 +214,17 @@ std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u,
 }
 
 template <int dim>
-void write_contact_csv(const std::filesystem::path& path, const NitscheForm<dim>& form,
+void write_contact_csv(const std::filesystem::path& path, const contact::NitscheForm<dim>& form,
                        std::span<const double> u, int level)
 {
   write_file(path, contact_csv(form, u, level));
 }
 
-template std::string contact_csv(const NitscheForm<2>&, std::span<const double>, int);
-template std::string contact_csv(const NitscheForm<3>&, std::span<const double>, int);
-template void write_contact_csv(const std::filesystem::path&, const NitscheForm<2>&, std::span<const double>,
-                                int);
-template void write_contact_csv(const std::filesystem::path&, const NitscheForm<3>&, std::span<const double>,
-                                int);
+template std::string contact_csv(const contact::NitscheForm<2>&, std::span<const double>, int);
+template std::string contact_csv(const contact::NitscheForm<3>&, std::span<const double>, int);
+template void write_contact_csv(const std::filesystem::path&, const contact::NitscheForm<2>&,
+                                std::span<const double>, int);
+template void write_contact_csv(const std::filesystem::path&, const contact::NitscheForm<3>&,
+                                std::span<const double>, int);
 
-}  // namespace tribound
+}  // namespace tribound::io

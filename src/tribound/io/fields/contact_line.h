@@ -10,7 +10,7 @@
 
 #include "tribound/contact/nitsche/nitsche.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 /// A contact facet as a stretch of a chain.
@@ -24,7 +24,7 @@ struct ChainLink
 /// The contact facets of boundary group `tag` in 2D, joined end to end. A chain starts at its end with the
 /// smallest x (then y), a closed one at its vertex with the smallest x (then y), and chains follow each other
 /// by their starting points; the arc length runs on from one chain to the next.
-[[nodiscard]] std::vector<ChainLink> contact_chains(const NitscheForm<2>& form, int tag);
+[[nodiscard]] std::vector<ChainLink> contact_chains(const contact::NitscheForm<2>& form, int tag);
 
 /// contact.csv: one row per quadrature point of form.facet_rule(), sorted along each boundary in 2D, facet by
 /// facet in 3D. Columns: boundary,facet,x,y[,z],nx,ny[,nz][,arc],pressure,traction_x,traction_y[,traction_z],
@@ -32,11 +32,12 @@ struct ChainLink
 /// sum of weight times a column is its integral over the boundary as the program takes it. Coordinates and
 /// components of normals that are rounding are 0.
 template <int dim>
-[[nodiscard]] std::string contact_csv(const NitscheForm<dim>& form, std::span<const double> u, int level);
+[[nodiscard]] std::string contact_csv(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                      int level);
 
 /// Writes contact_csv() to `path`. Throws WriteError when the file cannot be written.
 template <int dim>
-void write_contact_csv(const std::filesystem::path& path, const NitscheForm<dim>& form,
+void write_contact_csv(const std::filesystem::path& path, const contact::NitscheForm<dim>& form,
                        std::span<const double> u, int level);
 
-}  // namespace tribound
+}  // namespace tribound::io

@@ -3,7 +3,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -104,7 +104,7 @@ std::vector<Point<k>> vtk_points(int degree)
 }
 
 template <int k>
-std::vector<int> vtk_order(const LagrangeBasis<k>& basis)
+std::vector<int> vtk_order(const fem::LagrangeBasis<k>& basis)
 {
   std::vector<int> order;
   for (const auto& node : vtk_nodes<k>(basis.degree()))
@@ -123,8 +123,8 @@ template std::vector<std::array<int, 4>> vtk_nodes<3>(int);
 template std::vector<Point<1>> vtk_points<1>(int);
 template std::vector<Point<2>> vtk_points<2>(int);
 template std::vector<Point<3>> vtk_points<3>(int);
-template std::vector<int> vtk_order(const LagrangeBasis<1>&);
-template std::vector<int> vtk_order(const LagrangeBasis<2>&);
-template std::vector<int> vtk_order(const LagrangeBasis<3>&);
+template std::vector<int> vtk_order(const fem::LagrangeBasis<1>&);
+template std::vector<int> vtk_order(const fem::LagrangeBasis<2>&);
+template std::vector<int> vtk_order(const fem::LagrangeBasis<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::io

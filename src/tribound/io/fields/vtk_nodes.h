@@ -10,7 +10,7 @@
 #include "tribound/base/types.h"
 #include "tribound/fem/lagrange.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 /// VTK's cell type of the Lagrange k-simplex: curve, triangle, tetrahedron.
@@ -30,6 +30,6 @@ template <int k>
 
 /// For every node in VTK's order its number in `basis`.
 template <int k>
-[[nodiscard]] std::vector<int> vtk_order(const LagrangeBasis<k>& basis);
+[[nodiscard]] std::vector<int> vtk_order(const fem::LagrangeBasis<k>& basis);
 
-}  // namespace tribound
+}  // namespace tribound::io

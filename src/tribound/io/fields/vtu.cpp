@@ -18,7 +18,7 @@
 #include "tribound/io/file/vtu_file.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -28,8 +28,8 @@ namespace
 template <int dim>
 struct Level
 {
-  const Problem<dim>& problem;
-  const LagrangeSpace<dim>& space;
+  const problem::Problem<dim>& problem;
+  const fem::LagrangeSpace<dim>& space;
   std::span<const double> u;
   std::vector<int> order = vtk_order<dim>(space.basis());
   std::vector<Point<dim>> points = vtk_points<dim>(space.degree());
@@ -56,7 +56,7 @@ struct Level
                              {
                                for (Index c = 0; c < n_cells(); ++c)
                                {
-                                 const CellMap<dim> map = cell_map(space.mesh(), c);
+                                 const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), c);
                                  for (const Point<dim>& xhat : points) put_vector<dim>(put, map(xhat));
                                }
                              });
@@ -138,9 +138,9 @@ bool is_series_file(std::string_view name)
 
 }  // namespace
 
-double out_of_plane_ratio(const Material& material)
+double out_of_plane_ratio(const problem::Material& material)
 {
-  if (material.plane == PlaneModel::stress) return 0.0;
+  if (material.plane == case_file::PlaneModel::stress) return 0.0;
   return material.lambda / (2.0 * (material.lambda + material.mu));
 }
 
@@ -173,26 +173,28 @@ std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma)
 }
 
 template <int dim>
-TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
+TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                               std::span<const double> u)
 {
   const auto tabulation =
-      std::make_shared<const Tabulation<dim>>(space.basis().tabulate(space.basis().node_points()));
+      std::make_shared<const fem::Tabulation<dim>>(space.basis().tabulate(space.basis().node_points()));
   return {"stress", [&problem, &space, u, tabulation](Index cell, std::span<Tensor<dim>> values)
           {
-            const Material& material = problem.material(space.mesh().region(cell));
-            const CellMap<dim> map = cell_map(space.mesh(), cell);
+            const problem::Material& material = problem.material(space.mesh().region(cell));
+            const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
             for (int i = 0; i < tabulation->n_points; ++i)
-              values[i] =
-                  sigma<dim>(material, gradient_at<dim>(space.cell_nodes(cell), u,
-                                                        tabulation->gradients_at(i), map.inverse_transpose));
+              values[i] = contact::sigma<dim>(
+                  material, contact::gradient_at<dim>(space.cell_nodes(cell), u, tabulation->gradients_at(i),
+                                                      map.inverse_transpose));
           }};
 }
 
 template <int dim>
-TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space, const Stress<dim>& stress)
+TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
+                                           const certify::Stress<dim>& stress)
 {
-  const auto table = std::make_shared<const FrameTable<dim>>(stress.degree, space.basis().node_points());
+  const auto table =
+      std::make_shared<const certify::FrameTable<dim>>(stress.degree, space.basis().node_points());
   const auto block = std::make_shared<std::vector<double>>(stress.block_size());
   const auto entries =
       std::make_shared<std::vector<double>>(static_cast<std::size_t>(dim) * dim * table->n_points());
@@ -202,7 +204,7 @@ TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space, cons
             std::ranges::copy(stress.dis_in(cell), block->begin());
             for (const std::span<const double> part : {stress.lin_in(cell), stress.reg_in(cell)})
               for (std::size_t i = 0; i < part.size(); ++i) (*block)[i] += part[i];
-            table->evaluate(make_frame(space.mesh(), cell), *block, *entries);
+            table->evaluate(certify::make_frame(space.mesh(), cell), *block, *entries);
             for (int i = 0; i < table->n_points(); ++i)
               for (int r = 0; r < dim; ++r)
                 for (int c = 0; c < dim; ++c)
@@ -211,8 +213,8 @@ TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space, cons
 }
 
 template <int dim>
-void write_level_vtu(const std::filesystem::path& path, int level, const Problem<dim>& problem,
-                     const LagrangeSpace<dim>& space, std::span<const double> u,
+void write_level_vtu(const std::filesystem::path& path, int level, const problem::Problem<dim>& problem,
+                     const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                      std::span<const CellField> cell_fields, std::span<const TensorField<dim>> tensors)
 {
   const Level<dim> data{problem, space, u};
@@ -274,14 +276,16 @@ void remove_series(const std::filesystem::path& directory)
 
 template std::array<double, 6> symmetric_part(const Tensor<2>&, double);
 template std::array<double, 6> symmetric_part(const Tensor<3>&, double);
-template TensorField<2> stress_field(const Problem<2>&, const LagrangeSpace<2>&, std::span<const double>);
-template TensorField<3> stress_field(const Problem<3>&, const LagrangeSpace<3>&, std::span<const double>);
-template TensorField<2> equilibrated_stress_field(const LagrangeSpace<2>&, const Stress<2>&);
-template TensorField<3> equilibrated_stress_field(const LagrangeSpace<3>&, const Stress<3>&);
-template void write_level_vtu(const std::filesystem::path&, int, const Problem<2>&, const LagrangeSpace<2>&,
-                              std::span<const double>, std::span<const CellField>,
-                              std::span<const TensorField<2>>);
-template void write_level_vtu(const std::filesystem::path&, int, const Problem<3>&, const LagrangeSpace<3>&,
-                              std::span<const double>, std::span<const CellField>,
-                              std::span<const TensorField<3>>);
-}  // namespace tribound
+template TensorField<2> stress_field(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                     std::span<const double>);
+template TensorField<3> stress_field(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                     std::span<const double>);
+template TensorField<2> equilibrated_stress_field(const fem::LagrangeSpace<2>&, const certify::Stress<2>&);
+template TensorField<3> equilibrated_stress_field(const fem::LagrangeSpace<3>&, const certify::Stress<3>&);
+template void write_level_vtu(const std::filesystem::path&, int, const problem::Problem<2>&,
+                              const fem::LagrangeSpace<2>&, std::span<const double>,
+                              std::span<const CellField>, std::span<const TensorField<2>>);
+template void write_level_vtu(const std::filesystem::path&, int, const problem::Problem<3>&,
+                              const fem::LagrangeSpace<3>&, std::span<const double>,
+                              std::span<const CellField>, std::span<const TensorField<3>>);
+}  // namespace tribound::io

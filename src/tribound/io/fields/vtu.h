@@ -17,7 +17,7 @@
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 /// One number per cell, such as an error component eta_*.
@@ -38,17 +38,17 @@ struct TensorField
 
 /// sigma(u_h) as a field. Keeps references to the arguments.
 template <int dim>
-[[nodiscard]] TensorField<dim> stress_field(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                                            std::span<const double> u);
+[[nodiscard]] TensorField<dim> stress_field(const problem::Problem<dim>& problem,
+                                            const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
 /// sigma_h = sigma_dis + sigma_lin as a field. Keeps references to the arguments.
 template <int dim>
-[[nodiscard]] TensorField<dim> equilibrated_stress_field(const LagrangeSpace<dim>& space,
-                                                         const Stress<dim>& stress);
+[[nodiscard]] TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
+                                                         const certify::Stress<dim>& stress);
 
 /// sigma_zz / (sigma_xx + sigma_yy) in 2D: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
 /// stress.
-[[nodiscard]] double out_of_plane_ratio(const Material& material);
+[[nodiscard]] double out_of_plane_ratio(const problem::Material& material);
 
 /// Symmetric part of s in VTK's order (xx, yy, zz, xy, yz, xz); `ratio`, see out_of_plane_ratio(), gives zz
 /// in 2D.
@@ -67,8 +67,8 @@ template <int dim>
 /// follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws WriteError when
 /// the file cannot be written.
 template <int dim>
-void write_level_vtu(const std::filesystem::path& path, int level, const Problem<dim>& problem,
-                     const LagrangeSpace<dim>& space, std::span<const double> u,
+void write_level_vtu(const std::filesystem::path& path, int level, const problem::Problem<dim>& problem,
+                     const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                      std::span<const CellField> cell_fields = {},
                      std::span<const TensorField<dim>> tensors = {});
 
@@ -77,7 +77,7 @@ void write_level_vtu(const std::filesystem::path& path, int level, const Problem
 /// 2 slip), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary group).
 /// Throws WriteError when the file cannot be written.
 template <int dim>
-void write_contact_vtu(const std::filesystem::path& path, int level, const NitscheForm<dim>& form,
+void write_contact_vtu(const std::filesystem::path& path, int level, const contact::NitscheForm<dim>& form,
                        std::span<const double> u);
 
 /// The name of a numbered file, such as "level_003.vtu".
@@ -91,4 +91,4 @@ void write_series(const std::filesystem::path& directory, int n_levels);
 /// three, and series.pvd. Other files stay. Throws InputError when one cannot be removed.
 void remove_series(const std::filesystem::path& directory);
 
-}  // namespace tribound
+}  // namespace tribound::io

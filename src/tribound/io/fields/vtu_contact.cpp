@@ -7,7 +7,7 @@
 #include "tribound/io/fields/vtk_nodes.h"
 #include "tribound/io/file/vtu_file.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -17,27 +17,27 @@ namespace
 template <int dim>
 struct ContactNode
 {
-  ContactState<dim> state;
+  contact::ContactState<dim> state;
   Point<dim> displacement;
 };
 
 /// The nodes of all contact facets, facet by facet in VTK's order.
 template <int dim>
-std::vector<ContactNode<dim>> contact_nodes(const NitscheForm<dim>& form, std::span<const double> u)
+std::vector<ContactNode<dim>> contact_nodes(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const LagrangeSpace<dim>& space = form.space();
-  const FacetTabulation<dim> table =
-      tabulate_on_facets<dim>(space.basis(), vtk_points<dim - 1>(space.degree()));
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const fem::FacetTabulation<dim> table =
+      fem::tabulate_on_facets<dim>(space.basis(), vtk_points<dim - 1>(space.degree()));
 
   std::vector<ContactNode<dim>> nodes;
   nodes.reserve(form.contact_facets().size() * table.points.size());
   for (int k = 0; k < static_cast<int>(form.contact_facets().size()); ++k)
   {
-    const BoundaryFacet& facet = form.contact_facets()[k].facet;
-    const std::vector<ContactState<dim>> states = form.contact_states(u, k, table);
+    const mesh::BoundaryFacet& facet = form.contact_facets()[k].facet;
+    const std::vector<contact::ContactState<dim>> states = form.contact_states(u, k, table);
     for (int q = 0; q < static_cast<int>(states.size()); ++q)
-      nodes.push_back({states[q], value_at<dim>(space.cell_nodes(facet.cell), u,
-                                                table.on_facet[facet.local].values_at(q))});
+      nodes.push_back({states[q], contact::value_at<dim>(space.cell_nodes(facet.cell), u,
+                                                         table.on_facet[facet.local].values_at(q))});
   }
   return nodes;
 }
@@ -57,7 +57,7 @@ VtuArray node_array(std::string name, int n_components, const std::vector<Contac
 }  // namespace
 
 template <int dim>
-void write_contact_vtu(const std::filesystem::path& path, int level, const NitscheForm<dim>& form,
+void write_contact_vtu(const std::filesystem::path& path, int level, const contact::NitscheForm<dim>& form,
                        std::span<const double> u)
 {
   using Node = ContactNode<dim>;
@@ -94,9 +94,9 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const Nitsc
   write_vtu(path, grid);
 }
 
-template void write_contact_vtu(const std::filesystem::path&, int, const NitscheForm<2>&,
+template void write_contact_vtu(const std::filesystem::path&, int, const contact::NitscheForm<2>&,
                                 std::span<const double>);
-template void write_contact_vtu(const std::filesystem::path&, int, const NitscheForm<3>&,
+template void write_contact_vtu(const std::filesystem::path&, int, const contact::NitscheForm<3>&,
                                 std::span<const double>);
 
-}  // namespace tribound
+}  // namespace tribound::io

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -112,4 +112,4 @@ void write_file(const std::filesystem::path& path, std::string_view text)
   file.commit();
 }
 
-}  // namespace tribound
+}  // namespace tribound::io

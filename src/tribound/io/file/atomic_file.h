@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace tribound
+namespace tribound::io
 {
 
 /// A file of results that cannot be written: a disk that is full, no permission. Exit code 2: what was
@@ -75,4 +75,4 @@ class AtomicFile
 /// Writes `text` to the file at `path`, completely or not at all. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace tribound
+}  // namespace tribound::io

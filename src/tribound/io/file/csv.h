@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace tribound
+namespace tribound::io
 {
 
 /// A text as it stands in a cell.
@@ -67,4 +67,4 @@ class CsvTable
   bool row_is_empty_ = true;
 };
 
-}  // namespace tribound
+}  // namespace tribound::io

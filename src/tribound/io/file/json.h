@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace tribound
+namespace tribound::io
 {
 
 /// Keys stay in the order in which they were added.
@@ -25,4 +25,4 @@ using Json = nlohmann::ordered_json;
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-}  // namespace tribound
+}  // namespace tribound::io

@@ -8,7 +8,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -165,4 +165,4 @@ void write_vtu(const std::filesystem::path& path, const VtuGrid& grid)
   VtuWriter(path).run(grid);
 }
 
-}  // namespace tribound
+}  // namespace tribound::io

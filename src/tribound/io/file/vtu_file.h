@@ -18,7 +18,7 @@
 #include "tribound/base/types.h"
 #include "tribound/io/file/atomic_file.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 /// The numbers of one array on their way into the file: collected into blocks, compressed, written.
@@ -111,4 +111,4 @@ struct VtuGrid
 /// be written.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
-}  // namespace tribound
+}  // namespace tribound::io

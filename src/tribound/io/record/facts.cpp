@@ -11,29 +11,29 @@
 #include "tribound/doctor/load_facts.h"
 #include "tribound/mesh/geometry.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
 {
 
 /// A datum in words: its value where it is constant, else "varies".
-std::string text(const Expression& expression)
+std::string text(const problem::Expression& expression)
 {
   return expression.is_constant() ? fmt::format("{:.6g}", expression(Point<2>::Zero().eval())) : "varies";
 }
 
-std::string text(const FrictionLaw& law)
+std::string text(const case_file::FrictionLaw& law)
 {
-  if (const auto* tresca = std::get_if<Tresca>(&law))
+  if (const auto* tresca = std::get_if<case_file::Tresca>(&law))
     return fmt::format("Tresca friction, threshold {}", text(tresca->threshold));
-  if (const auto* coulomb = std::get_if<Coulomb>(&law))
+  if (const auto* coulomb = std::get_if<case_file::Coulomb>(&law))
     return fmt::format("Coulomb friction, coefficient {:.6g}", coulomb->coefficient);
   return "no friction";
 }
 
 template <int dim>
-std::vector<RegionFacts> region_facts(const Problem<dim>& problem, const Mesh<dim>& mesh)
+std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   std::vector<RegionFacts> regions;
   for (std::size_t r = 0; r < mesh.region_names().size(); ++r)
@@ -42,23 +42,23 @@ std::vector<RegionFacts> region_facts(const Problem<dim>& problem, const Mesh<di
   {
     RegionFacts& region = regions[mesh.region(c)];
     ++region.cells;
-    region.measure += cell_map(mesh, c).det / (dim == 2 ? 2.0 : 6.0);
+    region.measure += mesh::cell_map(mesh, c).det / (dim == 2 ? 2.0 : 6.0);
   }
   return regions;
 }
 
 template <int dim>
-std::vector<BoundaryFacts> boundary_facts(const Problem<dim>& problem, const Mesh<dim>& mesh)
+std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   std::vector<BoundaryFacts> boundaries;
-  for (const BoundaryCondition<dim>& condition : problem.boundaries())
+  for (const problem::BoundaryCondition<dim>& condition : problem.boundaries())
     boundaries.push_back({condition.name, 0, 0.0, describe(condition)});
   BoundaryFacts unnamed{"(no group)", 0, 0.0, describe(problem.boundary(-1))};
-  for (const BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     BoundaryFacts& boundary = facet.tag < 0 ? unnamed : boundaries[facet.tag];
     ++boundary.facets;
-    boundary.measure += facet_geometry(mesh, facet.cell, facet.local).measure;
+    boundary.measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
   if (unnamed.facets > 0) boundaries.push_back(unnamed);
   return boundaries;
@@ -66,21 +66,22 @@ std::vector<BoundaryFacts> boundary_facts(const Problem<dim>& problem, const Mes
 
 }  // namespace
 
-CaseFacts case_facts(const Config& config, int dimension)
+CaseFacts case_facts(const case_file::Config& config, int dimension)
 {
-  return {config.title, config.file, dimension, config.degree, friction_name(config), config.gamma0()};
+  return {config.title,   config.file, dimension, config.degree, case_file::friction_name(config),
+          config.gamma0()};
 }
 
-std::string describe(const Material& material, int dimension)
+std::string describe(const problem::Material& material, int dimension)
 {
-  const auto [E, nu] = elastic_constants(material, dimension);
-  const bool plane_stress = material.plane == PlaneModel::stress;
+  const auto [E, nu] = doctor::elastic_constants(material, dimension);
+  const bool plane_stress = material.plane == case_file::PlaneModel::stress;
   const char* model = dimension == 3 ? "" : plane_stress ? ", plane stress" : ", plane strain";
   return fmt::format("E = {:.6g}, nu = {:.6g}{}", E, nu, model);
 }
 
 template <int dim>
-std::string describe(const BoundaryCondition<dim>& condition)
+std::string describe(const problem::BoundaryCondition<dim>& condition)
 {
   std::string words;
   const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
@@ -93,7 +94,7 @@ std::string describe(const BoundaryCondition<dim>& condition)
   if (condition.fixes_any())
     add("displacement " +
         vector([&](int i) { return condition.fixes(i) ? text(*condition.displacement[i]) : "free"; }));
-  if (std::ranges::any_of(condition.traction, [](const Expression& t) { return !t.is_zero(); }))
+  if (std::ranges::any_of(condition.traction, [](const problem::Expression& t) { return !t.is_zero(); }))
     add("traction " + vector([&](int i) { return text(condition.traction[i]); }));
   if (condition.pressure) add("pressure " + text(*condition.pressure));
   if (condition.contact)
@@ -102,10 +103,10 @@ std::string describe(const BoundaryCondition<dim>& condition)
 }
 
 template <int dim>
-MeshFacts mesh_facts(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                     const Constraints& constraints)
+MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                     const fem::Constraints& constraints)
 {
-  const Mesh<dim>& mesh = space.mesh();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   MeshFacts facts;
   facts.vertices = mesh.n_vertices();
   facts.cells = mesh.n_cells();
@@ -113,7 +114,7 @@ MeshFacts mesh_facts(const Problem<dim>& problem, const LagrangeSpace<dim>& spac
   facts.smallest_cell = std::numeric_limits<double>::infinity();
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    const double h = cell_diameter(mesh, c);
+    const double h = mesh::cell_diameter(mesh, c);
     facts.smallest_cell = std::min(facts.smallest_cell, h);
     facts.largest_cell = std::max(facts.largest_cell, h);
   }
@@ -131,9 +132,11 @@ BuildFacts build_facts()
   return facts;
 }
 
-template std::string describe(const BoundaryCondition<2>&);
-template std::string describe(const BoundaryCondition<3>&);
-template MeshFacts mesh_facts(const Problem<2>&, const LagrangeSpace<2>&, const Constraints&);
-template MeshFacts mesh_facts(const Problem<3>&, const LagrangeSpace<3>&, const Constraints&);
+template std::string describe(const problem::BoundaryCondition<2>&);
+template std::string describe(const problem::BoundaryCondition<3>&);
+template MeshFacts mesh_facts(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                              const fem::Constraints&);
+template MeshFacts mesh_facts(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                              const fem::Constraints&);
 
-}  // namespace tribound
+}  // namespace tribound::io

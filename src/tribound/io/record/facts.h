@@ -9,7 +9,7 @@
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 struct CaseFacts
@@ -65,21 +65,21 @@ struct BuildFacts
   std::string report_page;  ///< path of its template; empty where there is none
 };
 
-[[nodiscard]] CaseFacts case_facts(const Config& config, int dimension);
+[[nodiscard]] CaseFacts case_facts(const case_file::Config& config, int dimension);
 
 /// The mesh of `space` with what `problem` says about its parts.
 template <int dim>
-[[nodiscard]] MeshFacts mesh_facts(const Problem<dim>& problem, const LagrangeSpace<dim>& space,
-                                   const Constraints& constraints);
+[[nodiscard]] MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                   const fem::Constraints& constraints);
 
 /// Version, compiler and Eigen; the libraries that io does not know are left to the caller.
 [[nodiscard]] BuildFacts build_facts();
 
 /// "lambda = ..., mu = ..." in terms of E and nu, with the plane model in 2D.
-[[nodiscard]] std::string describe(const Material& material, int dimension);
+[[nodiscard]] std::string describe(const problem::Material& material, int dimension);
 
 /// What holds on a part of the boundary, in words.
 template <int dim>
-[[nodiscard]] std::string describe(const BoundaryCondition<dim>& condition);
+[[nodiscard]] std::string describe(const problem::BoundaryCondition<dim>& condition);
 
-}  // namespace tribound
+}  // namespace tribound::io

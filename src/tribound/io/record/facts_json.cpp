@@ -2,7 +2,7 @@
 
 #include "tribound/base/sha256.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 Json program_json(const BuildFacts& build)
@@ -41,17 +41,17 @@ Json effective_case_json(const RunRecord& run)
           {"overrides", run.effective.overrides}};
 }
 
-Json balance_json(const Balance& balance)
+Json balance_json(const certify::Balance& balance)
 {
   Json object{{"about", balance.about}, {"rows", Json::array()}};
-  for (const BalanceRow& row : balance.rows)
-    object["rows"].push_back({{"kind", to_string(row.kind)},
+  for (const certify::BalanceRow& row : balance.rows)
+    object["rows"].push_back({{"kind", certify::to_string(row.kind)},
                               {"name", row.name},
                               {"source", row.source},
                               {"force", row.force},
                               {"moment", row.moment ? Json(*row.moment) : Json(nullptr)}});
-  object["note"] = text_or_null(moment_note(balance));
+  object["note"] = text_or_null(certify::moment_note(balance));
   return object;
 }
 
-}  // namespace tribound
+}  // namespace tribound::io

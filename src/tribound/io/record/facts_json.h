@@ -8,7 +8,7 @@
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/report.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 /// The `program` of certificate.json and study.json.
@@ -21,6 +21,6 @@ namespace tribound
 [[nodiscard]] Json effective_case_json(const RunRecord& run);
 
 /// `balance` of the certificate.
-[[nodiscard]] Json balance_json(const Balance& balance);
+[[nodiscard]] Json balance_json(const certify::Balance& balance);
 
-}  // namespace tribound
+}  // namespace tribound::io

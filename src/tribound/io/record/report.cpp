@@ -10,7 +10,7 @@
 #include "tribound/io/file/csv.h"
 #include "tribound/io/record/facts_json.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 namespace
@@ -18,44 +18,47 @@ namespace
 
 constexpr const char* certificate_schema = "1";
 
-std::optional<double> member(const std::optional<Bound>& bound, double Bound::*value)
+std::optional<double> member(const std::optional<certify::Bound>& bound, double certify::Bound::*value)
 {
   return bound ? std::optional((*bound).*value) : std::nullopt;
 }
 
-void add_components(CsvTable& table, std::span<const NamedComponent> names, const std::optional<Bound>& bound)
+void add_components(CsvTable& table, std::span<const certify::NamedComponent> names,
+                    const std::optional<certify::Bound>& bound)
 {
   for (const auto& [name, value] : names)
     table.add(bound ? std::optional(bound->global.*value) : std::nullopt);
 }
 
 /// Those that are known of a step.
-void add_components(CsvTable& table, const CertifiedStep& record)
+void add_components(CsvTable& table, const adapt::CertifiedStep& record)
 {
-  for (const auto& [name, value] : component_names)
+  for (const auto& [name, value] : certify::component_names)
     if (record.bound)
       table.add(record.bound->global.*value);
-    else if (record.linearisation && std::ranges::count(linearisation_components, value) > 0)
+    else if (record.linearisation && std::ranges::count(certify::linearisation_components, value) > 0)
       table.add((*record.linearisation).*value);
     else
       table.add(std::optional<double>{});
 }
 
-void add_regularisation(CsvTable& table, const std::optional<Bound>& bound, std::optional<double> delta)
+void add_regularisation(CsvTable& table, const std::optional<certify::Bound>& bound,
+                        std::optional<double> delta)
 {
-  add_components(table, regularisation_names, bound);
+  add_components(table, certify::regularisation_names, bound);
   table.add(delta);
 }
 
-Json json(const std::optional<Bound>& bound, bool regularised)
+Json json(const std::optional<certify::Bound>& bound, bool regularised)
 {
   if (!bound) return nullptr;
   Json object;
-  for (const auto& [name, value] : names_of_components(regularised)) object[name] = bound->global.*value;
+  for (const auto& [name, value] : certify::names_of_components(regularised))
+    object[name] = bound->global.*value;
   return object;
 }
 
-Json json(const std::optional<IdentityDefects>& identities)
+Json json(const std::optional<certify::IdentityDefects>& identities)
 {
   if (!identities) return nullptr;
   return {{"divergence", identities->divergence},
@@ -82,7 +85,7 @@ Json json(const std::optional<Sliding>& sliding)
           {"safety_factor", number_or_null(sliding->safety_factor)}};
 }
 
-Json json(const CertifiedStep& record, bool regularised)
+Json json(const adapt::CertifiedStep& record, bool regularised)
 {
   Json object{{"step", record.step.step},
               {"residual", record.step.residual},
@@ -90,7 +93,7 @@ Json json(const CertifiedStep& record, bool regularised)
               {"linear_iterations", record.step.linear_iterations},
               {"factorised", record.step.factorised},
               {"seconds", record.step.seconds},
-              {"total", number_or_null(member(record.bound, &Bound::total))},
+              {"total", number_or_null(member(record.bound, &certify::Bound::total))},
               {"accepted", record.accepted}};
   if (regularised) object["delta"] = record.step.delta;
   return object;
@@ -101,8 +104,8 @@ void add_results(Json& object, const LevelRecord& level)
 {
   object["cells"] = level.cells;
   object["dofs"] = level.dofs;
-  object["bound"] = number_or_null(member(level.bound, &Bound::total_sharp));
-  object["bound_plain"] = number_or_null(member(level.bound, &Bound::total));
+  object["bound"] = number_or_null(member(level.bound, &certify::Bound::total_sharp));
+  object["bound_plain"] = number_or_null(member(level.bound, &certify::Bound::total));
   object["relative"] = number_or_null(relative_bound(level));
   object["components"] = json(level.bound, is_regularised(level));
   if (is_regularised(level))
@@ -129,7 +132,7 @@ Json json(const LevelRecord& level)
   add_results(object, level);
   object["finishing_steps"] = level.finishing_steps;
   object["newton"] = Json::array();
-  for (const CertifiedStep& record : level.newton)
+  for (const adapt::CertifiedStep& record : level.newton)
     object["newton"].push_back(json(record, is_regularised(level)));
   object["times"] = {{"solve", level.times.solve},
                      {"certify", number_or_null(level.times.certify)},
@@ -162,12 +165,12 @@ Json json(const std::vector<std::pair<std::string, Value>>& named)
 
 /// The resultants of T(u) and of t^k on the boundary group `tag`, or on all of Gamma_C for tag < 0.
 template <int dim>
-Resultants resultants(const NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
+Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
                       std::span<const Point<dim>> running, int tag = -1)
 {
   constexpr double round_off = 1e-12;  // of sums over many points
-  const ContactResultants<dim> r = contact_resultants(form, of_u, tag);
-  const ContactResultants<dim> in_equilibrium = contact_resultants(form, running, tag);
+  const contact::ContactResultants<dim> r = contact::contact_resultants(form, of_u, tag);
+  const contact::ContactResultants<dim> in_equilibrium = contact::contact_resultants(form, running, tag);
   Resultants result;
   result.resolution = (r.force - in_equilibrium.force).norm() + std::abs(r.normal - in_equilibrium.normal) +
                       std::abs(r.tangential - in_equilibrium.tangential) +
@@ -224,7 +227,7 @@ std::optional<double> last_delta(const LevelRecord& level)
 std::string regularisation_columns()
 {
   std::string columns;
-  for (const auto& [name, value] : regularisation_names) columns += std::string(",") + name;
+  for (const auto& [name, value] : certify::regularisation_names) columns += std::string(",") + name;
   return columns + ",delta";
 }
 
@@ -236,12 +239,13 @@ std::optional<double> relative_bound(const LevelRecord& level)
 
 bool is_round_off(const LevelRecord& level)
 {
-  const StressNorms norms{.sigma = level.figures.sigma_norm, .round_off = level.figures.round_off};
-  return level.bound && is_round_off(*level.bound, norms);
+  const contact::StressNorms norms{.sigma = level.figures.sigma_norm, .round_off = level.figures.round_off};
+  return level.bound && certify::is_round_off(*level.bound, norms);
 }
 
 template <int dim>
-SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLevel<dim>& level)
+SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
+                                 const adapt::CertifiedLevel<dim>& level)
 {
   SolutionFigures figures;
   figures.round_off = level.norms.round_off;
@@ -255,14 +259,14 @@ SolutionFigures solution_figures(const NitscheForm<dim>& form, const CertifiedLe
   const std::vector<Point<dim>> t = form.traction(level.u);
   figures.contact = resultants<dim>(form, t, level.traction);
   const auto boundaries = form.problem().boundaries();
-  const std::vector<bool> slides = slides_as_a_whole(form);
+  const std::vector<bool> slides = doctor::slides_as_a_whole(form);
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
   {
     if (!boundaries[tag].contact) continue;
     Resultants part = resultants<dim>(form, t, level.traction, tag);
     part.boundary = boundaries[tag].name;
-    const auto* coulomb = std::get_if<Coulomb>(&boundaries[tag].contact->friction);
-    if (coulomb && slides[tag] && bound_holds(level, form.space().degree()))
+    const auto* coulomb = std::get_if<case_file::Coulomb>(&boundaries[tag].contact->friction);
+    if (coulomb && slides[tag] && adapt::bound_holds(level, form.space().degree()))
       part.coefficient = coulomb->coefficient;
     figures.boundary_contact.push_back(std::move(part));
   }
@@ -283,9 +287,9 @@ std::string convergence_csv(const RunRecord& run)
     table.add(level.cells);
     table.add(level.dofs);
     table.add(newton_steps(level));
-    add_components(table, component_names, level.bound);
-    table.add(member(level.bound, &Bound::total));
-    table.add(member(level.bound, &Bound::total_sharp));
+    add_components(table, certify::component_names, level.bound);
+    table.add(member(level.bound, &certify::Bound::total));
+    table.add(member(level.bound, &certify::Bound::total_sharp));
     table.add(relative_bound(level));
     table.add(level.figures.energy);
     table.add(level.figures.contact.normal);
@@ -309,14 +313,14 @@ std::string newton_csv(const RunRecord& run)
   CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,accepted" +
                  (regularised ? regularisation_columns() : std::string{}));
   for (const LevelRecord& level : run.levels)
-    for (const CertifiedStep& record : level.newton)
+    for (const adapt::CertifiedStep& record : level.newton)
     {
       table.add(level.level);
       table.add(record.step.step);
       table.add(record.step.residual);
       table.add(record.step.damping);
       add_components(table, record);
-      table.add(member(record.bound, &Bound::total));
+      table.add(member(record.bound, &certify::Bound::total));
       table.add(record.accepted ? 1 : 0);
       if (regularised) add_regularisation(table, record.bound, record.step.delta);
       table.end_row();
@@ -331,7 +335,7 @@ std::string certificate_json(const RunRecord& run)
               {"title", run.facts.title},
               {"file", run.facts.file},
               {"case", effective_case_json(run)},
-              {"status", to_string(run.status)},
+              {"status", certify::to_string(run.status)},
               {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},
               {"p", run.facts.degree},
@@ -365,7 +369,7 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   write_file(directory / "certificate.json", certificate_json(run));
 }
 
-template SolutionFigures solution_figures(const NitscheForm<2>&, const CertifiedLevel<2>&);
-template SolutionFigures solution_figures(const NitscheForm<3>&, const CertifiedLevel<3>&);
+template SolutionFigures solution_figures(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
+template SolutionFigures solution_figures(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
 
-}  // namespace tribound
+}  // namespace tribound::io

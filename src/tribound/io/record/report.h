@@ -18,7 +18,7 @@
 #include "tribound/io/record/facts.h"
 #include "tribound/solve/newton.h"
 
-namespace tribound
+namespace tribound::io
 {
 
 /// What the contact traction adds up to; forces (per unit depth in 2D).
@@ -68,8 +68,8 @@ struct SolutionFigures
 /// contact, and what they differ by Newton's method has still to find. A stress that is nothing but rounding
 /// is 0.
 template <int dim>
-[[nodiscard]] SolutionFigures solution_figures(const NitscheForm<dim>& form,
-                                               const CertifiedLevel<dim>& level);
+[[nodiscard]] SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
+                                               const adapt::CertifiedLevel<dim>& level);
 
 /// Seconds on a level, wall time where nothing else is said.
 struct LevelTimes
@@ -77,7 +77,7 @@ struct LevelTimes
   double solve = 0.0;
   std::optional<double> certify;
   double level = 0.0;  ///< everything, output included
-  RefinementSeconds refinement;
+  adapt::RefinementSeconds refinement;
   double output = 0.0;
   double solve_cpu = 0.0;  ///< CPU time, all threads
   double certify_cpu = 0.0;
@@ -89,13 +89,13 @@ struct LevelRecord
   int level = 0;
   long cells = 0;
   long dofs = 0;  ///< free ones
-  std::vector<CertifiedStep> newton;
+  std::vector<adapt::CertifiedStep> newton;
   int finishing_steps = 0;           ///< the last of them, with which Newton's method has converged fully
   std::optional<int> delta_updates;  ///< of the regularised variant; absent in the plain method
   SolutionFigures figures;
-  std::optional<Bound> bound;
-  std::optional<IdentityDefects> identities;
-  std::optional<Balance> balance;  ///< where there is a bound
+  std::optional<certify::Bound> bound;
+  std::optional<certify::IdentityDefects> identities;
+  std::optional<certify::Balance> balance;  ///< where there is a bound
   LevelTimes times;
 };
 
@@ -131,13 +131,13 @@ struct RunRecord
   CaseFacts facts;
   MeshFacts mesh;  ///< the first mesh
   BuildFacts build;
-  RunStatus status = RunStatus::uncertified;
+  certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
   std::vector<LevelRecord> levels;
   double tolerance = 0.0;  ///< of bound / ||sigma(u_h)||
-  Statements statements;
+  certify::Statements statements;
   std::vector<RunWarning> warnings;                   ///< about the last level
-  EffectiveCase effective;                            ///< empty where the run is a part of something larger
+  case_file::EffectiveCase effective;                 ///< empty where the run is a part of something larger
   std::string case_file = "case.toml";                ///< where it is written in the output directory
   std::vector<std::pair<std::string, double>> times;  ///< s per stage of the whole run
 };
@@ -155,4 +155,4 @@ struct RunRecord
 /// WriteError when a file cannot be written.
 void write_report(const std::filesystem::path& directory, const RunRecord& run);
 
-}  // namespace tribound
+}  // namespace tribound::io
