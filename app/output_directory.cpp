@@ -190,7 +190,7 @@ void try_output_directory(const std::filesystem::path& path)
 
 void require_mesh_elsewhere(const case_file::Config& config)
 {
-  const auto* mesh = std::get_if<case_file::MeshFile>(&config.mesh);
+  const auto* mesh = std::get_if<mesh::MeshFile>(&config.mesh);
   std::error_code none;
   if (mesh != nullptr &&
       std::filesystem::equivalent(mesh->path, config.output.directory / "adapted.msh", none))

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "tribound/case/config.h"
+#include "tribound/case/resolve.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
@@ -55,7 +55,7 @@ template <int dim>
 mesh::Mesh<dim> block_mesh(int degree, bool distorted)
 {
   const int n = cells_across<dim>(degree);
-  case_file::BoxMesh box{{0, 0}, {2, 1}, {2 * n, n}, {}};
+  mesh::BoxMesh box{{0, 0}, {2, 1}, {2 * n, n}, {}};
   if constexpr (dim == 3) box = {{0, 0, 0}, {2, 1, 1}, {2 * n, n, n}, {}};
   mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);
   if (distorted) distort<dim>(data, n);
@@ -83,9 +83,9 @@ struct Block
   Block(int degree, bool distorted)
       : config(block_config(dim, degree)),
         mesh(block_mesh<dim>(degree, distorted)),
-        problem(config, mesh.region_names(), mesh.boundary_names()),
+        problem(case_file::resolve(config, mesh)),
         space(mesh, degree),
-        form(problem, space, config.gamma0())
+        form(problem, space, config.method.gamma_0())
   {
     for (const Point<dim>& x : space.node_points())
       for (int c = 0; c < dim; ++c)

@@ -19,7 +19,7 @@ using namespace tribound;
 
 /// 1 002 528 triangles or 511 104 tetrahedra.
 template <int dim>
-case_file::BoxMesh large_box()
+mesh::BoxMesh large_box()
 {
   if constexpr (dim == 2) return {{0, 0}, {2, 1}, {708, 708}, {}};
   return {{0, 0, 0}, {2, 1, 1}, {44, 44, 44}, {}};
@@ -98,8 +98,8 @@ std::filesystem::path write_large_file(double version, bool binary)
 
 void read_file(benchmark::State& state)
 {
-  const case_file::MeshFile source{
-      write_large_file(static_cast<double>(state.range(0)) / 10, state.range(1) != 0), {}};
+  const mesh::MeshFile source{write_large_file(static_cast<double>(state.range(0)) / 10, state.range(1) != 0),
+                              {}};
   Index n_cells = 0;
   for (auto _ : state) n_cells = std::get<mesh::Mesh<2>>(mesh::read_gmsh(source)).n_cells();
   state.counters["cells"] = n_cells;

@@ -16,7 +16,7 @@
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/clock.h"
-#include "tribound/case/config.h"
+#include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/mesh/gmsh.h"
@@ -146,7 +146,8 @@ void newton(const contact::NitscheForm<dim>& form, const case_file::Config& conf
     factorisations += step.factorised ? 1 : 0;
     return false;
   };
-  const solve::NewtonResult<dim> result = solve::solve<dim>(form, {}, config.newton, config.solver, report);
+  const solve::NewtonResult<dim> result =
+      solve::solve<dim>(form, {}, config.method.newton, config.method.solver, report);
   print("  all", cpu_seconds() - begin,
         fmt::format("{} steps, {} new factors{}", result.steps.size(), factorisations,
                     result.status == solve::NewtonStatus::converged ? "" : ", FAILED"));
@@ -156,22 +157,22 @@ template <int dim>
 void run(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool bare)
 {
   timed("  topology alone", [&] { return mesh::build_topology<dim>(mesh.n_vertices(), mesh.cells()); });
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  const auto space = timed("space", [&] { return fem::LagrangeSpace<dim>(mesh, config.degree); });
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  const auto space = timed("space", [&] { return fem::LagrangeSpace<dim>(mesh, config.method.degree); });
   const auto form = timed("form: load, contact points",
-                          [&] { return contact::NitscheForm<dim>(problem, space, config.gamma0()); });
+                          [&] { return contact::NitscheForm<dim>(problem, space, config.method.gamma_0()); });
   fmt::print("    {} cells, {} dofs, {} contact facets\n", mesh.n_cells(), space.n_dofs(),
              form.contact_facets().size());
 
   const auto entries = [&] { return contact::stiffness(problem, space, form.constraints()); };
-  contact::Triplets triplets = timed("stiffness: entries", entries);
+  algebra::Triplets triplets = timed("stiffness: entries", entries);
   const auto assemble = [&] { return algebra::SparseMatrix(space.n_dofs(), dim, std::move(triplets)); };
   const auto matrix = timed("stiffness: COO assembly", assemble);
   auto tangent = timed("stiffness: copy", [&] { return matrix.duplicate(); });
   const std::vector<double> u(space.n_dofs(), 0.0);
   const auto contact_entries = [&]
   { return form.contact_tangent(contact::Linearisation::closed_sticking, u); };
-  contact::Triplets contact_triplets = contact_entries();
+  algebra::Triplets contact_triplets = contact_entries();
   algebra::SparseMatrix contact =
       timed("contact: pattern, once",
             [&] { return algebra::SparseMatrix(space.n_dofs(), dim, std::move(contact_triplets)); });

@@ -12,6 +12,7 @@
 #include "tribound/adapt/loop.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/base/clock.h"
+#include "tribound/case/resolve.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
@@ -23,8 +24,8 @@ template <int dim>
 ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
 {
   const Clock::time_point begin = Clock::now();
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config);
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method);
   const std::atomic<bool>& stop = stop_on_signals();
   if (stop) throw SolveError("interrupted before anything was solved; nothing is written");
   RunReport<dim> report(config, problem, *first, begin,
@@ -39,7 +40,8 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
       }};
   try
   {
-    return report.close(adapt::adapt<dim>(problem, config, std::move(first), observer, stop));
+    return report.close(
+        adapt::adapt<dim>(problem, config.method, config.adapt, std::move(first), observer, stop));
   }
   catch (const SolveError& error)
   {
@@ -51,16 +53,16 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
 template <int dim>
 void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json)
 {
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
-  const fem::LagrangeSpace<dim> space(mesh, config.degree);
-  const contact::NitscheForm<dim> form(problem, space, config.gamma0());
+  const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
+  const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
   contact::check_rigid_motions<dim>(problem, space, form.data(), form.load());
   require_mesh_elsewhere(config);
   try_output_directory(config.output.directory);
-  print_check(io::case_facts(config, dim), io::mesh_facts<dim>(problem, space, form.constraints()),
-              describe_solver(algebra::choose_method(config.solver, dim, space.n_dofs())),
-              doctor::findings(doctor::diagnose(config, form)), as_json);
+  print_check(case_file::case_facts(config, dim), io::mesh_facts<dim>(problem, space, form.constraints()),
+              describe_solver(algebra::choose_method(config.method.solver, dim, space.n_dofs())),
+              doctor::findings(doctor::diagnose(form, config.method, config.adapt)), as_json);
 }
 
 template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&);

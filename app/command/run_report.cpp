@@ -12,6 +12,7 @@
 #include "app/shared_file.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
+#include "tribound/case/resolve.h"
 #include "tribound/certify/bound/balance.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/run_warnings.h"
@@ -105,9 +106,9 @@ io::BuildFacts library_facts()
   return build;
 }
 
-std::string describe_solver(case_file::LinearMethod method)
+std::string describe_solver(algebra::LinearMethod method)
 {
-  return method == case_file::LinearMethod::direct ? "direct" : "GMRES with multigrid";
+  return method == algebra::LinearMethod::direct ? "direct" : "GMRES with multigrid";
 }
 
 std::string describe_solver(std::span<const adapt::CertifiedStep> steps)
@@ -134,7 +135,7 @@ template <int dim>
 RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
                           const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed)
     : output_(config.output),
-      contact_rule_(config.certify.contact_rule),
+      contact_rule_(config.method.contact_rule),
       printed_(printed),
       page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
       moment_about_(moment_point<dim>(config.output, first.mesh))
@@ -147,7 +148,7 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
                                      "contact.csv", "adapted.msh"});
   io::remove_series(output_.directory);
-  record_.facts = io::case_facts(config, dim);
+  record_.facts = case_file::case_facts(config, dim);
   record_.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   record_.build = library_facts();
   for (const std::string& name : first.mesh.boundary_names())
@@ -156,9 +157,9 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   record_.effective = config.effective;
   record_.case_file = effective_file_name(config);
   record_.tolerance = config.adapt.tolerance;
-  record_.statements = certify::statements(form, config.certify.contact_rule);
+  record_.statements = certify::statements(form, config.method.contact_rule);
   record_.statements.assumptions.emplace_back(
-      "linear_solver", describe_solver(algebra::choose_method(config.solver, dim, space.n_dofs())));
+      "linear_solver", describe_solver(algebra::choose_method(config.method.solver, dim, space.n_dofs())));
   record_.times = {{"setup", seconds_since(begin)},
                    {"solve", 0},
                    {"certify", 0},
@@ -279,9 +280,11 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   update_statements(view);
   record_.status = view.verdict.status;
   record_.reason = view.verdict.reason;
-  record_.warnings = view.level.solved()
-                         ? doctor::run_warnings(level, doctor::contact_outcomes<dim>(form, view.level.u))
-                         : std::vector<io::RunWarning>{};
+  record_.warnings =
+      view.level.solved()
+          ? doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
+                                 doctor::contact_outcomes<dim>(form, view.level.u))
+          : std::vector<doctor::Finding>{};
   if (!failure) failure = failure_of([&] { write_record(); });
   if (printed_ != Printed::verdict && !again) print_level(level);
   if (failure) std::rethrow_exception(failure);

@@ -26,7 +26,7 @@ namespace tribound::app
 [[nodiscard]] io::BuildFacts library_facts();
 
 /// "direct", "GMRES with multigrid": for people.
-[[nodiscard]] std::string describe_solver(case_file::LinearMethod method);
+[[nodiscard]] std::string describe_solver(algebra::LinearMethod method);
 /// The same of the steps on a mesh, at least one.
 [[nodiscard]] std::string describe_solver(std::span<const adapt::CertifiedStep> steps);
 
@@ -77,7 +77,7 @@ class RunReport
   void write_record() const;
 
   const case_file::OutputConfig& output_;
-  case_file::ContactRule contact_rule_;
+  certify::ContactRule contact_rule_;
   Printed printed_;
   std::optional<OutputDirectory> directory_;
   io::RunRecord record_;

@@ -20,6 +20,7 @@
 #include "app/shared_file.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/base/clock.h"
+#include "tribound/case/resolve.h"
 #include "tribound/certify/truth/solution_error.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/bisect.h"
@@ -62,11 +63,11 @@ case_file::Config variant_config(const case_file::Config& config, const std::str
   case_file::Config variant = config;
   const bool converged = name.ends_with("_converged");
   if (converged)
-    variant.newton.stopping = case_file::Stopping::tolerance;
-  else if (config.newton.stopping == case_file::Stopping::tolerance)
-    variant.newton.stopping = case_file::Stopping::adaptive;
-  if (name.starts_with("uniform")) variant.adapt.marking = case_file::Marking::uniform;
-  variant.newton.finish = false;  // stopping criteria are what is compared
+    variant.method.stopping.criterion = adapt::Stopping::tolerance;
+  else if (config.method.stopping.criterion == adapt::Stopping::tolerance)
+    variant.method.stopping.criterion = adapt::Stopping::adaptive;
+  if (name.starts_with("uniform")) variant.adapt.marking.strategy = adapt::Marking::uniform;
+  variant.method.stopping.finish = false;  // stopping criteria are what is compared
   variant.output.directory /= name;
   variant.effective = {};  // that of the study stands beside its tables
   variant.output.vtu = config.output.vtu && !converged;
@@ -79,11 +80,11 @@ case_file::Config variant_config(const case_file::Config& config, const std::str
 case_file::Config reference_config(const case_file::Config& config, double required)
 {
   case_file::Config reference = config;
-  reference.degree = config.study.reference_degree.value_or(std::min(config.degree + 1, 4));
-  reference.newton.stopping = case_file::Stopping::adaptive;
-  reference.newton.gamma_lin = 0.1 * config.newton.gamma_lin;
-  reference.newton.damping = true;
-  reference.newton.finish = false;
+  reference.method.degree = config.study.reference_degree.value_or(std::min(config.method.degree + 1, 4));
+  reference.method.stopping.criterion = adapt::Stopping::adaptive;
+  reference.method.stopping.gamma_lin = 0.1 * config.method.stopping.gamma_lin;
+  reference.method.newton.damping = true;
+  reference.method.stopping.finish = false;
   reference.adapt.tolerance = required;
   reference.adapt.max_levels = std::numeric_limits<int>::max();
   reference.adapt.max_cells.reset();
@@ -115,15 +116,15 @@ class StudyCommand
   StudyCommand(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
       : config_(config),
         mesh_(std::move(mesh)),
-        problem_(config, mesh_.region_names(), mesh_.boundary_names()),
+        problem_(case_file::resolve(config, mesh_)),
         progress_(progress),
         stop_(stop_on_signals())
   {
-    study_.facts = io::case_facts(config, dim);
+    study_.facts = case_file::case_facts(config, dim);
     study_.build = library_facts();
-    study_.gamma_lin = config.newton.gamma_lin;
-    study_.marking = config.adapt.marking == case_file::Marking::doerfler ? "doerfler" : "maximum";
-    study_.theta = config.adapt.theta;
+    study_.gamma_lin = config.method.stopping.gamma_lin;
+    study_.marking = config.adapt.marking.strategy == adapt::Marking::doerfler ? "doerfler" : "maximum";
+    study_.theta = config.adapt.marking.theta;
   }
 
   ExitCode run()
@@ -178,8 +179,8 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
 {
   FinishedRun<dim> finished;
   // Bisected nowhere, the mesh is copied.
-  auto first =
-      std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_, config);
+  auto first = std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_,
+                                                            config.method);
   RunReport<dim> report(config, problem_, *first, Clock::now(), Printed::levels);
   const adapt::LoopObserver<dim> observer = {[&](const adapt::CertifiedStep& step)
                                              { progress_(step.step, step.relative); },
@@ -193,7 +194,8 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
                                              }};
   try
   {
-    finished.verdict = adapt::adapt<dim>(problem_, config, std::move(first), observer, stop_);
+    finished.verdict =
+        adapt::adapt<dim>(problem_, config.method, config.adapt, std::move(first), observer, stop_);
     if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
       finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
     (void)report.close(finished.verdict);
@@ -213,7 +215,7 @@ void StudyCommand<dim>::solve_variant(const std::string& name)
   case_file::Config variant = variant_config(config_, name);
   print_stage("variant", name);
   std::string own_limit;
-  if (variant.adapt.marking == case_file::Marking::uniform && !study_.variants[0].levels.empty())
+  if (variant.adapt.marking.strategy == adapt::Marking::uniform && !study_.variants[0].levels.empty())
   {
     // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times larger.
     const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
@@ -251,7 +253,7 @@ void StudyCommand<dim>::solve_reference()
   const double required = std::max(config_.study.reference_factor * smallest, resolution);
   const case_file::Config config = reference_config(config_, required);
   print_stage("reference",
-              fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.degree, required));
+              fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.method.degree, required));
   const Clock::time_point begin = Clock::now();
   FinishedRun<dim> finished = adapt_and_report(config, Keep::last);
   study_.times.emplace_back("reference", seconds_since(begin));
@@ -259,7 +261,7 @@ void StudyCommand<dim>::solve_reference()
                      finished.verdict.status == certify::RunStatus::budget;
   if (stop_ || !holds) return;
   StudyReference& reference = study_.reference.emplace();
-  reference.degree = config.degree;
+  reference.degree = config.method.degree;
   reference.level = finished.records.back();
   reference.required = required;
   reference.fine_enough = finished.verdict.status == certify::RunStatus::certified;
@@ -349,7 +351,7 @@ ExitCode StudyCommand<dim>::exit_code() const
 template <int dim>
 ExitCode study(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
 {
-  if (config.adapt.marking == case_file::Marking::uniform)
+  if (config.adapt.marking.strategy == adapt::Marking::uniform)
     throw InputError({.file = config.file, .key = "adapt.marking"}, "is \"uniform\"",
                      "the study compares an adaptive marking, such as \"doerfler\", with uniform refinement");
   return StudyCommand<dim>(config, std::move(mesh), progress).run();

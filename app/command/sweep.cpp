@@ -75,9 +75,9 @@ class MeshHashes
 {
  public:
   /// Empty without a file, or where it cannot be read, which its run will say.
-  const std::string& operator()(const case_file::MeshSource& source)
+  const std::string& operator()(const mesh::MeshSource& source)
   {
-    const auto* file = std::get_if<case_file::MeshFile>(&source);
+    const auto* file = std::get_if<mesh::MeshFile>(&source);
     const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
     if (is_new && file != nullptr)
       if (const std::string content = read_text(file->path); !content.empty())

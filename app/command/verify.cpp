@@ -9,6 +9,7 @@
 #include "app/result/verification.h"
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/clock.h"
+#include "tribound/case/resolve.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -26,12 +27,12 @@ namespace
 /// The dual norm is looked for in degree p + 2, the reference solution in p + 1 (no solver goes beyond 4).
 certify::RicherSpace dual_space(const case_file::Config& config, int refinements)
 {
-  return {.refinements = refinements, .degree = config.degree + 2};
+  return {.refinements = refinements, .degree = config.method.degree + 2};
 }
 
 certify::RicherSpace solution_space(const case_file::Config& config, int refinements)
 {
-  return {.refinements = refinements, .degree = std::min(config.degree + 1, 4)};
+  return {.refinements = refinements, .degree = std::min(config.method.degree + 1, 4)};
 }
 
 /// Above, the factorisations take more than about ten gigabytes (seen: 3.4 for a million in 2D with degree
@@ -49,7 +50,7 @@ void check_size(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
   throw InputError(mesh.source(),
                    fmt::format("verifying degree {} on this mesh refined {} {} takes about {:.2g} degrees of "
                                "freedom; the limit is {:.2g}",
-                               config.degree, refinements, refinements == 1 ? "time" : "times",
+                               config.method.degree, refinements, refinements == 1 ? "time" : "times",
                                n_dofs(refinements), largest_problem<dim>),
                    fewer == 0 ? "take a coarser mesh or a lower degree"
                               : fmt::format("take a coarser mesh, a lower degree or --refinements {} (about "
@@ -101,10 +102,10 @@ certify::RicherSolution richer_solution(const contact::NitscheForm<dim>& form, s
                                         const case_file::Config& config, int refinements)
 {
   const certify::RicherSpace richer = solution_space(config, refinements);
-  const double gamma0 = config.nitsche.gamma0.value_or(case_file::default_gamma0(richer.degree));
-  case_file::NewtonConfig newton = config.newton;
+  const double gamma0 = config.method.gamma0.value_or(contact::default_gamma0(richer.degree));
+  solve::NewtonOptions newton = config.method.newton;
   newton.damping = true;  // undamped steps may cycle; they are not what is verified here
-  return certify::compare_with_richer<dim>(form, u, richer, gamma0, newton, config.solver);
+  return certify::compare_with_richer<dim>(form, u, richer, gamma0, newton, config.method.solver);
 }
 
 }  // namespace
@@ -113,16 +114,16 @@ template <int dim>
 ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, int refinements,
                 const Progress& progress)
 {
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  const fem::LagrangeSpace<dim> space(mesh, config.degree);
-  const contact::NitscheForm<dim> form(problem, space, config.gamma0());
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
+  const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
   contact::check_rigid_motions<dim>(problem, space, form.data(), form.load());
   check_size(config, mesh, refinements);
   const OutputDirectory directory(config.output.directory);
   remove_results(config.output.directory, {"verify.json"});
 
   Verification result;
-  result.facts = io::case_facts(config, dim);
+  result.facts = case_file::case_facts(config, dim);
   result.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   result.refinements = refinements;
   print_header(result.facts, result.mesh);
@@ -131,9 +132,9 @@ ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
   certify::DualNorm<dim> dual_norm(form, dual_space(config, refinements));
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
                        dual_norm.space().n_dofs()};
-  const certify::Estimator<dim> estimator(form, config.certify.contact_rule);
+  const certify::Estimator<dim> estimator(form, config.method.contact_rule);
   std::optional<adapt::DeltaUpdates> regularisation;
-  if (config.regularisation) regularisation = adapt::DeltaUpdates{*config.regularisation};
+  if (config.method.regularisation) regularisation = adapt::DeltaUpdates{*config.method.regularisation};
   const solve::NewtonObserver<dim> observer =
       [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
   {
@@ -145,11 +146,11 @@ ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
     if (!regularisation) return false;
     return regularisation->advise(form, iterate, eta.global, iterate.converged);
   };
-  case_file::SolverConfig solver = config.solver;
+  algebra::SolverOptions solver = config.method.solver;
   solver.tolerance = 0;  // as far as rounding lets it be: the identities are not what is to fail
   const solve::NewtonResult<dim> newton =
       stages.time("iterates", "solving, with bound and dual norm of every iterate",
-                  [&] { return solve::solve<dim>(form, {}, config.newton, solver, observer); });
+                  [&] { return solve::solve<dim>(form, {}, config.method.newton, solver, observer); });
   result.converged = newton.status == solve::NewtonStatus::converged;
 
   result.richer_degree = solution_space(config, refinements).degree;

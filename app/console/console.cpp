@@ -178,12 +178,14 @@ std::string certificate_text(const io::RunRecord& run)
   return text;
 }
 
-std::string warnings_text(std::span<const io::RunWarning> warnings)
+std::string warnings_text(std::span<const doctor::Finding> warnings)
 {
   std::string text;
-  for (const io::RunWarning& warning : warnings)
-    text += paragraph(
-        "warning", warning.where.empty() ? warning.text : fmt::format("{}: {}", warning.where, warning.text));
+  for (const doctor::Finding& warning : warnings)
+  {
+    const std::string where = doctor::location(warning);
+    text += paragraph("warning", where.empty() ? warning.text : fmt::format("{}: {}", where, warning.text));
+  }
   return text;
 }
 

@@ -25,7 +25,7 @@ namespace tribound::app
 /// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
 [[nodiscard]] std::string certificate_text(const io::RunRecord& run);
 /// A paragraph for each warning; nothing without any.
-[[nodiscard]] std::string warnings_text(std::span<const io::RunWarning> warnings);
+[[nodiscard]] std::string warnings_text(std::span<const doctor::Finding> warnings);
 /// Resultants, largest displacement, the certificate, warnings, status, and where the files are.
 [[nodiscard]] std::string summary_text(const io::RunRecord& run, const std::string& directory);
 /// The end of the summary: status, and where the files are.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <utility>
 
 using namespace tribound;
@@ -16,6 +17,24 @@ namespace
 {
 
 constexpr double load = 0.1 * 2 - 0.06 * 1;  // pressed down on the top, lifted on the right side
+
+/// The data: what the block is made of and what holds on its sides, by the names that the mesh gives them.
+problem::Problem<2> block(const mesh::Mesh<2>& mesh)
+{
+  // A field is a number, a formula, or a function: here the lift on the right, given point by point.
+  const problem::FieldFunction lift{.values =
+                                        [](std::span<const double> x, int /*dim*/, std::span<double> values)
+                                    {
+                                      for (std::size_t i = 0; i < values.size(); ++i)
+                                        values[i] = 0.12 * (1 - x[2 * i + 1]);
+                                    },
+                                    .degree = 1};
+  return problem::Problem<2>(mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
+                             {problem::with_displacement<2>("left", {0.0, std::nullopt}),
+                              problem::with_traction<2>("top", {0.0, -0.1}),
+                              problem::with_traction<2>("right", {0.04, problem::Field(lift)}),
+                              problem::with_contact<2>("bottom", problem::Tresca(0.03))});
+}
 
 /// The vertical force of the floor on the body: (T, (0, 1))_C.
 double lift(const contact::NitscheForm<2>& form, const std::vector<double>& u)
@@ -28,16 +47,16 @@ double lift(const contact::NitscheForm<2>& form, const std::vector<double>& u)
 }
 
 /// Solves and certifies on one mesh; true if the bound is one.
-bool certify_on_one_mesh(const case_file::Config& config, const mesh::Mesh<2>& mesh,
+bool certify_on_one_mesh(const adapt::Method& method, const mesh::Mesh<2>& mesh,
                          const problem::Problem<2>& problem)
 {
   // The discrete problem: a(u, v) - (T(u), v)_C = L(v) in the Lagrange elements of the degree.
-  const fem::LagrangeSpace<2> space(mesh, config.degree);
-  const contact::NitscheForm<2> form(problem, space, config.gamma0());
+  const fem::LagrangeSpace<2> space(mesh, method.degree);
+  const contact::NitscheForm<2> form(problem, space, method.gamma_0());
   contact::check_rigid_motions<2>(problem, space, form.data(), form.load());
 
   // Its solution u^k by Newton's method, from scratch, with the traction t^k in equilibrium with it.
-  const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, config.newton, config.solver);
+  const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, method.newton, method.solver);
   if (newton.status != solve::NewtonStatus::converged) return false;
 
   // The equilibrated stress, the identities that make it one, and the bound.
@@ -45,17 +64,16 @@ bool certify_on_one_mesh(const case_file::Config& config, const mesh::Mesh<2>& m
   const certify::IdentityDefects identities = certify::check_identities<2>(form, newton.traction, stress);
   const certify::Estimate eta = certify::estimate(form, newton.u, stress);
   const contact::StressNorms norms = contact::stress_norms(problem, space, newton.u);
-  const certify::Verdict verdict =
-      certify::judge(eta, identities, config.degree, norms, config.adapt.tolerance);
+  const certify::Verdict verdict = certify::judge(eta, identities, method.degree, norms, 0.01);
 
   std::printf("one mesh: %zu Newton steps, bound %.4g, that is %.3g %% of ||sigma(u_h)||: %s\n",
               newton.steps.size(), eta.total_sharp, 100 * eta.total_sharp / norms.sigma,
-              to_string(verdict.status));
+              certify::to_string(verdict.status));
   return verdict.status != certify::RunStatus::not_certified && std::abs(lift(form, newton.u) - load) < 1e-8;
 }
 
 /// Refines where the bound asks for it, until it is below the tolerance.
-bool adapt_until_certified(const case_file::Config& config, mesh::Mesh<2> mesh,
+bool adapt_until_certified(const adapt::Method& method, mesh::Mesh<2> mesh,
                            const problem::Problem<2>& problem)
 {
   const adapt::LoopObserver<2> observer = {
@@ -66,10 +84,9 @@ bool adapt_until_certified(const case_file::Config& config, mesh::Mesh<2> mesh,
                     100 * view.level.estimate.total_sharp / view.level.norms.sigma);
       }};
   const std::atomic<bool> stop = false;
-  const certify::Verdict verdict = adapt::adapt<2>(
-      problem, config, std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, config), observer,
-      stop);
-  std::printf("%s %s\n", to_string(verdict.status), verdict.reason.c_str());
+  auto first = std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, method);
+  const certify::Verdict verdict =
+      adapt::adapt<2>(problem, method, {.tolerance = 0.01}, std::move(first), observer, stop);
   return verdict.status == certify::RunStatus::certified;
 }
 
@@ -80,26 +97,13 @@ int main()
   const algebra::Environment environment;  // MPI and PETSc
   try
   {
-    // The case, here from text; read_config("case.toml") reads a file.
-    const case_file::Config config = case_file::parse_config(R"(
-      degree = 2
-      mesh.box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] }
-      material = { E = 1.0, nu = 0.3 }
-      adapt.tolerance = 0.01
-      [boundary]
-      left.displacement = [0, "free"]
-      top.traction = [0, -0.1]
-      right.traction = [0.04, 0.06]
-      bottom.contact = { friction = "tresca", threshold = 0.03 }
-    )");
-
-    // The mesh, and the problem on it: data, material and friction by the names of regions and boundaries.
-    mesh::Mesh<2> mesh(mesh::box_mesh<2>(std::get<case_file::BoxMesh>(config.mesh)));
-    const problem::Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
+    mesh::Mesh<2> mesh(mesh::box_mesh<2>({.lower = {0, 0}, .upper = {2, 1}, .cells = {8, 4}}));
+    const problem::Problem<2> problem = block(mesh);
+    const adapt::Method method{.degree = 2};
 
     std::printf("tribound %s\n", version());
-    const bool certified = certify_on_one_mesh(config, mesh, problem);
-    return adapt_until_certified(config, std::move(mesh), problem) && certified ? 0 : 1;
+    const bool certified = certify_on_one_mesh(method, mesh, problem);
+    return adapt_until_certified(method, std::move(mesh), problem) && certified ? 0 : 1;
   }
   catch (const InputError& error)  // says where, what is wrong, and what would be right
   {

@@ -10,7 +10,7 @@
 #include "tribound/base/types.h"
 #include "tribound/base/version.h"
 #include "tribound/case/config.h"
-#include "tribound/case/node.h"
+#include "tribound/case/resolve.h"
 #include "tribound/case/sweep_values.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "tribound/case/config.h"
+#include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/mesh/gmsh.h"
 #include "tribound/solve/newton.h"
@@ -40,7 +40,7 @@ struct DiscreteCase
   /// With T_delta for delta > 0.
   [[nodiscard]] solve::NewtonResult<dim> solve(double delta = 0) const
   {
-    return tribound::solve::solve<dim>(form, {}, config.newton, config.solver, {}, delta);
+    return tribound::solve::solve<dim>(form, {}, config.method.newton, config.method.solver, {}, delta);
   }
 
   case_file::Config config;  ///< what solve() obeys
@@ -53,9 +53,9 @@ struct DiscreteCase
   DiscreteCase(case_file::Config c, mesh::Mesh<dim> m)
       : config(std::move(c)),
         mesh(std::move(m)),
-        problem(config, mesh.region_names(), mesh.boundary_names()),
-        space(mesh, config.degree),
-        form(problem, space, config.gamma0())
+        problem(case_file::resolve(config, mesh)),
+        space(mesh, config.method.degree),
+        form(problem, space, config.method.gamma_0())
   {
   }
 };

@@ -67,7 +67,7 @@ inline double distance(std::span<const double> x, std::span<const double> y)
 }
 
 /// A x.
-inline std::vector<double> multiply(const contact::Triplets& a, std::span<const double> x)
+inline std::vector<double> multiply(const algebra::Triplets& a, std::span<const double> x)
 {
   std::vector<double> y(x.size(), 0.0);
   for (std::size_t k = 0; k < a.values.size(); ++k)

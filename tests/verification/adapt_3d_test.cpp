@@ -15,6 +15,7 @@
 
 #include "support/meshes.h"
 #include "tribound/adapt/loop.h"
+#include "tribound/case/resolve.h"
 
 namespace tribound::test
 {
@@ -45,7 +46,7 @@ adapt = {{ theta = {}, tolerance = 1e-9, max_levels = 60, max_dofs = {} }}
                                                                        p, theta, max_dofs));
   mesh::Mesh<3> mesh(without<3>(box<3>({0, 0, 0}, {2, 2, 1}, {2, 2, 1}),
                                 [](const Point<3>& x) { return x[0] > 1 && x[1] > 1; }));
-  const problem::Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<3> problem(case_file::resolve(config, mesh));
   std::vector<Level> levels;
   const adapt::LoopObserver<3> observer = {
       {},
@@ -59,8 +60,8 @@ adapt = {{ theta = {}, tolerance = 1e-9, max_levels = 60, max_dofs = {} }}
       }};
   const std::atomic<bool> stop = false;
   const certify::Verdict verdict = adapt::adapt<3>(
-      problem, config, std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config), observer,
-      stop);
+      problem, config.method, config.adapt,
+      std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config.method), observer, stop);
   EXPECT_EQ(verdict.status, certify::RunStatus::budget) << verdict.reason;  // the tolerance is out of reach
   return levels;
 }

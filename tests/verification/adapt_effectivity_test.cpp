@@ -16,6 +16,7 @@
 
 #include "support/t2d.h"
 #include "tribound/adapt/loop.h"
+#include "tribound/case/resolve.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/mesh/gmsh.h"
 
@@ -37,20 +38,21 @@ template <int dim>
 Extremes effectivities(const std::string& text)
 {
   case_file::Config config = case_file::parse_config(text);
-  config.newton.damping = true;  // full steps cycle on some of the meshes
+  config.method.newton.damping = true;  // full steps cycle on some of the meshes
   auto mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   Extremes found;
   const adapt::LoopObserver<dim> observer = {
       {},
       [&](const adapt::LevelView<dim>& view)
       {
         certify::DualNorm<dim> dual_norm(view.discrete.form,
-                                         {.refinements = 4 - dim, .degree = config.degree + 2});
+                                         {.refinements = 4 - dim, .degree = config.method.degree + 2});
         const double bound = view.level.estimate.total_sharp;
         const double below = dual_norm(view.level.u);
-        std::cout << fmt::format("{}D p = {}  {:5} cells  {:.4e} / {:.4e} = {:.4f}", dim, config.degree,
-                                 view.discrete.mesh.n_cells(), bound, below, bound / below)
+        std::cout << fmt::format("{}D p = {}  {:5} cells  {:.4e} / {:.4e} = {:.4f}", dim,
+                                 config.method.degree, view.discrete.mesh.n_cells(), bound, below,
+                                 bound / below)
                   << std::endl;
         found.smallest = std::min(found.smallest, bound / below);
         found.largest = std::max(found.largest, bound / below);
@@ -58,8 +60,8 @@ Extremes effectivities(const std::string& text)
       }};
   const std::atomic<bool> stop = false;
   const certify::Verdict verdict = adapt::adapt<dim>(
-      problem, config, std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config),
-      observer, stop);
+      problem, config.method, config.adapt,
+      std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method), observer, stop);
   EXPECT_THAT(verdict.reason, ::testing::HasSubstr("adapt.max_dofs"));
   return found;
 }

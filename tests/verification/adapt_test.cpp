@@ -15,6 +15,7 @@
 
 #include "support/t2d.h"
 #include "tribound/base/error.h"
+#include "tribound/case/resolve.h"
 #include "tribound/mesh/gmsh.h"
 
 namespace tribound::test
@@ -46,15 +47,15 @@ struct History
 /// Runs T2D from the 4 x 2 mesh; `on_step` is called after every Newton step.
 History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop,
                   const adapt::StepObserver& on_step = {}, int max_steps = 50,
-                  case_file::Stopping stopping = case_file::Stopping::adaptive)
+                  adapt::Stopping stopping = adapt::Stopping::adaptive)
 {
   case_file::Config config = case_file::parse_config(t2d_toml(p, 4, 2) + keys);
-  config.newton.damping = true;
-  config.newton.max_steps = max_steps;
-  config.newton.stopping = stopping;
-  config.newton.finish = false;  // the criterion is what is tested
+  config.method.newton.damping = true;
+  config.method.newton.max_steps = max_steps;
+  config.method.stopping.criterion = stopping;
+  config.method.stopping.finish = false;  // the criterion is what is tested
   auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<2> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<2> problem(case_file::resolve(config, mesh));
   History history;
   const adapt::LoopObserver<2> observer = {
       on_step, [&](const adapt::LevelView<2>& view)
@@ -69,8 +70,8 @@ History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop,
         EXPECT_LE(level.identities.largest(p), 1e-10);
       }};
   history.verdict = adapt::adapt<2>(
-      problem, config, std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, config), observer,
-      stop);
+      problem, config.method, config.adapt,
+      std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, config.method), observer, stop);
   return history;
 }
 
@@ -129,7 +130,7 @@ adapt = { theta = 0.6, max_levels = 3 }
 newton.finish = false
 )" + keys);
   auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<3> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<3> problem(case_file::resolve(config, mesh));
   std::vector<std::vector<adapt::CertifiedStep>> steps;
   const adapt::LoopObserver<3> observer = {
       {},
@@ -144,8 +145,8 @@ newton.finish = false
         EXPECT_EQ(level.steps.back().bound->total_sharp, eta.total_sharp);
       }};
   const std::atomic<bool> stop = false;
-  (void)adapt::adapt<3>(problem, config,
-                        std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config),
+  (void)adapt::adapt<3>(problem, config.method, config.adapt,
+                        std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config.method),
                         observer, stop);
   return steps;
 }
@@ -251,7 +252,7 @@ TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
 /// On every cell is more than on the whole, less than to the last digit.
 TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
 {
-  const auto steps = [](case_file::Stopping stopping)
+  const auto steps = [](adapt::Stopping stopping)
   {
     std::atomic<bool> stop = false;
     const History history =
@@ -261,9 +262,9 @@ TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
     for (const Row& row : history.levels) sum += row.newton;
     return double(sum) / double(history.levels.size());
   };
-  const double global = steps(case_file::Stopping::adaptive);
-  const double local = steps(case_file::Stopping::adaptive_local);
-  const double converged = steps(case_file::Stopping::tolerance);
+  const double global = steps(adapt::Stopping::adaptive);
+  const double local = steps(adapt::Stopping::adaptive_local);
+  const double converged = steps(adapt::Stopping::tolerance);
   EXPECT_LE(global, local);
   EXPECT_LT(local, converged);
   EXPECT_LT(global, converged);
@@ -319,13 +320,11 @@ TEST(Adapt, LinearisationIsNegligibleOnTheWholeOrOnEveryCell)
   estimate.cells.resize(2);
   estimate.cells[0].str = estimate.global.str = 1;
   estimate.cells[1].lin1 = estimate.global.lin1 = 0.05;
-  EXPECT_TRUE(adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::adaptive}));
-  EXPECT_FALSE(
-      adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::adaptive_local}));
-  EXPECT_FALSE(adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::tolerance}));
+  EXPECT_TRUE(adapt::linearisation_is_negligible(estimate, {.criterion = adapt::Stopping::adaptive}));
+  EXPECT_FALSE(adapt::linearisation_is_negligible(estimate, {.criterion = adapt::Stopping::adaptive_local}));
+  EXPECT_FALSE(adapt::linearisation_is_negligible(estimate, {.criterion = adapt::Stopping::tolerance}));
   estimate.cells[1].cnt = 0.5;
-  EXPECT_TRUE(
-      adapt::linearisation_is_negligible(estimate, {.stopping = case_file::Stopping::adaptive_local}));
+  EXPECT_TRUE(adapt::linearisation_is_negligible(estimate, {.criterion = adapt::Stopping::adaptive_local}));
 }
 
 TEST(Adapt, LinearisationIsNegligibleWhenItsPartsAre)

@@ -24,10 +24,10 @@ struct AffineCase
   Tensor<dim> gradient;
   Point<dim> offset;
   std::string contact;  ///< TOML
-  contact::ContactStatus status;
+  problem::ContactStatus status;
 };
 
-inline const problem::Material affine_material = problem::lame(1.0, 0.3, case_file::PlaneModel::strain);
+inline const problem::Material affine_material = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
 
 inline std::string tresca(double s)
 {
@@ -66,16 +66,16 @@ std::vector<AffineCase<dim>> affine_cases()
   const Point<dim> none = Point<dim>::Zero();
   const double shear = 0.2 * affine_material.mu;
   return {
-      {"slip, Tresca", slip, offset, tresca(shear), contact::ContactStatus::slip},
-      {"slip, Coulomb", slip, offset, coulomb(shear / pressure(slip)), contact::ContactStatus::slip},
-      {"stick, Tresca", stick, none, tresca(2 * shear), contact::ContactStatus::stick},
-      {"stick, Coulomb", stick, none, coulomb(2 * shear / pressure(stick)), contact::ContactStatus::stick},
-      {"frictionless", smooth, offset, "{ friction = \"none\" }", contact::ContactStatus::slip},
-      {"open, frictionless", open, offset, "{ friction = \"none\", gap = 1 }", contact::ContactStatus::open},
+      {"slip, Tresca", slip, offset, tresca(shear), problem::ContactStatus::slip},
+      {"slip, Coulomb", slip, offset, coulomb(shear / pressure(slip)), problem::ContactStatus::slip},
+      {"stick, Tresca", stick, none, tresca(2 * shear), problem::ContactStatus::stick},
+      {"stick, Coulomb", stick, none, coulomb(2 * shear / pressure(stick)), problem::ContactStatus::stick},
+      {"frictionless", smooth, offset, "{ friction = \"none\" }", problem::ContactStatus::slip},
+      {"open, frictionless", open, offset, "{ friction = \"none\", gap = 1 }", problem::ContactStatus::open},
       {"open, Tresca", open, offset, "{ friction = \"tresca\", threshold = 0, gap = 1 }",
-       contact::ContactStatus::open},
+       problem::ContactStatus::open},
       {"open, Coulomb", open, offset, "{ friction = \"coulomb\", coefficient = 0.5, gap = 1 }",
-       contact::ContactStatus::open},
+       problem::ContactStatus::open},
   };
 }
 

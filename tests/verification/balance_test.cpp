@@ -118,7 +118,7 @@ void every_iterate(int p)
       worst = {std::max(worst.force, d.force), std::max(worst.moment, d.moment)};
       return solve::NewtonAdvice(false);
     };
-    (void)solve::solve<dim>(c.form, {}, c.config.newton, c.config.solver, examine);
+    (void)solve::solve<dim>(c.form, {}, c.config.method.newton, c.config.method.solver, examine);
   }
   EXPECT_GT(iterates, 5) << "too easy to tell iterates apart";
   fmt::print("{}D, p = {}: the sum is {:.1e} of the largest force, {:.1e} of the largest moment\n", dim, p,

@@ -32,11 +32,11 @@ TEST_P(Components, AgreeWithTheReferenceAtEveryIterate)
   for (const int k : {0, 1, 2})
   {
     DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
-    if (k > 0) c.config.newton.max_steps = k;
+    if (k > 0) c.config.method.newton.max_steps = k;
     const solve::NewtonResult<2> result = c.solve();
     const certify::Stress<2> stress = certify::equilibrate<2>(c.form, result.u, result.traction);
     const certify::Estimate eta =
-        certify::estimate<2>(c.form, result.u, stress, case_file::ContactRule::reference);
+        certify::estimate<2>(c.form, result.u, stress, certify::ContactRule::reference);
     const json& e = expected[k == 0 ? "converged_est" : "iterate" + std::to_string(k) + "_est"];
     const double tolerance = 1e-7 * e["eta_tot"].get<double>();
     const auto expect = [&](double value, const char* name) {
@@ -77,7 +77,7 @@ void expect_the_same_in_parts(const std::string& toml)
   const certify::Estimator<dim> estimator(c.form);
   for (const int k : {1, 2, 3})
   {
-    c.config.newton.max_steps = k;
+    c.config.method.newton.max_steps = k;
     const solve::NewtonResult<dim> newton = c.solve();
     const certify::Stress<dim> whole = certify::equilibrate<dim>(c.form, newton.u, newton.traction, 1);
     const certify::Stress<dim> lin = equilibrator.linearisation(newton.u, newton.traction);

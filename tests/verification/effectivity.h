@@ -60,10 +60,10 @@ Effectivities effectivities(const EffectivityCase<dim>& which, double delta = 0)
   Effectivities result;
   std::string line =
       fmt::format("{}D p = {}  {:<22} {:<12}", dim, which.degree, which.problem.name, which.mesh.name);
-  const int all_steps = c.config.newton.max_steps;
+  const int all_steps = c.config.method.newton.max_steps;
   for (const int k : {1, 2, all_steps})
   {
-    c.config.newton.max_steps = k;
+    c.config.method.newton.max_steps = k;
     const solve::NewtonResult<dim> newton = c.solve(delta);
     const certify::Estimate eta = certify::estimate<dim>(
         c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction, 0, delta));

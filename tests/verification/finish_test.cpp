@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tribound/adapt/loop.h"
+#include "tribound/case/resolve.h"
 #include "tribound/mesh/gmsh.h"
 
 namespace tribound::test
@@ -34,7 +35,7 @@ Told<dim> run(const std::string& toml)
 {
   const case_file::Config config = case_file::parse_config(toml);
   auto mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   Told<dim> told;
   const adapt::LoopObserver<dim> observer = {
       {},
@@ -50,8 +51,8 @@ Told<dim> run(const std::string& toml)
       }};
   const std::atomic<bool> stop = false;
   told.verdict = adapt::adapt<dim>(
-      problem, config, std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config),
-      observer, stop);
+      problem, config.method, config.adapt,
+      std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method), observer, stop);
   return told;
 }
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "tribound/adapt/loop.h"
+#include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/mesh/gmsh.h"
 
@@ -111,8 +112,8 @@ void run_example(const case_file::Config& config,
                  const std::function<void(const adapt::LevelView<dim>&)>& look)
 {
   mesh::Mesh<dim> mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
-  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config);
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method);
   const auto show = [&](const adapt::LevelView<dim>& view)
   {
     fmt::print("level {}: {} cells, {} contact facets, {} Newton steps, bound {:.3g} %\n", view.number,
@@ -120,7 +121,8 @@ void run_example(const case_file::Config& config,
                view.level.steps.size(), 100 * view.level.estimate.total_sharp / view.level.norms.sigma);
     look(view);
   };
-  const certify::Verdict verdict = adapt::adapt<dim>(problem, config, std::move(first), {{}, show}, false);
+  const certify::Verdict verdict =
+      adapt::adapt<dim>(problem, config.method, config.adapt, std::move(first), {{}, show}, false);
   EXPECT_EQ(verdict.status, certify::RunStatus::certified) << verdict.reason;
 }
 

@@ -38,10 +38,10 @@ template <int dim>
 double expect_identities(DiscreteCase<dim>& c)
 {
   double largest = 0;
-  const double bound = identity_bound(c.config.degree);
+  const double bound = identity_bound(c.config.method.degree);
   for (const int k : {1, 2, 30})
   {
-    c.config.newton.max_steps = k;
+    c.config.method.newton.max_steps = k;
     const solve::NewtonResult<dim> result = c.solve();
     const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, result.u, result.traction);
     const certify::IdentityDefects defects = certify::check_identities<dim>(c.form, result.traction, stress);
@@ -49,11 +49,11 @@ double expect_identities(DiscreteCase<dim>& c)
     EXPECT_LE(defects.jump, bound) << "iterate " << k;
     EXPECT_LE(defects.neumann, bound) << "iterate " << k;
     EXPECT_LE(defects.contact, bound) << "iterate " << k;
-    if (c.config.degree > 1)
+    if (c.config.method.degree > 1)
     {
       EXPECT_LE(defects.symmetry, bound) << "iterate " << k;
     }
-    largest = std::max(largest, defects.largest(c.config.degree));
+    largest = std::max(largest, defects.largest(c.config.method.degree));
   }
   return largest;
 }
@@ -158,7 +158,7 @@ void check_case(const std::string& name, DiscreteCase<dim>& c)
 {
   SCOPED_TRACE(name);
   const double largest = expect_identities<dim>(c);
-  fmt::print("{}, {}D, p = {}, {} cells: largest defect {:.1e}\n", name, dim, c.config.degree,
+  fmt::print("{}, {}D, p = {}, {} cells: largest defect {:.1e}\n", name, dim, c.config.method.degree,
              c.mesh.n_cells(), largest);
 }
 

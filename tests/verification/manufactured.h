@@ -58,8 +58,8 @@ class ExactField
   }
 
  private:
-  std::vector<problem::Expression> u_;
-  std::vector<problem::Expression> gradient_;
+  std::vector<problem::Field> u_;
+  std::vector<problem::Field> gradient_;
 };
 
 /// The case with degree p on a uniform mesh, n cells along y.

@@ -73,7 +73,7 @@ mesh::MeshData<dim> block()
 template <int dim>
 solve::NewtonResult<dim> iterate(DiscreteCase<dim>& c, int k)
 {
-  c.config.newton.max_steps = k;
+  c.config.method.newton.max_steps = k;
   return c.solve();
 }
 
@@ -158,7 +158,7 @@ double distance_from_reference(int p, int k, Mutation mutation)
     const solve::NewtonResult<2> result = iterate(c, k);
     const certify::Estimate eta = certify::estimate<2>(
         c.form, result.u, dense_equilibrate<2>(c.form, result.u, result.traction, mutation),
-        case_file::ContactRule::reference);
+        certify::ContactRule::reference);
     const nlohmann::json& e = expected[fmt::format("iterate{}_est", k)];
     const double total = e["eta_tot"];
     const auto compare = [&](double value, const char* name)

@@ -70,10 +70,8 @@ void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution
     const Point<dim> traction = contact::sigma<dim>(c.problem.material(0), exact.gradient(x)) * n;
     const double sigma_n = traction.dot(n);
     const Point<dim> sigma_t = traction - sigma_n * n;
-    const auto* tresca = std::get_if<case_file::Tresca>(&facet.contact->friction);
-    const double limit = tresca
-                             ? problem::threshold_at<dim>(*tresca, x)
-                             : -std::get<case_file::Coulomb>(facet.contact->friction).coefficient * sigma_n;
+    const double limit =
+        cone(facet.contact->law).closed_limit(problem::strength_at<dim>(facet.contact->law, x), sigma_n);
     EXPECT_LT(sigma_n, 0);
     EXPECT_EQ(u.dot(n), 0);
     EXPECT_LE(sigma_t.norm(), limit * (1 + 1e-10));

@@ -76,7 +76,7 @@ double largest_defect(int p, const NamedText& problem)
     return advice;
   };
   const solve::NewtonResult<dim> result =
-      solve::solve<dim>(c.form, {}, c.config.newton, c.config.solver, observer, large_delta);
+      solve::solve<dim>(c.form, {}, c.config.method.newton, c.config.method.solver, observer, large_delta);
   EXPECT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_EQ(result.steps.front().delta, large_delta);
   EXPECT_EQ(result.steps.back().delta, large_delta / 16);
@@ -127,7 +127,7 @@ void expect_parts_to_add_up(int p)
   {
     SCOPED_TRACE(problem.name);
     DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
-    c.config.newton.max_steps = 2;
+    c.config.method.newton.max_steps = 2;
     const solve::NewtonResult<dim> result = c.solve(large_delta);
     const certify::Stress<dim> plain = certify::equilibrate<dim>(c.form, result.u, result.traction);
     certify::Stress<dim> stress =
@@ -221,7 +221,7 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
     const DiscreteCase<2> c(toml<2>(2, problems<2>()[1]) + "newton.stopping = \"" + stopping +
                                 "\"\nregularisation = { delta = 2, factor = 0.5, gamma_reg = 0.01 }\n",
                             bent_block<2>());
-    const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config);
+    const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config.method);
     ASSERT_TRUE(level.solved()) << level.failure;
     EXPECT_TRUE(adapt::regularisation_is_negligible(level.estimate.global, 0.01));
     EXPECT_TRUE(adapt::linearisation_is_negligible(level.estimate.global, 0.1));
@@ -240,7 +240,7 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
     EXPECT_EQ(n_updates, *level.delta_updates);
     EXPECT_EQ(level.delta, delta) << "carried to the next mesh";
     const adapt::CertifiedLevel<2> again =
-        adapt::solve_and_certify<2>(c.form, level.u, c.config, {}, level.delta);
+        adapt::solve_and_certify<2>(c.form, level.u, c.config.method, {}, level.delta);
     EXPECT_EQ(again.steps[0].step.delta, delta);
     EXPECT_EQ(again.delta_updates, 0);
   }
@@ -251,7 +251,7 @@ TEST(RegularisedLevel, KeepsToTheLimitOfUpdates)
   const DiscreteCase<2> c(
       toml<2>(1, problems<2>()[1]) + "regularisation = { delta = 5, gamma_reg = 1e-9, max_updates = 2 }\n",
       bent_block<2>());
-  const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config);
+  const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config.method);
   ASSERT_TRUE(level.solved()) << level.failure;
   EXPECT_EQ(level.delta_updates, 2);
   EXPECT_GT(level.estimate.global.regularisation(), 0) << "which the bound contains";

@@ -12,7 +12,7 @@ namespace tribound::test
 /// Sticks all over: u = 0 at the bottom, |sigma^t| < s = 1.
 inline Manufactured<2> smooth_stick()
 {
-  const problem::Material m = problem::lame(1.0, 0.3, case_file::PlaneModel::strain);
+  const problem::Material m = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
   const double a = m.lambda + 2 * m.mu;
   const double b = m.lambda + m.mu;
   return {.name = "stick, Tresca",
@@ -33,7 +33,7 @@ inline Manufactured<2> full_slip(double lambda, double mu)
   const std::string minus = fmt::format("{:.17g}*exp(x*y)", (c - 1) / 6);
   const std::string gradient_of_div = fmt::format("-{:.17g}*(2 + x*y)*exp(x*y)", (lambda + mu) * c / 3);
   return {.name = fmt::format("slip, Tresca, lambda/mu = {:g}", lambda / mu),
-          .material = {lambda, mu, case_file::PlaneModel::strain},
+          .material = {lambda, mu, problem::PlaneModel::strain},
           .upper = {1, 1},
           .u = {"x*" + plus, "y*" + minus},
           .gradient = {"(1 + x*y)*" + plus, "x^2*" + plus, "y^2*" + minus, "(1 + x*y)*" + minus},
@@ -48,7 +48,7 @@ inline Manufactured<2> full_slip(double lambda, double mu)
 /// y = 0.
 inline Manufactured<2> coulomb_slip()
 {
-  const problem::Material m = problem::lame(1.0, 0.3, case_file::PlaneModel::strain);
+  const problem::Material m = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
   constexpr double mu_F = 0.3;
   const double a = m.lambda + 2 * m.mu;
   const double k = mu_F / m.mu;
@@ -75,7 +75,7 @@ inline Manufactured<2> coulomb_slip()
 /// s = mu |w|.
 inline Manufactured<3> turning_slip()
 {
-  const problem::Material m = problem::lame(1.0, 0.3, case_file::PlaneModel::strain);
+  const problem::Material m = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
   const double a = m.lambda + m.mu;
   const std::string w1 = "(0.1 + 0.04*sin(x + z))";
   const std::string w3 = "(0.06 + 0.03*cos(x - z))";

@@ -65,7 +65,7 @@ TEST_P(T2D, FirstAndSecondIterate)
   for (const int k : {1, 2})
   {
     DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
-    c.config.newton.max_steps = k;
+    c.config.method.newton.max_steps = k;
     const solve::NewtonResult<2> result = c.solve();
     const std::string iterate = "iterate" + std::to_string(k);
     expect_digits(contact::stress_norms<2>(c.problem, c.space, result.u).sigma,

@@ -19,15 +19,15 @@ bool linearisation_is_negligible(const certify::BoundComponents& eta, double gam
   return eta.linearisation() <= gamma_lin * (eta.discretisation() + eta.regularisation());
 }
 
-bool linearisation_is_negligible(const certify::Estimate& estimate, const case_file::NewtonConfig& config)
+bool linearisation_is_negligible(const certify::Estimate& estimate, const StoppingOptions& stopping)
 {
   const auto negligible = [&](const certify::BoundComponents& eta)
-  { return linearisation_is_negligible(eta, config.gamma_lin); };
-  switch (config.stopping)
+  { return linearisation_is_negligible(eta, stopping.gamma_lin); };
+  switch (stopping.criterion)
   {
-    case case_file::Stopping::adaptive:
+    case Stopping::adaptive:
       return negligible(estimate.global);
-    case case_file::Stopping::adaptive_local:
+    case Stopping::adaptive_local:
       return std::ranges::all_of(estimate.cells, negligible);
     default:
       return false;
@@ -50,14 +50,14 @@ template <int dim>
 class Certifier
 {
  public:
-  Certifier(const contact::NitscheForm<dim>& form, const case_file::Config& config,
+  Certifier(const contact::NitscheForm<dim>& form, const Method& method,
             const std::optional<double>& expected,
             const std::optional<certify::FriedrichsConstant>& friedrichs)
       : form_(form),
-        config_(config),
+        method_(method),
         known_(expected),
         equilibrator_(form),
-        estimator_(form, config.certify.contact_rule, friedrichs)
+        estimator_(form, method.contact_rule, friedrichs)
   {
   }
 
@@ -66,7 +66,7 @@ class Certifier
                              CertifiedLevel<dim>& level)
   {
     if (always_complete() || !known_ || may_be_accepted(u, t, step)) complete(u, t, step, level);
-    return step.bound && linearisation_is_negligible(level.estimate, config_.newton);
+    return step.bound && linearisation_is_negligible(level.estimate, method_.stopping);
   }
 
   /// The stress of the iterate and its bound.
@@ -86,7 +86,7 @@ class Certifier
  private:
   [[nodiscard]] bool always_complete() const
   {
-    return dim == 2 || config_.newton.stopping == case_file::Stopping::tolerance || config_.regularisation;
+    return dim == 2 || method_.stopping.criterion == Stopping::tolerance || method_.regularisation;
   }
 
   /// Whether the linearisation error may be negligible, the discretisation error being that last known. What
@@ -94,14 +94,13 @@ class Certifier
   /// vectors x, y, z >= 0.
   bool may_be_accepted(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step)
   {
-    const double factor =
-        config_.newton.stopping == case_file::Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
+    const double factor = method_.stopping.criterion == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
     step.linearisation = estimator_.linearisation(equilibrator_.linearisation(u, t));
-    return step.linearisation->linearisation() <= factor * config_.newton.gamma_lin * *known_;
+    return step.linearisation->linearisation() <= factor * method_.stopping.gamma_lin * *known_;
   }
 
   const contact::NitscheForm<dim>& form_;
-  const case_file::Config& config_;
+  const Method& method_;
   std::optional<double> known_;  ///< discretisation() of the last complete bound, or as expected
   certify::Equilibrator<dim> equilibrator_;
   certify::Estimator<dim> estimator_;
@@ -119,10 +118,10 @@ void keep_last(const contact::NitscheForm<dim>& form, Certifier<dim>& certifier,
 
 /// The level with its systems solved as far as rounding lets them be, where this mends the identities.
 template <int dim>
-void tighten(const contact::NitscheForm<dim>& form, const case_file::Config& config,
-             const StepObserver& observer, CertifiedLevel<dim>& level)
+void tighten(const contact::NitscheForm<dim>& form, const Method& method, const StepObserver& observer,
+             CertifiedLevel<dim>& level)
 {
-  case_file::Config tight = config;
+  Method tight = method;
   tight.solver.tolerance = 0;
   try
   {
@@ -148,7 +147,7 @@ bool bound_holds(const CertifiedLevel<dim>& level, int degree)
 
 template <int dim>
 std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& form,
-                                            const CertifiedLevel<dim>& level, const case_file::Config& config,
+                                            const CertifiedLevel<dim>& level, const Method& method,
                                             const StepObserver& observer)
 {
   CertifiedLevel<dim> result = level;
@@ -163,7 +162,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   solve::NewtonResult<dim> newton;
   {
     const Charge charge(result.solve_seconds, result.solve_cpu);
-    newton = solve::solve<dim>(form, level.u, config.newton, config.solver, record, level.delta);
+    newton = solve::solve<dim>(form, level.u, method.newton, method.solver, record, level.delta);
   }
   if (newton.status != solve::NewtonStatus::converged) return std::nullopt;
   for (CertifiedStep& step : result.steps) step.accepted = false;
@@ -173,17 +172,17 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   result.traction = std::move(newton.traction);
   {
     const Charge charge(result.certify_seconds, result.certify_cpu);
-    Certifier<dim> certifier(form, config, {}, level.friedrichs);
+    Certifier<dim> certifier(form, method, {}, level.friedrichs);
     keep_last(form, certifier, result);
   }
-  if (!bound_holds(result, config.degree)) return std::nullopt;
+  if (!bound_holds(result, method.degree)) return std::nullopt;
   return result;
 }
 
 template <int dim>
 CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std::span<const double> start,
-                                      const case_file::Config& config, const StepObserver& observer,
-                                      double delta, const std::optional<double>& expected,
+                                      const Method& method, const StepObserver& observer, double delta,
+                                      const std::optional<double>& expected,
                                       const std::optional<certify::FriedrichsConstant>& friedrichs)
 {
   CertifiedLevel<dim> level;
@@ -191,7 +190,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   double cpu = 0;
   std::optional<Certifier<dim>> certifier;
   std::optional<DeltaUpdates> regularisation;
-  if (config.regularisation) regularisation = DeltaUpdates{*config.regularisation, delta};
+  if (method.regularisation) regularisation = DeltaUpdates{*method.regularisation, delta};
 
   const auto record = [&](const solve::NewtonStep& step)
   {
@@ -206,7 +205,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     if (std::isfinite(iterate.step.residual))
     {
       const Charge charge(level.certify_seconds, level.certify_cpu);
-      if (!certifier) certifier.emplace(form, config, expected, friedrichs);
+      if (!certifier) certifier.emplace(form, method, expected, friedrichs);
       advice = certifier->examine(iterate.u, iterate.traction, step, level);
       if (regularisation)
         advice = regularisation->advise(form, iterate, level.estimate.global,
@@ -219,7 +218,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   solve::NewtonResult<dim> newton;
   {
     const Charge charge(wall, cpu);
-    newton = solve_persistently<dim>(form, start, config, certify, delta,
+    newton = solve_persistently<dim>(form, start, method, certify, delta,
                                      [&](const solve::NewtonStep& step)
                                      {
                                        record(step);
@@ -246,22 +245,22 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     const Charge charge(level.certify_seconds, level.certify_cpu);
     keep_last(form, *certifier, level);
   }
-  if (!bound_holds(level, config.degree)) tighten(form, config, observer, level);
+  if (!bound_holds(level, method.degree)) tighten(form, method, observer, level);
   return level;
 }
 
 template CertifiedLevel<2> solve_and_certify(const contact::NitscheForm<2>&, std::span<const double>,
-                                             const case_file::Config&, const StepObserver&, double,
+                                             const Method&, const StepObserver&, double,
                                              const std::optional<double>&,
                                              const std::optional<certify::FriedrichsConstant>&);
 template CertifiedLevel<3> solve_and_certify(const contact::NitscheForm<3>&, std::span<const double>,
-                                             const case_file::Config&, const StepObserver&, double,
+                                             const Method&, const StepObserver&, double,
                                              const std::optional<double>&,
                                              const std::optional<certify::FriedrichsConstant>&);
 template std::optional<CertifiedLevel<2>> converge(const contact::NitscheForm<2>&, const CertifiedLevel<2>&,
-                                                   const case_file::Config&, const StepObserver&);
+                                                   const Method&, const StepObserver&);
 template std::optional<CertifiedLevel<3>> converge(const contact::NitscheForm<3>&, const CertifiedLevel<3>&,
-                                                   const case_file::Config&, const StepObserver&);
+                                                   const Method&, const StepObserver&);
 template bool bound_holds(const CertifiedLevel<2>&, int);
 template bool bound_holds(const CertifiedLevel<3>&, int);
 

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tribound/adapt/regularisation.h"
-#include "tribound/case/config.h"
+#include "tribound/adapt/method.h"
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
@@ -28,9 +27,9 @@ namespace tribound::adapt
 template <int dim>
 struct Discretisation
 {
-  Discretisation(mesh::Mesh<dim> m, const problem::Problem<dim>& problem, const case_file::Config& config,
+  Discretisation(mesh::Mesh<dim> m, const problem::Problem<dim>& problem, const Method& method,
                  const contact::DataAccuracy& accuracy = {})
-      : mesh(std::move(m)), space(mesh, config.degree), form(problem, space, config.gamma0(), accuracy)
+      : mesh(std::move(m)), space(mesh, method.degree), form(problem, space, method.gamma_0(), accuracy)
   {
   }
   Discretisation(const Discretisation&) = delete;
@@ -95,14 +94,14 @@ struct CertifiedLevel
 
 /// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.
 [[nodiscard]] bool linearisation_is_negligible(const certify::Estimate& estimate,
-                                               const case_file::NewtonConfig& config);
+                                               const StoppingOptions& stopping);
 
 /// Called after every Newton step; may throw to leave the level.
 using StepObserver = std::function<void(const CertifiedStep&)>;
 
 /// Newton's method from `start` (empty: from scratch) with the bound of its iterates. With an adaptive
 /// stopping criterion it ends at the first iterate whose linearisation error is negligible. In the
-/// regularised variant (config.regularisation) it starts with `delta` (0: chosen after the first step), and
+/// regularised variant (method.regularisation) it starts with `delta` (0: chosen after the first step), and
 /// goes on with smaller ones until the regularisation is negligible too.
 ///
 /// The iterate that is kept always has the complete bound of its own stress; so has every other in 2D, with
@@ -123,7 +122,7 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>
 [[nodiscard]] CertifiedLevel<dim> solve_and_certify(
-    const contact::NitscheForm<dim>& form, std::span<const double> start, const case_file::Config& config,
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
     const StepObserver& observer = {}, double delta = 0, const std::optional<double>& expected = {},
     const std::optional<certify::FriedrichsConstant>& friedrichs = {});
 
@@ -133,7 +132,7 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& form,
                                                           const CertifiedLevel<dim>& level,
-                                                          const case_file::Config& config,
+                                                          const Method& method,
                                                           const StepObserver& observer = {});
 
 /// Whether there is a solution and judge() may call its bound a bound.

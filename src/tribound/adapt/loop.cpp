@@ -38,9 +38,9 @@ template <int dim>
 class Loop
 {
  public:
-  Loop(const problem::Problem<dim>& problem, const case_file::Config& config,
+  Loop(const problem::Problem<dim>& problem, const Method& method, const AdaptOptions& options,
        const LoopObserver<dim>& observer, const std::atomic<bool>& stop)
-      : problem_(problem), config_(config), observer_(observer), stop_(stop)
+      : problem_(problem), method_(method), options_(options), observer_(observer), stop_(stop)
   {
   }
 
@@ -117,7 +117,8 @@ class Loop
   [[nodiscard]] std::string memory_limit_reached(double growth) const;
 
   const problem::Problem<dim>& problem_;
-  const case_file::Config& config_;
+  const Method& method_;
+  const AdaptOptions& options_;
   const LoopObserver<dim>& observer_;
   const std::atomic<bool>& stop_;
   const Clock::time_point begin_ = Clock::now();
@@ -141,7 +142,7 @@ std::optional<CertifiedLevel<dim>> Loop<dim>::solve()
 {
   try
   {
-    CertifiedLevel<dim> level = solve_and_certify<dim>(current_->form, start_, config_, watch(number_ > 0),
+    CertifiedLevel<dim> level = solve_and_certify<dim>(current_->form, start_, method_, watch(number_ > 0),
                                                        delta_, expected_, friedrichs_);
     friedrichs_ = level.friedrichs;
     level.refinement = refinement_;
@@ -169,7 +170,7 @@ certify::Verdict Loop<dim>::judge_level(const CertifiedLevel<dim>& level) const
 {
   if (!level.solved()) return {certify::RunStatus::failed, level.failure};
   certify::Verdict verdict =
-      certify::judge(level.estimate, level.identities, config_.degree, level.norms, config_.adapt.tolerance);
+      certify::judge(level.estimate, level.identities, method_.degree, level.norms, options_.tolerance);
   if (level.tightened && !holds(verdict))
     verdict.reason +=
         "; solving the systems anew as far as rounding lets them be, with solver.tolerance = 0, did not mend "
@@ -190,12 +191,12 @@ StepObserver Loop<dim>::watch(bool interruptible) const
 template <int dim>
 bool Loop<dim>::finish(CertifiedLevel<dim>& level)
 {
-  if (!config_.newton.finish || level.converged || !holds(last_) || stop_) return false;
+  if (!method_.stopping.finish || level.converged || !holds(last_) || stop_) return false;
   const auto attempt = [&]() -> std::optional<CertifiedLevel<dim>>
   {
     try
     {
-      return converge<dim>(current_->form, level, config_, watch(true));
+      return converge<dim>(current_->form, level, method_, watch(true));
     }
     catch (const Interrupted&)
     {
@@ -233,10 +234,10 @@ template <int dim>
 std::string Loop<dim>::limit_reached() const
 {
   if (stop_) return "interrupted";
-  if (number_ >= config_.adapt.max_levels)
-    return fmt::format("adapt.max_levels = {} is reached", config_.adapt.max_levels);
-  if (config_.adapt.max_time && seconds_since(begin_) >= *config_.adapt.max_time)
-    return fmt::format("adapt.max_time = {:g} s is used up", *config_.adapt.max_time);
+  if (number_ >= options_.max_levels)
+    return fmt::format("adapt.max_levels = {} is reached", options_.max_levels);
+  if (options_.max_time && seconds_since(begin_) >= *options_.max_time)
+    return fmt::format("adapt.max_time = {:g} s is used up", *options_.max_time);
   return {};
 }
 
@@ -245,24 +246,24 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
 {
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
-  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, mark(level.estimate.cells, config_.adapt));
+  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, mark(level.estimate.cells, options_.marking));
   refinement_.bisect = lap();
-  if (config_.adapt.max_cells && finer.mesh.n_cells() > *config_.adapt.max_cells)
+  if (options_.max_cells && finer.mesh.n_cells() > *options_.max_cells)
     return fmt::format("the next mesh has {} cells, more than adapt.max_cells = {}", finer.mesh.n_cells(),
-                       *config_.adapt.max_cells);
+                       *options_.max_cells);
   auto next = std::make_shared<const Discretisation<dim>>(
-      std::move(finer.mesh), problem_, config_,
+      std::move(finer.mesh), problem_, method_,
       contact::DataAccuracy{.absolute = share_of_data * level.estimate.total_sharp});
   refinement_.discretise = lap();
   const long dofs = next->space.n_dofs() - next->form.constraints().n_fixed();
-  if (dofs > config_.adapt.max_dofs)
+  if (dofs > options_.max_dofs)
     return fmt::format("the next mesh has {} degrees of freedom, more than adapt.max_dofs = {}", dofs,
-                       config_.adapt.max_dofs);
+                       options_.max_dofs);
   const int fixed = current_->form.constraints().n_fixed();
   const double growth = static_cast<double>(dofs) / std::max(1, current_->space.n_dofs() - fixed);
   if (auto limit = memory_limit_reached(growth); !limit.empty()) return limit;
   delta_ = level.delta;
-  expected_ = level.estimate.global.discretisation() * std::pow(growth, -1.0 * config_.degree / dim);
+  expected_ = level.estimate.global.discretisation() * std::pow(growth, -1.0 * method_.degree / dim);
   start_ = fem::nested_interpolant<dim>(current_->space, level.u, finer.parent, next->space);
   refinement_.transfer = lap();
   discrete_before_ = std::exchange(current_, std::move(next));
@@ -272,7 +273,7 @@ std::string Loop<dim>::refine(const CertifiedLevel<dim>& level)
 template <int dim>
 std::string Loop<dim>::memory_limit_reached(double growth) const
 {
-  const MemoryLimit limit = memory_limit(config_.adapt);
+  const MemoryLimit limit = memory_limit(options_);
   const double expected = expected_memory(memory_before_, peak_memory(), growth, dim);
   if (limit.bytes == 0 || expected <= limit.bytes) return {};
   return fmt::format("the next mesh is expected to take {:.3g} GB, more than {} = {:.3g} GB",
@@ -282,10 +283,10 @@ std::string Loop<dim>::memory_limit_reached(double growth) const
 
 }  // namespace
 
-MemoryLimit memory_limit(const case_file::AdaptConfig& config)
+MemoryLimit memory_limit(const AdaptOptions& options)
 {
   constexpr double share_of_machine = 0.9;
-  if (config.max_memory) return {*config.max_memory * gigabyte, true};
+  if (options.max_memory) return {*options.max_memory * gigabyte, true};
   return {share_of_machine * machine_memory(), false};
 }
 
@@ -297,17 +298,17 @@ double expected_memory(double before, double peak, double growth, int dim)
 }
 
 template <int dim>
-certify::Verdict adapt(const problem::Problem<dim>& problem, const case_file::Config& config,
-                       std::unique_ptr<Discretisation<dim>> first, const LoopObserver<dim>& observer,
-                       const std::atomic<bool>& stop)
+certify::Verdict adapt(const problem::Problem<dim>& problem, const Method& method,
+                       const AdaptOptions& options, std::unique_ptr<Discretisation<dim>> first,
+                       const LoopObserver<dim>& observer, const std::atomic<bool>& stop)
 {
-  return Loop<dim>(problem, config, observer, stop).run(std::move(first));
+  return Loop<dim>(problem, method, options, observer, stop).run(std::move(first));
 }
 
-template certify::Verdict adapt(const problem::Problem<2>&, const case_file::Config&,
+template certify::Verdict adapt(const problem::Problem<2>&, const Method&, const AdaptOptions&,
                                 std::unique_ptr<Discretisation<2>>, const LoopObserver<2>&,
                                 const std::atomic<bool>&);
-template certify::Verdict adapt(const problem::Problem<3>&, const case_file::Config&,
+template certify::Verdict adapt(const problem::Problem<3>&, const Method&, const AdaptOptions&,
                                 std::unique_ptr<Discretisation<3>>, const LoopObserver<3>&,
                                 const std::atomic<bool>&);
 

@@ -7,13 +7,27 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "tribound/adapt/level.h"
+#include "tribound/adapt/mark.h"
 #include "tribound/certify/bound/certificate.h"
 
 namespace tribound::adapt
 {
+
+/// How far to go.
+struct AdaptOptions
+{
+  double tolerance = 0.01;  ///< of eta_tot / ||sigma(u_h)||
+  MarkingOptions marking{};
+  int max_levels = 30;
+  long max_dofs = 2'000'000;
+  std::optional<long> max_cells{};     ///< no limit where absent
+  std::optional<double> max_time{};    ///< seconds; no limit where absent
+  std::optional<double> max_memory{};  ///< GB (1e9 bytes); nine tenths of the machine's where absent
+};
 
 /// A level that is complete.
 template <int dim>
@@ -43,7 +57,7 @@ struct MemoryLimit
   bool from_case = false;  ///< adapt.max_memory; else nine tenths of the machine
 };
 
-[[nodiscard]] MemoryLimit memory_limit(const case_file::AdaptConfig& config);
+[[nodiscard]] MemoryLimit memory_limit(const AdaptOptions& options);
 
 /// The memory that a level is expected to take at most, in bytes: `before` the process had before the first
 /// level and `peak` after one with 1 / `growth` of its unknowns.
@@ -61,8 +75,8 @@ struct MemoryLimit
 /// `budget` and says what happened. Throws SolveError when the first level cannot be solved, and InputError
 /// for data that are not valid on a finer mesh.
 template <int dim>
-[[nodiscard]] certify::Verdict adapt(const problem::Problem<dim>& problem, const case_file::Config& config,
-                                     std::unique_ptr<Discretisation<dim>> first,
+[[nodiscard]] certify::Verdict adapt(const problem::Problem<dim>& problem, const Method& method,
+                                     const AdaptOptions& options, std::unique_ptr<Discretisation<dim>> first,
                                      const LoopObserver<dim>& observer, const std::atomic<bool>& stop);
 
 }  // namespace tribound::adapt

@@ -25,10 +25,10 @@ std::vector<Index> cells_from(std::span<const double> eta, double bound)
   return cells;
 }
 
-std::vector<Index> mark_one(std::span<const double> eta, const case_file::AdaptConfig& config)
+std::vector<Index> mark_one(std::span<const double> eta, const MarkingOptions& options)
 {
-  return config.marking == case_file::Marking::doerfler ? mark_doerfler(eta, config.theta)
-                                                        : mark_maximum(eta, config.theta);
+  return options.strategy == Marking::doerfler ? mark_doerfler(eta, options.theta)
+                                               : mark_maximum(eta, options.theta);
 }
 
 std::vector<double> values(std::span<const certify::BoundComponents> cells,
@@ -86,11 +86,11 @@ std::vector<Index> mark_all(std::size_t n_cells)
   return cells;
 }
 
-std::vector<Index> mark(std::span<const certify::BoundComponents> cells, const case_file::AdaptConfig& config)
+std::vector<Index> mark(std::span<const certify::BoundComponents> cells, const MarkingOptions& options)
 {
-  if (config.marking == case_file::Marking::uniform) return mark_all(cells.size());
-  if (!config.separate_contact)
-    return mark_one(values(cells, &certify::BoundComponents::total_sharp), config);
+  if (options.strategy == Marking::uniform) return mark_all(cells.size());
+  if (!options.separate_contact)
+    return mark_one(values(cells, &certify::BoundComponents::total_sharp), options);
   constexpr double small_part = 0.1;  // of the bound
   const double bound = norm(values(cells, &certify::BoundComponents::total_sharp));
   std::vector<Index> marked;
@@ -98,7 +98,7 @@ std::vector<Index> mark(std::span<const certify::BoundComponents> cells, const c
   {
     const std::vector<double> eta = values(cells, part);
     if (norm(eta) < small_part * bound) continue;
-    const std::vector<Index> own = mark_one(eta, config);
+    const std::vector<Index> own = mark_one(eta, options);
     std::vector<Index> both;
     std::ranges::set_union(marked, own, std::back_inserter(both));
     marked = std::move(both);

@@ -7,11 +7,24 @@
 #include <vector>
 
 #include "tribound/base/types.h"
-#include "tribound/case/config.h"
 #include "tribound/certify/bound/estimate.h"
 
 namespace tribound::adapt
 {
+
+enum class Marking
+{
+  doerfler,
+  maximum,
+  uniform  ///< every cell
+};
+
+struct MarkingOptions
+{
+  Marking strategy = Marking::doerfler;
+  double theta = 0.5;             ///< in (0, 1]
+  bool separate_contact = false;  ///< for the body and for the contact conditions apart, each by its share
+};
 
 /// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96]; of cells with equal
 /// eta_T those with the lower numbers. Ascending; empty where every eta_T is 0. `eta`: per cell, finite and
@@ -28,6 +41,6 @@ namespace tribound::adapt
 /// adapt.separate_contact the union of what body() and contact() mark, each for itself; a part whose square
 /// is below a hundredth of the bound's is left to the other.
 [[nodiscard]] std::vector<Index> mark(std::span<const certify::BoundComponents> cells,
-                                      const case_file::AdaptConfig& config);
+                                      const MarkingOptions& options);
 
 }  // namespace tribound::adapt

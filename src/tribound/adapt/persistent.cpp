@@ -18,14 +18,14 @@ namespace
 /// The solution with a small delta, from larger ones; nothing where that fails, too.
 template <int dim>
 std::optional<std::vector<double>> regularised_start(
-    const contact::NitscheForm<dim>& form, std::span<const double> start, const case_file::Config& config,
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
     const std::function<void(const solve::NewtonStep&)>& record)
 {
   // In units of the mean contact traction of the first step.
   constexpr double first = 10;
   constexpr double last = 1e-3;
   constexpr double factor = 0.25;
-  case_file::NewtonConfig newton = config.newton;
+  solve::NewtonOptions newton = method.newton;
   newton.tolerance = std::max(newton.tolerance, 1e-4);
   double scale = 0;
   double delta = 0;
@@ -49,7 +49,7 @@ std::optional<std::vector<double>> regularised_start(
     }
     return advice;
   };
-  solve::NewtonResult<dim> result = solve::solve<dim>(form, start, newton, config.solver, shrink);
+  solve::NewtonResult<dim> result = solve::solve<dim>(form, start, newton, method.solver, shrink);
   if (result.status == solve::NewtonStatus::diverged || delta == 0) return std::nullopt;
   return std::move(result.u);
 }
@@ -57,8 +57,8 @@ std::optional<std::vector<double>> regularised_start(
 /// The solution with gamma times `factor`; nothing where that fails, too.
 template <int dim>
 std::optional<std::vector<double>> start_with_gamma(
-    double factor, const contact::NitscheForm<dim>& form, std::span<const double> start,
-    const case_file::Config& config, const std::function<void(const solve::NewtonStep&)>& record)
+    double factor, const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
+    const std::function<void(const solve::NewtonStep&)>& record)
 {
   const contact::NitscheForm<dim> other(form.problem(), form.space(), factor * form.gamma0());
   const solve::NewtonObserver<dim> watch = [&](const solve::NewtonIterate<dim>& iterate)
@@ -66,7 +66,7 @@ std::optional<std::vector<double>> start_with_gamma(
     record(iterate.step);
     return false;
   };
-  solve::NewtonResult<dim> result = solve::solve<dim>(other, start, config.newton, config.solver, watch);
+  solve::NewtonResult<dim> result = solve::solve<dim>(other, start, method.newton, method.solver, watch);
   if (!result.message.empty()) return std::nullopt;
   return std::move(result.u);
 }
@@ -75,12 +75,12 @@ std::optional<std::vector<double>> start_with_gamma(
 
 template <int dim>
 solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& form,
-                                            std::span<const double> start, const case_file::Config& config,
+                                            std::span<const double> start, const Method& method,
                                             const solve::NewtonObserver<dim>& observer, double delta,
                                             const std::function<void(const solve::NewtonStep&)>& record)
 {
   const auto attempt = [&](std::span<const double> u)
-  { return solve::solve<dim>(form, u, config.newton, config.solver, observer, delta); };
+  { return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta); };
   solve::NewtonResult<dim> first;
   std::exception_ptr failure;
   try
@@ -93,13 +93,13 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   }
   if (!failure && first.message.empty()) return first;
 
-  const bool worth_it = config.newton.damping && !config.regularisation && form.problem().has_contact();
+  const bool worth_it = method.newton.damping && !method.regularisation && form.problem().has_contact();
   using Start = std::function<std::optional<std::vector<double>>()>;
   std::vector<Start> others;
   if (worth_it)
-    others = {[&] { return regularised_start(form, start, config, record); },
-              [&] { return start_with_gamma(3, form, start, config, record); },
-              [&] { return start_with_gamma(1. / 3, form, start, config, record); }};
+    others = {[&] { return regularised_start(form, start, method, record); },
+              [&] { return start_with_gamma(3, form, start, method, record); },
+              [&] { return start_with_gamma(1. / 3, form, start, method, record); }};
   for (const Start& other : others) try
     {
       if (const auto better = other())
@@ -113,12 +113,10 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
 }
 
 template solve::NewtonResult<2> solve_persistently(const contact::NitscheForm<2>&, std::span<const double>,
-                                                   const case_file::Config&, const solve::NewtonObserver<2>&,
-                                                   double,
+                                                   const Method&, const solve::NewtonObserver<2>&, double,
                                                    const std::function<void(const solve::NewtonStep&)>&);
 template solve::NewtonResult<3> solve_persistently(const contact::NitscheForm<3>&, std::span<const double>,
-                                                   const case_file::Config&, const solve::NewtonObserver<3>&,
-                                                   double,
+                                                   const Method&, const solve::NewtonObserver<3>&, double,
                                                    const std::function<void(const solve::NewtonStep&)>&);
 
 }  // namespace tribound::adapt

@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 
-#include "tribound/case/config.h"
+#include "tribound/adapt/method.h"
 #include "tribound/solve/newton.h"
 
 namespace tribound::adapt
@@ -19,7 +19,7 @@ namespace tribound::adapt
 /// `record`, those of all attempts to `observer`. Should all fail, it is the first one that is told of.
 template <int dim>
 [[nodiscard]] solve::NewtonResult<dim> solve_persistently(
-    const contact::NitscheForm<dim>& form, std::span<const double> start, const case_file::Config& config,
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
     const solve::NewtonObserver<dim>& observer, double delta,
     const std::function<void(const solve::NewtonStep&)>& record);
 

@@ -5,13 +5,21 @@
 
 #include <span>
 
-#include "tribound/case/config.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/solve/newton.h"
 
 namespace tribound::adapt
 {
+
+/// The regularised variant, method section 7.
+struct RegularisationOptions
+{
+  double delta = 1.0;      ///< > 0, the first one: multiple of the mean contact traction of the first step
+  double factor = 0.25;    ///< in (0, 1): each update shrinks delta by it
+  double gamma_reg = 0.1;  ///< eta_reg <= gamma_reg * (the discretisation components)
+  int max_updates = 20;    ///< of delta on a mesh
+};
 
 /// Whether a smaller delta is pointless:
 /// eta_reg1 + eta_reg2n + eta_reg2t <= gamma_reg (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc).
@@ -25,7 +33,7 @@ template <int dim>
 /// The outer loop of the regularised variant around Newton's method on one mesh.
 struct DeltaUpdates
 {
-  case_file::RegularisationConfig config;
+  RegularisationOptions config;
   double delta = 0;   ///< of the next Newton step; 0 until the first step has shown the size of the traction
   int n_updates = 0;  ///< on this mesh
 

@@ -118,30 +118,26 @@ void KspDeleter::operator()(_p_KSP* ksp) const
   KSPDestroy(&ksp);
 }
 
-case_file::LinearMethod choose_method(const case_file::SolverConfig& config, int dim, Index n_dofs,
-                                      Index direct_limit)
+LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs, Index direct_limit)
 {
-  if (config.method != case_file::LinearMethod::automatic) return config.method;
-  return dim == 2 || n_dofs <= direct_limit ? case_file::LinearMethod::direct
-                                            : case_file::LinearMethod::iterative;
+  if (config.method != LinearMethod::automatic) return config.method;
+  return dim == 2 || n_dofs <= direct_limit ? LinearMethod::direct : LinearMethod::iterative;
 }
 
 template <int dim>
-LinearSolver::LinearSolver(const case_file::SolverConfig& config, std::span<const Point<dim>> nodes,
-                           MatrixKind kind, Index direct_limit)
+LinearSolver::LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes, MatrixKind kind,
+                           Index direct_limit)
     : config_(config),
       method_(choose_method(config, dim, static_cast<Index>(dim * nodes.size()), direct_limit)),
       kind_(kind),
       dim_(dim)
 {
-  if (method_ == case_file::LinearMethod::iterative)
+  if (method_ == LinearMethod::iterative)
     for (const Point<dim>& x : nodes) coordinates_.insert(coordinates_.end(), x.data(), x.data() + dim);
 }
 
-template LinearSolver::LinearSolver(const case_file::SolverConfig&, std::span<const Point<2>>, MatrixKind,
-                                    Index);
-template LinearSolver::LinearSolver(const case_file::SolverConfig&, std::span<const Point<3>>, MatrixKind,
-                                    Index);
+template LinearSolver::LinearSolver(const SolverOptions&, std::span<const Point<2>>, MatrixKind, Index);
+template LinearSolver::LinearSolver(const SolverOptions&, std::span<const Point<3>>, MatrixKind, Index);
 
 void LinearSolver::configure(const SparseMatrix& a)
 {
@@ -152,7 +148,7 @@ void LinearSolver::configure(const SparseMatrix& a)
   check(KSPGMRESSetRestart(ksp, 60), "creating a solver");
   check(KSPSetOptionsPrefix(ksp, "tribound_"), "creating a solver");
   check(KSPSetOperators(ksp, a.handle(), a.handle()), "creating a solver");
-  if (method_ == case_file::LinearMethod::iterative)
+  if (method_ == LinearMethod::iterative)
     configure_multigrid(a);
   else
     configure_direct(a);
@@ -168,7 +164,7 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
   check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU), "creating a solver");
   // UMFPACK saves milliseconds below 10k degrees of freedom in 2D and costs 20 % more in 3D: only when asked
   // for. It has no factorisation of symmetric matrices.
-  const bool umfpack = config_.package == case_file::DirectPackage::umfpack && !symmetric;
+  const bool umfpack = config_.package == DirectPackage::umfpack && !symmetric;
   check(PCFactorSetMatSolverType(pc, umfpack ? MATSOLVERUMFPACK : MATSOLVERMUMPS), "creating a solver");
   if (umfpack) return;
   check(PCFactorSetUpMatSolverType(pc), "creating a solver");
@@ -216,7 +212,7 @@ void LinearSolver::prepare(const SparseMatrix& a)
 LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b, double tolerance,
                                 std::span<double> x)
 {
-  if (method_ == case_file::LinearMethod::direct || config_.method == case_file::LinearMethod::iterative)
+  if (method_ == LinearMethod::direct || config_.method == LinearMethod::iterative)
     return attempt(a, b, tolerance, x);
   try
   {
@@ -224,7 +220,7 @@ LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b
   }
   catch (const SolveError&)  // nobody insisted on multigrid
   {
-    method_ = case_file::LinearMethod::direct;
+    method_ = LinearMethod::direct;
     ksp_.reset();  // its memory is needed
     reuse_budget_ = 0;
   }
@@ -248,7 +244,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double>
   }
 
   prepare(a);
-  const bool direct = method_ == case_file::LinearMethod::direct;
+  const bool direct = method_ == LinearMethod::direct;
   StopRule rule{tolerance, direct ? 4 : config_.max_iterations, false, {}};
   const bool converged = iterate(ksp_.get(), b, rule, x);
   const int iterations = std::max(0, static_cast<int>(rule.history.size()) - 1);

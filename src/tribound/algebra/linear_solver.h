@@ -8,12 +8,33 @@
 #include <vector>
 
 #include "tribound/algebra/petsc.h"
-#include "tribound/case/config.h"
 
 struct _p_KSP;
 
 namespace tribound::algebra
 {
+
+enum class LinearMethod
+{
+  automatic,
+  direct,
+  iterative
+};
+
+enum class DirectPackage
+{
+  automatic,
+  mumps,
+  umfpack
+};
+
+struct SolverOptions
+{
+  LinearMethod method = LinearMethod::automatic;
+  DirectPackage package = DirectPackage::automatic;
+  double tolerance = 1e-10;  ///< relative residual of an iterative solve
+  int max_iterations = 500;
+};
 
 struct KspDeleter
 {
@@ -42,8 +63,8 @@ inline constexpr Index direct_limit_3d = 30'000;
 
 /// Direct or iterative, as configured or by dimension and size: factorisations in 2D at every size that fits,
 /// in 3D up to `direct_limit` degrees of freedom.
-[[nodiscard]] case_file::LinearMethod choose_method(const case_file::SolverConfig& config, int dim,
-                                                    Index n_dofs, Index direct_limit = direct_limit_3d);
+[[nodiscard]] LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs,
+                                         Index direct_limit = direct_limit_3d);
 
 /// Solves the linear systems of one Newton loop by flexible GMRES, preconditioned by a factorisation (then
 /// one iteration is the rule) or by smoothed-aggregation multigrid with rigid body modes. The preconditioner
@@ -54,14 +75,14 @@ class LinearSolver
  public:
   /// `nodes`: positions of the nodes; degree of freedom dim * node + component.
   template <int dim>
-  LinearSolver(const case_file::SolverConfig& config, std::span<const Point<dim>> nodes,
+  LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
 
   /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off. Throws SolveError when A is
   /// singular or the iteration stalls.
   LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x);
 
-  [[nodiscard]] case_file::LinearMethod method() const { return method_; }
+  [[nodiscard]] LinearMethod method() const { return method_; }
 
  private:
   [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, std::span<const double> b, double tolerance,
@@ -71,8 +92,8 @@ class LinearSolver
   void configure_multigrid(const SparseMatrix& a);
   void prepare(const SparseMatrix& a);
 
-  case_file::SolverConfig config_;
-  case_file::LinearMethod method_;
+  SolverOptions config_;
+  LinearMethod method_;
   MatrixKind kind_;
   int dim_;
   std::vector<double> coordinates_;

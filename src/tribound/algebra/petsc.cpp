@@ -108,7 +108,7 @@ void MatDeleter::operator()(_p_Mat* mat) const
   MatDestroy(&mat);
 }
 
-SparseMatrix::SparseMatrix(Index n, int block_size, contact::Triplets entries) : size_(n)
+SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries) : size_(n)
 {
   Mat mat = nullptr;
   check(MatCreate(PETSC_COMM_SELF, &mat), "creating a matrix");

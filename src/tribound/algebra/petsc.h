@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tribound/algebra/triplets.h"
 #include "tribound/base/types.h"
-#include "tribound/contact/nitsche/elasticity.h"
 
 struct _p_Mat;
 
@@ -52,7 +52,7 @@ class SparseMatrix
 {
  public:
   /// Sums the entries; block_size is the number of components per node.
-  SparseMatrix(Index n, int block_size, contact::Triplets entries);
+  SparseMatrix(Index n, int block_size, Triplets entries);
 
   /// A matrix of the same pattern and values.
   [[nodiscard]] SparseMatrix duplicate() const;

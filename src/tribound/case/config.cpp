@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -31,10 +30,10 @@ std::vector<T> components(const TableReader& table, std::string_view key, const 
   return values;
 }
 
-BoxMesh read_box(const Node& node)
+mesh::BoxMesh read_box(const Node& node)
 {
   const TableReader table(node, {"lower", "upper", "cells"});
-  BoxMesh box{
+  mesh::BoxMesh box{
       .lower = components<double>(table, "lower", to_number),
       .upper = components<double>(table, "upper", to_number),
       .cells = components<int>(table, "cells", integer_from(1, "the number of cells in this direction")),
@@ -61,7 +60,7 @@ BoxMesh read_box(const Node& node)
   return box;
 }
 
-MeshSource read_mesh_source(const Node& node, const std::filesystem::path& case_directory)
+mesh::MeshSource read_mesh_source(const Node& node, const std::filesystem::path& case_directory)
 {
   const TableReader table(node, {"file", "box"});
   const Node* file = table.find("file");
@@ -72,36 +71,35 @@ MeshSource read_mesh_source(const Node& node, const std::filesystem::path& case_
   if (box != nullptr) return read_box(*box);
   const std::string path = to_text(*file);
   if (path.empty()) throw InputError(file->where, "is empty", mesh_hint);
-  return MeshFile{case_directory / path, file->where};
+  return mesh::MeshFile{case_directory / path, file->where};
 }
 
-NitscheConfig read_nitsche(const Node& node)
+void read_nitsche(const Node& node, adapt::Method& method)
 {
   const TableReader table(node, {"gamma0"});
-  NitscheConfig nitsche;
-  table.read("gamma0", nitsche.gamma0, number_in(positive, "the dimensionless penalty, such as 10"));
-  return nitsche;
+  table.read("gamma0", method.gamma0, number_in(positive, "the dimensionless penalty, such as 10"));
 }
 
-NewtonConfig read_newton(const Node& node)
+void read_newton(const Node& node, adapt::Method& method)
 {
   const TableReader table(node, {"stopping", "gamma_lin", "tolerance", "max_steps", "damping", "finish"});
-  NewtonConfig newton;
-  table.read("stopping", newton.stopping, one_of<Stopping>({"adaptive", "adaptive_local", "tolerance"}));
-  table.read("gamma_lin", newton.gamma_lin,
+  adapt::StoppingOptions& stopping = method.stopping;
+  table.read("stopping", stopping.criterion,
+             one_of<adapt::Stopping>({"adaptive", "adaptive_local", "tolerance"}));
+  table.read("gamma_lin", stopping.gamma_lin,
              number_in(positive, "the share of the linearisation in the error, such as 0.1"));
+  solve::NewtonOptions& newton = method.newton;
   table.read("tolerance", newton.tolerance,
              number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
   table.read("max_steps", newton.max_steps, integer_from(1, "a number of steps, such as 50"));
   table.read("damping", newton.damping, to_bool);
-  table.read("finish", newton.finish, to_bool);
-  return newton;
+  table.read("finish", stopping.finish, to_bool);
 }
 
-RegularisationConfig read_regularisation(const Node& node)
+adapt::RegularisationOptions read_regularisation(const Node& node)
 {
   const TableReader table(node, {"delta", "factor", "gamma_reg", "max_updates"});
-  RegularisationConfig regularisation;
+  adapt::RegularisationOptions regularisation;
   table.read("delta", regularisation.delta,
              number_in(positive, "a multiple of the mean contact traction, such as 1"));
   table.read("factor", regularisation.factor,
@@ -112,17 +110,17 @@ RegularisationConfig read_regularisation(const Node& node)
   return regularisation;
 }
 
-AdaptConfig read_adapt(const Node& node)
+adapt::AdaptOptions read_adapt(const Node& node)
 {
   const TableReader table(node, {"tolerance", "marking", "theta", "separate_contact", "max_levels",
                                  "max_dofs", "max_cells", "max_time", "max_memory"});
-  AdaptConfig adapt;
+  adapt::AdaptOptions adapt;
   table.read("tolerance", adapt.tolerance, number_in(positive, "a relative error, such as 0.01"));
-  table.read("marking", adapt.marking, one_of<Marking>({"doerfler", "maximum", "uniform"}));
+  table.read("marking", adapt.marking.strategy, one_of<adapt::Marking>({"doerfler", "maximum", "uniform"}));
   table.read(
-      "theta", adapt.theta,
+      "theta", adapt.marking.theta,
       number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true}, "such as 0.5; 1 marks every cell"));
-  table.read("separate_contact", adapt.separate_contact, to_bool);
+  table.read("separate_contact", adapt.marking.separate_contact, to_bool);
   table.read("max_levels", adapt.max_levels, integer_from(0, "0 solves on the given mesh only"));
   table.read("max_dofs", adapt.max_dofs, integer_from(1L, "a number of unknowns, such as 2_000_000"));
   table.read("max_cells", adapt.max_cells, integer_from(1L, "a number of cells, such as 500_000"));
@@ -131,20 +129,18 @@ AdaptConfig read_adapt(const Node& node)
   return adapt;
 }
 
-CertifyConfig read_certify(const Node& node)
+void read_certify(const Node& node, adapt::Method& method)
 {
   const TableReader table(node, {"contact_rule"});
-  CertifyConfig certify;
-  table.read("contact_rule", certify.contact_rule, one_of<ContactRule>({"resolved", "reference"}));
-  return certify;
+  table.read("contact_rule", method.contact_rule, one_of<certify::ContactRule>({"resolved", "reference"}));
 }
 
-SolverConfig read_solver(const Node& node)
+algebra::SolverOptions read_solver(const Node& node)
 {
   const TableReader table(node, {"method", "package", "tolerance", "max_iterations"});
-  SolverConfig solver;
-  table.read("method", solver.method, one_of<LinearMethod>({"auto", "direct", "iterative"}));
-  table.read("package", solver.package, one_of<DirectPackage>({"auto", "mumps", "umfpack"}));
+  algebra::SolverOptions solver;
+  table.read("method", solver.method, one_of<algebra::LinearMethod>({"auto", "direct", "iterative"}));
+  table.read("package", solver.package, one_of<algebra::DirectPackage>({"auto", "mumps", "umfpack"}));
   table.read("tolerance", solver.tolerance,
              number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
   table.read("max_iterations", solver.max_iterations, integer_from(1, "a number of iterations, such as 500"));
@@ -188,10 +184,10 @@ OutputConfig read_output(const Node& node, OutputConfig output)
 }
 
 /// The document as a case file in the output directory: paths lead from there.
-EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
+io::EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
 {
   auto& tables = std::get<Node::Table>(document.value);
-  if (const auto* file = std::get_if<MeshFile>(&config.mesh))
+  if (const auto* file = std::get_if<mesh::MeshFile>(&config.mesh))
   {
     std::error_code unknown;
     const std::filesystem::path path = std::filesystem::absolute(file->path, unknown);
@@ -216,19 +212,23 @@ Config read_document(const Node& document, std::string file)
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
   root.read("title", config.title, to_text);
-  root.read("degree", config.degree, integer_from(1, "the polynomial degree p", 4));
+  root.read("degree", config.method.degree, integer_from(1, "the polynomial degree p", 4));
   config.mesh =
       read_mesh_source(root.require("mesh", fmt::format("[mesh] with {}", mesh_hint)), case_directory);
   config.materials = read_materials(root.require("material", "[material] with E = 210e9 and nu = 0.3"));
   root.read("load", config.loads, read_loads);
   root.read("boundary", config.boundaries, read_boundaries);
-  root.read("nitsche", config.nitsche, read_nitsche);
-  root.read("newton", config.newton, read_newton);
-  root.read("regularisation", config.regularisation, read_regularisation);
+  const auto read_method = [&](std::string_view key, const auto& read)
+  {
+    if (const Node* node = root.find(key)) read(*node, config.method);
+  };
+  read_method("nitsche", read_nitsche);
+  read_method("newton", read_newton);
+  root.read("regularisation", config.method.regularisation, read_regularisation);
   root.read("adapt", config.adapt, read_adapt);
-  root.read("certify", config.certify, read_certify);
-  root.read("solver", config.solver, read_solver);
-  root.read("study", config.study, [&](const Node& node) { return read_study(node, config.degree); });
+  read_method("certify", read_certify);
+  root.read("solver", config.method.solver, read_solver);
+  root.read("study", config.study, [&](const Node& node) { return read_study(node, config.method.degree); });
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
   return config;
@@ -241,21 +241,13 @@ std::filesystem::path default_directory(const std::filesystem::path& case_file)
   return std::filesystem::path("out") / case_file.stem();
 }
 
-double default_gamma0(int degree)
-{
-  return degree <= 3 ? 10.0 : std::max(10.0, 3.0 * degree * degree);
-}
-
 std::string friction_name(const Config& config)
 {
-  constexpr std::array names = {"none", "tresca", "coulomb"};
-  static_assert(names.size() == std::variant_size_v<FrictionLaw>);
-  std::array<bool, names.size()> used{};
-  for (const BoundaryConfig& boundary : config.boundaries)
-    if (boundary.contact) used[boundary.contact->friction.index()] = true;
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (used[i]) text += (text.empty() ? "" : "+") + std::string(names[i]);
+  for (const problem::LawKind& kind : problem::law_kinds())
+    if (std::ranges::any_of(config.boundaries, [&](const BoundaryConfig& boundary)
+                            { return boundary.contact && name(boundary.contact->law) == kind.name; }))
+      text += (text.empty() ? "" : "+") + std::string(kind.name);
   return text;
 }
 

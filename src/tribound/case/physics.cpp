@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "tribound/case/table_reader.h"
@@ -13,12 +14,12 @@ namespace tribound::case_file
 namespace
 {
 
-PlaneModel to_plane(const Node& node)
+problem::PlaneModel to_plane(const Node& node)
 {
-  return one_of<PlaneModel>({"strain", "stress"})(node);
+  return one_of<problem::PlaneModel>({"strain", "stress"})(node);
 }
 
-MaterialConfig read_material(const TableReader& table, std::string region, PlaneModel plane)
+MaterialConfig read_material(const TableReader& table, std::string region, problem::PlaneModel plane)
 {
   MaterialConfig material{.region = std::move(region), .plane = plane, .where = table.where()};
   const Node& E = table.require("E", "Young's modulus, in the units of stress: E = 210e9");
@@ -34,12 +35,12 @@ MaterialConfig read_material(const TableReader& table, std::string region, Plane
 LoadConfig read_load(const TableReader& table, std::string region)
 {
   const Node& body = table.require("body", "force per volume: body = [0, -9.81]");
-  return {std::move(region), to_expressions(body), body.where};
+  return {std::move(region), to_fields(body), body.where};
 }
 
-std::vector<std::optional<problem::Expression>> read_displacement(const Node& node)
+std::vector<std::optional<problem::Field>> read_displacement(const Node& node)
 {
-  std::vector<std::optional<problem::Expression>> displacement;
+  std::vector<std::optional<problem::Field>> displacement;
   for (const Node& item :
        to_components(node, "one number, formula or \"free\" per dimension, such as [0, \"free\"]"))
   {
@@ -47,45 +48,45 @@ std::vector<std::optional<problem::Expression>> read_displacement(const Node& no
     if (text != nullptr && *text == "free")
       displacement.emplace_back();
     else
-      displacement.emplace_back(to_expression(item));
+      displacement.emplace_back(to_field(item));
   }
   return displacement;
 }
 
-FrictionLaw read_friction(const TableReader& table)
+problem::Field read_law_value(const TableReader& table, const problem::LawKey& key)
 {
-  const std::vector<std::string> names = {"none", "tresca", "coulomb"};
-  enum class Law
-  {
-    none,
-    tresca,
-    coulomb
-  };
-  Law law = Law::none;
-  table.read("friction", law, one_of<Law>(names));
-  const auto reject = [&](std::string_view key, Law owner)
-  {
-    if (const Node* node = table.find(key); node != nullptr && law != owner)
-      throw InputError(node->where,
-                       fmt::format("does not belong to friction = \"{}\"", names[static_cast<int>(law)]),
-                       fmt::format("it goes with friction = \"{}\"", names[static_cast<int>(owner)]));
-  };
-  reject("threshold", Law::tresca);
-  reject("coefficient", Law::coulomb);
-  if (law == Law::tresca)
-    return Tresca{to_nonnegative_expression(
-        table.require("threshold", "the largest tangential stress, a number or formula: threshold = 0.03"))};
-  if (law == Law::coulomb)
-    return Coulomb{to_number_in(table.require("coefficient", "the friction coefficient: coefficient = 0.3"),
-                                not_negative, "the friction coefficient, such as 0.3")};
-  return Frictionless{};
+  const Node& node = table.require(key.key, std::string(key.meaning));
+  if (!key.is_number) return to_nonnegative_field(node);
+  return problem::Field(to_number_in(node, not_negative, std::string(key.meaning)), node.where);
 }
 
-Contact read_contact(const Node& node)
+/// `friction` and the keys that belong to the law it names.
+problem::ContactLaw read_law(const TableReader& table)
 {
-  const TableReader table(node, {"friction", "threshold", "coefficient", "gap"});
-  Contact contact{.friction = read_friction(table), .gap = problem::Expression(0.0, node.where)};
-  table.read("gap", contact.gap, to_nonnegative_expression);
+  const std::span<const problem::LawKind> kinds = problem::law_kinds();
+  std::vector<std::string> names;
+  for (const problem::LawKind& kind : kinds) names.emplace_back(kind.name);
+  std::size_t chosen = 0;
+  table.read("friction", chosen, [&](const Node& node) { return to_choice(node, names); });
+  for (const problem::LawKind& kind : kinds)
+    for (const problem::LawKey& key : kind.keys)
+      if (const Node* node = table.find(key.key); node != nullptr && kind.name != kinds[chosen].name)
+        throw InputError(node->where, fmt::format("does not belong to friction = \"{}\"", names[chosen]),
+                         fmt::format("it goes with friction = \"{}\"", kind.name));
+  std::vector<problem::Field> values;
+  for (const problem::LawKey& key : kinds[chosen].keys) values.push_back(read_law_value(table, key));
+  return kinds[chosen].make(values);
+}
+
+problem::Contact read_contact(const Node& node)
+{
+  std::vector<std::string_view> keys = {"friction"};
+  for (const problem::LawKind& kind : problem::law_kinds())
+    for (const problem::LawKey& key : kind.keys) keys.push_back(key.key);
+  keys.push_back("gap");
+  const TableReader table(node, keys);
+  problem::Contact contact(read_law(table), problem::Field(0.0, node.where));
+  table.read("gap", contact.gap, to_nonnegative_field);
   return contact;
 }
 
@@ -102,8 +103,7 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
              "split the group in the mesh; a pressure in the joint itself, such as uplift, is not modelled");
   if (boundary.displacement.empty()) return;
 
-  const auto is_fixed = [](const std::optional<problem::Expression>& component)
-  { return component.has_value(); };
+  const auto is_fixed = [](const std::optional<problem::Field>& component) { return component.has_value(); };
   if (boundary.pressure && std::ranges::all_of(boundary.displacement, is_fixed))
     fail("pressure", "has no effect: displacement fixes every component", "drop it, or leave one \"free\"");
   if (boundary.traction.empty()) return;
@@ -128,8 +128,8 @@ BoundaryConfig read_boundary(const Entry& entry)
   boundary.name = entry.name;
   boundary.where = entry.where;
   table.read("displacement", boundary.displacement, read_displacement);
-  table.read("traction", boundary.traction, to_expressions);
-  table.read("pressure", boundary.pressure, to_expression);
+  table.read("traction", boundary.traction, to_fields);
+  table.read("pressure", boundary.pressure, to_field);
   table.read("contact", boundary.contact, read_contact);
   check_boundary(table, boundary);
   return boundary;
@@ -140,7 +140,7 @@ BoundaryConfig read_boundary(const Entry& entry)
 std::vector<MaterialConfig> read_materials(const Node& node)
 {
   const TableReader table(node, {"E", "nu", "plane"}, TableReader::Subtables::named);
-  PlaneModel plane = PlaneModel::strain;
+  problem::PlaneModel plane = problem::PlaneModel::strain;
   table.read("plane", plane, to_plane);
 
   std::vector<MaterialConfig> materials;

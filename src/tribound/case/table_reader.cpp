@@ -33,7 +33,7 @@ std::string requirement(const Interval& interval)
 
 }  // namespace
 
-TableReader::TableReader(const Node& node, std::initializer_list<std::string_view> keys, Subtables subtables)
+TableReader::TableReader(const Node& node, std::span<const std::string_view> keys, Subtables subtables)
     : table_(std::get_if<Node::Table>(&node.value)),
       keys_(keys.begin(), keys.end()),
       subtables_(subtables),
@@ -99,25 +99,25 @@ double to_number(const Node& node)
   return *number;
 }
 
-problem::Expression to_expression(const Node& node)
+problem::Field to_field(const Node& node)
 {
-  if (const auto* text = std::get_if<std::string>(&node.value)) return problem::Expression(*text, node.where);
+  if (const auto* text = std::get_if<std::string>(&node.value)) return problem::Field(*text, node.where);
   if (!std::holds_alternative<std::int64_t>(node.value) && !std::holds_alternative<double>(node.value))
     fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
   const double number = to_number(node);
   if (std::abs(number) > reasonable.upper)
     throw InputError(node.where, fmt::format("is beyond all physics, {}", number),
                      "its square must be a number, too: take other units");
-  return problem::Expression(number, node.where);
+  return problem::Field(number, node.where);
 }
 
-problem::Expression to_nonnegative_expression(const Node& node)
+problem::Field to_nonnegative_field(const Node& node)
 {
-  problem::Expression expression = to_expression(node);
-  if (expression.is_constant() && expression(Point<2>::Zero().eval()) < 0)
+  problem::Field field = to_field(node);
+  if (field.is_constant() && field.constant() < 0)
     throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
                      problem::nonnegative_hint(node.where));
-  return expression;
+  return field;
 }
 
 const Node::Array& to_components(const Node& node, std::string_view what)
@@ -128,11 +128,11 @@ const Node::Array& to_components(const Node& node, std::string_view what)
   return *array;
 }
 
-std::vector<problem::Expression> to_expressions(const Node& node)
+std::vector<problem::Field> to_fields(const Node& node)
 {
-  std::vector<problem::Expression> components;
+  std::vector<problem::Field> components;
   for (const Node& item : to_components(node, "one number or formula per dimension, such as [0, -1]"))
-    components.push_back(to_expression(item));
+    components.push_back(to_field(item));
   return components;
 }
 

@@ -6,6 +6,7 @@
 
 #include <initializer_list>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,13 @@ class TableReader
   };
 
   /// Checks that `node` is a table and that its keys are among `keys`. Keeps a reference to the node.
-  TableReader(const Node& node, std::initializer_list<std::string_view> keys,
+  TableReader(const Node& node, std::span<const std::string_view> keys,
               Subtables subtables = Subtables::keys);
+  TableReader(const Node& node, std::initializer_list<std::string_view> keys,
+              Subtables subtables = Subtables::keys)
+      : TableReader(node, std::span(keys.begin(), keys.size()), subtables)
+  {
+  }
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
   /// The value of an allowed key, or null. Subtables named by the user do not count.
@@ -67,12 +73,12 @@ class TableReader
 /// A finite number; integers count.
 [[nodiscard]] double to_number(const Node& node);
 /// A number or a formula.
-[[nodiscard]] problem::Expression to_expression(const Node& node);
+[[nodiscard]] problem::Field to_field(const Node& node);
 /// A number or a formula; throws if it is a negative constant.
-[[nodiscard]] problem::Expression to_nonnegative_expression(const Node& node);
+[[nodiscard]] problem::Field to_nonnegative_field(const Node& node);
 /// The items of an array of 2 or 3 (dim); `what` describes it, such as "one component per dimension".
 [[nodiscard]] const Node::Array& to_components(const Node& node, std::string_view what);
-[[nodiscard]] std::vector<problem::Expression> to_expressions(const Node& node);
+[[nodiscard]] std::vector<problem::Field> to_fields(const Node& node);
 
 /// The numbers a key takes.
 struct Interval

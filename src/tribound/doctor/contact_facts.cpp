@@ -63,7 +63,7 @@ class Collector
     for (const Point<dim - 1>& s : form_.facet_rule().points) add_gap(*facet.contact, map(s));
   }
 
-  void add_gap(const case_file::Contact& contact, const Point<dim>& x)
+  void add_gap(const problem::Contact& contact, const Point<dim>& x)
   {
     const double gap = problem::gap_at<dim>(contact, x);
     if (gap < facts_.smallest_gap)

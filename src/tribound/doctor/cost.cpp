@@ -21,10 +21,10 @@ struct Model
 /// Fitted to measured runs of the block of example 01 and its 3D sibling from scratch, 6 to 22 Newton steps,
 /// on one core (docs/doctor.md): 2D to 231k degrees of freedom, 3D to 54k direct and 90k with multigrid. The
 /// factors of a 3D matrix grow like n^(4/3), computing them costs n^2 [George73]; everything else is linear.
-Model model(int dim, int degree, case_file::LinearMethod method, double n)
+Model model(int dim, int degree, algebra::LinearMethod method, double n)
 {
   if (dim == 2) return {2700.0 + 530 * degree, 1e-4};
-  if (method == case_file::LinearMethod::direct)
+  if (method == algebra::LinearMethod::direct)
     return {-400.0 + 2400 * degree + 420 * std::cbrt(n), 3.8e-4 + 7.6e-9 * n};
   return {4500.0 + 1200 * degree, 5e-4 * (1 + 0.25 * (degree - 1))};
 }
@@ -32,7 +32,7 @@ Model model(int dim, int degree, case_file::LinearMethod method, double n)
 }  // namespace
 
 template <int dim>
-std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh, const case_file::SolverConfig& config)
+std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh, const algebra::SolverOptions& config)
 {
   constexpr double program = 80e6;  // bytes of the program and its libraries
   std::vector<CostEstimate> estimates;
@@ -40,7 +40,7 @@ std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh, const case
   {
     const double dofs = certify::count_dofs(mesh, {.refinements = 0, .degree = degree});
     const auto n = static_cast<Index>(std::min<double>(dofs, std::numeric_limits<Index>::max()));
-    const case_file::LinearMethod method = algebra::choose_method(config, dim, n);
+    const algebra::LinearMethod method = algebra::choose_method(config, dim, n);
     const Model per_dof = model(dim, degree, method, dofs);
     estimates.push_back(
         {degree, dofs, method, program + per_dof.bytes_per_dof * dofs, per_dof.seconds_per_dof * dofs});
@@ -48,7 +48,7 @@ std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh, const case
   return estimates;
 }
 
-template std::vector<CostEstimate> cost_estimates(const mesh::Mesh<2>&, const case_file::SolverConfig&);
-template std::vector<CostEstimate> cost_estimates(const mesh::Mesh<3>&, const case_file::SolverConfig&);
+template std::vector<CostEstimate> cost_estimates(const mesh::Mesh<2>&, const algebra::SolverOptions&);
+template std::vector<CostEstimate> cost_estimates(const mesh::Mesh<3>&, const algebra::SolverOptions&);
 
 }  // namespace tribound::doctor

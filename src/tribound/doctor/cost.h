@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tribound/algebra/linear_solver.h"
-#include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::doctor
@@ -17,7 +16,7 @@ struct CostEstimate
 {
   int degree = 0;
   double dofs = 0;  ///< fixed ones included
-  case_file::LinearMethod method = case_file::LinearMethod::direct;
+  algebra::LinearMethod method = algebra::LinearMethod::direct;
   double bytes = 0;
   double seconds = 0;
 };
@@ -27,6 +26,6 @@ struct CostEstimate
 /// sizes both are extrapolated.
 template <int dim>
 [[nodiscard]] std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh,
-                                                       const case_file::SolverConfig& config);
+                                                       const algebra::SolverOptions& config);
 
 }  // namespace tribound::doctor

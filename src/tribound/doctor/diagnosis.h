@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tribound/adapt/loop.h"
-#include "tribound/case/config.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/doctor/contact_facts.h"
 #include "tribound/doctor/cost.h"
@@ -35,22 +34,23 @@ struct Diagnosis
 
 /// For a case whose bodies are held, see check_rigid_motions().
 template <int dim>
-[[nodiscard]] Diagnosis diagnose(const case_file::Config& config, const contact::NitscheForm<dim>& form)
+[[nodiscard]] Diagnosis diagnose(const contact::NitscheForm<dim>& form, const adapt::Method& method,
+                                 const adapt::AdaptOptions& options)
 {
   Diagnosis result;
-  result.degree = config.degree;
-  result.refines = config.adapt.max_levels > 0;
+  result.degree = method.degree;
+  result.refines = options.max_levels > 0;
   result.held_by_contact = motions_held_by_contact(form);
   result.corners = overconstrained_corners(form);
   result.contacts = contact_boundary_facts(form);
   result.loads = load_facts(form);
   result.units = plausible_units(result.loads);
   result.mesh = mesh_quality(form.space().mesh());
-  result.costs = cost_estimates(form.space().mesh(), config.solver);
-  case_file::SolverConfig multigrid = config.solver;
-  multigrid.method = case_file::LinearMethod::iterative;
-  result.multigrid_bytes = cost_estimates(form.space().mesh(), multigrid)[config.degree - 1].bytes;
-  result.memory = adapt::memory_limit(config.adapt);
+  result.costs = cost_estimates(form.space().mesh(), method.solver);
+  algebra::SolverOptions multigrid = method.solver;
+  multigrid.method = algebra::LinearMethod::iterative;
+  result.multigrid_bytes = cost_estimates(form.space().mesh(), multigrid)[method.degree - 1].bytes;
+  result.memory = adapt::memory_limit(options);
   return result;
 }
 

@@ -212,6 +212,13 @@ const char* to_string(Severity severity)
   }
 }
 
+std::string location(const Finding& finding)
+{
+  if (finding.boundary.empty()) return finding.where.empty() ? "" : "at " + describe(finding.where);
+  const std::string name = fmt::format("boundary \"{}\"", finding.boundary);
+  return finding.where.empty() ? name : fmt::format("{} at {}", name, describe(finding.where));
+}
+
 std::string describe(const Place& where)
 {
   constexpr double round_off = 1e-12;

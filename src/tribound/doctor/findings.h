@@ -32,6 +32,7 @@ struct Finding
   std::vector<std::pair<std::string, double>> numbers{};  ///< by name
   Place where{};                                          ///< empty: nowhere in particular
   std::string advice{};                                   ///< empty when all is well
+  std::string boundary{};  ///< the name of the group; empty: of none in particular
 };
 
 /// What can be said before solving, in the order of the case: supports, contact, loads, mesh, cost.
@@ -42,6 +43,9 @@ struct Finding
 
 /// The part about memory and time.
 [[nodiscard]] std::vector<Finding> cost_findings(const Diagnosis& diagnosis);
+
+/// `boundary "base" at (0.5, 1)`, as far as it is known; empty where nothing is.
+[[nodiscard]] std::string location(const Finding& finding);
 
 /// "(0.5, 1)" with six digits.
 [[nodiscard]] std::string describe(const Place& where);

@@ -39,7 +39,7 @@ std::string seconds_in_words(double seconds)
 std::string memory_advice(const Diagnosis& diagnosis, const CostEstimate& cost)
 {
   std::vector<std::string> ways;
-  if (cost.method == case_file::LinearMethod::direct && diagnosis.multigrid_bytes <= diagnosis.memory.bytes)
+  if (cost.method == algebra::LinearMethod::direct && diagnosis.multigrid_bytes <= diagnosis.memory.bytes)
     ways.push_back(
         fmt::format("solver.method = \"iterative\" (about {})", bytes_in_words(diagnosis.multigrid_bytes)));
   for (const CostEstimate& other : diagnosis.costs)

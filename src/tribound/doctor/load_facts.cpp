@@ -15,7 +15,7 @@ RegionMaterial region_material(const problem::Problem<dim>& problem, int region)
 {
   const problem::Material& material = problem.material(region);
   const auto [E, nu] = elastic_constants(material, dim);
-  return {problem.region_names()[region], E, nu, dim == 2 && material.plane == case_file::PlaneModel::stress};
+  return {problem.regions()[region].name, E, nu, dim == 2 && material.plane == problem::PlaneModel::stress};
 }
 
 template <int dim>
@@ -153,7 +153,7 @@ double displacement_range(const contact::NitscheForm<dim>& form)
 ElasticConstants elastic_constants(const problem::Material& material, int dimension)
 {
   const auto& [lambda, mu, plane] = material;
-  const bool plane_stress = dimension == 2 && plane == case_file::PlaneModel::stress;
+  const bool plane_stress = dimension == 2 && plane == problem::PlaneModel::stress;
   const double nu = plane_stress ? lambda / (lambda + 2 * mu) : lambda / (2 * (lambda + mu));
   return {2 * mu * (1 + nu), nu};
 }
@@ -175,7 +175,7 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   LoadFacts facts;
   measure_extent(mesh, facts);
-  for (int region = 0; region < static_cast<int>(problem.region_names().size()); ++region)
+  for (int region = 0; region < static_cast<int>(problem.regions().size()); ++region)
     facts.materials.push_back(region_material(problem, region));
   facts.smallest_E = std::ranges::min_element(facts.materials, {}, &RegionMaterial::E)->E;
   const Point<dim> resultant = body_force_resultant(form, facts) + traction_resultant(form, facts);

@@ -26,27 +26,30 @@ constexpr double large_coefficient = 1;
 /// Fewer closed facets do not resolve a contact zone.
 constexpr long few_closed_facets = 4;
 
-std::string location(const std::string& boundary, const Place& where)
+/// With what was compared with a limit.
+Finding warning(const char* code, std::string text, double value, const std::string& boundary = {},
+                const Place& where = {})
 {
-  const std::string name = fmt::format("boundary \"{}\"", boundary);
-  return where.empty() ? name : fmt::format("{} at {}", name, describe(where));
+  Finding finding{code, Severity::warning, std::move(text), {{"value", value}}, where};
+  finding.boundary = boundary;
+  return finding;
 }
 
-void add_data(const io::LevelRecord& level, std::vector<io::RunWarning>& warnings)
+void add_data(const SolvedFigures& solved, std::vector<Finding>& warnings)
 {
-  if (!level.bound || io::relative_bound(level).value_or(0) <= round_off) return;
-  const certify::BoundComponents& eta = level.bound->global;
+  if (!solved.bound || !(solved.sigma_norm > 0)) return;
+  if (solved.bound->total_sharp <= round_off * solved.sigma_norm) return;
+  const certify::BoundComponents& eta = solved.bound->global;
   double squares = 0;
   for (const auto& [name, member] : certify::all_component_names) squares += eta.*member * eta.*member;
   const auto add = [&](const char* code, double component, const char* name, const char* text)
   {
     const double share = component * component / squares;
     if (share > dominant_share)
-      warnings.push_back(
-          {code,
-           fmt::format("{} makes up {:.3g} % of the bound (of the squares): {}", name, 100 * share, text),
-           share,
-           {}});
+      warnings.push_back(warning(
+          code,
+          fmt::format("{} makes up {:.3g} % of the bound (of the squares): {}", name, 100 * share, text),
+          share));
   };
   add("body_force_oscillation", eta.osc, "osc",
       "the body force varies faster than the mesh shows; refine where it varies, or raise the degree");
@@ -54,88 +57,86 @@ void add_data(const io::LevelRecord& level, std::vector<io::RunWarning>& warning
       "the tractions vary faster than the facets show; put vertices where they jump, or refine there");
 }
 
-void add_resolution(const ContactOutcome& outcome, std::vector<io::RunWarning>& warnings)
+void add_resolution(const ContactOutcome& outcome, std::vector<Finding>& warnings)
 {
   if (outcome.closed == 0)
-    warnings.push_back({"no_contact", "nothing touches there: the boundary might as well be free", 0,
-                        location(outcome.boundary, {})});
+    warnings.push_back(warning("no_contact", "nothing touches there: the boundary might as well be free", 0,
+                               outcome.boundary));
   else if (outcome.closed_facets < few_closed_facets && outcome.closed_facets < outcome.facets)
     warnings.push_back(
-        {"few_contact_facets",
-         fmt::format("the contact zone covers {} whole facet{}: too few for its size or its largest "
-                     "pressure",
-                     outcome.closed_facets, outcome.closed_facets == 1 ? "" : "s"),
-         static_cast<double>(outcome.closed_facets), location(outcome.boundary, {})});
+        warning("few_contact_facets",
+                fmt::format("the contact zone covers {} whole facet{}: too few for its size or its largest "
+                            "pressure",
+                            outcome.closed_facets, outcome.closed_facets == 1 ? "" : "s"),
+                static_cast<double>(outcome.closed_facets), outcome.boundary));
 }
 
-void add_pressure(const ContactOutcome& outcome, std::vector<io::RunWarning>& warnings)
+void add_pressure(const ContactOutcome& outcome, std::vector<Finding>& warnings)
 {
   if (outcome.zigzag > large_zigzag)
     warnings.push_back(
-        {"pressure_zigzag",
-         fmt::format("the contact pressure goes up and down by {:.2g} % of itself from facet "
-                     "to facet: do not read single values; refine there, or take a higher degree",
-                     100 * outcome.zigzag),
-         outcome.zigzag, location(outcome.boundary, outcome.zigzag_at)});
+        warning("pressure_zigzag",
+                fmt::format("the contact pressure goes up and down by {:.2g} % of itself from facet "
+                            "to facet: do not read single values; refine there, or take a higher degree",
+                            100 * outcome.zigzag),
+                outcome.zigzag, outcome.boundary, outcome.zigzag_at));
   if (outcome.kink_pressure <= large_kink_pressure * outcome.mean_pressure()) return;
   const double ratio = outcome.kink_pressure / outcome.mean_pressure();
-  warnings.push_back(
-      {"pressure_at_kinks",
-       fmt::format(
-           "the contact pressure reaches {:.3g}, {:.2g} times its mean, where facets meet at an angle "
-           "(up to {:.2g} degrees): a peak of the polygon, not of the curve behind it, that grows with "
-           "refinement; give the gap of the true shape along the obstacle's normal, such as "
-           "\"1-sqrt(1-x^2)\" in the place of \"y\" for an arc on a floor, or take a flat boundary with "
-           "the curvature in the gap",
-           outcome.kink_pressure, ratio, outcome.kink),
-       ratio, location(outcome.boundary, outcome.kink_at)});
+  warnings.push_back(warning(
+      "pressure_at_kinks",
+      fmt::format(
+          "the contact pressure reaches {:.3g}, {:.2g} times its mean, where facets meet at an angle "
+          "(up to {:.2g} degrees): a peak of the polygon, not of the curve behind it, that grows with "
+          "refinement; give the gap of the true shape along the obstacle's normal, such as "
+          "\"1-sqrt(1-x^2)\" in the place of \"y\" for an arc on a floor, or take a flat boundary with "
+          "the curvature in the gap",
+          outcome.kink_pressure, ratio, outcome.kink),
+      ratio, outcome.boundary, outcome.kink_at));
 }
 
-void add_penetration(const ContactOutcome& outcome, double max_displacement,
-                     std::vector<io::RunWarning>& warnings)
+void add_penetration(const ContactOutcome& outcome, double max_displacement, std::vector<Finding>& warnings)
 {
   if (outcome.penetration <= large_penetration * max_displacement) return;
   const double ratio = outcome.penetration / max_displacement;
   warnings.push_back(
-      {"penetration",
-       fmt::format("the body penetrates the obstacle by {:.3g}, {:.2g} % of the largest displacement: "
-                   "contact is met on average only; refine there, or raise nitsche.gamma0 where "
-                   "it was lowered",
-                   outcome.penetration, 100 * ratio),
-       ratio, location(outcome.boundary, outcome.penetration_at)});
+      warning("penetration",
+              fmt::format("the body penetrates the obstacle by {:.3g}, {:.2g} % of the largest displacement: "
+                          "contact is met on average only; refine there, or raise nitsche.gamma0 where "
+                          "it was lowered",
+                          outcome.penetration, 100 * ratio),
+              ratio, outcome.boundary, outcome.penetration_at));
 }
 
-void add_friction(const ContactOutcome& outcome, std::vector<io::RunWarning>& warnings)
+void add_friction(const ContactOutcome& outcome, std::vector<Finding>& warnings)
 {
   constexpr double all = 1 - 1e-9;
   if (outcome.coefficient.value_or(0) >= large_coefficient)
     warnings.push_back(
-        {"friction_coefficient",
-         fmt::format("a friction coefficient of {:g} is large: existence is known for small "
-                     "coefficients only, and several solutions are possible for larger ones; compare "
-                     "with a smaller one, and with another first mesh",
-                     *outcome.coefficient),
-         *outcome.coefficient, location(outcome.boundary, {})});
+        warning("friction_coefficient",
+                fmt::format("a friction coefficient of {:g} is large: existence is known for small "
+                            "coefficients only, and several solutions are possible for larger ones; compare "
+                            "with a smaller one, and with another first mesh",
+                            *outcome.coefficient),
+                *outcome.coefficient, outcome.boundary));
   if (outcome.has_friction && outcome.closed > 0 && outcome.slipping >= all * outcome.closed)
     warnings.push_back(
-        {"sliding",
-         "all of the contact zone slides: friction is used up, and the model says nothing of what a "
-         "larger load would do",
-         outcome.slipping / outcome.closed, location(outcome.boundary, {})});
+        warning("sliding",
+                "all of the contact zone slides: friction is used up, and the model says nothing of what a "
+                "larger load would do",
+                outcome.slipping / outcome.closed, outcome.boundary));
 }
 
 }  // namespace
 
-std::vector<io::RunWarning> run_warnings(const io::LevelRecord& level,
-                                         std::span<const ContactOutcome> outcomes)
+std::vector<Finding> run_warnings(const SolvedFigures& solved, std::span<const ContactOutcome> outcomes)
 {
-  std::vector<io::RunWarning> warnings;
-  add_data(level, warnings);
+  std::vector<Finding> warnings;
+  add_data(solved, warnings);
   for (const ContactOutcome& outcome : outcomes)
   {
     add_resolution(outcome, warnings);
     add_pressure(outcome, warnings);
-    add_penetration(outcome, level.figures.max_displacement, warnings);
+    add_penetration(outcome, solved.max_displacement, warnings);
     add_friction(outcome, warnings);
   }
   return warnings;

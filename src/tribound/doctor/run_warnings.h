@@ -4,18 +4,28 @@
 /// What a user should look at in a result before trusting it: the bound is about the discrete solution, these
 /// are about the model behind it and about reading local values.
 
+#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/doctor/findings.h"
 #include "tribound/doctor/solution_facts.h"
-#include "tribound/io/record/report.h"
 
 namespace tribound::doctor
 {
 
-/// Warnings about the solution of a level with its contact; docs/doctor.md explains every code.
-[[nodiscard]] std::vector<io::RunWarning> run_warnings(const io::LevelRecord& level,
-                                                       std::span<const ContactOutcome> outcomes);
+/// What is known of a solution beside its contact.
+struct SolvedFigures
+{
+  std::optional<certify::Bound> bound;
+  double sigma_norm = 0;        ///< ||sigma(u_h)||
+  double max_displacement = 0;  ///< largest |u| at a node
+};
+
+/// Warnings about the solution of a level with its contact; docs/doctor.md explains every code. The first
+/// number of a finding is what was compared with a limit.
+[[nodiscard]] std::vector<Finding> run_warnings(const SolvedFigures& solved,
+                                                std::span<const ContactOutcome> outcomes);
 
 }  // namespace tribound::doctor

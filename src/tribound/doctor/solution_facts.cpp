@@ -42,7 +42,7 @@ FacetOutcome<dim> add_facet(const fem::Quadrature<dim - 1>& rule, double measure
     facet.pressure += share * state.pressure;
     facet.closed = facet.closed && state.pressure > 0;
     if (state.pressure > 0) outcome.closed += measure * share;
-    if (state.pressure > 0 && state.status == contact::ContactStatus::slip)
+    if (state.pressure > 0 && state.status == problem::ContactStatus::slip)
       outcome.slipping += measure * share;
     if (state.pressure > facet.largest_pressure)
     {
@@ -166,9 +166,9 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
     const contact::ContactFacet<dim>& facet = form.contact_facets()[k];
     ContactOutcome& outcome = outcomes[facet.facet.tag];
     outcome.boundary = form.problem().boundary(facet.facet.tag).name;
-    outcome.has_friction = contact::has_friction(facet.contact->friction);
-    if (const auto* coulomb = std::get_if<case_file::Coulomb>(&facet.contact->friction))
-      outcome.coefficient = coulomb->coefficient;
+    const problem::FrictionCone friction = cone(facet.contact->law);
+    outcome.has_friction = friction.resists_sliding();
+    if (friction.coefficient > 0) outcome.coefficient = friction.coefficient;
     facets.push_back(
         add_facet<dim>(form.facet_rule(), facet.geometry.measure, form.contact_states(u, k, table), outcome));
   }

@@ -73,7 +73,7 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
   corner.where = place<dim>(meeting.x);
   corner.normal = meeting.normal;
   corner.gap = gap;
-  corner.sticks = contact::has_friction(meeting.contact.contact->friction);
+  corner.sticks = cone(meeting.contact.contact->law).resists_sliding();
   for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.fixes(c);
 }
 

@@ -22,7 +22,7 @@ constexpr auto cube_cells = []
         {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 }();
 
-void check(const case_file::BoxMesh& box, int dim)
+void check(const BoxMesh& box, int dim)
 {
   const auto expect = [&](bool good, const std::string& problem, const std::string& hint)
   {
@@ -81,7 +81,7 @@ void for_each_side(const std::array<Index, dim>& corners, const std::array<Index
 }  // namespace
 
 template <int dim>
-MeshData<dim> box_mesh(const case_file::BoxMesh& box)
+MeshData<dim> box_mesh(const BoxMesh& box)
 {
   check(box, dim);
   MeshData<dim> data;
@@ -132,7 +132,7 @@ MeshData<dim> box_mesh(const case_file::BoxMesh& box)
   return data;
 }
 
-template MeshData<2> box_mesh<2>(const case_file::BoxMesh&);
-template MeshData<3> box_mesh<3>(const case_file::BoxMesh&);
+template MeshData<2> box_mesh<2>(const BoxMesh&);
+template MeshData<3> box_mesh<3>(const BoxMesh&);
 
 }  // namespace tribound::mesh

@@ -3,8 +3,8 @@
 /// @file box.h
 /// Structured meshes of a rectangle or a cuboid.
 
-#include "tribound/case/config.h"
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/source.h"
 
 namespace tribound::mesh
 {
@@ -13,6 +13,6 @@ namespace tribound::mesh
 /// (v00, v10, v11), (v00, v11, v01). A cube is cut into 6 Kuhn tetrahedra around its diagonal v000 - v111.
 /// Boundary names: left right bottom top, in 3D also back (z = lower) and front (z = upper). Region: "box".
 template <int dim>
-[[nodiscard]] MeshData<dim> box_mesh(const case_file::BoxMesh& box);
+[[nodiscard]] MeshData<dim> box_mesh(const BoxMesh& box);
 
 }  // namespace tribound::mesh

@@ -167,17 +167,17 @@ AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* sto
 
 }  // namespace
 
-AnyMesh read_gmsh(const case_file::MeshFile& source, const std::atomic<bool>* stop, double patience)
+AnyMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, double patience)
 {
   check_mesh_file(source.path, source.where);
   return std::visit([]<int dim>(MeshData<dim>&& data) -> AnyMesh { return Mesh<dim>(std::move(data)); },
                     load(source.path, stop, patience));
 }
 
-AnyMesh read_mesh(const case_file::MeshSource& source, const std::atomic<bool>* stop)
+AnyMesh read_mesh(const MeshSource& source, const std::atomic<bool>* stop)
 {
-  if (const auto* file = std::get_if<case_file::MeshFile>(&source)) return read_gmsh(*file, stop);
-  const auto& box = std::get<case_file::BoxMesh>(source);
+  if (const auto* file = std::get_if<MeshFile>(&source)) return read_gmsh(*file, stop);
+  const auto& box = std::get<BoxMesh>(source);
   if (box.cells.size() == 3) return Mesh<3>(box_mesh<3>(box));
   return Mesh<2>(box_mesh<2>(box));
 }

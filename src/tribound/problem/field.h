@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file field.h
-/// A number or a formula in x, y, z from the case file.
+/// The data of a problem: scalar functions of position, each a number, a formula or a function of a program.
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,34 +22,53 @@ enum class Sides;
 /// What would be right where the gap or the threshold found there is negative.
 [[nodiscard]] std::string nonnegative_hint(const Where& where);
 
-/// A scalar datum: a constant, or a formula in x, y, z. Use of one object by several threads at once is safe.
-/// What it returns of a formula is described in formula.h.
-class Expression
+/// A function given by a program, at many points at once.
+struct FieldFunction
+{
+  /// values[i] = f(x[i*dim], ..., x[i*dim + dim - 1]). Called by several threads at once.
+  std::function<void(std::span<const double> x, int dim, std::span<double> values)> values;
+  /// Its total degree if it is a polynomial.
+  int degree = not_polynomial;
+  /// Values and derivatives over simplices as Formula::enclose gives them. Where it is empty and the function
+  /// no polynomial, nobody knows what it does between the points at which it was evaluated: the certificate
+  /// then says that this is not covered.
+  std::function<void(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients)> enclose =
+      {};
+
+  static constexpr int not_polynomial = 1'000'000;
+};
+
+/// A scalar datum. Use of one object by several threads at once is safe; copies are cheap. What it returns of
+/// a formula is described in formula.h.
+class Field
 {
  public:
   /// The constant 0.
-  Expression();
+  Field();
 
   /// The constant `value`, found at `where`.
-  explicit Expression(double value, Where where = {});
+  Field(double value, Where where = {});
+
+  /// The function; `where` stands for it in messages.
+  explicit Field(FieldFunction function, Where where = {.file = {}, .key = "a function of the program"});
 
   /// The formula `text`, found at `where`. Without x, y, z in it, it is folded to a constant.
   /// Throws InputError: a syntax error or an unknown name (with the position in `text`), more than one
   /// result ("1,5"), an assignment, a constant that is not finite.
-  Expression(std::string text, Where where);
+  Field(std::string text, Where where);
 
   /// The value at `x` (z = 0 in 2D). Throws InputError naming the key and the point if it is not finite.
   template <int dim>
   [[nodiscard]] double operator()(const Point<dim>& x) const
   {
-    if (!formula_) return value_;
+    if (is_constant()) return value_;
     return evaluate({x.data(), dim});
   }
 
   /// The values at all points, x[i*dim + k]. Throws as the evaluation at a point does.
   void evaluate(std::span<const double> points, int dim, std::span<double> values) const;
 
-  /// Total degree of a polynomial, 0 for a constant, otherwise Formula::not_polynomial.
+  /// Total degree of a polynomial, 0 for a constant, otherwise FieldFunction::not_polynomial.
   [[nodiscard]] int degree() const;
   /// Where it may jump or kink: Formula::switches.
   [[nodiscard]] std::span<const Affine> switches() const;
@@ -60,19 +80,25 @@ class Expression
   [[nodiscard]] Enclosure around(std::span<const double> x, double radius) const;
 
   /// Whether the value is the same everywhere (a number, or a formula without x, y, z).
-  [[nodiscard]] bool is_constant() const { return !formula_; }
+  [[nodiscard]] bool is_constant() const { return !formula_ && !function_; }
+  /// The value of a constant.
+  [[nodiscard]] double constant() const { return value_; }
   /// Whether it is the constant 0.
-  [[nodiscard]] bool is_zero() const { return !formula_ && value_ == 0.0; }
-  /// Whether the formula names z.
+  [[nodiscard]] bool is_zero() const { return is_constant() && value_ == 0.0; }
+  /// Whether enclose() knows anything: of all but functions without FieldFunction::enclose.
+  [[nodiscard]] bool is_enclosed() const { return !function_ || function_->enclose; }
+  /// Whether it is a formula that names z.
   [[nodiscard]] bool uses_z() const;
   [[nodiscard]] const Where& where() const { return where_; }
 
  private:
   [[nodiscard]] double evaluate(std::span<const double> x) const;
+  [[nodiscard]] Enclosure around_within_simplex(std::span<const double> x, double radius) const;
   [[noreturn]] void fail(double value, std::span<const double> x) const;
 
   double value_ = 0.0;
-  std::shared_ptr<const Formula> formula_;  ///< null for a constant
+  std::shared_ptr<const Formula> formula_;         ///< or null
+  std::shared_ptr<const FieldFunction> function_;  ///< or null
   Where where_;
 };
 

@@ -7,36 +7,46 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tribound/base/error.h"
 #include "tribound/base/types.h"
-#include "tribound/case/config.h"
+#include "tribound/problem/contact_law.h"
+#include "tribound/problem/field.h"
+#include "tribound/problem/material.h"
 
 namespace tribound::problem
 {
 
-/// Lame coefficients as used by sigma(u) = lambda tr eps(u) I + 2 mu eps(u); stress units.
-struct Material
+/// What a region of the body is made of, and the force on it.
+template <int dim>
+struct Region
 {
-  double lambda = 0.0;
-  double mu = 0.0;
-  case_file::PlaneModel plane = case_file::PlaneModel::strain;  ///< 2D: whether eps_zz or sigma_zz vanishes
+  std::string name{};  ///< of the mesh; empty: every region without an entry of its own
+  Material material;
+  std::array<Field, dim> body_force{};  ///< force per volume
 };
 
-/// lambda = E nu / ((1+nu)(1-2nu)), mu = E / (2(1+nu)); plane stress: lambda replaced by
-/// 2 lambda mu / (lambda + 2 mu).
-[[nodiscard]] Material lame(double E, double nu, case_file::PlaneModel plane);
+/// Unilateral contact with a rigid obstacle.
+struct Contact
+{
+  ContactLaw law;
+  Field gap;  ///< initial distance g >= 0 along the outward normal
+
+  explicit Contact(ContactLaw l, Field g = 0.0) : law(std::move(l)), gap(std::move(g)) {}
+};
 
 /// What holds on one named part of the boundary.
 template <int dim>
 struct BoundaryCondition
 {
-  std::string name;
-  std::array<std::optional<Expression>, dim> displacement;  ///< fixed components (Gamma_D)
-  std::array<Expression, dim> traction;                     ///< g_N on the free components
-  std::optional<Expression> pressure;                       ///< adds -pressure n to g_N
-  std::optional<case_file::Contact> contact;                ///< Gamma_C
-  Where where;
+  std::string name;                                    ///< of the mesh
+  std::array<std::optional<Field>, dim> displacement;  ///< fixed components (Gamma_D)
+  std::array<Field, dim> traction;                     ///< g_N on the free components
+  std::optional<Field> pressure;                       ///< adds -pressure n to g_N
+  std::optional<Contact> contact;                      ///< Gamma_C
+  Where where;                                         ///< for messages
 
   [[nodiscard]] bool fixes(int component) const { return displacement[component].has_value(); }
   [[nodiscard]] bool fixes_any() const;
@@ -46,13 +56,24 @@ struct BoundaryCondition
   [[nodiscard]] Point<dim> load(const Point<dim>& x, const Point<dim>& n) const;
 };
 
-/// Gap g(x) >= 0 and Tresca's threshold s(x) >= 0. Values that may be 0 within the rounding of x are: "y" on
-/// a floor y = 0 whose points have rounded coordinates. Throw InputError naming the point where the value is
-/// negative.
+/// Displacement components fixed on a boundary; std::nullopt leaves one free.
 template <int dim>
-[[nodiscard]] double gap_at(const case_file::Contact& contact, const Point<dim>& x);
+[[nodiscard]] BoundaryCondition<dim> with_displacement(const std::string& name,
+                                                       std::array<std::optional<Field>, dim> displacement);
+/// g_N on a boundary.
 template <int dim>
-[[nodiscard]] double threshold_at(const case_file::Tresca& law, const Point<dim>& x);
+[[nodiscard]] BoundaryCondition<dim> with_traction(const std::string& name, std::array<Field, dim> traction);
+/// Contact on a boundary.
+template <int dim>
+[[nodiscard]] BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Field gap = 0.0);
+
+/// Gap g(x) >= 0 and the strength s(x) >= 0 of the law's friction cone, 0 where it has none. Values that may
+/// be 0 within the rounding of x are: "y" on a floor y = 0 whose points have rounded coordinates. Throw
+/// InputError naming the point where the value is negative.
+template <int dim>
+[[nodiscard]] double gap_at(const Contact& contact, const Point<dim>& x);
+template <int dim>
+[[nodiscard]] double strength_at(const ContactLaw& law, const Point<dim>& x);
 
 /// The problem on a mesh whose regions and boundaries carry the given names. Regions and boundaries are
 /// referred to by their position in these lists, so that refinement, which inherits tags, leaves the problem
@@ -61,15 +82,25 @@ template <int dim>
 class Problem
 {
  public:
-  /// Resolves names. Throws InputError for a group that does not exist (listing those that do), for a region
-  /// without material, for a boundary group of a mesh file that the case forgets, for vectors of wrong
-  /// length. Sides of a box that are not mentioned are traction-free.
-  Problem(const case_file::Config& config, std::span<const std::string> region_names,
-          std::span<const std::string> boundary_names);
+  /// Throws InputError for a group that does not exist (listing those that do), for a region without entry
+  /// and for a boundary with two. Boundaries without condition are traction-free.
+  Problem(std::span<const std::string> region_names, std::span<const std::string> boundary_names,
+          const std::vector<Region<dim>>& regions, const std::vector<BoundaryCondition<dim>>& boundaries);
 
-  [[nodiscard]] const Material& material(int region) const { return materials_[region]; }
+  /// The same on a mesh: whatever has region_names() and boundary_names().
+  template <class Mesh>
+  Problem(const Mesh& mesh, const std::vector<Region<dim>>& regions,
+          const std::vector<BoundaryCondition<dim>>& boundaries)
+      : Problem(mesh.region_names(), mesh.boundary_names(), regions, boundaries)
+  {
+  }
+
+  [[nodiscard]] const Material& material(int region) const { return regions_[region].material; }
   /// f in the region; force per volume.
-  [[nodiscard]] const std::array<Expression, dim>& body_force(int region) const { return body_[region]; }
+  [[nodiscard]] const std::array<Field, dim>& body_force(int region) const
+  {
+    return regions_[region].body_force;
+  }
   [[nodiscard]] Point<dim> body_force(int region, const Point<dim>& x) const;
   /// Whether f is the same everywhere in the region.
   [[nodiscard]] bool body_force_is_constant(int region) const;
@@ -82,15 +113,22 @@ class Problem
     return tag < 0 ? unnamed_ : boundaries_[tag];
   }
   [[nodiscard]] std::span<const BoundaryCondition<dim>> boundaries() const { return boundaries_; }
-  [[nodiscard]] std::span<const std::string> region_names() const { return region_names_; }
+  /// In the order of the mesh, each with the name it has there.
+  [[nodiscard]] std::span<const Region<dim>> regions() const { return regions_; }
   [[nodiscard]] bool has_contact() const;
 
  private:
-  std::vector<std::string> region_names_;
-  std::vector<Material> materials_;
-  std::vector<std::array<Expression, dim>> body_;
+  std::vector<Region<dim>> regions_;
   std::vector<BoundaryCondition<dim>> boundaries_;
   BoundaryCondition<dim> unnamed_;
 };
+
+/// The position of `name` among the groups of a mesh. Throws InputError listing them; `kind` is "region" or
+/// "boundary".
+[[nodiscard]] int group_number(const std::string& name, std::span<const std::string> groups,
+                               const Where& where, std::string_view kind);
+
+/// "a", "b", "c", each in quotes.
+[[nodiscard]] std::string quoted_list(std::span<const std::string> names);
 
 }  // namespace tribound::problem

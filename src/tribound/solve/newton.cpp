@@ -30,8 +30,8 @@ template <int dim>
 class Newton
 {
  public:
-  Newton(const contact::NitscheForm<dim>& form, const case_file::NewtonConfig& newton,
-         const case_file::SolverConfig& solver, double delta)
+  Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton,
+         const algebra::SolverOptions& solver, double delta)
       : form_(form),
         config_(newton),
         delta_(delta),
@@ -70,7 +70,7 @@ class Newton
   [[nodiscard]] double search(std::span<const double> direction, bool full_step);
 
   const contact::NitscheForm<dim>& form_;
-  const case_file::NewtonConfig& config_;
+  const NewtonOptions& config_;
   double delta_;  ///< of T_delta
   double linear_tolerance_;
   algebra::SparseMatrix stiffness_;  ///< a(phi_j, phi_i)
@@ -308,17 +308,15 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 
 template <int dim>
 NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
-                        const case_file::NewtonConfig& newton, const case_file::SolverConfig& solver,
+                        const NewtonOptions& newton, const algebra::SolverOptions& solver,
                         const NewtonObserver<dim>& observer, double delta)
 {
   return Newton<dim>(form, newton, solver, delta).run(start, observer);
 }
 
-template NewtonResult<2> solve(const contact::NitscheForm<2>&, std::span<const double>,
-                               const case_file::NewtonConfig&, const case_file::SolverConfig&,
-                               const NewtonObserver<2>&, double);
-template NewtonResult<3> solve(const contact::NitscheForm<3>&, std::span<const double>,
-                               const case_file::NewtonConfig&, const case_file::SolverConfig&,
-                               const NewtonObserver<3>&, double);
+template NewtonResult<2> solve(const contact::NitscheForm<2>&, std::span<const double>, const NewtonOptions&,
+                               const algebra::SolverOptions&, const NewtonObserver<2>&, double);
+template NewtonResult<3> solve(const contact::NitscheForm<3>&, std::span<const double>, const NewtonOptions&,
+                               const algebra::SolverOptions&, const NewtonObserver<3>&, double);
 
 }  // namespace tribound::solve

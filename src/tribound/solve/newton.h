@@ -9,12 +9,19 @@
 #include <string>
 #include <vector>
 
+#include "tribound/algebra/linear_solver.h"
 #include "tribound/base/types.h"
-#include "tribound/case/config.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::solve
 {
+
+struct NewtonOptions
+{
+  double tolerance = 1e-10;  ///< relative residual
+  int max_steps = 50;
+  bool damping = true;  ///< false: always full steps (for comparisons; may cycle)
+};
 
 struct NewtonStep
 {
@@ -25,7 +32,7 @@ struct NewtonStep
   bool factorised = false;    ///< whether a new factorisation (or preconditioner) was made
   double seconds = 0.0;
   double delta = 0.0;  ///< of T_delta, method section 7; 0 is the plain T
-  case_file::LinearMethod method = case_file::LinearMethod::direct;  ///< of the linear solver
+  algebra::LinearMethod method = algebra::LinearMethod::direct;  ///< of the linear solver
   bool fell_back = false;  ///< whether multigrid failed and the direct solver took its place
 };
 
@@ -77,8 +84,7 @@ using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
 /// singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
-                                      const case_file::NewtonConfig& newton,
-                                      const case_file::SolverConfig& solver,
+                                      const NewtonOptions& newton, const algebra::SolverOptions& solver,
                                       const NewtonObserver<dim>& observer = {}, double delta = 0);
 
 }  // namespace tribound::solve

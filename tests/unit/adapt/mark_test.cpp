@@ -151,29 +151,29 @@ TEST(Mark, AsTheCaseAsks)
 {
   const std::vector<certify::BoundComponents> eta =
       cells_with(std::vector{1.0, 1.0, 1.0, 2.0}, std::vector{0.0, 0.0, 0.0, 0.0});
-  case_file::AdaptConfig config;
-  config.theta = 0.5;
-  config.marking = case_file::Marking::doerfler;
-  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(3));
-  config.marking = case_file::Marking::maximum;
-  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(0, 1, 2, 3));
-  config.theta = 1;
-  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(3));
-  config.marking = case_file::Marking::uniform;
-  EXPECT_THAT(adapt::mark(eta, config), ElementsAre(0, 1, 2, 3));
+  adapt::MarkingOptions options;
+  options.theta = 0.5;
+  options.strategy = adapt::Marking::doerfler;
+  EXPECT_THAT(adapt::mark(eta, options), ElementsAre(3));
+  options.strategy = adapt::Marking::maximum;
+  EXPECT_THAT(adapt::mark(eta, options), ElementsAre(0, 1, 2, 3));
+  options.theta = 1;
+  EXPECT_THAT(adapt::mark(eta, options), ElementsAre(3));
+  options.strategy = adapt::Marking::uniform;
+  EXPECT_THAT(adapt::mark(eta, options), ElementsAre(0, 1, 2, 3));
 }
 
 TEST(Mark, TheContactPartIsMarkedForItselfWhenAsked)
 {
   const std::vector<double> str{1.0, 8.0, 1.0, 1.0};
-  case_file::AdaptConfig config;
-  config.theta = 0.9;
+  adapt::MarkingOptions options;
+  options.theta = 0.9;
   const std::vector<certify::BoundComponents> cells = cells_with(str, std::vector{2.0, 0.0, 0.0, 0.5});
-  EXPECT_THAT(adapt::mark(cells, config), ElementsAre(1));
-  config.separate_contact = true;
-  EXPECT_THAT(adapt::mark(cells, config), ElementsAre(0, 1));
+  EXPECT_THAT(adapt::mark(cells, options), ElementsAre(1));
+  options.separate_contact = true;
+  EXPECT_THAT(adapt::mark(cells, options), ElementsAre(0, 1));
   // Below a tenth of the bound it is left to the body.
-  EXPECT_THAT(adapt::mark(cells_with(str, std::vector{0.5, 0.0, 0.0, 0.0}), config), ElementsAre(1));
+  EXPECT_THAT(adapt::mark(cells_with(str, std::vector{0.5, 0.0, 0.0, 0.0}), options), ElementsAre(1));
 }
 
 }  // namespace

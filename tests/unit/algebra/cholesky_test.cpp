@@ -22,7 +22,7 @@ namespace
 /// tridiag(-1, 2, -1) - shift.
 algebra::SparseMatrix string_matrix(int n, double shift)
 {
-  contact::Triplets entries;
+  algebra::Triplets entries;
   for (int i = 0; i < n; ++i)
   {
     entries.add(i, i, 2 - shift);

@@ -42,25 +42,25 @@ struct System
   }
 
   [[nodiscard]] algebra::SparseMatrix matrix() const { return {c.space.n_dofs(), dim, entries}; }
-  [[nodiscard]] algebra::LinearSolver solver(const case_file::SolverConfig& config) const
+  [[nodiscard]] algebra::LinearSolver solver(const algebra::SolverOptions& config) const
   {
     return algebra::LinearSolver(config, std::span<const Point<dim>>(nodes));
   }
 
   DiscreteCase<dim> c;
-  contact::Triplets entries;
+  algebra::Triplets entries;
   std::vector<Point<dim>> nodes;
   std::vector<double> x;
   std::vector<double> b;
 };
 
-case_file::SolverConfig direct(case_file::DirectPackage package)
+algebra::SolverOptions direct(algebra::DirectPackage package)
 {
-  return {.method = case_file::LinearMethod::direct, .package = package};
+  return {.method = algebra::LinearMethod::direct, .package = package};
 }
 
 template <int dim>
-void expect_solved(const case_file::SolverConfig& config)
+void expect_solved(const algebra::SolverOptions& config)
 {
   const System<dim> system;
   const algebra::SparseMatrix a = system.matrix();
@@ -75,10 +75,10 @@ void expect_solved(const case_file::SolverConfig& config)
 
 TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
 {
-  const case_file::SolverConfig multigrid{.method = case_file::LinearMethod::iterative};
-  for (const case_file::SolverConfig& config :
-       {direct(case_file::DirectPackage::mumps), direct(case_file::DirectPackage::umfpack),
-        direct(case_file::DirectPackage::automatic), multigrid})
+  const algebra::SolverOptions multigrid{.method = algebra::LinearMethod::iterative};
+  for (const algebra::SolverOptions& config :
+       {direct(algebra::DirectPackage::mumps), direct(algebra::DirectPackage::umfpack),
+        direct(algebra::DirectPackage::automatic), multigrid})
   {
     expect_solved<2>(config);
     expect_solved<3>(config);
@@ -88,7 +88,7 @@ TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
 TEST(LinearSolver, ADirectSolveTakesOneIteration)
 {
   const System<2> system;
-  algebra::LinearSolver solver = system.solver(direct(case_file::DirectPackage::mumps));
+  algebra::LinearSolver solver = system.solver(direct(algebra::DirectPackage::mumps));
   std::vector<double> x(system.x.size(), 0.0);
   EXPECT_LE(solver.solve(system.matrix(), system.b, 1e-10 * norm(system.b), x).iterations, 2);
 }
@@ -97,7 +97,7 @@ TEST(LinearSolver, HalfTheFactorsOfAPositiveDefiniteMatrixWillDo)
 {
   const System<3> system;
   const algebra::SparseMatrix a = system.matrix();
-  const case_file::SolverConfig config = direct(case_file::DirectPackage::mumps);
+  const algebra::SolverOptions config = direct(algebra::DirectPackage::mumps);
   algebra::LinearSolver solver(config, std::span<const Point<3>>(system.nodes),
                                algebra::MatrixKind::positive_definite);
   std::vector<double> x(system.x.size(), 0.0);
@@ -115,11 +115,11 @@ TEST(LinearSolver, KeepsFactorsForSimilarSystems)
 {
   const System<2> system;
   algebra::SparseMatrix a = system.matrix();
-  algebra::LinearSolver solver = system.solver(direct(case_file::DirectPackage::mumps));
+  algebra::LinearSolver solver = system.solver(direct(algebra::DirectPackage::mumps));
   std::vector<double> x(system.x.size(), 0.0);
   EXPECT_TRUE(solver.solve(a, system.b, 1e-11 * norm(system.b), x).factorised);
 
-  contact::Triplets entries = system.entries;
+  algebra::Triplets entries = system.entries;
   for (double& value : entries.values) value *= 1.5;
   a.set_values(entries.values);
   const algebra::LinearSolve again = solver.solve(a, system.b, 1e-11 * norm(system.b), x);
@@ -133,11 +133,11 @@ TEST(LinearSolver, FactorsAnewWhereOldFactorsDoNotHelp)
 {
   const System<2> system;
   algebra::SparseMatrix a = system.matrix();
-  algebra::LinearSolver solver = system.solver(direct(case_file::DirectPackage::mumps));
+  algebra::LinearSolver solver = system.solver(direct(algebra::DirectPackage::mumps));
   std::vector<double> x(system.x.size(), 0.0);
   (void)solver.solve(a, system.b, 1e-11 * norm(system.b), x);
 
-  contact::Triplets entries = system.entries;
+  algebra::Triplets entries = system.entries;
   for (std::size_t k = 0; k < entries.values.size(); ++k)
     if (entries.rows[k] >= 0 && entries.rows[k] == entries.cols[k])
       entries.values[k] *= entries.rows[k] % 7 == 0 ? 1e3 : 1 + entries.rows[k] % 5;
@@ -156,8 +156,8 @@ TEST(LinearSolver, ASingularMatrixIsAnError)
       contact::stiffness(floating.problem, floating.space, floating.form.constraints()));
   const std::vector<Point<2>> nodes = floating.space.node_points();
   const std::vector<double> b(a.size(), 1.0);  // not in the range
-  for (const case_file::DirectPackage package :
-       {case_file::DirectPackage::mumps, case_file::DirectPackage::umfpack})
+  for (const algebra::DirectPackage package :
+       {algebra::DirectPackage::mumps, algebra::DirectPackage::umfpack})
   {
     algebra::LinearSolver solver(direct(package), std::span<const Point<2>>(nodes));
     std::vector<double> x(a.size(), 0.0);
@@ -173,26 +173,26 @@ TEST(LinearSolver, FallsBackToAFactorisationUnlessToldOtherwise)
   const std::span<const Point<3>> nodes(system.nodes);
   std::vector<double> x(system.x.size(), 0.0);
   algebra::LinearSolver automatic({.max_iterations = 1}, nodes, algebra::MatrixKind::general, 0);
-  EXPECT_EQ(automatic.method(), case_file::LinearMethod::iterative);
+  EXPECT_EQ(automatic.method(), algebra::LinearMethod::iterative);
   EXPECT_TRUE(automatic.solve(a, system.b, 1e-11 * norm(system.b), x).fell_back);
-  EXPECT_EQ(automatic.method(), case_file::LinearMethod::direct);
+  EXPECT_EQ(automatic.method(), algebra::LinearMethod::direct);
   EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
   const algebra::LinearSolve again = automatic.solve(a, system.b, 1e-11 * norm(system.b), x);
   EXPECT_FALSE(again.fell_back);
   EXPECT_FALSE(again.factorised);
 
-  algebra::LinearSolver told({.method = case_file::LinearMethod::iterative, .max_iterations = 1}, nodes);
+  algebra::LinearSolver told({.method = algebra::LinearMethod::iterative, .max_iterations = 1}, nodes);
   EXPECT_THROW(told.solve(a, system.b, 1e-11 * norm(system.b), x), SolveError);
 }
 
 TEST(ChooseMethod, DirectUnlessLargeIn3DOrTold)
 {
-  const case_file::SolverConfig automatic;
-  EXPECT_EQ(algebra::choose_method(automatic, 2, 1'000'000), case_file::LinearMethod::direct);
-  EXPECT_EQ(algebra::choose_method(automatic, 3, 10'000), case_file::LinearMethod::direct);
-  EXPECT_EQ(algebra::choose_method(automatic, 3, 1'000'000), case_file::LinearMethod::iterative);
-  const case_file::SolverConfig told{.method = case_file::LinearMethod::iterative};
-  EXPECT_EQ(algebra::choose_method(told, 2, 100), case_file::LinearMethod::iterative);
+  const algebra::SolverOptions automatic;
+  EXPECT_EQ(algebra::choose_method(automatic, 2, 1'000'000), algebra::LinearMethod::direct);
+  EXPECT_EQ(algebra::choose_method(automatic, 3, 10'000), algebra::LinearMethod::direct);
+  EXPECT_EQ(algebra::choose_method(automatic, 3, 1'000'000), algebra::LinearMethod::iterative);
+  const algebra::SolverOptions told{.method = algebra::LinearMethod::iterative};
+  EXPECT_EQ(algebra::choose_method(told, 2, 100), algebra::LinearMethod::iterative);
 }
 
 }  // namespace

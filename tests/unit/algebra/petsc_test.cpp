@@ -18,12 +18,12 @@ namespace
 {
 
 /// Random entries with repetitions and some that do not count.
-contact::Triplets random_entries(int n, int count, unsigned seed)
+algebra::Triplets random_entries(int n, int count, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> place(-1, n - 1);
   std::uniform_real_distribution<double> value(-1, 1);
-  contact::Triplets entries;
+  algebra::Triplets entries;
   for (int i = 0; i < n; ++i) entries.add(i, i, 3.0 + i);
   for (int k = 0; k < count; ++k) entries.add(place(random), place(random), value(random));
   return entries;
@@ -38,7 +38,7 @@ std::vector<double> ramp(int n)
 
 TEST(SparseMatrix, SumsEntriesAndSkipsNegativePlaces)
 {
-  contact::Triplets entries;
+  algebra::Triplets entries;
   entries.add(0, 0, 1);
   entries.add(0, 0, 2);
   entries.add(1, 1, 1);
@@ -53,14 +53,14 @@ TEST(SparseMatrix, SumsEntriesAndSkipsNegativePlaces)
 
 TEST(SparseMatrix, MultipliesLikeItsEntries)
 {
-  const contact::Triplets entries = random_entries(30, 400, 1);
+  const algebra::Triplets entries = random_entries(30, 400, 1);
   const algebra::SparseMatrix a(30, 3, entries);
   EXPECT_LE(distance(a.multiply(ramp(30)), multiply(entries, ramp(30))), 1e-12);
 }
 
 TEST(SparseMatrix, TakesNewValuesInTheSameOrder)
 {
-  contact::Triplets entries = random_entries(30, 400, 2);
+  algebra::Triplets entries = random_entries(30, 400, 2);
   algebra::SparseMatrix a(30, 3, entries);
   for (double& value : entries.values) value = 1 - 2 * value;
   a.set_values(entries.values);
@@ -69,7 +69,7 @@ TEST(SparseMatrix, TakesNewValuesInTheSameOrder)
 
 TEST(SparseMatrix, CopiesAreIndependent)
 {
-  const contact::Triplets entries = random_entries(12, 40, 3);
+  const algebra::Triplets entries = random_entries(12, 40, 3);
   algebra::SparseMatrix a(12, 2, entries);
   const algebra::SparseMatrix copy = a.duplicate();
   a.set_values(std::vector<double>(entries.values.size(), 0.0));
@@ -79,8 +79,8 @@ TEST(SparseMatrix, CopiesAreIndependent)
 
 TEST(SparseMatrix, SumWithASmallerPattern)
 {
-  const contact::Triplets large = random_entries(30, 300, 4);
-  contact::Triplets small;
+  const algebra::Triplets large = random_entries(30, 300, 4);
+  algebra::Triplets small;
   for (std::size_t k = 0; k < large.values.size(); k += 5)
     small.add(large.rows[k], large.cols[k], 7.0 + static_cast<double>(k));
   const algebra::SparseMatrix a(30, 3, large);

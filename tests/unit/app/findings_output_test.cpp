@@ -49,7 +49,9 @@ TEST(Findings, AsJson)
 TEST(RunWarnings, InTheCertificateAndOnTheScreen)
 {
   io::RunRecord run;
-  run.warnings = {{"sliding", "all slides", 1, "boundary \"base\""}, {"osc", "coarse", 0.75, ""}};
+  run.warnings = {{"sliding", doctor::Severity::warning, "all slides", {{"value", 1}}},
+                  {"osc", doctor::Severity::warning, "coarse", {{"value", 0.75}}}};
+  run.warnings[0].boundary = "base";
   const auto json = nlohmann::json::parse(io::certificate_json(run))["warnings"];
   ASSERT_EQ(json.size(), 2u);
   EXPECT_EQ(json[0]["code"], "sliding");

@@ -32,7 +32,7 @@ TEST(PageProfile, ValuesAlongTheFloor)
     EXPECT_NEAR(profile.friction[i], 0.0, 1e-12);
     EXPECT_NEAR(profile.gap[i], 0.0, 1e-14);
     EXPECT_NEAR(profile.slip[i], 0.1 * profile.arc[i], 1e-14);
-    EXPECT_EQ(profile.status[i], static_cast<Index>(contact::ContactStatus::slip));
+    EXPECT_EQ(profile.status[i], static_cast<Index>(problem::ContactStatus::slip));
   }
 }
 

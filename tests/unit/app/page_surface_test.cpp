@@ -117,7 +117,7 @@ TEST(PageSurface, ContactFacesComeFirst)
     EXPECT_NEAR(contact.slip[i], 0.1 * std::hypot(x[0], x[1]), 1e-14);
   }
   for (const Index status : contact.status)
-    EXPECT_EQ(status, static_cast<Index>(contact::ContactStatus::slip));
+    EXPECT_EQ(status, static_cast<Index>(problem::ContactStatus::slip));
 }
 
 TEST(PageSurface, LargeMeshesAreNotSubdivided)

@@ -216,46 +216,47 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
   const auto truth = [](bool value) { return std::string(value ? "true" : "false"); };
   return {
       {"title", [](const case_file::Config& c, const Row&) { return "`\"" + c.title + "\"`"; }},
-      {"degree", [](const case_file::Config& c, const Row&) { return std::to_string(c.degree); }},
+      {"degree", [](const case_file::Config& c, const Row&) { return std::to_string(c.method.degree); }},
       {"material.plane", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.materials[0].plane)); }},
       {"load.body",
        [](const case_file::Config& c, const Row&) { return c.loads.empty() ? "zero" : "given"; }},
       {"boundary.top.contact.friction", [](const case_file::Config& c, const Row& row)
-       { return choice(row, static_cast<int>(c.boundaries[0].contact->friction.index())); }},
+       { return choice(row, static_cast<int>(c.boundaries[0].contact->law.index())); }},
       {"boundary.top.contact.gap", [](const case_file::Config& c, const Row&)
        { return c.boundaries[0].contact->gap.is_zero() ? "0" : "not 0"; }},
       {"nitsche.gamma0",
        [](const case_file::Config&, const Row&) {
-         return fmt::format("{}; {} for degree 4", case_file::default_gamma0(3),
-                            case_file::default_gamma0(4));
+         return fmt::format("{}; {} for degree 4", contact::default_gamma0(3), contact::default_gamma0(4));
        }},
       {"newton.stopping", [](const case_file::Config& c, const Row& row)
-       { return choice(row, static_cast<int>(c.newton.stopping)); }},
+       { return choice(row, static_cast<int>(c.method.stopping.criterion)); }},
       {"newton.gamma_lin",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.newton.gamma_lin); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.method.stopping.gamma_lin); }},
       {"newton.tolerance",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.newton.tolerance); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.method.newton.tolerance); }},
       {"newton.max_steps",
-       [](const case_file::Config& c, const Row&) { return std::to_string(c.newton.max_steps); }},
-      {"newton.finish", [=](const case_file::Config& c, const Row&) { return truth(c.newton.finish); }},
-      {"newton.damping", [=](const case_file::Config& c, const Row&) { return truth(c.newton.damping); }},
-      {"regularisation.delta",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.regularisation->delta); }},
-      {"regularisation.factor",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.regularisation->factor); }},
-      {"regularisation.gamma_reg",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.regularisation->gamma_reg); }},
-      {"regularisation.max_updates",
-       [](const case_file::Config& c, const Row&) { return std::to_string(c.regularisation->max_updates); }},
+       [](const case_file::Config& c, const Row&) { return std::to_string(c.method.newton.max_steps); }},
+      {"newton.finish",
+       [=](const case_file::Config& c, const Row&) { return truth(c.method.stopping.finish); }},
+      {"newton.damping",
+       [=](const case_file::Config& c, const Row&) { return truth(c.method.newton.damping); }},
+      {"regularisation.delta", [](const case_file::Config& c, const Row&)
+       { return fmt::format("{}", c.method.regularisation->delta); }},
+      {"regularisation.factor", [](const case_file::Config& c, const Row&)
+       { return fmt::format("{}", c.method.regularisation->factor); }},
+      {"regularisation.gamma_reg", [](const case_file::Config& c, const Row&)
+       { return fmt::format("{}", c.method.regularisation->gamma_reg); }},
+      {"regularisation.max_updates", [](const case_file::Config& c, const Row&)
+       { return std::to_string(c.method.regularisation->max_updates); }},
       {"adapt.tolerance",
        [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.adapt.tolerance); }},
       {"adapt.marking", [](const case_file::Config& c, const Row& row)
-       { return choice(row, static_cast<int>(c.adapt.marking)); }},
+       { return choice(row, static_cast<int>(c.adapt.marking.strategy)); }},
       {"adapt.theta",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.adapt.theta); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.adapt.marking.theta); }},
       {"adapt.separate_contact",
-       [=](const case_file::Config& c, const Row&) { return truth(c.adapt.separate_contact); }},
+       [=](const case_file::Config& c, const Row&) { return truth(c.adapt.marking.separate_contact); }},
       {"adapt.max_levels",
        [](const case_file::Config& c, const Row&) { return with_spaces(c.adapt.max_levels); }},
       {"adapt.max_dofs",
@@ -267,15 +268,15 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
       {"adapt.max_memory", [](const case_file::Config& c, const Row&)
        { return unlimited(c.adapt.max_memory, "9/10 of the machine's"); }},
       {"certify.contact_rule", [](const case_file::Config& c, const Row& row)
-       { return choice(row, static_cast<int>(c.certify.contact_rule)); }},
+       { return choice(row, static_cast<int>(c.method.contact_rule)); }},
       {"solver.method", [](const case_file::Config& c, const Row& row)
-       { return choice(row, static_cast<int>(c.solver.method)); }},
+       { return choice(row, static_cast<int>(c.method.solver.method)); }},
       {"solver.package", [](const case_file::Config& c, const Row& row)
-       { return choice(row, static_cast<int>(c.solver.package)); }},
+       { return choice(row, static_cast<int>(c.method.solver.package)); }},
       {"solver.tolerance",
-       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.solver.tolerance); }},
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.method.solver.tolerance); }},
       {"solver.max_iterations",
-       [](const case_file::Config& c, const Row&) { return with_spaces(c.solver.max_iterations); }},
+       [](const case_file::Config& c, const Row&) { return with_spaces(c.method.solver.max_iterations); }},
       {"study.reference_degree", [](const case_file::Config& c, const Row&)
        { return unlimited(c.study.reference_degree, "min(`degree` + 1, 4)"); }},
       {"study.reference_factor",

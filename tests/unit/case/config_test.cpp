@@ -88,25 +88,25 @@ TEST(Config, ReadsEveryKey)
   const case_file::Config config = case_file::parse_config(complete_case, "cases/block.toml");
   EXPECT_EQ(config.file, "cases/block.toml");
   EXPECT_EQ(config.title, "Block on a rigid floor, Tresca friction");
-  EXPECT_EQ(config.degree, 2);
-  EXPECT_EQ(std::get<case_file::MeshFile>(config.mesh).path, "cases/block.msh");
-  EXPECT_EQ(config.gamma0(), 12.0);
-  EXPECT_EQ(config.newton.stopping, case_file::Stopping::tolerance);
-  EXPECT_EQ(config.newton.gamma_lin, 0.2);
+  EXPECT_EQ(config.method.degree, 2);
+  EXPECT_EQ(std::get<mesh::MeshFile>(config.mesh).path, "cases/block.msh");
+  EXPECT_EQ(config.method.gamma_0(), 12.0);
+  EXPECT_EQ(config.method.stopping.criterion, adapt::Stopping::tolerance);
+  EXPECT_EQ(config.method.stopping.gamma_lin, 0.2);
   EXPECT_EQ(config.adapt.tolerance, 0.02);
-  EXPECT_EQ(config.adapt.marking, case_file::Marking::maximum);
-  EXPECT_EQ(config.adapt.theta, 0.75);
+  EXPECT_EQ(config.adapt.marking.strategy, adapt::Marking::maximum);
+  EXPECT_EQ(config.adapt.marking.theta, 0.75);
   EXPECT_EQ(config.adapt.max_levels, 3);
   EXPECT_EQ(config.adapt.max_dofs, 3'000'000);
   EXPECT_EQ(config.adapt.max_cells, 1000);
   EXPECT_EQ(config.adapt.max_time, 60.0);
   EXPECT_EQ(config.adapt.max_memory, 2.5);
-  EXPECT_TRUE(config.adapt.separate_contact);
-  EXPECT_EQ(config.certify.contact_rule, case_file::ContactRule::reference);
-  EXPECT_EQ(config.solver.method, case_file::LinearMethod::iterative);
-  EXPECT_EQ(config.solver.package, case_file::DirectPackage::umfpack);
-  EXPECT_EQ(config.solver.tolerance, 1e-8);
-  EXPECT_EQ(config.solver.max_iterations, 7);
+  EXPECT_TRUE(config.adapt.marking.separate_contact);
+  EXPECT_EQ(config.method.contact_rule, certify::ContactRule::reference);
+  EXPECT_EQ(config.method.solver.method, algebra::LinearMethod::iterative);
+  EXPECT_EQ(config.method.solver.package, algebra::DirectPackage::umfpack);
+  EXPECT_EQ(config.method.solver.tolerance, 1e-8);
+  EXPECT_EQ(config.method.solver.max_iterations, 7);
   EXPECT_EQ(config.study.reference_degree, 4);
   EXPECT_EQ(config.study.reference_factor, 0.125);
   EXPECT_EQ(config.study.max_reference_dofs, 1000);
@@ -119,21 +119,21 @@ TEST(Config, ReadsEveryKey)
 
 TEST(Config, ReadsTheRegularisation)
 {
-  EXPECT_FALSE(case_file::parse_config(complete_case).regularisation) << "the plain method";
+  EXPECT_FALSE(case_file::parse_config(complete_case).method.regularisation) << "the plain method";
   const case_file::Config with_defaults =
       case_file::parse_config(std::string(complete_case) + "[regularisation]\n");
-  ASSERT_TRUE(with_defaults.regularisation);
-  EXPECT_EQ(with_defaults.regularisation->delta, 1.0);
-  EXPECT_EQ(with_defaults.regularisation->factor, 0.25);
-  EXPECT_EQ(with_defaults.regularisation->gamma_reg, 0.1);
-  EXPECT_EQ(with_defaults.regularisation->max_updates, 20);
+  ASSERT_TRUE(with_defaults.method.regularisation);
+  EXPECT_EQ(with_defaults.method.regularisation->delta, 1.0);
+  EXPECT_EQ(with_defaults.method.regularisation->factor, 0.25);
+  EXPECT_EQ(with_defaults.method.regularisation->gamma_reg, 0.1);
+  EXPECT_EQ(with_defaults.method.regularisation->max_updates, 20);
   const case_file::Config config = case_file::parse_config(
       std::string(complete_case) +
       "[regularisation]\ndelta = 0.5\nfactor = 0.1\ngamma_reg = 0.2\nmax_updates = 7\n");
-  EXPECT_EQ(config.regularisation->delta, 0.5);
-  EXPECT_EQ(config.regularisation->factor, 0.1);
-  EXPECT_EQ(config.regularisation->gamma_reg, 0.2);
-  EXPECT_EQ(config.regularisation->max_updates, 7);
+  EXPECT_EQ(config.method.regularisation->delta, 0.5);
+  EXPECT_EQ(config.method.regularisation->factor, 0.1);
+  EXPECT_EQ(config.method.regularisation->gamma_reg, 0.2);
+  EXPECT_EQ(config.method.regularisation->max_updates, 7);
 }
 
 TEST(Config, ReadsMaterialAndLoad)
@@ -143,7 +143,7 @@ TEST(Config, ReadsMaterialAndLoad)
   EXPECT_EQ(config.materials[0].region, "");
   EXPECT_EQ(config.materials[0].E, 1.0);
   EXPECT_EQ(config.materials[0].nu, 0.3);
-  EXPECT_EQ(config.materials[0].plane, case_file::PlaneModel::strain);
+  EXPECT_EQ(config.materials[0].plane, problem::PlaneModel::strain);
   ASSERT_EQ(config.loads.size(), 1u);
   ASSERT_EQ(config.loads[0].body.size(), 2u);
   EXPECT_DOUBLE_EQ(config.loads[0].body[1](somewhere), -9.81 * 2400 * 1e-6);
@@ -167,7 +167,7 @@ TEST(Config, ReadsBoundariesInTheOrderOfTheFile)
   EXPECT_EQ(right.name, "right");
   EXPECT_DOUBLE_EQ((*right.pressure)(somewhere), 9810 * 5.0);
   EXPECT_EQ(bottom.name, "bottom");
-  EXPECT_EQ(std::get<case_file::Tresca>(bottom.contact->friction).threshold(somewhere), 0.03);
+  EXPECT_EQ(std::get<problem::Tresca>(bottom.contact->law).threshold(somewhere), 0.03);
   EXPECT_TRUE(bottom.contact->gap.is_zero());
 }
 
@@ -195,30 +195,30 @@ TEST(Config, HasTheDefaultsOfTheHeader)
 {
   const case_file::Config config = case_file::parse_config(small_case);
   EXPECT_EQ(config.title, "");
-  EXPECT_EQ(config.degree, 1);
-  EXPECT_EQ(config.gamma0(), 10.0);
-  EXPECT_EQ(config.newton.stopping, case_file::Stopping::adaptive);
-  EXPECT_EQ(config.newton.tolerance, 1e-10);
-  EXPECT_EQ(config.newton.max_steps, 50);
+  EXPECT_EQ(config.method.degree, 1);
+  EXPECT_EQ(config.method.gamma_0(), 10.0);
+  EXPECT_EQ(config.method.stopping.criterion, adapt::Stopping::adaptive);
+  EXPECT_EQ(config.method.newton.tolerance, 1e-10);
+  EXPECT_EQ(config.method.newton.max_steps, 50);
   EXPECT_EQ(config.adapt.max_dofs, 2'000'000);
   EXPECT_FALSE(config.adapt.max_cells);
   EXPECT_FALSE(config.adapt.max_time);
   EXPECT_FALSE(config.adapt.max_memory);
-  EXPECT_FALSE(config.adapt.separate_contact);
-  EXPECT_EQ(config.certify.contact_rule, case_file::ContactRule::resolved);
-  EXPECT_EQ(config.solver.method, case_file::LinearMethod::automatic);
-  EXPECT_EQ(config.solver.package, case_file::DirectPackage::automatic);
+  EXPECT_FALSE(config.adapt.marking.separate_contact);
+  EXPECT_EQ(config.method.contact_rule, certify::ContactRule::resolved);
+  EXPECT_EQ(config.method.solver.method, algebra::LinearMethod::automatic);
+  EXPECT_EQ(config.method.solver.package, algebra::DirectPackage::automatic);
   EXPECT_EQ(config.output.directory, "out/case");
   EXPECT_TRUE(config.output.vtu);
   EXPECT_TRUE(config.output.report);
-  EXPECT_TRUE(std::holds_alternative<case_file::Frictionless>(config.boundaries[0].contact->friction));
+  EXPECT_TRUE(std::holds_alternative<problem::Frictionless>(config.boundaries[0].contact->law));
   EXPECT_TRUE(config.boundaries[0].contact->gap.is_zero());
 }
 
 TEST(Config, ReadsABox)
 {
   const case_file::Config config = case_file::parse_config(small_case);
-  const auto& box = std::get<case_file::BoxMesh>(config.mesh);
+  const auto& box = std::get<mesh::BoxMesh>(config.mesh);
   EXPECT_THAT(box.lower, ElementsAre(0, 0, -1));
   EXPECT_THAT(box.upper, ElementsAre(1, 2, 3.5));
   EXPECT_THAT(box.cells, ElementsAre(2, 3, 4));
@@ -231,10 +231,10 @@ TEST(Config, ReadsMaterialsOfRegions)
   EXPECT_EQ(config.materials[0].region, "");
   EXPECT_EQ(config.materials[0].E, 7.0);
   EXPECT_EQ(config.materials[1].region, "soft");
-  EXPECT_EQ(config.materials[1].plane, case_file::PlaneModel::stress) << "inherited from [material]";
+  EXPECT_EQ(config.materials[1].plane, problem::PlaneModel::stress) << "inherited from [material]";
   EXPECT_EQ(config.materials[2].region, "hard one");
   EXPECT_EQ(config.materials[2].nu, -0.5);
-  EXPECT_EQ(config.materials[2].plane, case_file::PlaneModel::strain);
+  EXPECT_EQ(config.materials[2].plane, problem::PlaneModel::strain);
   ASSERT_EQ(config.loads.size(), 1u);
   EXPECT_EQ(config.loads[0].region, "soft");
 }
@@ -253,9 +253,9 @@ TEST(Config, ATableInMaterialIsARegionWhateverItsName)
 
 TEST(Config, GammaDefaultGrowsWithTheDegree)
 {
-  EXPECT_EQ(case_file::default_gamma0(1), 10.0);
-  EXPECT_EQ(case_file::default_gamma0(3), 10.0);
-  EXPECT_EQ(case_file::default_gamma0(4), 48.0);
+  EXPECT_EQ(contact::default_gamma0(1), 10.0);
+  EXPECT_EQ(contact::default_gamma0(3), 10.0);
+  EXPECT_EQ(contact::default_gamma0(4), 48.0);
 }
 
 TEST(Config, NamesTheFrictionLaws)
@@ -276,8 +276,8 @@ TEST(Config, ReadsAFile)
   const auto file = directory / "case.toml";
   std::ofstream(file) << complete_case;
   const case_file::Config config = case_file::read_config(file);
-  EXPECT_EQ(config.degree, 2);
-  EXPECT_EQ(std::get<case_file::MeshFile>(config.mesh).path, directory / "block.msh");
+  EXPECT_EQ(config.method.degree, 2);
+  EXPECT_EQ(std::get<mesh::MeshFile>(config.mesh).path, directory / "block.msh");
   std::filesystem::remove_all(directory);
 }
 

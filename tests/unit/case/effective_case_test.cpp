@@ -113,7 +113,7 @@ TEST(EffectiveCase, PathsAreValidFromTheOutputDirectory)
     const case_file::Config config = case_file::parse_config(with_mesh, "cases/block.toml", overrides);
     const case_file::Config again = case_file::parse_config(config.effective.text, directory + "/case.toml");
     const auto path = [](const case_file::Config& c)
-    { return std::filesystem::absolute(std::get<case_file::MeshFile>(c.mesh).path).lexically_normal(); };
+    { return std::filesystem::absolute(std::get<mesh::MeshFile>(c.mesh).path).lexically_normal(); };
     EXPECT_EQ(path(again), std::filesystem::absolute("cases/meshes/a.msh"));
     EXPECT_EQ(again.output.directory, directory);
     EXPECT_EQ(again.effective.text, config.effective.text);

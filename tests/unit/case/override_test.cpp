@@ -35,7 +35,7 @@ case_file::Config with(const std::vector<std::string>& overrides)
 
 TEST(Override, ReplacesAValue)
 {
-  EXPECT_EQ(with({"degree=3"}).degree, 3);
+  EXPECT_EQ(with({"degree=3"}).method.degree, 3);
   EXPECT_EQ(with({"material.E = 2.5"}).materials[0].E, 2.5);
   EXPECT_EQ(with({"boundary.top.traction=[1, \"x\"]"}).boundaries[1].traction[1](somewhere), 2.0);
 }
@@ -53,18 +53,18 @@ TEST(Override, AddsAKeyAndTheTablesAroundIt)
 TEST(Override, ReachesIntoInlineTables)
 {
   const case_file::Config config = with({"boundary.bottom.contact.threshold=0.5"});
-  EXPECT_EQ(std::get<case_file::Tresca>(config.boundaries[0].contact->friction).threshold(somewhere), 0.5);
+  EXPECT_EQ(std::get<problem::Tresca>(config.boundaries[0].contact->law).threshold(somewhere), 0.5);
 }
 
 TEST(Override, ReplacesATable)
 {
   const case_file::Config config = with({"boundary.bottom.contact={friction=\"coulomb\", coefficient=0.4}"});
-  EXPECT_EQ(std::get<case_file::Coulomb>(config.boundaries[0].contact->friction).coefficient, 0.4);
+  EXPECT_EQ(std::get<problem::Coulomb>(config.boundaries[0].contact->law).coefficient, 0.4);
 }
 
 TEST(Override, TakesABareWordAsAString)
 {
-  EXPECT_EQ(with({"solver.method=direct"}).solver.method, case_file::LinearMethod::direct);
+  EXPECT_EQ(with({"solver.method=direct"}).method.solver.method, algebra::LinearMethod::direct);
   EXPECT_EQ(with({"title=a block = a cuboid"}).title, "a block = a cuboid");
   EXPECT_EQ(with({"output.directory=/tmp/out"}).output.directory, "/tmp/out");
   EXPECT_EQ(with({"boundary.right.pressure=10*max(0, 9-y)"}).boundaries[2].pressure.value()(somewhere), 60.0);
@@ -77,7 +77,7 @@ TEST(Override, TakesQuotedNames)
 
 TEST(Override, TheLastOneHolds)
 {
-  EXPECT_EQ(with({"degree=2", "degree=3"}).degree, 3);
+  EXPECT_EQ(with({"degree=2", "degree=3"}).method.degree, 3);
 }
 
 struct BadOverride

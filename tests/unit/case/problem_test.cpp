@@ -1,4 +1,5 @@
 #include "tribound/problem/problem.h"
+#include "tribound/case/resolve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ template <int dim = 2>
 problem::Problem<dim> problem(const std::string& text, const Names& region_names = regions,
                               const Names& boundary_names = sides)
 {
-  return problem::Problem<dim>(case_file::parse_config(text, "case.toml"), region_names, boundary_names);
+  return case_file::resolve<dim>(case_file::parse_config(text, "case.toml"), region_names, boundary_names);
 }
 
 template <int dim = 2>
@@ -42,10 +43,10 @@ std::string message(const std::string& text, const Names& region_names = regions
 
 TEST(Lame, FollowsTheFormulas)
 {
-  const auto [lambda, mu, plane] = problem::lame(2.5, 0.25, case_file::PlaneModel::strain);
+  const auto [lambda, mu, plane] = problem::lame(2.5, 0.25, problem::PlaneModel::strain);
   EXPECT_DOUBLE_EQ(lambda, 1.0);
   EXPECT_DOUBLE_EQ(mu, 1.0);
-  EXPECT_DOUBLE_EQ(problem::lame(3.0, 0.0, case_file::PlaneModel::strain).lambda, 0.0);
+  EXPECT_DOUBLE_EQ(problem::lame(3.0, 0.0, problem::PlaneModel::strain).lambda, 0.0);
 }
 
 TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
@@ -53,7 +54,7 @@ TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
   // sigma_xx = E eps_xx while sigma_yy = 0, that is eps_yy = -nu eps_xx.
   const double E = 2.1;
   const double nu = 0.3;
-  const auto [lambda, mu, plane] = problem::lame(E, nu, case_file::PlaneModel::stress);
+  const auto [lambda, mu, plane] = problem::lame(E, nu, problem::PlaneModel::stress);
   EXPECT_NEAR(lambda * (1 - nu) + 2 * mu, E, 1e-14);
   EXPECT_NEAR(lambda * (1 - nu) - 2 * mu * nu, 0.0, 1e-14);
 }
@@ -119,10 +120,9 @@ TEST(Problem, PressureActsOnFreeComponentsOnly)
 TEST(Problem, GapAndThresholdMustNotBeNegative)
 {
   const auto p = problem(complete);
-  const case_file::Contact& contact = *p.boundary(2).contact;
-  const auto& tresca = std::get<case_file::Tresca>(contact.friction);
+  const problem::Contact& contact = *p.boundary(2).contact;
   EXPECT_EQ(problem::gap_at<2>(contact, {0, 0.5}), 0.5);
-  EXPECT_EQ(problem::threshold_at<2>(tresca, {0.25, 0}), 0.75);
+  EXPECT_EQ(problem::strength_at<2>(contact.law, {0.25, 0}), 0.75);
   const auto thrown = [](auto&& evaluate) -> std::string
   {
     try
@@ -142,7 +142,7 @@ TEST(Problem, GapAndThresholdMustNotBeNegative)
               HasSubstr("boundary.bottom.contact.gap: is negative, -0.5, at the point (0, -0.5)"));
   EXPECT_THAT(thrown(
                   [&] {
-                    return problem::threshold_at<2>(tresca, {3, 0});
+                    return problem::strength_at<2>(contact.law, {3, 0});
                   }),
               HasSubstr("boundary.bottom.contact.threshold: is negative, -2, at the point (3, 0)"));
 }

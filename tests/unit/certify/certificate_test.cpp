@@ -8,7 +8,9 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "support/discrete_case.h"
 #include "support/meshes.h"
@@ -111,12 +113,12 @@ TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
   const double error = certify::dirichlet_interpolation_error(cubic.form);
   EXPECT_GT(error, 0.005);
   EXPECT_LT(error, std::pow(0.25, 3) * 2 / (3 * std::sqrt(3.0)) * (1 + 1e-12));
-  EXPECT_THAT(certify::statements(cubic.form, case_file::ContactRule::resolved).not_covered,
+  EXPECT_THAT(certify::statements(cubic.form, certify::ContactRule::resolved).not_covered,
               ::testing::Contains(HasSubstr("interpolation")));
 
   const DiscreteCase<2> square(block("[\"y^2\", 0]", "{ friction = \"none\" }"));
   EXPECT_LE(certify::dirichlet_interpolation_error(square.form), 1e-15);
-  EXPECT_THAT(certify::statements(square.form, case_file::ContactRule::resolved).not_covered,
+  EXPECT_THAT(certify::statements(square.form, certify::ContactRule::resolved).not_covered,
               ::testing::Not(::testing::Contains(HasSubstr("interpolation"))));
 }
 
@@ -124,9 +126,8 @@ TEST(Statements, ThePlainContactRuleIsNoBoundAtKinks)
 {
   const DiscreteCase<2> c(block("[0, 0]", "{ friction = \"none\" }"));
   const auto kink = ::testing::Contains(HasSubstr("kink"));
-  EXPECT_THAT(certify::statements(c.form, case_file::ContactRule::reference).not_covered, kink);
-  EXPECT_THAT(certify::statements(c.form, case_file::ContactRule::resolved).not_covered,
-              ::testing::Not(kink));
+  EXPECT_THAT(certify::statements(c.form, certify::ContactRule::reference).not_covered, kink);
+  EXPECT_THAT(certify::statements(c.form, certify::ContactRule::resolved).not_covered, ::testing::Not(kink));
 }
 
 /// The value at a node where u_D jumps is that of one side, and the interpolant on the other is a ramp.
@@ -149,7 +150,7 @@ TEST(Statements, AJumpOfTheDisplacementAtANodeIsReported)
                 certify::dirichlet_interpolation_error(plane.form));
       EXPECT_GE(certify::dirichlet_interpolation_bound(space.form),
                 certify::dirichlet_interpolation_error(space.form));
-      EXPECT_THAT(certify::statements(plane.form, case_file::ContactRule::resolved).not_covered,
+      EXPECT_THAT(certify::statements(plane.form, certify::ContactRule::resolved).not_covered,
                   ::testing::Contains(HasSubstr("interpolation")));
     }
 }
@@ -169,11 +170,51 @@ TEST(Statements, DisplacementsInTheSpaceAreSaidToBe)
 TEST(Statements, SayForWhichLaw)
 {
   const DiscreteCase<2> tresca(block("[0, 0]", "{ friction = \"tresca\", threshold = 0.1 }"));
-  EXPECT_THAT(certify::statements(tresca.form, case_file::ContactRule::resolved).law,
+  EXPECT_THAT(certify::statements(tresca.form, certify::ContactRule::resolved).law,
               HasSubstr("exists and is unique"));
   const DiscreteCase<2> coulomb(block("[0, 0]", "{ friction = \"coulomb\", coefficient = 0.1 }"));
-  EXPECT_THAT(certify::statements(coulomb.form, case_file::ContactRule::resolved).law,
+  EXPECT_THAT(certify::statements(coulomb.form, certify::ContactRule::resolved).law,
               HasSubstr("small friction"));
+}
+
+/// The right-hand side of a block that is held at the bottom and loaded on top, and what its certificate does
+/// not cover.
+struct Loaded
+{
+  std::vector<double> load;
+  std::vector<std::string> not_covered;
+};
+
+Loaded loaded(const problem::Field& pull)
+{
+  const mesh::Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 2}));
+  const problem::Problem<2> problem(
+      mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
+      {problem::with_displacement<2>("bottom", {0.0, 0.0}), problem::with_traction<2>("top", {0.0, pull})});
+  const fem::LagrangeSpace<2> space(mesh, 1);
+  const contact::NitscheForm<2> form(problem, space, 10);
+  return {{form.load().begin(), form.load().end()},
+          certify::statements(form, certify::ContactRule::resolved).not_covered};
+}
+
+TEST(Statements, AFunctionOfWhichOnlyValuesAreKnownIsNotCovered)
+{
+  using ::testing::Contains;
+  using ::testing::Not;
+  problem::FieldFunction function;
+  function.values = [](std::span<const double> x, int dim, std::span<double> values)
+  {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 - 2 * x[dim * i];
+  };
+  const Loaded formula = loaded(problem::Field("1 - 2*x", {}));
+  const Loaded unknown = loaded(problem::Field(function));
+  function.degree = 1;
+  const Loaded polynomial = loaded(problem::Field(function));
+  EXPECT_EQ(unknown.load, formula.load);
+  EXPECT_EQ(polynomial.load, formula.load);
+  EXPECT_THAT(unknown.not_covered, Contains(HasSubstr("functions without enclosure")));
+  EXPECT_THAT(polynomial.not_covered, Not(Contains(HasSubstr("functions without enclosure"))));
+  EXPECT_EQ(polynomial.not_covered, formula.not_covered);
 }
 
 }  // namespace

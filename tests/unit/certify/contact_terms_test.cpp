@@ -39,7 +39,7 @@ template <int dim>
 certify::Stress<dim> no_stress(const DiscreteCase<dim>& c)
 {
   certify::Stress<dim> stress;
-  stress.degree = c.config.degree;
+  stress.degree = c.config.method.degree;
   stress.n = fem::polynomial_dimension(dim, stress.degree);
   stress.dis.assign(c.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin_place.assign(c.mesh.n_cells(), -1);
@@ -48,7 +48,7 @@ certify::Stress<dim> no_stress(const DiscreteCase<dim>& c)
 
 template <int dim>
 certify::ContactSquares sum_over_facets(const DiscreteCase<dim>& c, const std::vector<double>& u,
-                                        case_file::ContactRule rule)
+                                        certify::ContactRule rule)
 {
   const certify::Stress<dim> stress = no_stress(c);
   const certify::ContactTerms<dim> terms(c.form, rule);
@@ -74,9 +74,9 @@ TEST(ContactTerms, AKinkOfTheNormalTractionIsResolvedIn2D)
     std::vector<double> u(c.space.n_dofs(), 0.0);
     for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.3;
     const double exact = std::pow(0.3, 3) / 3;
-    EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, exact, 1e-9 * exact)
+    EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, exact, 1e-9 * exact)
         << "p = " << p;
-    EXPECT_GT(std::abs(sum_over_facets(c, u, case_file::ContactRule::reference).cnt - exact), 1e-6 * exact)
+    EXPECT_GT(std::abs(sum_over_facets(c, u, certify::ContactRule::reference).cnt - exact), 1e-6 * exact)
         << "the plain rule cannot be exact across a kink, p = " << p;
   }
 }
@@ -88,8 +88,8 @@ TEST(ContactTerms, AKinkOfTheFrictionLimitIsResolvedIn2D)
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 0; i < u.size(); i += 2) u[i] = 0.7;
   const double exact = std::pow(0.7, 3) / 3 + 0.3 * 0.49;
-  EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).frc, exact, 1e-9 * exact);
-  EXPECT_EQ(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, 0.0);
+  EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).frc, exact, 1e-9 * exact);
+  EXPECT_EQ(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, 0.0);
 }
 
 TEST(ContactTerms, KinksAreResolvedIn3D)
@@ -100,8 +100,8 @@ TEST(ContactTerms, KinksAreResolvedIn3D)
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -0.9;
   const double exact = 0.5 * std::pow(0.9, 4) / 12;
-  EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, exact, 1e-5 * exact);
-  EXPECT_GT(std::abs(sum_over_facets(c, u, case_file::ContactRule::reference).cnt - exact), 1e-4 * exact);
+  EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, exact, 1e-5 * exact);
+  EXPECT_GT(std::abs(sum_over_facets(c, u, certify::ContactRule::reference).cnt - exact), 1e-4 * exact);
 }
 
 TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
@@ -109,8 +109,8 @@ TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
   const DiscreteCase<2> c(block<2>(2, "{ friction = \"none\", gap = \"0.1*x\" }"));
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.9;
-  EXPECT_EQ(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt,
-            sum_over_facets(c, u, case_file::ContactRule::reference).cnt);
+  EXPECT_EQ(sum_over_facets(c, u, certify::ContactRule::resolved).cnt,
+            sum_over_facets(c, u, certify::ContactRule::reference).cnt);
 }
 
 /// P^n = g - u^n is a cubic above half of its range at all points of the rule, and negative near both ends.
@@ -129,7 +129,7 @@ TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
       if (j != i) formula += fmt::format("*(x - {:.17g})/({:.17g})", x[j], x[i] - x[j]);
   }
   const DiscreteCase<2> c(block<2>(1, "{ gap = \"" + formula + "\" }"));
-  const problem::Expression gap(formula, Where{.key = "gap"});
+  const problem::Field gap(formula, Where{.key = "gap"});
   double expected = 0;
   constexpr int n = 100000;
   for (int i = 0; i < n; ++i)
@@ -137,7 +137,7 @@ TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
   EXPECT_GT(expected, 1e-4);
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -u_n;
-  EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, expected, 1e-6 * expected);
+  EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, expected, 1e-6 * expected);
 }
 
 /// P^n = g - u^n is zero but for rounding, whose kinks have no end.
@@ -149,7 +149,7 @@ TEST(ContactTerms, TheKinksOfRoundingEnd)
     std::vector<double> u(c.space.n_dofs(), 0.0);
     const std::vector<Point<2>> nodes = c.space.node_points();
     for (std::size_t i = 0; i < nodes.size(); ++i) u[2 * i + 1] = -0.3 * nodes[i][0];
-    EXPECT_LT(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, 1e-30);
+    EXPECT_LT(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, 1e-30);
   }
 }
 
@@ -165,9 +165,8 @@ TEST(ContactTerms, ASmallDiscOfContactBetweenThePointsIsSeenIn3D)
       for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -radius * radius;
       // gamma^2 times the integral of (r^2 - radius^2)^2 over the disc.
       const double exact = 0.5 * std::numbers::pi * std::pow(radius, 6) / 3;
-      EXPECT_EQ(sum_over_facets(c, u, case_file::ContactRule::reference).cnt, 0.0)
-          << "seen by the plain rule";
-      EXPECT_NEAR(sum_over_facets(c, u, case_file::ContactRule::resolved).cnt, exact, 1e-4 * exact);
+      EXPECT_EQ(sum_over_facets(c, u, certify::ContactRule::reference).cnt, 0.0) << "seen by the plain rule";
+      EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, exact, 1e-4 * exact);
     }
 }
 

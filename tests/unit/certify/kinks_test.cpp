@@ -43,7 +43,7 @@ class Cubic
 };
 
 template <int dim>
-void expect_sound(const case_file::FrictionLaw& law, std::mt19937& dice)
+void expect_sound(const problem::ContactLaw& law, std::mt19937& dice)
 {
   constexpr int k = dim - 1;
   std::uniform_real_distribution<double> number(-1.5, 1.5);
@@ -60,7 +60,7 @@ void expect_sound(const case_file::FrictionLaw& law, std::mt19937& dice)
   const auto excess = [&](const Point<k>& s)
   {
     const Point<dim> value = at(s);
-    return value.template head<k>().norm() - contact::friction_limit(law, threshold(s), value[dim - 1]);
+    return value.template head<k>().norm() - problem::respond<dim>(law, {normal, threshold(s)}, value).limit;
   };
 
   const fem::Quadrature<k> rule = fem::quadrature<k>(6);
@@ -69,7 +69,7 @@ void expect_sound(const case_file::FrictionLaw& law, std::mt19937& dice)
   for (const Point<k>& s : rule.points)
   {
     values.push_back(at(s));
-    thresholds.push_back(std::holds_alternative<case_file::Tresca>(law) ? threshold(s) : 0);
+    thresholds.push_back(std::holds_alternative<problem::Tresca>(law) ? threshold(s) : 0);
   }
   const certify::Kinks kinks = certify::KinkFinder<dim>(rule, 3)(law, normal, values, thresholds, 1e-14);
 
@@ -85,10 +85,10 @@ void expect_sound(const case_file::FrictionLaw& law, std::mt19937& dice)
       const double p_n = at(s)[dim - 1];
       lowest = std::min(lowest, p_n);
       pressed[p_n < 0] = true;
-      if (p_n < 0 || std::holds_alternative<case_file::Tresca>(law)) slides[excess(s) > 0] = true;
+      if (p_n < 0 || std::holds_alternative<problem::Tresca>(law)) slides[excess(s) > 0] = true;
     }
   EXPECT_LE(kinks.lowest, lowest + 1e-12);
-  const bool rubs = !std::holds_alternative<case_file::Frictionless>(law);
+  const bool rubs = !std::holds_alternative<problem::Frictionless>(law);
   const bool kinked = (pressed[0] && pressed[1]) || (rubs && slides[0] && slides[1]);
   EXPECT_TRUE(kinks.possible || !kinked);
   const bool seen = std::ranges::any_of(values, [](const Point<dim>& v) { return v[dim - 1] < 0; });
@@ -101,12 +101,11 @@ void expect_sound(const case_file::FrictionLaw& law, std::mt19937& dice)
 TEST(Kinks, NoneIsMissed)
 {
   std::mt19937 dice(3);
-  case_file::Coulomb coulomb;
-  coulomb.coefficient = 0.6;
+  const problem::Coulomb coulomb(0.6);
   for (int trial = 0; trial < 400; ++trial)
-    for (const case_file::FrictionLaw& law :
-         {case_file::FrictionLaw(case_file::Frictionless{}), case_file::FrictionLaw(case_file::Tresca{}),
-          case_file::FrictionLaw(coulomb)})
+    for (const problem::ContactLaw& law :
+         {problem::ContactLaw(problem::Frictionless{}), problem::ContactLaw(problem::Tresca(1.0)),
+          problem::ContactLaw(coulomb)})
     {
       expect_sound<2>(law, dice);
       expect_sound<3>(law, dice);
@@ -120,8 +119,8 @@ TEST(Kinks, RoundingIsNone)
   for (int q = 0; q < rule.size(); ++q) p.emplace_back(0, q % 2 == 0 ? 1e-15 : -1e-15);
   const std::vector<double> none(p.size(), 0.0);
   const certify::KinkFinder<2> kinks(rule, 3);
-  EXPECT_FALSE(kinks(case_file::Frictionless{}, Point<2>::UnitY(), p, none, 1e-13).possible);
-  EXPECT_TRUE(kinks(case_file::Frictionless{}, Point<2>::UnitY(), p, none, 0).possible);
+  EXPECT_FALSE(kinks(problem::Frictionless{}, Point<2>::UnitY(), p, none, 1e-13).possible);
+  EXPECT_TRUE(kinks(problem::Frictionless{}, Point<2>::UnitY(), p, none, 0).possible);
 }
 
 /// Sharp: no kink is suspected where the traction keeps well away from one.
@@ -132,8 +131,7 @@ TEST(Kinks, NoneIsSuspectedFarAway)
   for (const Point<2>& s : rule.points)
     p.emplace_back(0.1 + 0.05 * s[0], 0.05 * s[1], -1 - 0.4 * s[0] * s[1]);
   const std::vector<double> none(p.size(), 0.0);
-  case_file::Coulomb coulomb;
-  coulomb.coefficient = 0.3;
+  problem::Coulomb coulomb(0.3);
   const certify::KinkFinder<3> kinks(rule, 3);
   EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
   coulomb.coefficient = 0.05;

@@ -167,13 +167,15 @@ boundary.bottom.contact = { gap = 1 }
   const solve::NewtonResult<2> coarse = c.solve();
   ASSERT_EQ(coarse.status, solve::NewtonStatus::converged);
   const certify::RicherSolution richer = certify::compare_with_richer<2>(
-      c.form, coarse.u, {.refinements = 1, .degree = 2}, c.config.gamma0(), c.config.newton, c.config.solver);
+      c.form, coarse.u, {.refinements = 1, .degree = 2}, c.config.method.gamma_0(), c.config.method.newton,
+      c.config.method.solver);
   ASSERT_TRUE(richer.error);
 
   const mesh::Mesh<2> finer = bisected_at_random(c.mesh, 4, 9);
   const fem::LagrangeSpace<2> space(finer, 2);
-  const contact::NitscheForm<2> form(c.problem, space, c.config.gamma0());
-  const solve::NewtonResult<2> fine = solve::solve<2>(form, {}, c.config.newton, c.config.solver);
+  const contact::NitscheForm<2> form(c.problem, space, c.config.method.gamma_0());
+  const solve::NewtonResult<2> fine =
+      solve::solve<2>(form, {}, c.config.method.newton, c.config.method.solver);
   ASSERT_EQ(fine.status, solve::NewtonStatus::converged);
   const certify::LocalError error = certify::solution_error<2>(c.problem, c.space, coarse.u, space, fine.u);
   EXPECT_GT(error.global.energy, 1e-3);

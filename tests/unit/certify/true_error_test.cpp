@@ -216,7 +216,7 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
     }
   }
   const certify::RicherSolution richer = certify::compare_with_richer<2>(
-      c.form, result.u, {.refinements = 1, .degree = 2}, 10, c.config.newton, c.config.solver);
+      c.form, result.u, {.refinements = 1, .degree = 2}, 10, c.config.method.newton, c.config.method.solver);
   ASSERT_TRUE(richer.error.has_value()) << richer.failure;
   EXPECT_EQ(richer.cells, 48);
   EXPECT_NEAR(richer.error->energy, std::sqrt(energy), 1e-9);
@@ -227,10 +227,10 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
 TEST(RicherSolution, ThatIsNotReachedSaysWhy)
 {
   const DiscreteCase<2> c(block<2>(1), box<2>({0, 0}, {2, 1}, {3, 2}));
-  case_file::NewtonConfig newton = c.config.newton;
+  solve::NewtonOptions newton = c.config.method.newton;
   newton.max_steps = 1;
   const certify::RicherSolution richer = certify::compare_with_richer<2>(
-      c.form, c.solve().u, {.refinements = 1, .degree = 2}, 10, newton, c.config.solver);
+      c.form, c.solve().u, {.refinements = 1, .degree = 2}, 10, newton, c.config.method.solver);
   EXPECT_FALSE(richer.error.has_value());
   EXPECT_NE(richer.failure.find("max_steps"), std::string::npos) << richer.failure;
 }

@@ -18,7 +18,7 @@ namespace
 constexpr double pi = std::numbers::pi;
 constexpr contact::DatumWeights weights{1, 1};
 
-problem::Expression formula(const std::string& text)
+problem::Field formula(const std::string& text)
 {
   return {text, Where{.key = "test"}};
 }
@@ -41,8 +41,8 @@ contact::SimplexMap<k, dim> simplex(double length)
 
 /// The scalar formula as component 0.
 template <int k, int dim>
-contact::DatumOnSimplex<k, dim> looked_into(const problem::Expression& f, double length, double allowed,
-                                            int p = 2, int parts = 4096)
+contact::DatumOnSimplex<k, dim> looked_into(const problem::Field& f, double length, double allowed, int p = 2,
+                                            int parts = 4096)
 {
   const contact::DatumMoments<k, dim> moments(p, k == dim ? p - 1 : p);
   return moments({{{&f, Point<dim>::Unit(0)}}}, simplex<k, dim>(length), weights, allowed, parts);
@@ -194,7 +194,7 @@ TEST(DatumMoments, ManySwitchesAreCutUpToALimit)
 TEST(DatumMoments, TheirPolynomialHasTheSameMoments)
 {
   const contact::DatumMoments<2, 2> moments(2, 1);
-  const problem::Expression f = formula("x > 0.123 ? y : 0");
+  const problem::Field f = formula("x > 0.123 ? y : 0");
   const auto found = moments({{{&f, Point<2>(1, 2)}}}, simplex<2, 2>(1), weights, 0, 100);
   std::vector<Point<2>> values(moments.rule().size());
   moments.evaluate(found.moments, values);

@@ -70,7 +70,7 @@ TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
       EXPECT_GE(c.form.data().traction_remainder(k).mean, length * (1 - 1e-12));
     }
     if (name != "bottom") continue;
-    for (const auto& part : c.form.data().contact_parts(k)) EXPECT_GE(part.threshold, 0.15);
+    for (const auto& part : c.form.data().contact_parts(k)) EXPECT_GE(part.strength, 0.15);
     EXPECT_FALSE(c.form.data().contact_parts(k).empty());
   }
 }

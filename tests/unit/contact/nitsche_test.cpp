@@ -65,9 +65,9 @@ mesh::MeshData<dim> bent_block(unsigned seed)
 /// Everything in `status` with a margin: pushed into the obstacle below (or pulled off it) and aside, in 3D
 /// across the coordinate axes, and shaken a little.
 template <int dim>
-std::vector<double> displaced(const DiscreteCase<dim>& c, contact::ContactStatus status, unsigned seed)
+std::vector<double> displaced(const DiscreteCase<dim>& c, problem::ContactStatus status, unsigned seed)
 {
-  const double down = status == contact::ContactStatus::open ? -0.1 : 0.1;
+  const double down = status == problem::ContactStatus::open ? -0.1 : 0.1;
   Point<dim> background = Point<dim>::Zero();
   background[0] = 0.05;
   background[dim - 1] = 0.03;
@@ -81,11 +81,11 @@ std::vector<double> displaced(const DiscreteCase<dim>& c, contact::ContactStatus
 
 /// The statuses at the contact points of the form.
 template <int dim>
-std::vector<contact::ContactStatus> statuses(const contact::NitscheForm<dim>& form, std::span<const double> u)
+std::vector<problem::ContactStatus> statuses(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   const fem::FacetTabulation<dim> table =
       fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
-  std::vector<contact::ContactStatus> result;
+  std::vector<problem::ContactStatus> result;
   for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
     for (const contact::ContactState<dim>& state : form.contact_states(u, static_cast<int>(k), table))
       result.push_back(state.status);
@@ -111,15 +111,15 @@ std::vector<double> residual(const DiscreteCase<dim>& c, std::span<const double>
 }
 
 template <int dim>
-void expect_tangent_agrees_with_differences(int p, const Law& law, contact::ContactStatus status)
+void expect_tangent_agrees_with_differences(int p, const Law& law, problem::ContactStatus status)
 {
-  const std::string parameters = status == contact::ContactStatus::slip ? law.slipping : law.sticking;
+  const std::string parameters = status == problem::ContactStatus::slip ? law.slipping : law.sticking;
   const DiscreteCase<dim> c(contact_case<dim>(p, parameters), bent_block<dim>(p));
   const fem::Constraints& constraints = c.form.constraints();
   const std::vector<double> u = displaced(c, status, 1);
-  const contact::ContactStatus expected =
-      law.name == "none" && status == contact::ContactStatus::stick ? contact::ContactStatus::slip : status;
-  for (const contact::ContactStatus s : statuses(c.form, u)) ASSERT_EQ(s, expected);
+  const problem::ContactStatus expected =
+      law.name == "none" && status == problem::ContactStatus::stick ? problem::ContactStatus::slip : status;
+  for (const problem::ContactStatus s : statuses(c.form, u)) ASSERT_EQ(s, expected);
 
   constexpr double h = 1e-6;
   const std::vector<double> w = random_free_vector(constraints, 1.0, 2);
@@ -132,7 +132,7 @@ void expect_tangent_agrees_with_differences(int p, const Law& law, contact::Cont
     return d;
   };
 
-  const contact::Triplets tangent = c.form.contact_tangent(contact::Linearisation::newton, u);
+  const algebra::Triplets tangent = c.form.contact_tangent(contact::Linearisation::newton, u);
   const std::vector<double> contact = multiply(tangent, w);
   const std::vector<double> by_difference =
       difference([&](const std::vector<double>& v) { return contact_forces(c.form, v); });
@@ -144,11 +144,11 @@ void expect_tangent_agrees_with_differences(int p, const Law& law, contact::Cont
       difference([&](const std::vector<double>& v) { return residual(c, v); });
   EXPECT_LE(distance(whole, whole_by_difference), 1e-7 * norm(whole));
   // A threshold does not fall with the pressure: Tresca's tangent lives on open contact, too.
-  const bool is_zero = status == contact::ContactStatus::open && law.name != "tresca";
+  const bool is_zero = status == problem::ContactStatus::open && law.name != "tresca";
   EXPECT_EQ(norm(contact) == 0, is_zero);
 }
 
-class Tangent : public ::testing::TestWithParam<std::tuple<Law, contact::ContactStatus, int>>
+class Tangent : public ::testing::TestWithParam<std::tuple<Law, problem::ContactStatus, int>>
 {
 };
 
@@ -173,16 +173,16 @@ std::string test_name(const ::testing::TestParamInfo<Tangent::ParamType>& info)
 
 INSTANTIATE_TEST_SUITE_P(AllLaws, Tangent,
                          ::testing::Combine(::testing::Values(frictionless, tresca, coulomb),
-                                            ::testing::Values(contact::ContactStatus::open,
-                                                              contact::ContactStatus::stick,
-                                                              contact::ContactStatus::slip),
+                                            ::testing::Values(problem::ContactStatus::open,
+                                                              problem::ContactStatus::stick,
+                                                              problem::ContactStatus::slip),
                                             ::testing::Range(1, 5)),
                          test_name);
 
 template <int dim>
-void expect_linearised_traction_agrees(const Law& law, contact::ContactStatus status)
+void expect_linearised_traction_agrees(const Law& law, problem::ContactStatus status)
 {
-  const std::string parameters = status == contact::ContactStatus::slip ? law.slipping : law.sticking;
+  const std::string parameters = status == problem::ContactStatus::slip ? law.slipping : law.sticking;
   const DiscreteCase<dim> c(contact_case<dim>(2, parameters), bent_block<dim>(7));
   const contact::NitscheForm<dim>& form = c.form;
   const std::vector<double> u = displaced(c, status, 1);
@@ -207,8 +207,8 @@ void expect_linearised_traction_agrees(const Law& law, contact::ContactStatus st
 TEST(LinearisedTraction, AgreesWithDifferences)
 {
   for (const Law& law : {frictionless, tresca, coulomb})
-    for (const contact::ContactStatus status :
-         {contact::ContactStatus::open, contact::ContactStatus::stick, contact::ContactStatus::slip})
+    for (const problem::ContactStatus status :
+         {problem::ContactStatus::open, problem::ContactStatus::stick, problem::ContactStatus::slip})
     {
       SCOPED_TRACE(law.name);
       expect_linearised_traction_agrees<2>(law, status);
@@ -224,9 +224,9 @@ void expect_regularised_tangent_agrees(const Law& law, double delta)
   const contact::NitscheForm<dim>& form = c.form;
   const std::vector<double> u = random_free_vector(form.constraints(), 0.02, 3);
   const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
-  const std::vector<contact::ContactStatus> found = statuses(form, u);
-  EXPECT_GT(std::ranges::count(found, contact::ContactStatus::open), 0);
-  EXPECT_GT(std::ranges::count(found, contact::ContactStatus::slip), 0);
+  const std::vector<problem::ContactStatus> found = statuses(form, u);
+  EXPECT_GT(std::ranges::count(found, problem::ContactStatus::open), 0);
+  EXPECT_GT(std::ranges::count(found, problem::ContactStatus::slip), 0);
   constexpr double h = 1e-7;
 
   const std::vector<Point<dim>> at_u = form.traction(u, delta);
@@ -330,7 +330,7 @@ TEST(ContactStates, ClosedFormOnAFlatBottom)
     EXPECT_LE((states[0].normal - Point<2>(0, -1)).norm(), 1e-14);
     EXPECT_NEAR(states[0].pressure, -FlatBlock::normal, 1e-12);
     EXPECT_NEAR(states[0].limit, -0.1 * FlatBlock::normal, 1e-12);
-    EXPECT_EQ(states[0].status, contact::ContactStatus::slip);
+    EXPECT_EQ(states[0].status, problem::ContactStatus::slip);
     EXPECT_NEAR(states[0].gap, 0.04 - 0.1, 1e-14);
     EXPECT_LE((states[0].slip - Point<2>(0.02, 0)).norm(), 1e-14);
   }
@@ -351,12 +351,12 @@ TEST(ContactResultants, OfAConstantTraction)
 TEST(ContactTangent, PatternDoesNotDependOnTheState)
 {
   const DiscreteCase<3> c(contact_case<3>(2, coulomb.slipping), bent_block<3>(4));
-  const contact::Triplets open =
-      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, contact::ContactStatus::open, 1));
-  const contact::Triplets slip =
-      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, contact::ContactStatus::slip, 1));
+  const algebra::Triplets open =
+      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, problem::ContactStatus::open, 1));
+  const algebra::Triplets slip =
+      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, problem::ContactStatus::slip, 1));
   const std::vector<double> zero(c.space.n_dofs(), 0.0);
-  const contact::Triplets first = c.form.contact_tangent(contact::Linearisation::closed_sticking, zero);
+  const algebra::Triplets first = c.form.contact_tangent(contact::Linearisation::closed_sticking, zero);
   EXPECT_FALSE(open.rows.empty());
   EXPECT_EQ(open.rows, slip.rows);
   EXPECT_EQ(open.cols, slip.cols);
@@ -367,8 +367,8 @@ TEST(ContactTangent, PatternDoesNotDependOnTheState)
 TEST(ContactTangent, FixedDegreesOfFreedomHaveNoEntries)
 {
   const DiscreteCase<2> c(contact_case<2>(3, tresca.slipping), bent_block<2>(4));
-  const contact::Triplets tangent =
-      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, contact::ContactStatus::slip, 1));
+  const algebra::Triplets tangent =
+      c.form.contact_tangent(contact::Linearisation::newton, displaced(c, problem::ContactStatus::slip, 1));
   int n_dropped = 0;
   for (std::size_t k = 0; k < tangent.values.size(); ++k)
     for (const int dof : {tangent.rows[k], tangent.cols[k]})

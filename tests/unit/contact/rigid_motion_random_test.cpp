@@ -68,9 +68,8 @@ struct RandomCase
     const Point<dim>& n = facet.geometry.normal;
     const double pressure = random() % 2 == 0 ? 0 : std::pow(pick(0, 1), 4);
     double limit = 0;
-    if (const auto* tresca = std::get_if<case_file::Tresca>(&facet.contact->friction))
-      limit = tresca->threshold(x);
-    if (const auto* coulomb = std::get_if<case_file::Coulomb>(&facet.contact->friction))
+    if (const auto* tresca = std::get_if<problem::Tresca>(&facet.contact->law)) limit = tresca->threshold(x);
+    if (const auto* coulomb = std::get_if<problem::Coulomb>(&facet.contact->law))
       limit = coulomb->coefficient * pressure;
     const Point<dim> any = Point<dim>::Random();
     const Point<dim> direction = (any - any.dot(n) * n).normalized();

@@ -41,8 +41,8 @@ TEST(Cost, OfEveryDegree)
 TEST(Cost, MultigridNeedsLessMemoryWhereFactorsAreLarge)
 {
   const mesh::Mesh<3> mesh(box<3>({0, 0, 0}, {1, 1, 1}, {12, 12, 12}));
-  const auto direct = doctor::cost_estimates(mesh, {.method = case_file::LinearMethod::direct});
-  const auto iterative = doctor::cost_estimates(mesh, {.method = case_file::LinearMethod::iterative});
+  const auto direct = doctor::cost_estimates(mesh, {.method = algebra::LinearMethod::direct});
+  const auto iterative = doctor::cost_estimates(mesh, {.method = algebra::LinearMethod::iterative});
   for (int i = 0; i < 4; ++i) EXPECT_LT(iterative[i].bytes, direct[i].bytes);
 }
 
@@ -55,7 +55,7 @@ TEST(Cost, MemoryAsMeasured)
     int degree;
     double measured;
   };
-  const case_file::SolverConfig direct = {.method = case_file::LinearMethod::direct};
+  const algebra::SolverOptions direct = {.method = algebra::LinearMethod::direct};
   for (const auto& [cells, degree, measured] : {Run{{14, 7, 7}, 2, 359}, Run{{20, 10, 10}, 2, 1161}})
   {
     const mesh::Mesh<3> mesh(box<3>({0, 0, 0}, {2, 1, 1}, cells));

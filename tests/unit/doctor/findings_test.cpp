@@ -29,7 +29,7 @@ doctor::Diagnosis healthy()
   diagnosis.units = {{"m", "N", "Pa", 1, 1}};
   diagnosis.mesh = {45, {0, 0}, 90, {1, 1}, 1.4, {1, 0}, 0.1, 0.2};
   diagnosis.contacts = {{"base", 10, 2, {0, -1}, 0, 0, {}, 0, {0, 0}, 0, {0, 0}}};
-  diagnosis.costs = {{2, 400, case_file::LinearMethod::direct, 1e8, 0.5}};
+  diagnosis.costs = {{2, 400, algebra::LinearMethod::direct, 1e8, 0.5}};
   diagnosis.multigrid_bytes = 0.9e8;
   diagnosis.memory = {8e9, false};
   return diagnosis;
@@ -164,7 +164,7 @@ TEST(Findings, MeshAndUnits)
 TEST(Findings, Cost)
 {
   doctor::Diagnosis diagnosis = healthy();
-  diagnosis.costs = {{3, 1234567, case_file::LinearMethod::iterative, 12.34e9, 4321}};
+  diagnosis.costs = {{3, 1234567, algebra::LinearMethod::iterative, 12.34e9, 4321}};
   EXPECT_EQ(finding(diagnosis, "cost_degree_3").text,
             "degree 3 on this mesh: 1234567 degrees of freedom, about 12 GB and 72 min");
 }
@@ -172,15 +172,15 @@ TEST(Findings, Cost)
 TEST(Findings, MegabytesThatAreAGigabyte)
 {
   doctor::Diagnosis diagnosis = healthy();
-  diagnosis.costs = {{2, 1e5, case_file::LinearMethod::direct, 0.9996e9, 50}};
+  diagnosis.costs = {{2, 1e5, algebra::LinearMethod::direct, 0.9996e9, 50}};
   EXPECT_THAT(finding(diagnosis, "memory").text, HasSubstr("about 1.0 GB"));
 }
 
 TEST(Findings, MemoryThatIsNotThere)
 {
   doctor::Diagnosis diagnosis = healthy();
-  diagnosis.costs = {{1, 1e5, case_file::LinearMethod::direct, 4e9, 50},
-                     {2, 1e6, case_file::LinearMethod::direct, 30e9, 500}};
+  diagnosis.costs = {{1, 1e5, algebra::LinearMethod::direct, 4e9, 50},
+                     {2, 1e6, algebra::LinearMethod::direct, 30e9, 500}};
   diagnosis.multigrid_bytes = 7e9;
   const doctor::Finding warning = finding(diagnosis, "memory");
   EXPECT_EQ(warning.severity, doctor::Severity::warning);

@@ -15,13 +15,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-io::LevelRecord level(const certify::BoundComponents& components)
+doctor::SolvedFigures solved(const certify::BoundComponents& components)
 {
-  io::LevelRecord record;
-  record.figures.sigma_norm = 10;
-  record.figures.max_displacement = 1;
-  record.bound = certify::Bound{components, components.total(), components.total_sharp()};
-  return record;
+  return {certify::Bound{components, components.total(), components.total_sharp()}, 10, 1};
 }
 
 doctor::ContactOutcome closed_contact()
@@ -41,15 +37,15 @@ doctor::ContactOutcome closed_contact()
   return outcome;
 }
 
-std::vector<std::string> codes(const io::LevelRecord& record, const doctor::ContactOutcome& outcome)
+std::vector<std::string> codes(const doctor::SolvedFigures& record, const doctor::ContactOutcome& outcome)
 {
   std::vector<std::string> result;
-  for (const io::RunWarning& warning : doctor::run_warnings(record, std::array{outcome}))
+  for (const doctor::Finding& warning : doctor::run_warnings(record, std::array{outcome}))
     result.push_back(warning.code);
   return result;
 }
 
-const io::LevelRecord sound = level({.str = 1, .cnt = 0.5});
+const doctor::SolvedFigures sound = solved({.str = 1, .cnt = 0.5});
 
 TEST(RunWarnings, NoneForASoundResult)
 {
@@ -58,11 +54,11 @@ TEST(RunWarnings, NoneForASoundResult)
 
 TEST(RunWarnings, DataThatDominate)
 {
-  EXPECT_THAT(codes(level({.osc = 2, .str = 1}), closed_contact()), ElementsAre("body_force_oscillation"));
-  EXPECT_THAT(codes(level({.str = 1, .neu = 2}), closed_contact()), ElementsAre("traction_oscillation"));
-  EXPECT_THAT(codes(level({.osc = 1e-12, .str = 1e-14}), closed_contact()), IsEmpty());  // round-off
-  io::LevelRecord without_bound;
-  without_bound.figures.max_displacement = 1;
+  EXPECT_THAT(codes(solved({.osc = 2, .str = 1}), closed_contact()), ElementsAre("body_force_oscillation"));
+  EXPECT_THAT(codes(solved({.str = 1, .neu = 2}), closed_contact()), ElementsAre("traction_oscillation"));
+  EXPECT_THAT(codes(solved({.osc = 1e-12, .str = 1e-14}), closed_contact()), IsEmpty());  // round-off
+  doctor::SolvedFigures without_bound;
+  without_bound.max_displacement = 1;
   EXPECT_THAT(codes(without_bound, closed_contact()), IsEmpty());
 }
 
@@ -90,8 +86,8 @@ TEST(RunWarnings, Zigzag)
   const auto warnings = doctor::run_warnings(sound, std::array{outcome});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].code, "pressure_zigzag");
-  EXPECT_EQ(warnings[0].value, 0.06);
-  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.25, 0)");
+  EXPECT_EQ(warnings[0].numbers[0].second, 0.06);
+  EXPECT_EQ(doctor::location(warnings[0]), "boundary \"base\" at (0.25, 0)");
   EXPECT_THAT(warnings[0].text, HasSubstr("goes up and down by 6 % of itself"));
 }
 
@@ -106,8 +102,8 @@ TEST(RunWarnings, PressureAtKinks)
   const auto warnings = doctor::run_warnings(sound, std::array{outcome});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].code, "pressure_at_kinks");
-  EXPECT_DOUBLE_EQ(warnings[0].value, 3);
-  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.5, 0)");
+  EXPECT_DOUBLE_EQ(warnings[0].numbers[0].second, 3);
+  EXPECT_EQ(doctor::location(warnings[0]), "boundary \"base\" at (0.5, 0)");
   EXPECT_THAT(warnings[0].text,
               HasSubstr("reaches 4.5, 3 times its mean, where facets meet at an angle (up to 0.5"));
 }
@@ -122,8 +118,8 @@ TEST(RunWarnings, Penetration)
   const auto warnings = doctor::run_warnings(sound, std::array{outcome});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].code, "penetration");
-  EXPECT_DOUBLE_EQ(warnings[0].value, 0.1);
-  EXPECT_EQ(warnings[0].where, "boundary \"base\" at (0.5, 0)");
+  EXPECT_DOUBLE_EQ(warnings[0].numbers[0].second, 0.1);
+  EXPECT_EQ(doctor::location(warnings[0]), "boundary \"base\" at (0.5, 0)");
   EXPECT_THAT(warnings[0].text, HasSubstr("by 0.1, 10 % of the largest displacement"));
 }
 

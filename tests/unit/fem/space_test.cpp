@@ -14,6 +14,7 @@
 #include "support/dimensions.h"
 #include "support/meshes.h"
 #include "tribound/base/error.h"
+#include "tribound/case/resolve.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
@@ -144,7 +145,7 @@ fem::Constraints constraints_of(const std::string& boundaries, int p)
       "degree = 1\nmaterial = { E = 1, nu = 0.3 }\n"
       "mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\n" +
       boundaries);
-  const problem::Problem<dim> problem(config, mesh.region_names(), mesh.boundary_names());
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   return fem::dirichlet(problem, fem::LagrangeSpace<dim>(mesh, p));
 }
 

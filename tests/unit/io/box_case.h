@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "tribound/case/config.h"
+#include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/box.h"
@@ -29,10 +29,10 @@ struct BoxCase
   /// `change` may alter the mesh before it is built.
   explicit BoxCase(std::string_view text, const std::function<void(mesh::MeshData<dim>&)>& change = {})
       : config(case_file::parse_config(text)),
-        mesh(changed_mesh(std::get<case_file::BoxMesh>(config.mesh), change)),
-        problem(config, mesh.region_names(), mesh.boundary_names()),
-        space(mesh, config.degree),
-        form(problem, space, config.gamma0())
+        mesh(changed_mesh(std::get<mesh::BoxMesh>(config.mesh), change)),
+        problem(case_file::resolve(config, mesh)),
+        space(mesh, config.method.degree),
+        form(problem, space, config.method.gamma_0())
   {
   }
 
@@ -52,7 +52,7 @@ struct BoxCase
   }
 
  private:
-  static mesh::Mesh<dim> changed_mesh(const case_file::BoxMesh& box,
+  static mesh::Mesh<dim> changed_mesh(const mesh::BoxMesh& box,
                                       const std::function<void(mesh::MeshData<dim>&)>& change)
   {
     mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);

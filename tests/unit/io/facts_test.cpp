@@ -1,4 +1,5 @@
 #include "tribound/io/record/facts.h"
+#include "tribound/case/resolve.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +12,11 @@ namespace
 
 TEST(Facts, MaterialInEngineersConstants)
 {
-  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, case_file::PlaneModel::strain), 2),
+  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, problem::PlaneModel::strain), 2),
             "E = 210000, nu = 0.3, plane strain");
-  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, case_file::PlaneModel::stress), 2),
+  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, problem::PlaneModel::stress), 2),
             "E = 210000, nu = 0.3, plane stress");
-  EXPECT_EQ(io::describe(problem::lame(1.0, -0.25, case_file::PlaneModel::strain), 3), "E = 1, nu = -0.25");
+  EXPECT_EQ(io::describe(problem::lame(1.0, -0.25, problem::PlaneModel::strain), 3), "E = 1, nu = -0.25");
 }
 
 TEST(Facts, MeshAndBoundary)
@@ -33,7 +34,7 @@ traction = [0, "x*y"]
 [boundary.bottom]
 contact = { friction = "tresca", threshold = 0.03, gap = 0 }
 )");
-  const io::CaseFacts facts = io::case_facts(box.config, 2);
+  const io::CaseFacts facts = case_file::case_facts(box.config, 2);
   EXPECT_EQ(facts.title, "Block");
   EXPECT_EQ(facts.friction, "tresca");
   EXPECT_EQ(facts.gamma0, 10.0);

@@ -18,8 +18,8 @@ namespace
 
 TEST(Vtu, OutOfPlaneRatio)
 {
-  EXPECT_NEAR(io::out_of_plane_ratio(problem::lame(2.0, 0.3, case_file::PlaneModel::strain)), 0.3, 1e-15);
-  EXPECT_EQ(io::out_of_plane_ratio(problem::lame(2.0, 0.3, case_file::PlaneModel::stress)), 0.0);
+  EXPECT_NEAR(io::out_of_plane_ratio(problem::lame(2.0, 0.3, problem::PlaneModel::strain)), 0.3, 1e-15);
+  EXPECT_EQ(io::out_of_plane_ratio(problem::lame(2.0, 0.3, problem::PlaneModel::stress)), 0.0);
 }
 
 TEST(Vtu, VonMises)

@@ -12,8 +12,8 @@ using testing_mesh::boundary_measure;
 using testing_mesh::expect_input_error;
 using testing_mesh::volume;
 
-const case_file::BoxMesh rectangle{{-1, 0}, {1, 3}, {4, 3}, {}};
-const case_file::BoxMesh cuboid{{0, -1, 2}, {2, 0, 5}, {3, 2, 4}, {}};
+const mesh::BoxMesh rectangle{{-1, 0}, {1, 3}, {4, 3}, {}};
+const mesh::BoxMesh cuboid{{0, -1, 2}, {2, 0, 5}, {3, 2, 4}, {}};
 
 TEST(Box, NumbersVerticesAndCellsAsTheReferenceData)
 {
@@ -97,7 +97,7 @@ TEST(Box, RejectsNonsenseNamingTheKey)
   expect_input_error(build({0, 0}, {1, 1}, {100'000, 100'000}), {"2e+10 cells are too many"});
   expect_input_error(
       [&] {
-        (void)mesh::read_mesh(case_file::BoxMesh{{0}, {1}, {2}, where});
+        (void)mesh::read_mesh(mesh::BoxMesh{{0}, {1}, {2}, where});
       },
       {"1, 1 and 1 entries"});
 }

@@ -56,7 +56,7 @@ class BadMesh : public testing::TestWithParam<BadFile>
 TEST_P(BadMesh, IsRefused)
 {
   const Directory directory;
-  const case_file::MeshFile source = directory.write(GetParam().file, GetParam().content);
+  const mesh::MeshFile source = directory.write(GetParam().file, GetParam().content);
   std::vector<std::string> messages;
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
@@ -201,7 +201,7 @@ TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
 TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
 {
   const Directory directory;
-  const case_file::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
+  const mesh::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
   expect_input_error([&] { (void)mesh::read_gmsh(source, nullptr, 0.3); },
                      {"loop.geo: Gmsh shows no progress for 0.3 s and was ended", "gmsh -2"});
 }
@@ -209,7 +209,7 @@ TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
 TEST(Gmsh, CanBeInterrupted)
 {
   const Directory directory;
-  const case_file::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
+  const mesh::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
   const std::atomic<bool> stop = true;
   EXPECT_THROW((void)mesh::read_gmsh(source, &stop), SolveError);
 }

@@ -35,11 +35,11 @@ Physical Surface("floor") = Surface In BoundingBox {-0.1, -0.1, -0.1, 3.1, 1.1, 
 )";
 
 /// Meshes a .geo by Gmsh itself and saves it.
-case_file::MeshFile saved(const Directory& directory, const std::string& geo, double version, bool binary,
-                          bool all = false)
+mesh::MeshFile saved(const Directory& directory, const std::string& geo, double version, bool binary,
+                     bool all = false)
 {
-  const case_file::MeshFile source = directory.write("source.geo", geo);
-  case_file::MeshFile result = source;
+  const mesh::MeshFile source = directory.write("source.geo", geo);
+  mesh::MeshFile result = source;
   result.path.replace_extension(".msh");
   gmsh::initialize(0, nullptr, false);
   gmsh::option::setNumber("General.Terminal", 0);
@@ -151,8 +151,7 @@ TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
 {
   const Directory directory;
   const std::string geo = plane_geo.substr(0, plane_geo.find("Physical"));
-  for (const case_file::MeshFile& file :
-       {saved(directory, geo, 4.1, false), directory.write("bare.geo", geo)})
+  for (const mesh::MeshFile& file : {saved(directory, geo, 4.1, false), directory.write("bare.geo", geo)})
   {
     const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(file));
     EXPECT_THAT(mesh.region_names(), testing::ElementsAre("domain"));
@@ -184,7 +183,7 @@ TEST(Gmsh, SparseNodeTagsAreFine)
 TEST(Gmsh, ReadingTwiceGivesTheSame)
 {
   const Directory directory;
-  const case_file::MeshFile file = saved(directory, solid_geo, 4.1, true);
+  const mesh::MeshFile file = saved(directory, solid_geo, 4.1, true);
   const auto first = std::get<mesh::Mesh<3>>(mesh::read_gmsh(file));
   const auto second = std::get<mesh::Mesh<3>>(mesh::read_gmsh(file));
   EXPECT_TRUE(std::ranges::equal(first.cells(), second.cells()));
@@ -196,7 +195,7 @@ TEST(Gmsh, ReadingTwiceGivesTheSame)
 TEST(Gmsh, ReadsBesideThreadsAndAnotherModel)
 {
   const Directory directory;
-  const case_file::MeshFile source = directory.write("plane.geo", plane_geo);
+  const mesh::MeshFile source = directory.write("plane.geo", plane_geo);
   int n_threads = 0;
 #pragma omp parallel num_threads(3) reduction(+ : n_threads)
   n_threads += 1;

@@ -40,7 +40,7 @@ class Directory
 
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  [[nodiscard]] case_file::MeshFile write(const std::string& name, const std::string& text) const
+  [[nodiscard]] mesh::MeshFile write(const std::string& name, const std::string& text) const
   {
     std::ofstream(path_ / name, std::ios::binary) << text;
     return {path_ / name, {.file = "case.toml", .key = "mesh.file", .line = 3}};

@@ -100,7 +100,7 @@ std::vector<mesh::Cell<dim>> shuffled(const mesh::MeshData<dim>& data)
 }
 
 template <int dim>
-void check_box(const case_file::BoxMesh& box)
+void check_box(const mesh::BoxMesh& box)
 {
   const mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);
   const auto n = static_cast<Index>(data.vertices.size());

@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "tribound/problem/formula.h"
 
 namespace tribound
 {
@@ -19,14 +23,14 @@ const Where in_case_file{"case.toml", "boundary.top.pressure", 12, 11};
 
 double at(const std::string& formula, const Point<3>& x)
 {
-  return problem::Expression(formula, in_case_file)(x);
+  return problem::Field(formula, in_case_file)(x);
 }
 
 std::string message(const std::string& formula)
 {
   try
   {
-    const problem::Expression expression(formula, in_case_file);
+    const problem::Field expression(formula, in_case_file);
   }
   catch (const InputError& error)
   {
@@ -35,7 +39,7 @@ std::string message(const std::string& formula)
   return "accepted";
 }
 
-TEST(Expression, EvaluatesFormulas)
+TEST(Field, EvaluatesFormulas)
 {
   const Point<3> x(2, 3, 5);
   EXPECT_DOUBLE_EQ(at("x + 10*y + 100*z", x), 532);
@@ -50,46 +54,46 @@ TEST(Expression, EvaluatesFormulas)
   EXPECT_DOUBLE_EQ(at("x\n  + y", x), 5);
 }
 
-TEST(Expression, IsEvaluatedIn2DWithoutZ)
+TEST(Field, IsEvaluatedIn2DWithoutZ)
 {
-  const problem::Expression formula("x - y", in_case_file);
+  const problem::Field formula("x - y", in_case_file);
   EXPECT_EQ(formula(Point<2>(1, 2)), -1);
   EXPECT_EQ(formula(Point<3>(1, 2, 3)), -1);
 }
 
-TEST(Expression, KnowsWhatItDependsOn)
+TEST(Field, KnowsWhatItDependsOn)
 {
-  const problem::Expression constant("2*pi", in_case_file);
+  const problem::Field constant("2*pi", in_case_file);
   EXPECT_TRUE(constant.is_constant());
   EXPECT_FALSE(constant.is_zero());
   EXPECT_DOUBLE_EQ(constant(Point<2>(9, 9)), 2 * std::numbers::pi);
-  EXPECT_TRUE(problem::Expression("1 - 1", in_case_file).is_zero());
-  EXPECT_TRUE(problem::Expression().is_zero());
-  EXPECT_FALSE(problem::Expression(3.0).is_zero());
-  EXPECT_FALSE(problem::Expression("0*x", in_case_file).is_constant());
-  EXPECT_TRUE(problem::Expression("x + sin(z)", in_case_file).uses_z());
-  EXPECT_FALSE(problem::Expression("x + y", in_case_file).uses_z());
-  EXPECT_FALSE(problem::Expression(1.0).uses_z());
-  EXPECT_EQ(problem::Expression(1.0, in_case_file).where().line, 12);
+  EXPECT_TRUE(problem::Field("1 - 1", in_case_file).is_zero());
+  EXPECT_TRUE(problem::Field().is_zero());
+  EXPECT_FALSE(problem::Field(3.0).is_zero());
+  EXPECT_FALSE(problem::Field("0*x", in_case_file).is_constant());
+  EXPECT_TRUE(problem::Field("x + sin(z)", in_case_file).uses_z());
+  EXPECT_FALSE(problem::Field("x + y", in_case_file).uses_z());
+  EXPECT_FALSE(problem::Field(1.0).uses_z());
+  EXPECT_EQ(problem::Field(1.0, in_case_file).where().line, 12);
 }
 
-TEST(Expression, CopiesAreIndependent)
+TEST(Field, CopiesAreIndependent)
 {
   const Point<2> a(1, 0);
   const Point<2> b(2, 0);
-  problem::Expression copy;
+  problem::Field copy;
   {
-    const problem::Expression original("10*x", in_case_file);
+    const problem::Field original("10*x", in_case_file);
     copy = original;
     EXPECT_EQ(original(a), 10);
     EXPECT_EQ(copy(b), 20);
     EXPECT_EQ(original(a), 10);
   }
   EXPECT_EQ(copy(a), 10);
-  const problem::Expression moved = std::move(copy);
+  const problem::Field moved = std::move(copy);
   EXPECT_EQ(moved(b), 20);
-  std::vector<problem::Expression> many(3, moved);
-  many.resize(100, problem::Expression("y", in_case_file));
+  std::vector<problem::Field> many(3, moved);
+  many.resize(100, problem::Field("y", in_case_file));
   EXPECT_EQ(many[2](b), 20);
   EXPECT_EQ(many[99](Point<2>(0, 4)), 4);
 }
@@ -139,21 +143,21 @@ INSTANTIATE_TEST_SUITE_P(
                     BadFormula{"1/0", "\"1/0\" is inf", ""},
                     BadFormula{"sqrt(-1)", "\"sqrt(-1)\" is undefined", "defined"}));
 
-TEST(Expression, PointsAtTheMistake)
+TEST(Field, PointsAtTheMistake)
 {
   EXPECT_THAT(message("9810*mxx(0, 9-y)"), HasSubstr("\n    9810*mxx(0, 9-y)\n         ^"));
 }
 
-TEST(Expression, ShowsTheSurroundingsOfAMistakeInALongFormula)
+TEST(Field, ShowsTheSurroundingsOfAMistakeInALongFormula)
 {
   const std::string text = message(std::string(5000, ' ') + "xx" + std::string(4000, ' '));
   EXPECT_THAT(text, HasSubstr("at character 5001 of the formula\n"));
   EXPECT_LT(text.size(), 1000u);
 }
 
-TEST(Expression, NamesThePointWhereItIsNotFinite)
+TEST(Field, NamesThePointWhereItIsNotFinite)
 {
-  const problem::Expression formula("1/x", in_case_file);
+  const problem::Field formula("1/x", in_case_file);
   EXPECT_EQ(formula(Point<2>(0.5, 0)), 2);
   try
   {
@@ -165,7 +169,78 @@ TEST(Expression, NamesThePointWhereItIsNotFinite)
     EXPECT_THAT(error.what(),
                 HasSubstr("boundary.top.pressure: the formula \"1/x\" is inf at the point (0, 0.25)"));
   }
-  EXPECT_THROW((void)problem::Expression("sqrt(z)", in_case_file)(Point<3>(0, 0, -1)), InputError);
+  EXPECT_THROW((void)problem::Field("sqrt(z)", in_case_file)(Point<3>(0, 0, -1)), InputError);
+}
+
+TEST(Field, ConvertsNumbers)
+{
+  const problem::Field half = 0.5;
+  EXPECT_TRUE(half.is_constant());
+  EXPECT_EQ(half.constant(), 0.5);
+  EXPECT_TRUE(half.is_enclosed());
+}
+
+/// x y, with the enclosure of its values over a box.
+problem::FieldFunction product()
+{
+  problem::FieldFunction function;
+  function.values = [](std::span<const double> x, int dim, std::span<double> values)
+  {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = x[i * dim] * x[i * dim + 1];
+  };
+  return function;
+}
+
+TEST(Field, TakesFunctionsOfAProgram)
+{
+  const problem::Field field(product());
+  EXPECT_EQ(field(Point<2>(2, 3)), 6);
+  EXPECT_EQ(field(Point<3>(2, 3, 7)), 6);
+  std::vector<double> values(2);
+  field.evaluate(std::vector<double>{1, 2, 3, 4}, 2, values);
+  EXPECT_EQ(values, (std::vector<double>{2, 12}));
+  EXPECT_FALSE(field.is_constant());
+  EXPECT_FALSE(field.is_zero());
+  EXPECT_FALSE(field.is_enclosed());
+  EXPECT_EQ(field.degree(), problem::FieldFunction::not_polynomial);
+  std::vector<problem::Enclosure> unknown(2);
+  field.enclose(std::vector<double>{0, 0, 1, 1}, 2, unknown);
+  EXPECT_FALSE(unknown[0].bounded());
+}
+
+TEST(Field, AFunctionMayKnowItsDegreeAndItsEnclosure)
+{
+  problem::FieldFunction function = product();
+  function.degree = 2;
+  function.enclose = [](std::span<const double> vertices, int dim, std::span<problem::Enclosure> c)
+  {
+    double largest = 0;
+    for (std::size_t i = 0; i < vertices.size(); i += dim)
+      largest = std::max(largest, std::abs(vertices[i]) + std::abs(vertices[i + 1]));
+    c[0] = {-largest * largest, largest * largest};
+  };
+  const problem::Field field(function);
+  EXPECT_EQ(field.degree(), 2);
+  EXPECT_TRUE(field.is_enclosed());
+  const std::vector<double> x = {1, 2};
+  EXPECT_TRUE(field.around(x, 0.1).contains(1.1 * 2.1));
+}
+
+TEST(Field, AFunctionThatIsNotFiniteIsAnErrorThatNamesThePoint)
+{
+  problem::FieldFunction function;
+  function.values = [](std::span<const double> x, int /*dim*/, std::span<double> values)
+  { values[0] = 1 / x[0]; };
+  const problem::Field field(function, {.file = {}, .key = "load"});
+  try
+  {
+    (void)field(Point<2>(0, 0.25));
+    FAIL() << "accepted";
+  }
+  catch (const InputError& error)
+  {
+    EXPECT_THAT(error.what(), HasSubstr("load: the function is inf at the point (0, 0.25)"));
+  }
 }
 
 }  // namespace

@@ -161,16 +161,16 @@ TEST(Enclosure, OfABoxHoldsItsBoundary)
 
 TEST(ExpressionEnclosure, AroundAPointTellsRoundingFromAValue)
 {
-  const problem::Expression gap("y", in_case_file);
+  const problem::Field gap("y", in_case_file);
   const problem::Enclosure near_zero = gap.around(std::array{0.5, -5.5e-17}, 1e-15);
   EXPECT_TRUE(near_zero.contains(0.0));
   EXPECT_FALSE(gap.around(std::array{0.5, -1e-12}, 1e-15).contains(0.0));
-  EXPECT_EQ(problem::Expression(3.0).around(std::array{0.5, 0.5}, 1.0).lower, 3.0);
+  EXPECT_EQ(problem::Field(3.0).around(std::array{0.5, 0.5}, 1.0).lower, 3.0);
 }
 
 TEST(ExpressionEnclosure, ForwardsToTheFormula)
 {
-  const problem::Expression formula("max(x, 0)^2", in_case_file);
+  const problem::Field formula("max(x, 0)^2", in_case_file);
   EXPECT_EQ(formula.degree(), problem::Formula::not_polynomial);
   EXPECT_EQ(formula.switches().size(), 1u);
   std::vector<double> values(2);
@@ -180,7 +180,7 @@ TEST(ExpressionEnclosure, ForwardsToTheFormula)
   formula.enclose(triangle, 2, coefficients);
   expect_range(coefficients[0], 1, 9);
 
-  const problem::Expression constant(4.0);
+  const problem::Field constant(4.0);
   EXPECT_EQ(constant.degree(), 0);
   EXPECT_TRUE(constant.switches().empty());
   constant.evaluate(std::array{2.0, 0.0, -1.0, 5.0}, 2, values);
@@ -192,7 +192,7 @@ TEST(ExpressionEnclosure, ForwardsToTheFormula)
 
 TEST(ExpressionEnclosure, BatchNamesThePointWhereItIsNotFinite)
 {
-  const problem::Expression formula("1/x", in_case_file);
+  const problem::Field formula("1/x", in_case_file);
   std::vector<double> values(2);
   try
   {

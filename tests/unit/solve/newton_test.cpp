@@ -62,7 +62,7 @@ template <int dim>
 void expect_solved(int p, const std::string& law)
 {
   DiscreteCase<dim> c(pressed_block<dim>(p, law), block<dim>());
-  c.config.newton.tolerance = 1e-11;
+  c.config.method.newton.tolerance = 1e-11;
   const solve::NewtonResult<dim> result = c.solve();
   ASSERT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_TRUE(result.message.empty());
@@ -92,11 +92,11 @@ template <int dim>
 double expect_balance_at_every_iterate(const std::string& toml, const mesh::MeshData<dim>& mesh, bool damping)
 {
   DiscreteCase<dim> c(toml, mesh);
-  c.config.newton.damping = damping;
+  c.config.method.newton.damping = damping;
   double smallest = 1;
   for (int k = 1; k <= 9; ++k)
   {
-    c.config.newton.max_steps = k;
+    c.config.method.newton.max_steps = k;
     const solve::NewtonResult<dim> result = c.solve();
     EXPECT_LE(imbalance<dim>(c, result.u, result.traction), 1e-10) << "iterate " << k;
     smallest = std::min(smallest, result.steps.back().damping);
@@ -134,12 +134,12 @@ TEST(Newton, EveryLinearSolverGivesTheSameSolution)
   for (const std::string& law : laws)
   {
     DiscreteCase<3> c(pressed_block<3>(2, law), block<3>());
-    c.config.newton.tolerance = 1e-12;
-    c.config.solver.package = case_file::DirectPackage::mumps;
+    c.config.method.newton.tolerance = 1e-12;
+    c.config.method.solver.package = algebra::DirectPackage::mumps;
     const solve::NewtonResult<3> mumps = c.solve();
-    c.config.solver.package = case_file::DirectPackage::umfpack;
+    c.config.method.solver.package = algebra::DirectPackage::umfpack;
     const solve::NewtonResult<3> umfpack = c.solve();
-    c.config.solver.method = case_file::LinearMethod::iterative;
+    c.config.method.solver.method = algebra::LinearMethod::iterative;
     const solve::NewtonResult<3> multigrid = c.solve();
     for (const solve::NewtonResult<3>* result : {&mumps, &umfpack, &multigrid})
     {
@@ -156,16 +156,16 @@ TEST(Newton, KeptFactorsDoNotChangeTheIterates)
   for (const std::string& law : laws)
   {
     DiscreteCase<2> c(pressed_block<2>(2, law), block<2>());
-    c.config.newton.damping = false;
+    c.config.method.newton.damping = false;
     const solve::NewtonResult<2> together = c.solve();
     ASSERT_EQ(together.status, solve::NewtonStatus::converged);
     EXPECT_FALSE(std::ranges::all_of(together.steps, &solve::NewtonStep::factorised)) << law;
-    c.config.newton.max_steps = 1;
+    c.config.method.newton.max_steps = 1;
     std::vector<double> u;
     for (std::size_t k = 0; k < together.steps.size(); ++k)
     {
       const solve::NewtonResult<2> one =
-          tribound::solve::solve<2>(c.form, u, c.config.newton, c.config.solver);
+          tribound::solve::solve<2>(c.form, u, c.config.method.newton, c.config.method.solver);
       EXPECT_TRUE(one.steps.back().factorised);
       u = one.u;
     }
@@ -178,7 +178,7 @@ TEST(Newton, StartsFromAGivenVector)
   DiscreteCase<2> c(pressed_block<2>(2, laws[2]), block<2>());
   const solve::NewtonResult<2> from_scratch = c.solve();
   const solve::NewtonResult<2> restarted =
-      tribound::solve::solve<2>(c.form, from_scratch.u, c.config.newton, c.config.solver);
+      tribound::solve::solve<2>(c.form, from_scratch.u, c.config.method.newton, c.config.method.solver);
   ASSERT_EQ(restarted.status, solve::NewtonStatus::converged);
   EXPECT_EQ(restarted.steps.size(), 1u);  // one step at least
   EXPECT_LE(distance(restarted.u, from_scratch.u), 1e-8 * norm(from_scratch.u));
@@ -190,7 +190,7 @@ TEST(Newton, ReportsEachStep)
   const DiscreteCase<2> c(pressed_block<2>(1, laws[1]), block<2>());
   std::vector<double> residuals;
   const solve::NewtonResult<2> result =
-      tribound::solve::solve<2>(c.form, {}, c.config.newton, c.config.solver,
+      tribound::solve::solve<2>(c.form, {}, c.config.method.newton, c.config.method.solver,
                                 [&](const solve::NewtonIterate<2>& iterate)
                                 {
                                   residuals.push_back(iterate.step.residual);
@@ -203,7 +203,7 @@ TEST(Newton, ReportsEachStep)
 TEST(Newton, SaysThatTheStepsDidNotSuffice)
 {
   DiscreteCase<2> c(pressed_block<2>(1, laws[2]), block<2>());
-  c.config.newton.max_steps = 2;
+  c.config.method.newton.max_steps = 2;
   const solve::NewtonResult<2> result = c.solve();
   EXPECT_EQ(result.status, solve::NewtonStatus::too_many_steps);
   EXPECT_EQ(result.steps.size(), 2u);

@@ -46,7 +46,7 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   const problem::Problem<dim>& problem = form.problem();
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   Loads<dim> loads;
-  loads.regions.resize(problem.region_names().size());
+  loads.regions.resize(problem.regions().size());
   loads.boundaries.resize(problem.boundaries().size());
   const fem::Quadrature<dim>& rule = form.data().cell_rule();
   std::vector<Point<dim>> f(rule.size());
@@ -191,7 +191,7 @@ Balance balance(const contact::NitscheForm<dim>& form, const Stress<dim>& stress
   for (int r = 0; r < static_cast<int>(loads.regions.size()); ++r)
     if (!problem.body_force_is_zero(r))
       result.rows.push_back(
-          row(BalanceKind::load, problem.region_names()[r], "body force", loads.regions[r]));
+          row(BalanceKind::load, problem.regions()[r].name, "body force", loads.regions[r]));
   const auto boundaries = problem.boundaries();
   const auto add =
       [&](BalanceKind kind, const auto& applies, const auto& source, const auto& resultants, bool has_moment)

@@ -68,12 +68,11 @@ namespace
 template <int dim>
 std::string describe_law(const problem::Problem<dim>& problem)
 {
-  bool coulomb = false;
-  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
-    coulomb = coulomb ||
-              (boundary.contact && std::holds_alternative<case_file::Coulomb>(boundary.contact->friction));
   if (!problem.has_contact()) return "linear elasticity: the solution exists and is unique";
-  if (coulomb)
+  const bool minimum =
+      std::ranges::all_of(problem.boundaries(), [](const auto& boundary)
+                          { return !boundary.contact || is_minimum(boundary.contact->law); });
+  if (!minimum)
     return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "
            "residual is bounded in any case";
   return "unilateral contact without friction or with Tresca friction: the solution exists and is unique";
@@ -96,12 +95,12 @@ std::string describe_data(const contact::DataEffort& effort, int degree)
 
 /// How the integrals in the bound are evaluated.
 template <int dim>
-std::string describe_quadrature(const contact::NitscheForm<dim>& form, case_file::ContactRule rule)
+std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRule rule)
 {
   std::string text = describe_data(form.data().effort(), form.space().degree() + 2);
   if (!form.problem().has_contact()) return text;
   return text +
-         (rule == case_file::ContactRule::resolved
+         (rule == ContactRule::resolved
               ? "; cnt and frc on facets with a kink of the traction are subdivided until they settle"
               : "; cnt and frc with the plain rule, which is not rigorous on facets with a kink of the "
                 "traction (certify.contact_rule = \"reference\")");
@@ -143,7 +142,7 @@ template <int dim>
 double jump_at_nodes(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& facet, int component)
 {
   const fem::LagrangeSpace<dim>& space = form.space();
-  const problem::Expression& u_D = *form.problem().boundary(facet.tag).displacement[component];
+  const problem::Field& u_D = *form.problem().boundary(facet.tag).displacement[component];
   const mesh::FacetMap<dim> map = mesh::facet_map(space.mesh(), facet.cell, facet.local);
   double largest = 0;
   for (int i = 0; i < space.basis().n_nodes(); ++i)
@@ -202,7 +201,7 @@ double dirichlet_interpolation_bound(const contact::NitscheForm<dim>& form)
 }
 
 template <int dim>
-Statements statements(const contact::NitscheForm<dim>& form, case_file::ContactRule rule,
+Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                       const std::optional<FriedrichsConstant>& friedrichs)
 {
   constexpr double pi = std::numbers::pi;
@@ -226,29 +225,36 @@ Statements statements(const contact::NitscheForm<dim>& form, case_file::ContactR
   const bool exact = interpolation <= 1e-12 * largest;
   result.assumptions = {
       {"quadrature", describe_quadrature(form, rule)},
-      {"displacement", exact ? std::string("the prescribed displacements are in the finite element space")
-                             : fmt::format("the prescribed displacements are interpolated at the nodes; they "
-                                           "differ by {:.3g} where they were compared, by {:.3g} at most",
-                                           dirichlet_interpolation_error(form), interpolation)},
+      {"displacement",
+       exact ? std::string("the prescribed displacements are in the finite element space")
+             : fmt::format(
+                   "the prescribed displacements are interpolated at the nodes; they "
+                   "differ by {:.3g} where they were compared{}",
+                   dirichlet_interpolation_error(form),
+                   std::isfinite(interpolation) ? fmt::format(", by {:.3g} at most", interpolation) : "")},
       {"geometry", "facets are straight"},
       {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
 
-  if (rule == case_file::ContactRule::reference && form.problem().has_contact())
+  if (rule == ContactRule::reference && form.problem().has_contact())
     result.not_covered.emplace_back(
         "contact and friction conditions on facets where the contact law has a kink: there the plain rule is "
         "no bound (certify.contact_rule = \"reference\")");
   if (!exact)
-    result.not_covered.push_back(
-        fmt::format("the interpolation of the prescribed displacements, which changes them by {:.3g} at most",
-                    interpolation));
+    result.not_covered.push_back("the interpolation of the prescribed displacements" +
+                                 (std::isfinite(interpolation)
+                                      ? fmt::format(", which changes them by {:.3g} at most", interpolation)
+                                      : std::string(": they are a function without enclosure")));
+  if (form.data().effort().unenclosed > 0)
+    result.not_covered.emplace_back(
+        "what data given by functions without enclosure do between the points at which they were evaluated");
   result.not_covered.emplace_back("straight facets in place of a curved boundary");
   result.not_covered.emplace_back("the model: linear elasticity, small strains, the friction law, the data");
   return result;
 }
 
-template Statements statements(const contact::NitscheForm<2>&, case_file::ContactRule,
+template Statements statements(const contact::NitscheForm<2>&, ContactRule,
                                const std::optional<FriedrichsConstant>&);
-template Statements statements(const contact::NitscheForm<3>&, case_file::ContactRule,
+template Statements statements(const contact::NitscheForm<3>&, ContactRule,
                                const std::optional<FriedrichsConstant>&);
 template double dirichlet_interpolation_bound(const contact::NitscheForm<2>&);
 template double dirichlet_interpolation_bound(const contact::NitscheForm<3>&);

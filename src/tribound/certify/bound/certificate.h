@@ -62,7 +62,7 @@ struct Statements
 
 /// C_F is given where the bound contains it.
 template <int dim>
-[[nodiscard]] Statements statements(const contact::NitscheForm<dim>& form, case_file::ContactRule rule,
+[[nodiscard]] Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                                     const std::optional<FriedrichsConstant>& friedrichs = {});
 
 /// The largest |u_D - I u_D| at the points of the facet rule, I the interpolation at the nodes, in a fixed

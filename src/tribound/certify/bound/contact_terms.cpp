@@ -60,7 +60,7 @@ void add_squares(std::span<const Point<dim>> traction, const contact::ContactFac
 }  // namespace
 
 template <int dim>
-ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, case_file::ContactRule rule)
+ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRule rule)
     : form_(form),
       rule_(rule),
       space_table_(fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
@@ -134,10 +134,10 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const mesh::FacetMap<dim> map = mesh::facet_map(form_.space().mesh(), facet.cell, facet.local);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, fem::polynomial_dimension(dim - 1, 4)> theta;
-  const case_file::FrictionLaw& law = contact->friction;
+  const problem::ContactLaw& law = contact->law;
   Integrals result;
   std::vector<Point<dim>> augmented(rule.size());
-  std::vector<double> thresholds(rule.size());
+  std::vector<double> strengths(rule.size());
   double round_off = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
@@ -153,16 +153,16 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
       dis += theta[i] * fields.dis[i];
     }
     augmented[q] = p;
-    thresholds[q] = contact::threshold_if_any<dim>(law, x);
+    strengths[q] = problem::strength_at<dim>(law, x);
     round_off = std::max(round_off, 1e-14 * (p.norm() + closing));
 
-    const Point<dim> difference = contact::contact_traction<dim>(law, thresholds[q], p, n) - dis;
+    const Point<dim> difference = problem::respond<dim>(law, {n, strengths[q]}, p).traction - dis;
     const double normal = difference.dot(n);
     const double weight = fem::fraction<dim - 1>(piece) * rule.weights[q];
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
-  result.kinks = kinks_(law, n, augmented, thresholds, round_off);
+  result.kinks = kinks_(law, n, augmented, strengths, round_off);
   return result;
 }
 
@@ -238,7 +238,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
   if (parts.empty()) parts = std::span(&whole, 1);
   std::vector<Integrals> integrals;
   for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));
-  if (rule_ == case_file::ContactRule::resolved) settle(k, on_facet, parts, integrals);
+  if (rule_ == ContactRule::resolved) settle(k, on_facet, parts, integrals);
   for (std::size_t i = 0; i < parts.size(); ++i) add_part(contact, parts[i], integrals[i], result);
   if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
     add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
@@ -260,8 +260,7 @@ void ContactTerms<dim>::add_part(const contact::ContactFacet<dim>& contact,
   // polynomial up to gamma delta, with which it was seen at the points, too.
   const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * contact.gamma * part.gap;
   const double pressure = open ? 0 : contact.gamma * part.gap;
-  const auto* coulomb = std::get_if<case_file::Coulomb>(&contact.contact->friction);
-  const double limit = coulomb ? coulomb->coefficient * pressure : part.threshold;
+  const double limit = cone(contact.contact->law).closed_limit(part.strength, -pressure);
   squares.cnt += std::pow(std::sqrt(scale * integrals.normal) + missed * pressure, 2);
   squares.frc += std::pow(std::sqrt(scale * integrals.tangential) + missed * limit, 2);
 }

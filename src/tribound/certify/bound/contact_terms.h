@@ -7,13 +7,18 @@
 #include <span>
 #include <vector>
 
-#include "tribound/case/config.h"
 #include "tribound/certify/bound/kinks.h"
 #include "tribound/certify/equilibrate/frame_table.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
 {
+
+enum class ContactRule
+{
+  resolved,
+  reference
+};
 
 /// Squares of the components on one facet F of Gamma_C.
 struct ContactSquares
@@ -33,7 +38,7 @@ template <int dim>
 class ContactTerms
 {
  public:
-  ContactTerms(const contact::NitscheForm<dim>& form, case_file::ContactRule rule);
+  ContactTerms(const contact::NitscheForm<dim>& form, ContactRule rule);
 
   /// On contact facet k of the form for the iterate u.
   [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Stress<dim>& stress) const;
@@ -87,7 +92,7 @@ class ContactTerms
               std::span<Integrals> integrals) const;
 
   const contact::NitscheForm<dim>& form_;
-  case_file::ContactRule rule_;
+  ContactRule rule_;
   fem::FacetTabulation<dim> space_table_;      ///< of the space at the points of the facet rule
   std::vector<FrameTable<dim>> stress_table_;  ///< of the stress there, per local facet
   std::vector<double> theta_;                  ///< basis on the facet there, [q * n + i]

@@ -54,7 +54,7 @@ void add_up(Estimate& estimate, double quad)
 }  // namespace
 
 template <int dim>
-Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, case_file::ContactRule rule,
+Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rule,
                           const std::optional<FriedrichsConstant>& known)
     : form_(form),
       data_(data_terms(form)),

@@ -105,8 +105,7 @@ class Estimator
  public:
   /// Evaluates what depends on the data alone. C_F may be `known` from a mesh of which the form's is a
   /// refinement; it is computed if it is needed and is not.
-  explicit Estimator(const contact::NitscheForm<dim>& form,
-                     case_file::ContactRule rule = case_file::ContactRule::resolved,
+  explicit Estimator(const contact::NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved,
                      const std::optional<FriedrichsConstant>& known = {});
 
   /// C_F, where it is known.
@@ -138,8 +137,7 @@ class Estimator
 /// The components of one iterate.
 template <int dim>
 [[nodiscard]] Estimate estimate(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                const Stress<dim>& stress,
-                                case_file::ContactRule rule = case_file::ContactRule::resolved)
+                                const Stress<dim>& stress, ContactRule rule = ContactRule::resolved)
 {
   return Estimator<dim>(form, rule)(u, stress);
 }

@@ -44,7 +44,7 @@ struct Pencil
 {
   Index n = 0;
   std::vector<Index> number;  ///< of each facet, -1 where fixed
-  contact::Triplets a;
+  algebra::Triplets a;
   std::vector<double> m;  ///< the values of M
 };
 
@@ -182,7 +182,7 @@ double proved_theta(Pencil pencil, int dim)
 {
   if (pencil.n == 0) return std::numeric_limits<double>::infinity();  // no function is left
   algebra::SparseMatrix shifted(pencil.n, 1, pencil.a);
-  contact::Triplets mass{pencil.a.rows, pencil.a.cols, pencil.m};
+  algebra::Triplets mass{pencil.a.rows, pencil.a.cols, pencil.m};
   const double lambda = smallest_eigenvalue(shifted, {pencil.n, 1, std::move(mass)}, dim);
   std::vector<double> values(pencil.m.size());
   for (double shortfall = std::max(1e-6, rounding(pencil, lambda)); shortfall < 1; shortfall *= 10)

@@ -64,26 +64,25 @@ KinkFinder<dim>::KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree)
 }
 
 template <int dim>
-Kinks KinkFinder<dim>::operator()(const case_file::FrictionLaw& law, const Point<dim>& normal,
-                                  std::span<const Point<dim>> p, std::span<const double> threshold,
+Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, const Point<dim>& normal,
+                                  std::span<const Point<dim>> p, std::span<const double> strength,
                                   double noise) const
 {
-  const auto* coulomb = std::get_if<case_file::Coulomb>(&law);
+  const problem::FrictionCone friction = cone(law);
   Columns<dim> at_points(p.size(), dim + 2);
   for (std::size_t q = 0; q < p.size(); ++q)
   {
     const double p_n = p[q].dot(normal);
     at_points(q, 0) = p_n;
     at_points.template block<1, dim>(q, 1) = (p[q] - p_n * normal).transpose();
-    at_points(q, dim + 1) = coulomb ? -coulomb->coefficient * p_n : threshold[q];
+    at_points(q, dim + 1) = friction.closed_limit(strength[q], p_n);
   }
   const Columns<dim> coefficients = matrix(to_bernstein_, at_points.rows()) * at_points;
 
   const Range pressing{coefficients.col(0).minCoeff(), coefficients.col(0).maxCoeff(),
                        at_points.col(0).minCoeff(), at_points.col(0).maxCoeff()};
   Kinks result{pressing.changes_sign(noise), pressing.hidden(), pressing.lowest};
-  const bool rubs =
-      !std::holds_alternative<case_file::Frictionless>(law) && coefficients.col(dim + 1).maxCoeff() > noise;
+  const bool rubs = coefficients.col(dim + 1).maxCoeff() > noise;
   if (!rubs) return result;
   const Range slipping = slip_range<dim>(at_points, coefficients);
   result.possible = result.possible || slipping.changes_sign(noise);

@@ -21,9 +21,9 @@ struct Kinks
 };
 
 /// Encloses P^n and |P^t| - S_h, given at the points of a rule, between Bernstein coefficients: P and the
-/// threshold of Tresca's law are in P^degree. With b of P^t, l of S_h, and any unit vector e,
+/// strength of the law's friction cone are in P^degree. With b of P^t, l of S_h, and any unit vector e,
 ///     min (b.e - l) <= |P^t| - S_h <= max (|b| - l)
-/// by P^t.e <= |P^t| and convexity; for Coulomb's law S_h = -mu_F P^n is one where P^n < 0 all over.
+/// by P^t.e <= |P^t| and convexity; S_h = s - mu_F P^n is one where P^n < 0 all over.
 template <int dim>
 class KinkFinder
 {
@@ -31,8 +31,8 @@ class KinkFinder
   KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree);
 
   /// Values of size `noise` or less, the round-off of P, are no sign of anything.
-  [[nodiscard]] Kinks operator()(const case_file::FrictionLaw& law, const Point<dim>& normal,
-                                 std::span<const Point<dim>> p, std::span<const double> threshold,
+  [[nodiscard]] Kinks operator()(const problem::ContactLaw& law, const Point<dim>& normal,
+                                 std::span<const Point<dim>> p, std::span<const double> strength,
                                  double noise) const;
 
   /// How much larger a coefficient can be than the values it is made from.

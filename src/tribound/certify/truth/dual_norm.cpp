@@ -81,7 +81,7 @@ std::array<std::vector<double>, dim + 1> reference_facet_masses(const fem::Lagra
 
 /// Adds the entries of a cell that lie between free nodes, and all diagonal ones.
 void add_block(std::span<const Index> nodes, const std::vector<char>& fixed, std::span<const double> block,
-               contact::Triplets& entries)
+               algebra::Triplets& entries)
 {
   const std::size_t n = nodes.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -141,8 +141,8 @@ void DualNorm<dim>::find_operators()
     else
       operators_.push_back({std::move(fixed), {a}, nullptr, nullptr});
   }
-  const case_file::SolverConfig direct{.method = case_file::LinearMethod::direct,
-                                       .package = case_file::DirectPackage::mumps};
+  const algebra::SolverOptions direct{.method = algebra::LinearMethod::direct,
+                                      .package = algebra::DirectPackage::mumps};
   for (Operator& op : operators_)
   {
     op.matrix = std::make_unique<algebra::SparseMatrix>(matrix(op.fixed));
@@ -157,7 +157,7 @@ template <int dim>
 algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
 {
   const int n = space_.basis().n_nodes();
-  contact::Triplets entries;
+  algebra::Triplets entries;
   entries.reserve(static_cast<std::size_t>(space_.mesh().n_cells()) * n * n);
   std::vector<double> block(static_cast<std::size_t>(n) * n);
   const std::vector<Tensor<dim>> reference = reference_gradients(space_.basis());

@@ -32,8 +32,8 @@ namespace
 /// Newton's method from `start`; a singular matrix is one more reason for having no solution.
 template <int dim>
 solve::NewtonResult<dim> solve_richer(const contact::NitscheForm<dim>& form, std::span<const double> start,
-                                      const case_file::NewtonConfig& newton,
-                                      const case_file::SolverConfig& solver)
+                                      const solve::NewtonOptions& newton,
+                                      const algebra::SolverOptions& solver)
 {
   try
   {
@@ -53,8 +53,7 @@ solve::NewtonResult<dim> solve_richer(const contact::NitscheForm<dim>& form, std
 template <int dim>
 RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                    const RicherSpace& richer, double gamma0,
-                                   const case_file::NewtonConfig& newton,
-                                   const case_file::SolverConfig& solver)
+                                   const solve::NewtonOptions& newton, const algebra::SolverOptions& solver)
 {
   const mesh::Refined<dim> refined = mesh::refine_uniformly(form.space().mesh(), richer.refinements);
   const fem::LagrangeSpace<dim> space(refined.mesh, richer.degree);
@@ -77,10 +76,10 @@ RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form, std::s
 template double count_dofs(const mesh::Mesh<2>&, const RicherSpace&);
 template double count_dofs(const mesh::Mesh<3>&, const RicherSpace&);
 template RicherSolution compare_with_richer(const contact::NitscheForm<2>&, std::span<const double>,
-                                            const RicherSpace&, double, const case_file::NewtonConfig&,
-                                            const case_file::SolverConfig&);
+                                            const RicherSpace&, double, const solve::NewtonOptions&,
+                                            const algebra::SolverOptions&);
 template RicherSolution compare_with_richer(const contact::NitscheForm<3>&, std::span<const double>,
-                                            const RicherSpace&, double, const case_file::NewtonConfig&,
-                                            const case_file::SolverConfig&);
+                                            const RicherSpace&, double, const solve::NewtonOptions&,
+                                            const algebra::SolverOptions&);
 
 }  // namespace tribound::certify

@@ -12,7 +12,6 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
-#include "tribound/case/config.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/mesh/refine.h"
@@ -120,7 +119,7 @@ struct RicherSolution
 template <int dim>
 [[nodiscard]] RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form,
                                                  std::span<const double> u, const RicherSpace& richer,
-                                                 double gamma0, const case_file::NewtonConfig& newton,
-                                                 const case_file::SolverConfig& solver);
+                                                 double gamma0, const solve::NewtonOptions& newton,
+                                                 const algebra::SolverOptions& solver);
 
 }  // namespace tribound::certify

@@ -82,6 +82,12 @@ int Datum<dim>::degree() const
   return largest;
 }
 
+template <int dim>
+bool Datum<dim>::is_enclosed() const
+{
+  return std::ranges::all_of(terms, [](const Term& term) { return term.value->is_enclosed(); });
+}
+
 template <int k, int dim>
 DatumMoments<k, dim>::DatumMoments(int p, int projected)
     : p_(p),
@@ -147,7 +153,7 @@ void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, 
   part.mean_remainder.setZero();
   for (const auto& [value, direction] : datum.terms)
   {
-    if (value->degree() <= p_ + 2) continue;
+    if (value->degree() <= p_ + 2 || !value->is_enclosed()) continue;
     value->enclose(vertices, dim, taylor);
     const double remainder = distance_from_polynomials(taylor, p_ + 3);
     const double mean_remainder = distance_from_polynomials(taylor, order);

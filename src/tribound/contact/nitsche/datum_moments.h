@@ -27,7 +27,7 @@ struct Datum
 {
   struct Term
   {
-    const problem::Expression* value;
+    const problem::Field* value;
     Point<dim> direction;
   };
   std::vector<Term> terms;
@@ -35,6 +35,8 @@ struct Datum
   [[nodiscard]] Point<dim> operator()(const Point<dim>& x) const;
   /// The largest degree of a term; not_polynomial if one is none.
   [[nodiscard]] int degree() const;
+  /// Whether all terms are.
+  [[nodiscard]] bool is_enclosed() const;
 };
 
 /// x = origin + J s maps the reference k-simplex onto a cell or facet.
@@ -57,7 +59,8 @@ template <int k, int dim>
 struct DatumPart
 {
   fem::Part<k> part;
-  Point<dim> remainder;            ///< per component: the largest distance of f from P^{p+2}, an upper bound
+  Point<dim> remainder;  ///< per component: the largest distance of f from P^{p+2}, an upper bound; 0 where
+                         ///< nobody knows
   Point<dim> mean_remainder;       ///< the same from P^{2p+4}
   std::vector<Point<dim>> values;  ///< f at the points of the rule on the part
 };

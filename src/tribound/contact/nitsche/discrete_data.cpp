@@ -123,18 +123,23 @@ Datum<dim> DiscreteData<dim>::traction_datum(const mesh::BoundaryFacet& facet) c
 template <int dim>
 Datum<dim> DiscreteData<dim>::contact_datum(const mesh::BoundaryFacet& facet, double stiffness) const
 {
-  const case_file::Contact& contact = *problem_.boundary(facet.tag).contact;
+  const problem::Contact& contact = *problem_.boundary(facet.tag).contact;
   Datum<dim> datum;
   datum.terms.push_back({&contact.gap, stiffness * Point<dim>::Unit(0)});
-  if (const auto* tresca = std::get_if<case_file::Tresca>(&contact.friction))
-    datum.terms.push_back({&tresca->threshold, Point<dim>::Unit(1)});
+  if (const problem::Field* strength = cone(contact.law).strength)
+    datum.terms.push_back({strength, Point<dim>::Unit(1)});
   return datum;
 }
 
 template <int dim>
 void DiscreteData<dim>::count_formulas()
 {
-  const auto count = [&](const Datum<dim>& datum) { effort_.formulas += datum.degree() > degree_ + 2; };
+  const auto count = [&](const Datum<dim>& datum)
+  {
+    if (datum.degree() <= degree_ + 2) return;
+    ++effort_.formulas;
+    if (!datum.is_enclosed()) ++effort_.unenclosed;
+  };
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c));
   for (const mesh::BoundaryFacet& facet : mesh_.boundary())
@@ -191,7 +196,7 @@ template <int dim>
 void DiscreteData<dim>::represent_body_forces(double accuracy)
 {
   bool varies = false;
-  for (std::size_t r = 0; r < problem_.region_names().size(); ++r)
+  for (std::size_t r = 0; r < problem_.regions().size(); ++r)
     varies = varies || !problem_.body_force_is_constant(static_cast<int>(r));
   if (!varies) return;
   double volume = 0;
@@ -273,12 +278,12 @@ void DiscreteData<dim>::represent_contact(double accuracy)
                });
 }
 
-/// Throws where gap or threshold is negative at a point of a rule.
+/// Throws where gap or strength is negative at a point of a rule.
 template <int dim>
 void DiscreteData<dim>::check_signs(const mesh::BoundaryFacet& facet,
                                     const DatumOnSimplex<dim - 1, dim>& found) const
 {
-  const case_file::Contact& contact = *problem_.boundary(facet.tag).contact;
+  const problem::Contact& contact = *problem_.boundary(facet.tag).contact;
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
@@ -286,7 +291,7 @@ void DiscreteData<dim>::check_signs(const mesh::BoundaryFacet& facet,
       if (part.values[q].minCoeff() >= 0) continue;
       const Point<dim> x = map(fem::point_in<dim - 1>(part.part, facet_rule().points[q]));
       (void)problem::gap_at<dim>(contact, x);
-      (void)threshold_if_any<dim>(contact.friction, x);
+      (void)problem::strength_at<dim>(contact.law, x);
     }
 }
 
@@ -317,7 +322,7 @@ void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values
 }
 
 template <int dim>
-void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::span<double> threshold) const
+void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::span<double> strength) const
 {
   if (const auto found = contact_.moments.find(facet); found != contact_.moments.end())
   {
@@ -326,17 +331,17 @@ void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::s
     for (int q = 0; q < facet_rule().size(); ++q)  // a polynomial in place of a jump overshoots
     {
       gap[q] = std::max(values[q][0], 0.0);
-      threshold[q] = std::max(values[q][1], 0.0);
+      strength[q] = std::max(values[q][1], 0.0);
     }
     return;
   }
-  const case_file::Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
+  const problem::Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
   for (int q = 0; q < facet_rule().size(); ++q)
   {
     const Point<dim> x = map(facet_rule().points[q]);
     gap[q] = problem::gap_at<dim>(contact, x);
-    threshold[q] = threshold_if_any<dim>(contact.friction, x);
+    strength[q] = problem::strength_at<dim>(contact.law, x);
   }
 }
 

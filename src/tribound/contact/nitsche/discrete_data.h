@@ -30,8 +30,8 @@ template <int dim>
 struct ContactDatumPart
 {
   fem::Part<dim - 1> part;
-  double gap;        ///< length
-  double threshold;  ///< stress
+  double gap;       ///< length
+  double strength;  ///< stress
 };
 
 /// What the data that are no polynomials may leave out of the bound, stress times length^(dim/2).
@@ -47,6 +47,7 @@ struct DataEffort
   std::size_t formulas = 0;  ///< cells and boundary facets with data that are no polynomials of degree p + 2
   std::size_t subdivided = 0;  ///< of these
   std::size_t parts = 0;       ///< into which these were cut
+  std::size_t unenclosed = 0;  ///< cells and facets with functions of which only values at points are known
 };
 
 /// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
@@ -78,8 +79,8 @@ class DiscreteData
   void body_force(Index cell, std::span<Point<dim>> values) const;
   /// g_N on a boundary facet; fixed components are 0.
   void traction(std::size_t facet, std::span<Point<dim>> values) const;
-  /// g and s (0 unless the law is Tresca's) on a contact facet; both >= 0.
-  void contact(std::size_t facet, std::span<double> gap, std::span<double> threshold) const;
+  /// g and the strength s of the law (0 where it has none) on a contact facet; both >= 0.
+  void contact(std::size_t facet, std::span<double> gap, std::span<double> strength) const;
 
   [[nodiscard]] LoadRemainder body_remainder(Index cell) const
   {

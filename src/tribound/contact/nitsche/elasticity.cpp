@@ -13,13 +13,6 @@
 namespace tribound::contact
 {
 
-void Triplets::reserve(std::size_t n)
-{
-  rows.reserve(n);
-  cols.reserve(n);
-  values.reserve(n);
-}
-
 namespace
 {
 
@@ -146,12 +139,12 @@ class BlockRow
 }  // namespace
 
 template <int dim>
-Triplets stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                   const fem::Constraints& constraints)
+algebra::Triplets stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                            const fem::Constraints& constraints)
 {
   const NodeCells cells = cells_around_nodes(space);
   BlockRow<dim> row(problem, space);
-  Triplets entries;
+  algebra::Triplets entries;
   for (Index i = 0; i < space.n_nodes(); ++i)
   {
     row.assemble(cells.around(i));
@@ -337,10 +330,10 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
   return load;
 }
 
-template Triplets stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                            const fem::Constraints&);
-template Triplets stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                            const fem::Constraints&);
+template algebra::Triplets stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                     const fem::Constraints&);
+template algebra::Triplets stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                     const fem::Constraints&);
 template std::vector<double> apply_stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                              std::span<const double>);
 template std::vector<double> apply_stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/algebra/triplets.h"
 #include "tribound/base/types.h"
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
@@ -50,28 +51,13 @@ template <int dim>
   return result;
 }
 
-/// Sparse matrix entries (row, column, value), to be added up; entries with row or column -1 do not count.
-struct Triplets
-{
-  std::vector<int> rows;
-  std::vector<int> cols;
-  std::vector<double> values;
-
-  void reserve(std::size_t n);
-  void add(int row, int col, double value)
-  {
-    rows.push_back(row);
-    cols.push_back(col);
-    values.push_back(value);
-  }
-};
-
 /// a(phi_j, phi_i) over free i and j, every place once, in the order of rows and columns: a seventh of the
 /// cells' own entries in 3D. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal alone, which
 /// decouples it without spoiling the scaling.
 template <int dim>
-[[nodiscard]] Triplets stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                                 const fem::Constraints& constraints);
+[[nodiscard]] algebra::Triplets stiffness(const problem::Problem<dim>& problem,
+                                          const fem::LagrangeSpace<dim>& space,
+                                          const fem::Constraints& constraints);
 
 /// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell.
 template <int dim>

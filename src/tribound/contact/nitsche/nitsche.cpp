@@ -38,7 +38,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   std::vector<double> gap(facet_rule_.size());
-  std::vector<double> threshold(facet_rule_.size());
+  std::vector<double> strength(facet_rule_.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
@@ -48,9 +48,9 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const double gamma = gamma0 * penalty_modulus(material) / geometry.diameter;
     contact_facets_.push_back({facet, geometry, gamma, &*contact, number});
-    data_.contact(number, gap, threshold);
+    data_.contact(number, gap, strength);
     gap_.insert(gap_.end(), gap.begin(), gap.end());
-    threshold_.insert(threshold_.end(), threshold.begin(), threshold.end());
+    strength_.insert(strength_.end(), strength.begin(), strength.end());
   }
 }
 
@@ -75,28 +75,19 @@ Point<dim> NitscheForm<dim>::augmented_traction(std::span<const double> u, std::
 }
 
 template <int dim>
+problem::LawPoint<dim> NitscheForm<dim>::law_point(std::size_t k, std::size_t i) const
+{
+  return {contact_facets_[k].geometry.normal, strength_[i]};
+}
+
+template <int dim>
 Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_t k, std::size_t i,
                                                   const Point<dim>& augmented, double delta) const
 {
-  const case_file::FrictionLaw& law = contact_facets_[k].contact->friction;
+  const problem::ContactLaw& law = contact_facets_[k].contact->law;
+  if (kind == Linearisation::newton) return problem::tangent<dim>(law, law_point(k, i), augmented, delta);
   const Point<dim>& n = contact_facets_[k].geometry.normal;
-  const bool frictionless = std::holds_alternative<case_file::Frictionless>(law);
-  if (kind == Linearisation::closed_sticking)
-    return frictionless ? Tensor<dim>(n * n.transpose()) : Tensor<dim>::Identity();
-
-  const double p_n = augmented.dot(n);
-  const Point<dim> p_t = augmented - p_n * n;
-  const double limit = friction_limit(law, threshold_[i], p_n, delta);
-  const double closed = problem::negative_part_derivative(p_n, delta);
-  const Tensor<dim> tangential = Tensor<dim>::Identity() - n * n.transpose();
-
-  Tensor<dim> derivative =
-      closed * n * n.transpose() + problem::ball_projection_derivative<dim>(p_t, limit, delta) * tangential;
-  if (const auto* coulomb =
-          std::get_if<case_file::Coulomb>(&law))  // D S_h[w] = -mu_F D[P^n]_- (sigma^n(w) - gamma w^n)
-    derivative -= coulomb->coefficient * closed *
-                  problem::ball_projection_radius_derivative<dim>(p_t, limit, delta) * n.transpose();
-  return derivative;
+  return cone(law).resists_sliding() ? Tensor<dim>::Identity() : Tensor<dim>(n * n.transpose());
 }
 
 template <int dim>
@@ -108,9 +99,9 @@ std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u, do
   {
     const Tensor<dim> j = inverse_transpose(k);
     for (int q = 0; q < n_facet_points(); ++q)
-      t.push_back(contact_traction<dim>(contact_facets_[k].contact->friction, threshold_[t.size()],
-                                        augmented_traction(u, k, q, j), contact_facets_[k].geometry.normal,
-                                        delta));
+      t.push_back(problem::respond<dim>(contact_facets_[k].contact->law, law_point(k, t.size()),
+                                        augmented_traction(u, k, q, j), delta)
+                      .traction);
   }
   return t;
 }
@@ -134,10 +125,9 @@ std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind
         continue;
       }
       const Point<dim> at_u = augmented_traction(u, k, q, j);
-      const ContactFacet<dim>& contact = contact_facets_[k];
-      t.push_back(contact_traction<dim>(contact.contact->friction, threshold_[i], at_u,
-                                        contact.geometry.normal, delta) +
-                  traction_derivative(kind, k, i, at_u, delta) * (at_w - at_u));
+      t.push_back(
+          problem::respond<dim>(contact_facets_[k].contact->law, law_point(k, i), at_u, delta).traction +
+          traction_derivative(kind, k, i, at_u, delta) * (at_w - at_u));
     }
   }
   return t;
@@ -164,7 +154,7 @@ void NitscheForm<dim>::add_contact_load(std::span<const Point<dim>> t, std::span
 
 template <int dim>
 void NitscheForm<dim>::add_block_entries(const mesh::BoundaryFacet& facet, std::span<const Tensor<dim>> block,
-                                         Triplets& entries) const
+                                         algebra::Triplets& entries) const
 {
   const fem::LagrangeBasis<dim>& basis = space_->basis();
   const std::span<const Index> nodes = space_->cell_nodes(facet.cell);
@@ -181,10 +171,11 @@ void NitscheForm<dim>::add_block_entries(const mesh::BoundaryFacet& facet, std::
 }
 
 template <int dim>
-Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u, double delta) const
+algebra::Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u,
+                                                    double delta) const
 {
   const int n = space_->basis().n_nodes();
-  Triplets entries;
+  algebra::Triplets entries;
   std::vector<Tensor<dim>> column(n);  // M (sigma(phi_j e_b) n - gamma phi_j e_b)
   std::vector<Tensor<dim>> block(static_cast<std::size_t>(n) * n);
   for (std::size_t k = 0; k < contact_facets_.size(); ++k)
@@ -231,15 +222,11 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
     const Point<dim> value = value_at<dim>(nodes, u, local.values_at(q));
     const Tensor<dim> gradient = gradient_at<dim>(nodes, u, local.gradients_at(q), inverse);
     const double gap = problem::gap_at<dim>(*contact, x);
-    const double threshold = threshold_if_any<dim>(contact->friction, x);
+    const problem::LawPoint<dim> point{n, problem::strength_at<dim>(contact->law, x)};
     const Point<dim> p = contact::augmented_traction<dim>(material, gamma, gap, n, value, gradient);
-    const double p_n = p.dot(n);
-    const double limit = friction_limit(contact->friction, threshold, p_n);
-    ContactStatus status = (p - p_n * n).norm() <= limit ? ContactStatus::stick : ContactStatus::slip;
-    if (p_n > 0) status = ContactStatus::open;
-    states.push_back({x, n, -problem::negative_part(p_n),
-                      contact_traction<dim>(contact->friction, threshold, p, n), limit, status,
-                      gap - value.dot(n), value - value.dot(n) * n});
+    const auto [traction, limit, status] = problem::respond<dim>(contact->law, point, p);
+    states.push_back(
+        {x, n, -traction.dot(n), traction, limit, status, gap - value.dot(n), value - value.dot(n) * n});
   }
   return states;
 }

@@ -18,13 +18,6 @@
 namespace tribound::contact
 {
 
-enum class ContactStatus
-{
-  open = 0,
-  stick = 1,
-  slip = 2
-};
-
 /// Everything a user asks about one point of the contact boundary.
 template <int dim>
 struct ContactState
@@ -34,7 +27,7 @@ struct ContactState
   double pressure;      ///< -[P^n]_- >= 0
   Point<dim> traction;  ///< T = [P^n]_- n + [P^t]_S
   double limit;         ///< S_h: what |T^t| may reach
-  ContactStatus status;
+  problem::ContactStatus status;
   double gap;       ///< g - u^n: distance left
   Point<dim> slip;  ///< u^t
 };
@@ -46,7 +39,7 @@ struct ContactFacet
   mesh::BoundaryFacet facet;
   mesh::FacetGeometry<dim> geometry;
   double gamma;  ///< gamma_0 min(lambda + 2 mu, 34 mu) / h_F
-  const case_file::Contact* contact;
+  const problem::Contact* contact;
   std::size_t number;  ///< in Mesh::boundary()
 };
 
@@ -91,8 +84,8 @@ class NitscheForm
   /// vector_i += (t, phi_i)_C with t given at the contact points.
   void add_contact_load(std::span<const Point<dim>> t, std::span<double> vector) const;
   /// -(DT(u)[phi_j], phi_i)_C over free i and j. Rows and columns do not depend on u.
-  [[nodiscard]] Triplets contact_tangent(Linearisation kind, std::span<const double> u,
-                                         double delta = 0) const;
+  [[nodiscard]] algebra::Triplets contact_tangent(Linearisation kind, std::span<const double> u,
+                                                  double delta = 0) const;
 
   /// States on contact facet k at the points of `table`.
   [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, int k,
@@ -102,13 +95,14 @@ class NitscheForm
   /// P(u) = sigma(u) n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
   [[nodiscard]] Point<dim> augmented_traction(std::span<const double> u, std::size_t k, int q,
                                               const Tensor<dim>& inverse_transpose) const;
+  [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, std::size_t i) const;
   /// M with DT(u)[w] = M (sigma(w) n - gamma w), from P(u) at contact point i of facet k.
   [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, std::size_t i,
                                                 const Point<dim>& augmented, double delta) const;
   [[nodiscard]] Tensor<dim> inverse_transpose(std::size_t k) const;
   /// Appends the rows of the nodes on the facet; block [i * n_nodes + j] belongs to local nodes i and j.
   void add_block_entries(const mesh::BoundaryFacet& facet, std::span<const Tensor<dim>> block,
-                         Triplets& entries) const;
+                         algebra::Triplets& entries) const;
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
@@ -119,8 +113,8 @@ class NitscheForm
   fem::Quadrature<dim - 1> facet_rule_;
   fem::FacetTabulation<dim> facet_table_;
   std::vector<ContactFacet<dim>> contact_facets_;
-  std::vector<double> gap_;        ///< g at the contact points
-  std::vector<double> threshold_;  ///< s at the contact points, 0 unless Tresca
+  std::vector<double> gap_;       ///< g at the contact points
+  std::vector<double> strength_;  ///< s at the contact points, 0 where the law has none
 };
 
 /// Resultants of a contact traction t given at the contact points.

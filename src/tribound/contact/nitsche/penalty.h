@@ -5,10 +5,16 @@
 
 #include <algorithm>
 
-#include "tribound/problem/problem.h"
+#include "tribound/problem/material.h"
 
 namespace tribound::contact
 {
+
+/// gamma_0 where none is given, method section 2: 10 up to degree 3, above max(10, 3 p^2).
+[[nodiscard]] inline double default_gamma0(int degree)
+{
+  return degree <= 3 ? 10.0 : std::max(10.0, 3.0 * degree * degree);
+}
 
 /// The modulus in gamma: lambda + 2 mu, but not more than at nu = 16/33 = 0.485. Nearly incompressible
 /// materials would otherwise have a penalty of the size of lambda against everything that deforms, and

@@ -109,7 +109,7 @@ template <int dim>
 std::string describe(const Body<dim>& body, const problem::Problem<dim>& problem, bool several)
 {
   std::vector<std::string> names;
-  for (const int region : body.regions) names.push_back("\"" + problem.region_names()[region] + "\"");
+  for (const int region : body.regions) names.push_back("\"" + problem.regions()[region].name + "\"");
   const std::string place = several ? fmt::format(" around {}", mesh::describe(body.modes.centre)) : "";
   return fmt::format("the body{} (region{} {})", place, names.size() > 1 ? "s" : "", fmt::join(names, ", "));
 }

@@ -34,13 +34,6 @@ bool better(const Candidate& a, const Candidate& b)
 
 }  // namespace
 
-bool has_friction(const case_file::FrictionLaw& law)
-{
-  if (const auto* tresca = std::get_if<case_file::Tresca>(&law)) return !tresca->threshold.is_zero();
-  if (const auto* coulomb = std::get_if<case_file::Coulomb>(&law)) return coulomb->coefficient > 0;
-  return false;
-}
-
 std::string describe(const Remedy& remedy)
 {
   return fmt::format("{} on boundary \"{}\"", "xyz"[remedy.component], remedy.boundary);
@@ -72,7 +65,7 @@ Eigen::MatrixXd BodySupport<dim>::contact_gram(bool with_friction) const
         if (!condition.contact) return;
         const auto z = body_.modes.at(x);
         const auto z_n = n.transpose() * z;
-        if (with_friction && has_friction(condition.contact->friction))
+        if (with_friction && cone(condition.contact->law).resists_sliding())
           gram += z.transpose() * z;
         else
           gram += z_n.transpose() * z_n;

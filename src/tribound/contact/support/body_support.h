@@ -16,9 +16,6 @@
 namespace tribound::contact
 {
 
-/// Whether the law can resist sliding at all.
-[[nodiscard]] bool has_friction(const case_file::FrictionLaw& law);
-
 /// A displacement component of a boundary that a motion changes, and that may be fixed to stop it.
 struct Remedy
 {

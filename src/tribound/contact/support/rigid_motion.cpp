@@ -46,9 +46,9 @@ std::vector<Point<dim>> tangents(const Point<dim>& n)
 /// Which friction counts among the forces that grow with the pressure without a limit.
 enum class ConeFriction
 {
-  unlimited,      ///< all friction holds whatever is pressed
-  coulomb_limit,  ///< Coulomb's obeys its coefficient, Tresca's holds
-  no_tresca       ///< Coulomb's obeys its coefficient, there is no other
+  unlimited,    ///< all friction holds whatever is pressed
+  strong,       ///< where there is strength it holds, the rest obeys its coefficient
+  no_strength,  ///< what obeys a coefficient, nothing else
 };
 
 /// The rule on the halves (2D) or quarters (3D) of the facet.
@@ -70,7 +70,7 @@ fem::Quadrature<k> on_halves(const fem::Quadrature<k>& rule)
   return result;
 }
 
-/// What Tresca friction can do against a motion z at most.
+/// What the strength of friction can do against a motion z at most.
 struct FrictionWork
 {
   Eigen::VectorXd in_motions;  ///< integral of s z^t/|z^t| . y^t for each motion y of a basis
@@ -102,8 +102,8 @@ class BodyCheck
  private:
   /// The work in each motion of the contact forces, one column for each generator of their cone.
   [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, ConeFriction friction) const;
-  [[nodiscard]] FrictionWork tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
-                                         const fem::Quadrature<dim - 1>& rule) const;
+  [[nodiscard]] FrictionWork strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                           const fem::Quadrature<dim - 1>& rule) const;
   /// What the work of the loads in a motion may miss.
   [[nodiscard]] double missed_work(const Coefficients<dim>& motion) const;
   /// A motion in which the loads do more work than Tresca friction can take up, and contact and Coulomb
@@ -134,7 +134,7 @@ std::string BodyCheck<dim>::hint(std::span<const Coefficients<dim>> free) const
   const auto has_smooth_contact = [&](const mesh::BoundaryFacet& facet)
   {
     const auto& contact = problem_.boundary(facet.tag).contact;
-    return contact && !has_friction(contact->friction);
+    return contact && !cone(contact->law).resists_sliding();
   };
   const bool friction_may_help = std::ranges::any_of(body_.facets, has_smooth_contact);
   return fmt::format(
@@ -173,17 +173,15 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFri
       [&](const problem::BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
       {
         if (!condition.contact) return;
-        const case_file::FrictionLaw& law = condition.contact->friction;
+        const problem::FrictionCone law = problem::cone(condition.contact->law);
         add(n, x);
-        if (!has_friction(law)) return;
-        const auto* coulomb = std::get_if<case_file::Coulomb>(&law);
-        if (!coulomb && friction == ConeFriction::no_tresca) return;
+        if (!law.resists_sliding()) return;
+        if (law.coefficient == 0 && friction == ConeFriction::no_strength) return;
+        const bool holds = friction == ConeFriction::unlimited ||
+                           (friction == ConeFriction::strong && law.strength != nullptr);
         const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
         for (const Point<dim>& t : tangents<dim>(n))
-          add(coulomb && friction != ConeFriction::unlimited
-                  ? Point<dim>(n + coulomb->coefficient / around * t)
-                  : t,
-              x);
+          add(holds ? t : Point<dim>(n + law.coefficient / around * t), x);
       });
   Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
   for (Eigen::Index j = 0; j < cone.cols(); ++j) cone.col(j) = generators[j];
@@ -192,8 +190,8 @@ Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFri
 
 /// On the parts of the facets on which the rule integrates s; |z^t| is convex, the largest at a vertex.
 template <int dim>
-FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen::VectorXd& z,
-                                         const fem::Quadrature<dim - 1>& rule) const
+FrictionWork BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                           const fem::Quadrature<dim - 1>& rule) const
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
   const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
@@ -201,27 +199,27 @@ FrictionWork BodyCheck<dim>::tresca_work(const MotionBasis& motions, const Eigen
   {
     const mesh::BoundaryFacet& facet = body_.facets[k];
     const auto& contact = problem_.boundary(facet.tag).contact;
-    const auto* tresca = contact ? std::get_if<case_file::Tresca>(&contact->friction) : nullptr;
-    if (!tresca) continue;
+    if (!contact || problem::cone(contact->law).strength == nullptr) continue;
     const mesh::FacetMap<dim> map = mesh::facet_map(mesh_, facet.cell, facet.local);
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh_, facet.cell, facet.local);
     const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
     { return z_x - z_x.dot(geometry.normal) * geometry.normal; };
     const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(body_.numbers[k]);
-    for (const auto& [part, gap, threshold] : parts.empty() ? std::span(&whole, 1) : parts)
+    for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
     {
       const double measure = geometry.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
       for (const Point<dim - 1>& s : part)
         largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
-      result.missed += 2 * threshold * measure * largest;
+      result.missed += 2 * strength * measure * largest;
       for (int q = 0; q < rule.size(); ++q)
       {
         const Point<dim> x = map(fem::point_in<dim - 1>(part, rule.points[q]));
         const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
         const Point<dim> z_t = tangential(at_x * z);
         if (z_t.norm() <= 1e-12 * z.norm()) continue;
-        const double force = measure * (dim - 1) * rule.weights[q] * problem::threshold_at<dim>(*tresca, x);
+        const double force =
+            measure * (dim - 1) * rule.weights[q] * problem::strength_at<dim>(contact->law, x);
         result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
         result.most += force * z_t.norm();
       }
@@ -265,7 +263,7 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
   constexpr double relative = 1e-8;
   const Eigen::Index m = loads.size();
   const double one = loads.norm();
-  const Eigen::MatrixXd cone = contact_cone(motions, ConeFriction::no_tresca);
+  const Eigen::MatrixXd cone = contact_cone(motions, ConeFriction::no_strength);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(m + 1, cone.cols() + 1);
   columns.topLeftCorner(m, cone.cols()) = cone;
   columns(m, cone.cols()) = one;
@@ -275,12 +273,12 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
   {
     const Eigen::VectorXd r = remainder_outside_cone(columns, target).head(m);
     if (r.norm() <= tolerance) return {};
-    const FrictionWork friction = tresca_work(motions, r, data_.facet_rule());
+    const FrictionWork friction = strength_work(motions, r, data_.facet_rule());
     const double driving = r.dot(loads) - missed_work(motions * r);
     if (driving > (1 + relative) * friction.most + tolerance * r.norm())
     {
       // |z^t| has kinks: refuse only what refinement of the rule does not change.
-      const double finer = tresca_work(motions, r, on_halves(on_halves(data_.facet_rule()))).most;
+      const double finer = strength_work(motions, r, on_halves(on_halves(data_.facet_rule()))).most;
       const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
       return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
     }
@@ -317,8 +315,7 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
   { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
   if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
 
-  const Eigen::VectorXd slipped =
-      remainder_outside_cone(contact_cone(motions, ConeFriction::coulomb_limit), c);
+  const Eigen::VectorXd slipped = remainder_outside_cone(contact_cone(motions, ConeFriction::strong), c);
   if (is_free(slipped))
   {
     // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
@@ -332,7 +329,7 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
 
   if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance))
   {
-    const FrictionWork friction = tresca_work(motions, *z, data_.facet_rule());
+    const FrictionWork friction = strength_work(motions, *z, data_.facet_rule());
     fail(motions * *z, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
                                    100 * (friction.most + friction.missed) / z->dot(c)));
   }

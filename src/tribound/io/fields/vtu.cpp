@@ -140,7 +140,7 @@ bool is_series_file(std::string_view name)
 
 double out_of_plane_ratio(const problem::Material& material)
 {
-  if (material.plane == case_file::PlaneModel::stress) return 0.0;
+  if (material.plane == problem::PlaneModel::stress) return 0.0;
   return material.lambda / (2.0 * (material.lambda + material.mu));
 }
 

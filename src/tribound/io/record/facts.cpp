@@ -17,19 +17,10 @@ namespace tribound::io
 namespace
 {
 
-/// A datum in words: its value where it is constant, else "varies".
-std::string text(const problem::Expression& expression)
+/// A field in words: its value where it is constant, else "varies".
+std::string text(const problem::Field& field)
 {
-  return expression.is_constant() ? fmt::format("{:.6g}", expression(Point<2>::Zero().eval())) : "varies";
-}
-
-std::string text(const case_file::FrictionLaw& law)
-{
-  if (const auto* tresca = std::get_if<case_file::Tresca>(&law))
-    return fmt::format("Tresca friction, threshold {}", text(tresca->threshold));
-  if (const auto* coulomb = std::get_if<case_file::Coulomb>(&law))
-    return fmt::format("Coulomb friction, coefficient {:.6g}", coulomb->coefficient);
-  return "no friction";
+  return field.is_constant() ? fmt::format("{:.6g}", field.constant()) : "varies";
 }
 
 template <int dim>
@@ -66,16 +57,10 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
 
 }  // namespace
 
-CaseFacts case_facts(const case_file::Config& config, int dimension)
-{
-  return {config.title,   config.file, dimension, config.degree, case_file::friction_name(config),
-          config.gamma0()};
-}
-
 std::string describe(const problem::Material& material, int dimension)
 {
   const auto [E, nu] = doctor::elastic_constants(material, dimension);
-  const bool plane_stress = material.plane == case_file::PlaneModel::stress;
+  const bool plane_stress = material.plane == problem::PlaneModel::stress;
   const char* model = dimension == 3 ? "" : plane_stress ? ", plane stress" : ", plane strain";
   return fmt::format("E = {:.6g}, nu = {:.6g}{}", E, nu, model);
 }
@@ -94,11 +79,11 @@ std::string describe(const problem::BoundaryCondition<dim>& condition)
   if (condition.fixes_any())
     add("displacement " +
         vector([&](int i) { return condition.fixes(i) ? text(*condition.displacement[i]) : "free"; }));
-  if (std::ranges::any_of(condition.traction, [](const problem::Expression& t) { return !t.is_zero(); }))
+  if (std::ranges::any_of(condition.traction, [](const problem::Field& t) { return !t.is_zero(); }))
     add("traction " + vector([&](int i) { return text(condition.traction[i]); }));
   if (condition.pressure) add("pressure " + text(*condition.pressure));
   if (condition.contact)
-    add("contact, " + text(condition.contact->friction) + ", gap " + text(condition.contact->gap));
+    add("contact, " + problem::words(condition.contact->law) + ", gap " + text(condition.contact->gap));
   return words.empty() ? "traction-free" : words;
 }
 

@@ -12,6 +12,13 @@
 namespace tribound::io
 {
 
+/// What is solved: the case file with every --set.
+struct EffectiveCase
+{
+  std::string text;                    ///< TOML; a case file that stands in output.directory
+  std::vector<std::string> overrides;  ///< as given
+};
+
 struct CaseFacts
 {
   std::string title;
@@ -64,8 +71,6 @@ struct BuildFacts
   std::vector<std::string> features;
   std::string report_page;  ///< path of its template; empty where there is none
 };
-
-[[nodiscard]] CaseFacts case_facts(const case_file::Config& config, int dimension);
 
 /// The mesh of `space` with what `problem` says about its parts.
 template <int dim>

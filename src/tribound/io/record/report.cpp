@@ -147,12 +147,12 @@ Json json(const LevelRecord& level)
   return object;
 }
 
-Json json(const RunWarning& warning)
+Json json(const doctor::Finding& warning)
 {
   return {{"code", warning.code},
           {"text", warning.text},
-          {"value", warning.value},
-          {"where", text_or_null(warning.where)}};
+          {"value", warning.numbers.empty() ? 0 : warning.numbers.front().second},
+          {"where", text_or_null(doctor::location(warning))}};
 }
 
 template <typename Value>
@@ -265,9 +265,10 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     if (!boundaries[tag].contact) continue;
     Resultants part = resultants<dim>(form, t, level.traction, tag);
     part.boundary = boundaries[tag].name;
-    const auto* coulomb = std::get_if<case_file::Coulomb>(&boundaries[tag].contact->friction);
-    if (coulomb && slides[tag] && adapt::bound_holds(level, form.space().degree()))
-      part.coefficient = coulomb->coefficient;
+    const problem::FrictionCone friction = cone(boundaries[tag].contact->law);
+    const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
+    if (coefficient_alone && slides[tag] && adapt::bound_holds(level, form.space().degree()))
+      part.coefficient = friction.coefficient;
     figures.boundary_contact.push_back(std::move(part));
   }
   return figures;
@@ -352,7 +353,7 @@ std::string certificate_json(const RunRecord& run)
   object["assumptions"] = json(run.statements.assumptions);
   object["not_covered"] = run.statements.not_covered;
   object["warnings"] = Json::array();
-  for (const RunWarning& warning : run.warnings) object["warnings"].push_back(json(warning));
+  for (const doctor::Finding& warning : run.warnings) object["warnings"].push_back(json(warning));
   object["mesh"] = mesh_json(run.mesh);
   object["levels"] = Json::array();
   for (const LevelRecord& level : run.levels) object["levels"].push_back(json(level));

@@ -15,6 +15,7 @@
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/findings.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/solve/newton.h"
 
@@ -117,15 +118,6 @@ struct LevelRecord
 /// Whether the stress is zero as far as rounding lets it be known, and so is the bound.
 [[nodiscard]] bool is_round_off(const LevelRecord& level);
 
-/// Something in a result that deserves a look, see doctor/run_warnings.h.
-struct RunWarning
-{
-  std::string code;   ///< for programs
-  std::string text;   ///< for people
-  double value = 0;   ///< what was compared with a limit
-  std::string where;  ///< such as `boundary "base" at (0, 0)`; empty: the whole
-};
-
 struct RunRecord
 {
   CaseFacts facts;
@@ -136,8 +128,8 @@ struct RunRecord
   std::vector<LevelRecord> levels;
   double tolerance = 0.0;  ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
-  std::vector<RunWarning> warnings;                   ///< about the last level
-  case_file::EffectiveCase effective;                 ///< empty where the run is a part of something larger
+  std::vector<doctor::Finding> warnings;              ///< about the last level
+  EffectiveCase effective;                            ///< empty where the run is a part of something larger
   std::string case_file = "case.toml";                ///< where it is written in the output directory
   std::vector<std::pair<std::string, double>> times;  ///< s per stage of the whole run
 };

@@ -1,0 +1,158 @@
+#include "tribound/case/resolve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tribound/case/node.h"
+
+namespace tribound::case_file
+{
+
+namespace
+{
+
+Where inside(const Where& table, std::string_view key)
+{
+  Where where = table;
+  where.key += fmt::format(".{}", key);
+  return where;
+}
+
+template <int dim>
+void check_length(std::size_t size, const Where& where)
+{
+  if (size != dim)
+    throw InputError(where, fmt::format("has {} components, but the mesh is {}D", size, dim),
+                     fmt::format("give {}", dim));
+}
+
+template <int dim>
+problem::Field in_dimension(const problem::Field& field)
+{
+  if (dim == 2 && field.uses_z()) throw InputError(field.where(), "uses z in a 2D case", "only x and y vary");
+  return field;
+}
+
+template <int dim>
+std::array<problem::Field, dim> vector_of(std::span<const problem::Field> components, const Where& where)
+{
+  check_length<dim>(components.size(), where);
+  std::array<problem::Field, dim> result;
+  for (int i = 0; i < dim; ++i) result[i] = in_dimension<dim>(components[i]);
+  return result;
+}
+
+template <int dim>
+problem::BoundaryCondition<dim> resolve(const BoundaryConfig& config)
+{
+  problem::BoundaryCondition<dim> boundary;
+  boundary.name = config.name;
+  boundary.where = config.where;
+  boundary.contact = config.contact;
+  if (config.contact)
+  {
+    (void)in_dimension<dim>(config.contact->gap);
+    if (const problem::Field* strength = cone(config.contact->law).strength)
+      (void)in_dimension<dim>(*strength);
+  }
+  if (config.pressure) boundary.pressure = in_dimension<dim>(*config.pressure);
+  if (!config.traction.empty())
+    boundary.traction = vector_of<dim>(config.traction, inside(config.where, "traction"));
+  if (config.displacement.empty()) return boundary;
+  check_length<dim>(config.displacement.size(), inside(config.where, "displacement"));
+  for (int i = 0; i < dim; ++i)
+    if (config.displacement[i]) boundary.displacement[i] = in_dimension<dim>(*config.displacement[i]);
+  return boundary;
+}
+
+/// For each region, the entry with its name, else the entry without a name, else null.
+template <class T>
+std::vector<const T*> by_region(const std::vector<T>& entries, std::span<const std::string> regions)
+{
+  std::vector<const T*> found(regions.size(), nullptr);
+  for (const T& entry : entries)
+    if (entry.region.empty()) std::ranges::fill(found, &entry);
+  for (const T& entry : entries)
+    if (!entry.region.empty())
+      found[problem::group_number(entry.region, regions, entry.where, "region")] = &entry;
+  return found;
+}
+
+/// E and nu of the case, for each region of the mesh.
+template <int dim>
+std::vector<problem::Region<dim>> regions_of(const Config& config, std::span<const std::string> names)
+{
+  for (const LoadConfig& load : config.loads) (void)vector_of<dim>(load.body, load.where);
+  const auto materials = by_region(config.materials, names);
+  const auto loads = by_region(config.loads, names);
+  std::vector<problem::Region<dim>> regions;
+  for (std::size_t r = 0; r < names.size(); ++r)
+  {
+    if (materials[r] == nullptr)
+      throw InputError({.file = config.file, .key = "material"},
+                       fmt::format("region \"{}\" of the mesh has no material", names[r]),
+                       fmt::format("add [{}] with E and nu, or give E and nu in [material] for all regions",
+                                   dotted_key("material", names[r])));
+    if (dim == 3 && materials[r]->plane == problem::PlaneModel::stress)
+      throw InputError(inside(materials[r]->where, "plane"), "plane stress in a 3D case",
+                       "drop plane; it is for 2D cases");
+    problem::Region<dim>& region = regions.emplace_back();
+    region.name = names[r];
+    region.material = problem::lame(materials[r]->E, materials[r]->nu, materials[r]->plane);
+    if (loads[r] != nullptr) region.body_force = vector_of<dim>(loads[r]->body, loads[r]->where);
+  }
+  return regions;
+}
+
+/// Boundaries of a mesh file are named by its author for a purpose: one that the case forgets is a mistake.
+/// The sides of a box have names whether they are needed or not.
+template <int dim>
+void check_all_mentioned(const Config& config, std::span<const std::string> groups)
+{
+  if (std::holds_alternative<mesh::BoxMesh>(config.mesh)) return;
+  std::vector<std::string> forgotten;
+  for (const std::string& group : groups)
+    if (std::ranges::find(config.boundaries, group, &BoundaryConfig::name) == config.boundaries.end())
+      forgotten.push_back(group);
+  if (!forgotten.empty())
+    throw InputError(
+        {.file = config.file, .key = "boundary"},
+        fmt::format("the case does not mention {} of the mesh: {}",
+                    forgotten.size() == 1 ? "a boundary" : "boundaries", problem::quoted_list(forgotten)),
+        fmt::format("if it is traction-free, say so: [{}] with traction = {}",
+                    dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
+}
+
+}  // namespace
+
+template <int dim>
+problem::Problem<dim> resolve(const Config& config, std::span<const std::string> region_names,
+                              std::span<const std::string> boundary_names)
+{
+  const std::vector<problem::Region<dim>> regions = regions_of<dim>(config, region_names);
+  std::vector<problem::BoundaryCondition<dim>> boundaries;
+  for (const BoundaryConfig& boundary : config.boundaries)
+  {
+    (void)problem::group_number(boundary.name, boundary_names, boundary.where, "boundary");
+    boundaries.push_back(resolve<dim>(boundary));
+  }
+  check_all_mentioned<dim>(config, boundary_names);
+  return problem::Problem<dim>(region_names, boundary_names, regions, boundaries);
+}
+
+io::CaseFacts case_facts(const Config& config, int dimension)
+{
+  return {config.title,         config.file,           dimension,
+          config.method.degree, friction_name(config), config.method.gamma_0()};
+}
+
+template problem::Problem<2> resolve(const Config&, std::span<const std::string>,
+                                     std::span<const std::string>);
+template problem::Problem<3> resolve(const Config&, std::span<const std::string>,
+                                     std::span<const std::string>);
+
+}  // namespace tribound::case_file

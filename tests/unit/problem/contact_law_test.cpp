@@ -1,0 +1,114 @@
+/// @file contact_law_test.cpp
+/// What every contact law promises, for all of them and both dimensions: the tangent is the derivative of the
+/// response, tractions obey the law, and the cone is what the limit is where the contact is closed.
+
+#include "tribound/problem/contact_law.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tribound
+{
+namespace
+{
+
+using problem::ContactLaw;
+using problem::ContactStatus;
+
+std::vector<ContactLaw> laws()
+{
+  std::vector<ContactLaw> all;
+  for (const problem::LawKind& kind : problem::law_kinds())
+  {
+    const std::vector<problem::Field> values(kind.keys.size(), problem::Field(0.4));
+    all.push_back(kind.make(values));
+  }
+  return all;
+}
+
+template <int dim>
+Point<dim> random_vector(std::mt19937& dice)
+{
+  std::normal_distribution<double> number;
+  Point<dim> v;
+  for (int a = 0; a < dim; ++a) v[a] = number(dice);
+  return v;
+}
+
+template <int dim>
+void expect_kept(const ContactLaw& law, double delta, std::mt19937& dice)
+{
+  const problem::FrictionCone cone = problem::cone(law);
+  problem::LawPoint<dim> point{random_vector<dim>(dice).normalized()};
+  if (cone.strength != nullptr) point.strength = cone.strength->constant();
+  const Point<dim> P = random_vector<dim>(dice);
+  const problem::Response<dim> response = problem::respond<dim>(law, point, P, delta);
+  const Point<dim>& n = point.normal;
+  const double p_n = P.dot(n);
+  const double t_n = response.traction.dot(n);
+  const Point<dim> t_t = response.traction - t_n * n;
+
+  EXPECT_LE(t_n, 1e-15);
+  EXPECT_LE(t_t.norm(), response.limit + 1e-15);
+  if (delta == 0 && p_n < 0)
+  {
+    EXPECT_NEAR(response.limit, cone.closed_limit(point.strength, p_n), 1e-15);
+  }
+  EXPECT_EQ(response.status == ContactStatus::open, p_n > 0);
+  if (delta == 0 && response.status == ContactStatus::stick)
+  {
+    EXPECT_LE((response.traction - P).norm(), 1e-15);
+  }
+
+  const double step = 1e-6;
+  const Point<dim> direction = random_vector<dim>(dice);
+  const auto traction = [&](double along)
+  { return problem::respond<dim>(law, point, P + along * direction, delta).traction; };
+  const Point<dim> difference = (traction(step) - traction(-step)) / (2 * step);
+  const Point<dim> derivative = problem::tangent<dim>(law, point, P, delta) * direction;
+  EXPECT_LE((difference - derivative).norm(), 1e-8 * (1 + 1 / std::max(delta, 0.01))) << problem::name(law);
+}
+
+TEST(ContactLaw, TangentIsTheDerivativeAndTheTractionObeysTheLaw)
+{
+  std::mt19937 dice(1);
+  for (const ContactLaw& law : laws())
+    for (const double delta : {0.0, 0.3})
+      for (int trial = 0; trial < 200; ++trial)
+      {
+        expect_kept<2>(law, delta, dice);
+        expect_kept<3>(law, delta, dice);
+      }
+}
+
+TEST(ContactLaw, KindsAreNamedOnceAndMadeFromTheirKeys)
+{
+  std::set<std::string_view> names;
+  std::set<std::string_view> keys;
+  const std::vector<ContactLaw> all = laws();
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    const problem::LawKind& kind = problem::law_kinds()[i];
+    EXPECT_EQ(problem::name(all[i]), kind.name);
+    EXPECT_EQ(all[i].index(), i);
+    EXPECT_FALSE(problem::words(all[i]).empty());
+    EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
+    for (const problem::LawKey& key : kind.keys) EXPECT_TRUE(keys.insert(key.key).second) << key.key;
+  }
+}
+
+TEST(ContactLaw, OnlyFrictionResistsSliding)
+{
+  EXPECT_FALSE(cone(problem::Frictionless()).resists_sliding());
+  EXPECT_FALSE(cone(problem::Tresca(0.0)).resists_sliding());
+  EXPECT_FALSE(cone(problem::Coulomb(0.0)).resists_sliding());
+  EXPECT_TRUE(cone(problem::Tresca(problem::Field("x", {}))).resists_sliding());
+  EXPECT_TRUE(cone(problem::Coulomb(0.1)).resists_sliding());
+}
+
+}  // namespace
+}  // namespace tribound
