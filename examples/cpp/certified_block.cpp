@@ -21,19 +21,11 @@ constexpr double load = 0.1 * 2 - 0.06 * 1;  // pressed down on the top, lifted 
 /// The data: what the block is made of and what holds on its sides, by the names that the mesh gives them.
 problem::Problem<2> block(const mesh::Mesh<2>& mesh)
 {
-  // A field is a number, a formula, or a function: here the lift on the right, given point by point.
-  const problem::FieldFunction lift{.values =
-                                        [](std::span<const double> x, int /*dim*/, std::span<double> values)
-                                    {
-                                      for (std::size_t i = 0; i < values.size(); ++i)
-                                        values[i] = 0.12 * (1 - x[2 * i + 1]);
-                                    },
-                                    .degree = 1};
-  return problem::Problem<2>(mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
-                             {problem::with_displacement<2>("left", {0.0, std::nullopt}),
-                              problem::with_traction<2>("top", {0.0, -0.1}),
-                              problem::with_traction<2>("right", {0.04, problem::Field(lift)}),
-                              problem::with_contact<2>("bottom", problem::Tresca(0.03))});
+  return problem::Problem<2>(
+      mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
+      {problem::with_displacement<2>("left", {0.0, std::nullopt}),
+       problem::with_traction<2>("top", {0.0, -0.1}), problem::with_traction<2>("right", {0.04, 0.06}),
+       problem::with_contact<2>("bottom", problem::Tresca(0.03))});
 }
 
 /// The vertical force of the floor on the body: (T, (0, 1))_C.
