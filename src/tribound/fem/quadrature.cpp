@@ -1,7 +1,12 @@
 #include "tribound/fem/quadrature.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+
+#include "tribound/fem/symmetric_rules.h"
 
 namespace tribound::fem
 {
@@ -34,18 +39,21 @@ Quadrature<1> gauss_jacobi(int n, int alpha)
   return rule;
 }
 
-/// k+1 points, exact to degree 2 (Hammer and Stroud 1956).
+/// All points of all orbits.
 template <int k>
-Quadrature<k> degree_two_rule()
+Quadrature<k> rule_of(std::span<const Orbit<k>> orbits)
 {
-  const double a = k == 2 ? 1.0 / 6 : (5 - std::sqrt(5.0)) / 20;
+  constexpr double measure = k == 2 ? 1.0 / 2 : 1.0 / 6;
   Quadrature<k> rule;
-  for (int i = 0; i <= k; ++i)
+  for (const Orbit<k>& orbit : orbits)
   {
-    Point<k> point = Point<k>::Constant(a);
-    if (i > 0) point[i - 1] = 1 - k * a;
-    rule.points.push_back(point);
-    rule.weights.push_back(k == 2 ? 1.0 / 6 : 1.0 / 24);
+    std::array<double, k + 1> lambda = orbit.lambda;
+    std::ranges::sort(lambda);
+    do
+    {
+      rule.points.push_back(Eigen::Map<const Point<k>>(lambda.data() + 1));
+      rule.weights.push_back(measure * orbit.weight);
+    } while (std::ranges::next_permutation(lambda).found);
   }
   return rule;
 }
@@ -87,8 +95,8 @@ Quadrature<k> quadrature(int degree)
 {
   if constexpr (k > 1)
   {
-    if (degree <= 1) return {{Point<k>::Constant(1.0 / (k + 1))}, {k == 2 ? 1.0 / 2 : 1.0 / 6}};
-    if (degree == 2) return degree_two_rule<k>();
+    const std::span<const Orbit<k>> orbits = symmetric_rule<k>(degree);
+    if (!orbits.empty()) return rule_of(orbits);
   }
   return collapsed_rule<k>(degree / 2 + 1);
 }

@@ -65,6 +65,16 @@ template <int dim>
   return result;
 }
 
+/// Whether x comes first: by the first coordinate in which they differ by more than `zero`. What is chosen so
+/// does not depend on how the mesh is numbered.
+template <int dim>
+[[nodiscard]] bool comes_before(const Point<dim>& x, const Point<dim>& y, double zero = 0)
+{
+  for (int i = 0; i < dim; ++i)
+    if (std::abs(x[i] - y[i]) > zero) return x[i] < y[i];
+  return false;
+}
+
 /// The longest distance between two of the points.
 template <int dim, std::size_t n>
 [[nodiscard]] double diameter(const std::array<Point<dim>, n>& points)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tribound/mesh/geometry.h"
+
 namespace tribound::mesh
 {
 
@@ -42,12 +44,6 @@ double squared_distance(const Point<dim>& x, const Point<dim>& y)
   return sum;
 }
 
-template <int dim>
-bool before(const Point<dim>& x, const Point<dim>& y)
-{
-  return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
-}
-
 /// The longest of the edges between the vertices; of equally long ones the last in the lexicographic order of
 /// the coordinates of its ends, lower end first.
 template <int dim, std::size_t n>
@@ -61,10 +57,10 @@ std::array<Index, 2> longest_edge(std::span<const Point<dim>> points, const std:
       std::array edge{vertices[i], vertices[j]};
       const double squared = squared_distance(points[edge[0]], points[edge[1]]);
       if (squared < longest_squared) continue;
-      if (before(points[edge[1]], points[edge[0]])) std::swap(edge[0], edge[1]);
+      if (comes_before(points[edge[1]], points[edge[0]])) std::swap(edge[0], edge[1]);
       const int first_different = edge[0] == longest[0] ? 1 : 0;
       if (squared == longest_squared &&
-          before(points[edge[first_different]], points[longest[first_different]]))
+          comes_before(points[edge[first_different]], points[longest[first_different]]))
         continue;
       longest = edge;
       longest_squared = squared;

@@ -55,17 +55,24 @@ std::array<Index, 3> middle_triangle(const EdgeMiddles<dim>& middles, const std:
           middle_between<dim>(middles, a, b)};
 }
 
-/// The shortest diagonal of the octahedron; of equal ones the first.
+/// The shortest diagonal of the octahedron; of equal ones that with the end that comes first in space, which
+/// makes Kuhn's tetrahedra again of those of a box. Neither round-off nor the numbering must choose.
 const std::array<int, 6>& shortest_diagonal(std::span<const Point<3>> vertices, const EdgeMiddles<3>& middles)
 {
-  constexpr double clearly_shorter = 1 - 1e-12;  // round-off must not choose between equal ones
-  const auto* best = octahedron_diagonals.data();
+  constexpr double clearly_shorter = 1 - 1e-12;
+  const std::array<int, 6>* best = nullptr;
   double shortest = std::numeric_limits<double>::infinity();
+  Point<3> first_end = Point<3>::Zero();
   for (const auto& candidate : octahedron_diagonals)
   {
-    const double length = (vertices[middles[candidate[0]]] - vertices[middles[candidate[1]]]).squaredNorm();
-    if (length >= clearly_shorter * shortest) continue;
-    shortest = length;
+    Point<3> from = vertices[middles[candidate[0]]];
+    Point<3> to = vertices[middles[candidate[1]]];
+    if (comes_before(to, from)) std::swap(from, to);
+    const double length = (to - from).squaredNorm();
+    const bool as_short = best && length < shortest / clearly_shorter && comes_before(from, first_end);
+    if (length >= clearly_shorter * shortest && !as_short) continue;
+    shortest = std::min(shortest, length);
+    first_end = from;
     best = &candidate;
   }
   return *best;

@@ -1,12 +1,16 @@
 /// @file quadrature_test.cpp
-/// Rules against the closed formula for monomials.
+/// Rules against the closed formula for monomials; where their points are, and how many.
 
 #include "tribound/fem/quadrature.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+
+#include "tribound/fem/symmetric_rules.h"
 
 namespace tribound::test
 {
@@ -80,23 +84,117 @@ void expect_positive_and_inside(int degree)
   }
 }
 
+/// The barycentric coordinates of a point.
+template <int k>
+std::array<double, k + 1> lambda_of(const Point<k>& x)
+{
+  std::array<double, k + 1> lambda;
+  lambda[0] = 1 - x.sum();
+  for (int i = 0; i < k; ++i) lambda[i + 1] = x[i];
+  return lambda;
+}
+
+/// Points that differ by rounding only count as one. The weights of an orbit are one number, those of Gauss's
+/// rules come from eigenvectors.
+template <int k>
+bool is_point_of(const fem::Quadrature<k>& rule, const Point<k>& x, double weight)
+{
+  constexpr double rounding = k == 1 ? 1e-13 : 0;
+  for (int q = 0; q < rule.size(); ++q)
+    if (std::abs(rule.weights[q] - weight) <= rounding * weight &&
+        (rule.points[q] - x).cwiseAbs().maxCoeff() < 1e-15)
+      return true;
+  return false;
+}
+
+template <int k>
+void expect_symmetric(int degree)
+{
+  const fem::Quadrature<k> rule = fem::quadrature<k>(degree);
+  std::array<int, k + 1> order;
+  std::iota(order.begin(), order.end(), 0);
+  do
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      const std::array<double, k + 1> lambda = lambda_of<k>(rule.points[q]);
+      Point<k> x;
+      for (int i = 0; i < k; ++i) x[i] = lambda[order[i + 1]];
+      EXPECT_TRUE(is_point_of<k>(rule, x, rule.weights[q])) << "degree " << degree << " in dimension " << k;
+    }
+  while (std::ranges::next_permutation(order).found);
+}
+
+/// The highest degrees that the tables reach.
+constexpr int triangle_reach = 20;
+constexpr int tetrahedron_reach = 17;
+
 TEST(Quadrature, ExactForMonomials)
 {
-  for (int degree = 0; degree <= 17; ++degree)
+  for (int degree = 0; degree <= 22; ++degree)
   {
     expect_exact<1>(degree);
     expect_exact<2>(degree);
   }
-  for (int degree = 0; degree <= 13; ++degree) expect_exact<3>(degree);
+  for (int degree = 0; degree <= 19; ++degree) expect_exact<3>(degree);
 }
 
 TEST(Quadrature, PositiveWeightsAndPointsInside)
 {
-  for (int degree = 0; degree <= 17; ++degree)
+  for (int degree = 0; degree <= 22; ++degree)
   {
     expect_positive_and_inside<1>(degree);
     expect_positive_and_inside<2>(degree);
     expect_positive_and_inside<3>(degree);
+  }
+}
+
+TEST(Quadrature, NoPermutationOfTheVerticesChangesARule)
+{
+  for (int degree = 0; degree <= 20; ++degree) expect_symmetric<1>(degree);
+  for (int degree = 0; degree <= triangle_reach; ++degree) expect_symmetric<2>(degree);
+  for (int degree = 0; degree <= tetrahedron_reach; ++degree) expect_symmetric<3>(degree);
+}
+
+/// Not closer to the boundary than a thousandth of the height, so that rounding can put none on it.
+template <int k>
+void expect_well_inside(int degree)
+{
+  double closest = 1;
+  for (const Point<k>& x : fem::quadrature<k>(degree).points)
+    closest = std::min(closest, std::ranges::min(lambda_of<k>(x)));
+  EXPECT_GT(closest, 1e-3) << "degree " << degree << " in dimension " << k;
+}
+
+TEST(Quadrature, PointsOfTheTablesAreWellInside)
+{
+  for (int degree = 0; degree <= triangle_reach; ++degree) expect_well_inside<2>(degree);
+  for (int degree = 0; degree <= tetrahedron_reach; ++degree) expect_well_inside<3>(degree);
+}
+
+TEST(Quadrature, TablesReachAsFarAsTheyShould)
+{
+  EXPECT_FALSE(fem::symmetric_rule<2>(triangle_reach).empty());
+  EXPECT_TRUE(fem::symmetric_rule<2>(triangle_reach + 1).empty());
+  EXPECT_FALSE(fem::symmetric_rule<3>(tetrahedron_reach).empty());
+  EXPECT_TRUE(fem::symmetric_rule<3>(tetrahedron_reach + 1).empty());
+}
+
+TEST(Quadrature, NumbersOfPoints)
+{
+  const std::array triangle{1, 1, 3, 6, 6, 7, 12, 15, 16, 19, 25, 28, 33, 37, 42, 49, 60, 60, 73, 73, 79};
+  const std::array tetrahedron{1, 1, 4, 8, 14, 14, 24, 35, 46, 59, 79, 96, 145, 145, 213, 213, 290, 290};
+  for (int degree = 0; degree <= triangle_reach; ++degree)
+  {
+    EXPECT_EQ(fem::quadrature<2>(degree).size(), triangle[degree]) << "degree " << degree;
+    // The rule with four points of degree 3 and full symmetry has a negative weight.
+    const int n = degree / 2 + 1;
+    EXPECT_LE(triangle[degree], degree == 3 ? 6 : n * n) << "degree " << degree;
+  }
+  for (int degree = 0; degree <= tetrahedron_reach; ++degree)
+  {
+    EXPECT_EQ(fem::quadrature<3>(degree).size(), tetrahedron[degree]) << "degree " << degree;
+    const int n = degree / 2 + 1;
+    EXPECT_LE(tetrahedron[degree], n * n * n) << "degree " << degree;
   }
 }
 

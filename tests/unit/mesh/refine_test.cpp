@@ -3,11 +3,16 @@
 
 #include "tribound/mesh/refine.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "support/dimensions.h"
+#include "tribound/mesh/geometry.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound::test
@@ -146,6 +151,32 @@ TEST(RefineShapes, AnglesOfTetrahedraAreBoundedOverFourLevels)
     EXPECT_GE(angle[1], 0.5 * angle[0]);
     for (int level = 2; level <= 4; ++level) EXPECT_GE(angle[level], angle[1] * (1 - 1e-9)) << level;
   }
+}
+
+/// The coordinates of the vertices of every cell, in order.
+std::multiset<std::vector<double>> cells_in_space(const mesh::Mesh<3>& mesh)
+{
+  std::multiset<std::vector<double>> cells;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    std::array<Point<3>, 4> points = mesh::points_of(mesh.vertices(), mesh.cell(c));
+    std::ranges::sort(points,
+                      [](const Point<3>& x, const Point<3>& y) { return mesh::comes_before<3>(x, y); });
+    std::vector<double> cell;
+    for (const Point<3>& x : points) cell.insert(cell.end(), x.begin(), x.end());
+    cells.insert(std::move(cell));
+  }
+  return cells;
+}
+
+/// Every octahedron in Kuhn's tetrahedra has two shortest diagonals.
+TEST(RefineShapes, TheNumberingDoesNotMatter)
+{
+  const mesh::MeshData<3> data = box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 1});
+  const auto expected = cells_in_space(mesh::refine_uniformly(mesh::Mesh<3>(data), 2).mesh);
+  for (const unsigned seed : {1U, 2U, 3U})
+    EXPECT_EQ(cells_in_space(mesh::refine_uniformly(mesh::Mesh<3>(renumbered(data, seed)), 2).mesh), expected)
+        << seed;
 }
 
 TEST(RefineSize, TooManyCellsAreRefused)

@@ -159,8 +159,8 @@ class CellStress
   double det_;
 };
 
-/// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The rule has its points where L(v)
-/// has them, in the numbering of the cell: collapsed rules are not symmetric.
+/// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The points of the rule come in
+/// the numbering of the cell, in which f is given.
 template <int dim>
 double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index cell,
                                  const Tables<dim>& tables, const CellStress<dim>& sigma,

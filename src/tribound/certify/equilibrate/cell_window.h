@@ -53,8 +53,8 @@ class BodyMoments
  private:
   static constexpr int m = Sizes<dim, p>::multiplier;
 
-  /// The points of the cell's own numbering, as for L(v) (collapsed rules are not symmetric), in the
-  /// coordinates of a frame, and the basis of P^{p-1} there.
+  /// The points in the order of the cell's own numbering, in which f is given, in the coordinates of a frame,
+  /// and the basis of P^{p-1} there.
   struct Table
   {
     Table() = default;

@@ -11,6 +11,7 @@
 
 #include "tribound/base/error.h"
 #include "tribound/fem/polynomials.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
 {
@@ -28,6 +29,10 @@ constexpr int most_parts = 1 << 15;
 /// Of a part, relative to the simplex.
 constexpr double smallest_edge = 1e-4;
 
+/// Lengths and costs that differ by less, relatively, are equal: rounding, and with it the numbering of the
+/// mesh, decides nothing.
+constexpr double tie = 1e-9;
+
 /// k!: integrals over a simplex of measure |T| are k! |T| times those over the reference simplex.
 template <int k>
 constexpr double factorial = k == 3 ? 6 : k;
@@ -38,7 +43,20 @@ double measure_of(const DatumPart<k, dim>& part, const SimplexMap<k, dim>& map)
   return map.measure * fem::fraction<k>(part.part);
 }
 
-/// The two halves of a part, cut at the middle of its longest edge.
+/// The whole simplex, its vertices in the order of their places in space (x, then y, then z): how it is cut
+/// and halved then does not depend on how they are numbered.
+template <int k, int dim>
+fem::Part<k> ordered_simplex(const SimplexMap<k, dim>& map)
+{
+  fem::Part<k> whole = fem::reference_simplex<k>();
+  double size = 0;
+  for (const Point<k>& s : whole) size = std::max(size, map(s).cwiseAbs().maxCoeff());
+  std::ranges::sort(whole, [&](const Point<k>& a, const Point<k>& b)
+                    { return mesh::comes_before<dim>(map(a), map(b), rounding * size); });
+  return whole;
+}
+
+/// The two halves of a part, cut at the middle of its longest edge, of equal ones the first.
 template <int k, int dim>
 std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k, dim>& map)
 {
@@ -49,7 +67,7 @@ std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k,
     for (int j = i + 1; j <= k; ++j)
     {
       const double length = (map.jacobian * (part[j] - part[i])).squaredNorm();
-      if (length <= longest) continue;
+      if (length <= (1 + tie) * longest) continue;
       longest = length;
       first = i;
       second = j;
@@ -105,7 +123,7 @@ template <int k, int dim>
 auto DatumMoments<k, dim>::cut_at_switches(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
                                            int max_parts) const -> Parts
 {
-  std::vector<fem::Part<k>> parts{fem::reference_simplex<k>()};
+  std::vector<fem::Part<k>> parts{ordered_simplex(map)};
   for (const auto& term : datum.terms)
     for (const problem::Affine& a : term.value->switches())
     {
@@ -222,7 +240,7 @@ void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, d
     for (DatumPart<k, dim>& part : parts)
     {
       const auto [remainder, mean] = costs(part);
-      if (is_small(part) || std::max(remainder, mean) < largest / 4)
+      if (is_small(part) || std::max(remainder, mean) < (1 - tie) * largest / 4)
       {
         finer.push_back(std::move(part));
         continue;

@@ -1,0 +1,52 @@
+#pragma once
+
+/// @file symmetric_rules.h
+/// Tables of rules on triangle and tetrahedron that no permutation of the vertices changes; weights are
+/// positive, points inside.
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace tribound::fem
+{
+
+/// The points that permutations of its barycentric coordinates make of one, each of the same weight, relative
+/// to the measure of the simplex. The names in the tables tell which coordinates are equal: s211(w, a, b) has
+/// twelve points (a, a, b, 1 - 2a - b).
+template <int k>
+struct Orbit
+{
+  double weight;
+  std::array<double, k + 1> lambda;
+};
+
+/// The orbits of a rule exact to the degree or beyond; none above the reach of the tables.
+template <int k>
+[[nodiscard]] std::span<const Orbit<k>> symmetric_rule(int degree);
+
+template <>
+[[nodiscard]] std::span<const Orbit<2>> symmetric_rule<2>(int degree);
+template <>
+[[nodiscard]] std::span<const Orbit<3>> symmetric_rule<3>(int degree);
+
+/// Rules by ascending degree.
+template <int k>
+struct SymmetricRule
+{
+  int degree;
+  std::span<const Orbit<k>> orbits;
+};
+
+template <int k, std::size_t n>
+using SymmetricRules = std::array<SymmetricRule<k>, n>;
+
+template <int k, std::size_t n>
+[[nodiscard]] std::span<const Orbit<k>> find_rule(const SymmetricRules<k, n>& rules, int degree)
+{
+  for (const SymmetricRule<k>& rule : rules)
+    if (degree <= rule.degree) return rule.orbits;
+  return {};
+}
+
+}  // namespace tribound::fem

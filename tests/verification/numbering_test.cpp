@@ -1,0 +1,149 @@
+/// @file numbering_test.cpp
+/// The order of the vertices, of the cells and of the vertices in the cells changes nothing but rounding.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/discrete_case.h"
+#include "support/meshes.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/elasticity.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// Data that rules integrate as they are, and such that cells and facets are cut and halved.
+struct NamedData
+{
+  const char* name;
+  std::array<const char*, 3> body;
+  std::array<const char*, 3> traction;
+  const char* contact;
+};
+
+constexpr std::array all_data = {
+    NamedData{"smooth, Tresca",
+              {"0.02*exp(x - y)", "-0.05*cos(2*x + y)", "0.03*sin(x*y)"},
+              {"0.03*cos(x)", "-0.1*exp(0.5*x)", "0.01*y"},
+              "{ friction = \"tresca\", threshold = \"0.02 + 0.01*sin(3*x)\", gap = \"0.003*exp(x)\" }"},
+    NamedData{"smooth, Coulomb",
+              {"0.02*exp(x - y)", "-0.05*cos(2*x + y)", "0.03*sin(x*y)"},
+              {"0.03*cos(x)", "-0.1*exp(0.5*x)", "0.01*y"},
+              "{ friction = \"coulomb\", coefficient = 0.3, gap = \"0.003*exp(x)\" }"},
+    NamedData{
+        "kinks and jumps, Coulomb",
+        {"0.1*max(0, x - 0.6*y)^2*exp(x)", "x < 0.43 ? -0.05*exp(y) : 0.02*cos(x)", "0.03*abs(x - y)*exp(x)"},
+        {"0.03*abs(x - 0.37)*exp(x)", "-0.1*max(0, sin(9*x))", "0.01*y"},
+        "{ friction = \"coulomb\", coefficient = 0.3, gap = \"0.004*abs(x - 0.52)*exp(x)\" }"},
+};
+
+/// Clamped on the left, loaded from above and pressed on the bottom.
+template <int dim>
+std::string toml(int p, const NamedData& data)
+{
+  const auto vector = [](const std::array<const char*, 3>& v)
+  {
+    std::string text = fmt::format("[\"{}\", \"{}\"", v[0], v[1]);
+    return text + (dim == 3 ? fmt::format(", \"{}\"]", v[2]) : "]");
+  };
+  return fmt::format("degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = {}\n", p,
+                     vector(data.body)) +
+         fmt::format("boundary.left.displacement = [0, 0{}]\n", dim == 3 ? ", 0" : "") +
+         fmt::format("boundary.top.traction = {}\nboundary.bottom.contact = {}\n", vector(data.traction),
+                     data.contact) +
+         "newton = { stopping = \"tolerance\", tolerance = 1e-13 }\nsolver.method = \"direct\"\n";
+}
+
+template <int dim>
+struct Solved
+{
+  contact::StressNorms norms;
+  certify::Estimate eta;
+  std::map<std::vector<double>, Point<dim>> u;  ///< at the vertices, by their coordinates
+};
+
+template <int dim>
+Solved<dim> solved(const std::string& text, const mesh::MeshData<dim>& data)
+{
+  const DiscreteCase<dim> c(text, data);
+  const solve::NewtonResult<dim> newton = c.solve();
+  EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
+  Solved<dim> result;
+  result.norms = contact::stress_norms<dim>(c.problem, c.space, newton.u);
+  result.eta =
+      certify::estimate<dim>(c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction));
+  for (Index v = 0; v < c.mesh.n_vertices(); ++v)
+  {
+    const Point<dim> x = c.mesh.vertex(v);
+    result.u[{x.data(), x.data() + dim}] =
+        Eigen::Map<const Point<dim>>(&newton.u[static_cast<std::size_t>(dim) * v]);
+  }
+  return result;
+}
+
+/// Components relative to the bound: those that vanish are rounding.
+template <int dim>
+void expect_same(const Solved<dim>& a, const Solved<dim>& b)
+{
+  constexpr double tolerance = 1e-12;
+  EXPECT_NEAR(b.norms.energy, a.norms.energy, tolerance * a.norms.energy);
+  EXPECT_NEAR(b.norms.sigma, a.norms.sigma, tolerance * a.norms.sigma);
+  EXPECT_NEAR(b.eta.total, a.eta.total, tolerance * a.eta.total);
+  EXPECT_NEAR(b.eta.total_sharp, a.eta.total_sharp, tolerance * a.eta.total);
+  for (const auto& [name, member] : certify::component_names)
+    EXPECT_NEAR(b.eta.global.*member, a.eta.global.*member, tolerance * a.eta.total) << name;
+  double largest = 0;
+  double difference = 0;
+  ASSERT_EQ(a.u.size(), b.u.size());
+  for (const auto& [x, u] : a.u)
+  {
+    largest = std::max(largest, u.norm());
+    difference = std::max(difference, (u - b.u.at(x)).norm());
+  }
+  EXPECT_LE(difference, tolerance * largest);
+}
+
+template <int dim>
+void expect_same_for_every_numbering(const mesh::MeshData<dim>& mesh, int p)
+{
+  for (const NamedData& data : all_data)
+  {
+    SCOPED_TRACE(fmt::format("{}D, p = {}, {}", dim, p, data.name));
+    const std::string text = toml<dim>(p, data);
+    const Solved<dim> first = solved<dim>(text, mesh);
+    for (const unsigned seed : {1U, 2U}) expect_same<dim>(first, solved<dim>(text, renumbered(mesh, seed)));
+  }
+}
+
+}  // namespace
+
+TEST(Numbering, ChangesNothingIn2D)
+{
+  for (int p = 1; p <= 3; ++p)
+  {
+    expect_same_for_every_numbering<2>(box<2>({0, 0}, {1.3, 0.7}, {5, 3}), p);
+    expect_same_for_every_numbering<2>(distorted(box<2>({0, 0}, {1.3, 0.7}, {5, 3}), 3), p);
+  }
+}
+
+TEST(Numbering, ChangesNothingIn3D)
+{
+  for (int p = 1; p <= 2; ++p)
+  {
+    expect_same_for_every_numbering<3>(box<3>({0, 0, 0}, {1.3, 0.7, 0.6}, {4, 2, 2}), p);
+    expect_same_for_every_numbering<3>(distorted(box<3>({0, 0, 0}, {1.3, 0.7, 0.6}, {4, 2, 2}), 3), p);
+  }
+}
+
+}  // namespace tribound::test
