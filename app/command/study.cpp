@@ -22,6 +22,7 @@
 #include "tribound/base/clock.h"
 #include "tribound/case/resolve.h"
 #include "tribound/certify/truth/solution_error.h"
+#include "tribound/fem/degree.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/bisect.h"
 
@@ -80,7 +81,8 @@ case_file::Config variant_config(const case_file::Config& config, const std::str
 case_file::Config reference_config(const case_file::Config& config, double required)
 {
   case_file::Config reference = config;
-  reference.method.degree = config.study.reference_degree.value_or(std::min(config.method.degree + 1, 4));
+  reference.method.degree =
+      config.study.reference_degree.value_or(std::min(config.method.degree + 1, fem::max_degree));
   reference.method.stopping.criterion = adapt::Stopping::adaptive;
   reference.method.stopping.gamma_lin = 0.1 * config.method.stopping.gamma_lin;
   reference.method.newton.damping = true;

@@ -32,6 +32,7 @@
 #include "tribound/contact/nitsche/traction.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/bernstein.h"
+#include "tribound/fem/degree.h"
 #include "tribound/fem/lagrange.h"
 #include "tribound/fem/nested.h"
 #include "tribound/fem/polynomials.h"

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <exception>
+#include <vector>
 
 namespace tribound
 {
@@ -31,6 +32,22 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body)
     }
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+void in_threads(int n, const std::function<void(int)>& work)
+{
+  std::vector<std::exception_ptr> failures(n);
+#pragma omp parallel for num_threads(n) schedule(static, 1)
+  for (int i = 0; i < n; ++i) try
+    {
+      work(i);
+    }
+    catch (...)
+    {
+      failures[i] = std::current_exception();
+    }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace tribound

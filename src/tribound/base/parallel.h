@@ -14,4 +14,8 @@ namespace tribound
 /// the number of threads.
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body);
 
+/// work(i) for i = 0, ..., n - 1, each in a thread of its own. Of the exceptions thrown, that of the smallest
+/// i is thrown on.
+void in_threads(int n, const std::function<void(int)>& work);
+
 }  // namespace tribound

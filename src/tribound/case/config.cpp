@@ -11,6 +11,7 @@
 #include "tribound/case/node.h"
 #include "tribound/case/physics.h"
 #include "tribound/case/table_reader.h"
+#include "tribound/fem/degree.h"
 
 namespace tribound::case_file
 {
@@ -152,8 +153,10 @@ StudyConfig read_study(const Node& node, int degree)
   const TableReader table(
       node, {"reference_degree", "reference_factor", "max_reference_dofs", "dual_norm_dofs", "figures"});
   StudyConfig study;
-  table.read("reference_degree", study.reference_degree,
-             integer_from(degree, "not below the degree of the case, not above 4", 4));
+  table.read(
+      "reference_degree", study.reference_degree,
+      integer_from(degree, fmt::format("not below the degree of the case, not above {}", fem::max_degree),
+                   fem::max_degree));
   table.read("reference_factor", study.reference_factor,
              number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true},
                        "how much smaller the bound of the reference shall be, such as 0.2"));
@@ -212,7 +215,7 @@ Config read_document(const Node& document, std::string file)
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
   root.read("title", config.title, to_text);
-  root.read("degree", config.method.degree, integer_from(1, "the polynomial degree p", 4));
+  root.read("degree", config.method.degree, integer_from(1, "the polynomial degree p", fem::max_degree));
   config.mesh =
       read_mesh_source(root.require("mesh", fmt::format("[mesh] with {}", mesh_hint)), case_directory);
   config.materials = read_materials(root.require("material", "[material] with E = 210e9 and nu = 0.3"));

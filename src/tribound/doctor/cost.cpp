@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tribound/certify/truth/true_error.h"
+#include "tribound/fem/degree.h"
 
 namespace tribound::doctor
 {
@@ -36,7 +37,7 @@ std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh, const alge
 {
   constexpr double program = 80e6;  // bytes of the program and its libraries
   std::vector<CostEstimate> estimates;
-  for (int degree = 1; degree <= 4; ++degree)
+  for (int degree = 1; degree <= fem::max_degree; ++degree)
   {
     const double dofs = certify::count_dofs(mesh, {.refinements = 0, .degree = degree});
     const auto n = static_cast<Index>(std::min<double>(dofs, std::numeric_limits<Index>::max()));

@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "support/discrete_case.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/fem/degree.h"
 #include "tribound/fem/polynomials.h"
 
 namespace tribound::test
@@ -168,6 +170,16 @@ TEST(ContactTerms, ASmallDiscOfContactBetweenThePointsIsSeenIn3D)
       EXPECT_EQ(sum_over_facets(c, u, certify::ContactRule::reference).cnt, 0.0) << "seen by the plain rule";
       EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, exact, 1e-4 * exact);
     }
+}
+
+/// There are kernels up to fem::max_degree; a space of a higher one, as for richer solutions, gets no bound.
+TEST(ContactTerms, ADegreeBeyondTheKernelsIsAnError)
+{
+  const DiscreteCase<2> c(block<2>(1, "{}"));
+  const fem::LagrangeSpace<2> space(c.mesh, fem::max_degree + 1);
+  const contact::NitscheForm<2> form(c.problem, space, 10);
+  EXPECT_THROW(certify::ContactTerms<2>(form, certify::ContactRule::resolved), InputError);
+  EXPECT_THROW(certify::Equilibrator<2> equilibrator(form), InputError);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tribound/contact/nitsche/traction.h"
+#include "tribound/fem/degree.h"
 #include "tribound/fem/polynomials.h"
 
 namespace tribound::certify
@@ -67,6 +68,7 @@ ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRu
       n_(fem::polynomial_dimension(dim - 1, form.space().degree())),
       kinks_(form.facet_rule(), form.space().degree() + 2)
 {
+  fem::require_degree(form.space().degree());
   const fem::Quadrature<dim - 1>& points = form.facet_rule();
   for (int local = 0; local <= dim; ++local)
   {
@@ -133,7 +135,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const Point<dim>& n = geometry.normal;
   const mesh::FacetMap<dim> map = mesh::facet_map(form_.space().mesh(), facet.cell, facet.local);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
-  std::array<double, fem::polynomial_dimension(dim - 1, 4)> theta;
+  std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
   const problem::ContactLaw& law = contact->law;
   Integrals result;
   std::vector<Point<dim>> augmented(rule.size());

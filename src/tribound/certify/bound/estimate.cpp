@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tribound/base/norm.h"
+#include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
 namespace tribound::certify
@@ -115,12 +116,13 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
   const fem::LagrangeSpace<dim>& space = form_.space();
   const mesh::Mesh<dim>& mesh = space.mesh();
   const int n_points = rule_.size();
-#pragma omp parallel num_threads(n_threads)
+  const auto on_thread = [&](int thread)
   {
     std::vector<double> dis(static_cast<std::size_t>(dim) * dim * n_points);
     std::vector<double> derivative(dis.size());  // [(a dim + k) n_points + q]: d_k u_a, reference coordinates
-#pragma omp for schedule(static)
-    for (Index c = 0; c < mesh.n_cells(); ++c)
+    const auto first = [&](int i)
+    { return static_cast<Index>(std::int64_t{mesh.n_cells()} * i / n_threads); };
+    for (Index c = first(thread); c < first(thread + 1); ++c)
     {
       stress_table_.evaluate(make_frame(mesh, c), stress.dis_in(c), dis);
       const std::span<const Index> nodes = space.cell_nodes(c);
@@ -156,7 +158,8 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
       result.cells[c].lin1 = norm(stress.lin_in(c));
       result.cells[c].reg1 = norm(stress.reg_in(c));
     }
-  }
+  };
+  in_threads(n_threads, on_thread);
 }
 
 template <int dim>

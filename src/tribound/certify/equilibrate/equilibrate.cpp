@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/base/parallel.h"
 #include "tribound/certify/equilibrate/cell_window.h"
 #include "tribound/certify/equilibrate/patch.h"
 #include "tribound/certify/equilibrate/vertex_stretches.h"
+#include "tribound/fem/degree.h"
 
 namespace tribound::certify
 {
@@ -41,8 +43,8 @@ class Equilibration
   Stress<dim> run()
   {
     prepare_stress();
-    in_parallel([&](int stretch) { solve_patches(stretch); });
-    in_parallel([&](int stretch) { recover_shared_cells(stretch); });
+    in_threads(stretches_.size(), [&](int stretch) { solve_patches(stretch); });
+    in_threads(stretches_.size(), [&](int stretch) { recover_shared_cells(stretch); });
     return std::move(stress_);
   }
 
@@ -52,8 +54,6 @@ class Equilibration
   using Shares = CellShares<dim, p>;
 
   void prepare_stress();
-  template <class Work>
-  void in_parallel(Work work);
   void solve_patches(int stretch);
   void recover_shared_cells(int stretch);
   void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
@@ -80,27 +80,6 @@ void Equilibration<dim, p>::prepare_stress()
       stress_.lin_place[c] = n_lin++;
   stress_.lin.resize(n_lin * stress_.block_size());
   if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
-}
-
-/// Calls work(i) for every stretch i, each in its own thread. Of the exceptions thrown, that of the first
-/// stretch is thrown on: what a message names must not depend on which thread was faster.
-template <int dim, int p>
-template <class Work>
-void Equilibration<dim, p>::in_parallel(Work work)
-{
-  const int n_threads = stretches_.size();
-  std::vector<std::exception_ptr> failures(n_threads);
-#pragma omp parallel for num_threads(n_threads) schedule(static, 1)
-  for (int i = 0; i < n_threads; ++i) try
-    {
-      work(i);
-    }
-    catch (...)
-    {
-      failures[i] = std::current_exception();
-    }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
 }
 
 template <int dim, int p>
@@ -240,20 +219,8 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
 template <int dim>
 Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_threads)
 {
-  switch (form.space().degree())
-  {
-    case 1:
-      implementation_ = std::make_unique<MeshEquilibrator<dim, 1>>(form, n_threads);
-      break;
-    case 2:
-      implementation_ = std::make_unique<MeshEquilibrator<dim, 2>>(form, n_threads);
-      break;
-    case 3:
-      implementation_ = std::make_unique<MeshEquilibrator<dim, 3>>(form, n_threads);
-      break;
-    default:
-      implementation_ = std::make_unique<MeshEquilibrator<dim, 4>>(form, n_threads);
-  }
+  fem::with_degree(form.space().degree(), [&](auto p)
+                   { implementation_ = std::make_unique<MeshEquilibrator<dim, p>>(form, n_threads); });
 }
 
 template <int dim>

@@ -80,7 +80,6 @@ class Patch
   void assemble();
   void condense(CellPart& part);
   void assemble_load(CellPart& part, int problem);
-  void assemble_tractions();
   void decouple_fixed_components(int place);
   void fix_rigid_motions(int place);
   void recover(CellPart& part, int problem);

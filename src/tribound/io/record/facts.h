@@ -80,7 +80,7 @@ template <int dim>
 /// Version, compiler and Eigen; the libraries that io does not know are left to the caller.
 [[nodiscard]] BuildFacts build_facts();
 
-/// "lambda = ..., mu = ..." in terms of E and nu, with the plane model in 2D.
+/// "E = ..., nu = ...", with the plane model in 2D.
 [[nodiscard]] std::string describe(const problem::Material& material, int dimension);
 
 /// What holds on a part of the boundary, in words.
