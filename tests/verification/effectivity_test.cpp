@@ -15,6 +15,8 @@
 /// max |grad psi_a|, which grows like the aspect ratio. The bound remains a bound, and that alone is tested
 /// on such cells.
 
+#include <fmt/format.h>
+
 #include "effectivity.h"
 
 namespace tribound::test

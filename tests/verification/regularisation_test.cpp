@@ -4,6 +4,8 @@
 
 #include "tribound/adapt/regularisation.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "effectivity.h"

@@ -4,6 +4,8 @@
 /// Manufactured solutions with active contact. The formulas are checked against each other by differences in
 /// rates_test.cpp.
 
+#include <fmt/format.h>
+
 #include "verification/manufactured.h"
 
 namespace tribound::test

@@ -31,6 +31,7 @@ bool succeeded(Mat factors)
 SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
 {
   check(MatSetOption(a.handle(), MAT_SPD, PETSC_TRUE), "factorising");  // no pivoting
+  const detail::Options options(false);
   Mat factors = nullptr;
   check(MatGetFactor(a.handle(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors), "factorising");
   factors_.reset(factors);

@@ -12,7 +12,6 @@ namespace tribound::algebra
 {
 
 using detail::check;
-using detail::set_default_option;
 using detail::VecHandle;
 using detail::wrap;
 
@@ -141,8 +140,9 @@ template LinearSolver::LinearSolver(const SolverOptions&, std::span<const Point<
 
 void LinearSolver::configure(const SparseMatrix& a)
 {
+  const detail::Options options(method_ == LinearMethod::iterative);
   KSP ksp = nullptr;
-  check(KSPCreate(PETSC_COMM_SELF, &ksp), "creating a solver");
+  check(KSPCreate(detail::communicator(), &ksp), "creating a solver");
   ksp_.reset(ksp);
   check(KSPSetType(ksp, KSPFGMRES), "creating a solver");
   check(KSPGMRESSetRestart(ksp, 60), "creating a solver");
@@ -176,7 +176,7 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
 void LinearSolver::configure_multigrid(const SparseMatrix& a)
 {
   Vec coordinates = nullptr;
-  check(VecCreateSeqWithArray(PETSC_COMM_SELF, dim_, static_cast<PetscInt>(coordinates_.size()),
+  check(VecCreateSeqWithArray(detail::communicator(), dim_, static_cast<PetscInt>(coordinates_.size()),
                               coordinates_.data(), &coordinates),
         "creating rigid body modes");
   const VecHandle owner(coordinates);
@@ -188,21 +188,13 @@ void LinearSolver::configure_multigrid(const SparseMatrix& a)
   PC pc = nullptr;
   check(KSPGetPC(ksp_.get(), &pc), "creating a solver");
   check(PCSetType(pc, PCGAMG), "creating a solver");
-  // Graded meshes have vertices of high valence: with PETSc's single level of aggressive coarsening the
-  // second and third matrix had 2.8 times the entries of the first, and Galerkin's products took four fifths
-  // of a first step. Weak couplings must not glue aggregates together, or iterations grow by a third.
-  set_default_option("-tribound_pc_gamg_aggressive_coarsening", "20");  // forgotten if set by a call
-  set_default_option("-tribound_pc_gamg_threshold", "0.02");
-  // Products as R A P in place of a scalable algorithm, and rows one by one: both take up to a third off. The
-  // matrices on the levels are made by PETSc, out of reach for anything but its options.
-  set_default_option("-matptap_via", "rap");
-  set_default_option("-mat_no_inode", "true");
 }
 
 /// Makes a new preconditioner. Setting the operators again tells the KSP that its set-up is out of date.
 void LinearSolver::prepare(const SparseMatrix& a)
 {
   check_magnitude(a);
+  const detail::Options options(method_ == LinearMethod::iterative);
   check(KSPSetOperators(ksp_.get(), a.handle(), a.handle()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
   check(KSPSetUp(ksp_.get()), "factorising");

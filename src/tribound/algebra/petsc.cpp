@@ -4,6 +4,7 @@
 #include <dmumps_c.h>
 #include <mpi.h>
 
+#include <cassert>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -16,6 +17,9 @@ namespace tribound::algebra
 
 namespace detail
 {
+
+/// Set while there is an Environment.
+MPI_Comm own_communicator = MPI_COMM_NULL;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 void check(PetscErrorCode error, const char* doing)
 {
@@ -31,7 +35,7 @@ void check(PetscErrorCode error, const char* doing)
 VecHandle wrap(std::span<double> values)
 {
   Vec vec = nullptr;
-  check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, static_cast<PetscInt>(values.size()), values.data(), &vec),
+  check(VecCreateSeqWithArray(communicator(), 1, static_cast<PetscInt>(values.size()), values.data(), &vec),
         "wrapping a vector");
   return VecHandle(vec);
 }
@@ -41,11 +45,47 @@ VecHandle wrap(std::span<const double> values)
   return wrap(std::span(const_cast<double*>(values.data()), values.size()));  // NOLINT
 }
 
-void set_default_option(const char* name, const char* value)
+MPI_Comm communicator()
+{
+  assert(own_communicator != MPI_COMM_NULL);
+  return own_communicator;
+}
+
+Options::Options(bool multigrid)
+{
+  check(PetscOptionsCreate(&own_), "setting solver options");
+  char* of_process = nullptr;
+  check(PetscOptionsGetAll(nullptr, &of_process), "setting solver options");
+  check(PetscOptionsInsertString(own_, of_process), "setting solver options");
+  check(PetscFree(of_process), "setting solver options");
+  set_default("-tribound_2d_mat_mumps_icntl_7", "2");  // see configure_mumps()
+  if (multigrid)
+  {
+    // Graded meshes have vertices of high valence: with PETSc's single level of aggressive coarsening the
+    // second and third matrix had 2.8 times the entries of the first, and Galerkin's products took four
+    // fifths of a first step. Weak couplings must not glue aggregates together, or iterations grow by a
+    // third.
+    set_default("-tribound_pc_gamg_aggressive_coarsening", "20");  // forgotten if set by a call
+    set_default("-tribound_pc_gamg_threshold", "0.02");
+    // Products as R A P in place of a scalable algorithm, and rows one by one: both take up to a third off.
+    // The matrices on the levels are made by PETSc, out of reach for anything but its options.
+    set_default("-matptap_via", "rap");
+    set_default("-mat_no_inode", "true");
+  }
+  check(PetscOptionsPush(own_), "setting solver options");
+}
+
+Options::~Options()
+{
+  PetscOptionsPop();
+  PetscOptionsDestroy(&own_);
+}
+
+void Options::set_default(const char* name, const char* value)
 {
   PetscBool is_set = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, nullptr, name, &is_set), "setting solver options");
-  if (!is_set) check(PetscOptionsSetValue(nullptr, name, value), "setting solver options");
+  check(PetscOptionsHasName(own_, nullptr, name, &is_set), "setting solver options");
+  if (!is_set) check(PetscOptionsSetValue(own_, name, value), "setting solver options");
 }
 
 void configure_mumps(Mat factors, int dim)
@@ -54,10 +94,8 @@ void configure_mumps(Mat factors, int dim)
   check(MatMumpsSetIcntl(factors, 14, 40), "creating a solver");  // room for pivoting, percent
   // In 2D approximate minimum fill takes a quarter of the time of PORD, the ordering that MUMPS chooses, and
   // the factorisation 25 % less to 15 % more (p = 1, 2, 4, 100k to 900k degrees of freedom); in 3D 30 % more.
-  // PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option.
-  if (dim != 2) return;
-  check(MatSetOptionsPrefix(factors, "tribound_2d_"), "creating a solver");
-  set_default_option("-tribound_2d_mat_mumps_icntl_7", "2");
+  // PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option: see Options.
+  if (dim == 2) check(MatSetOptionsPrefix(factors, "tribound_2d_"), "creating a solver");
 }
 
 }  // namespace detail
@@ -84,21 +122,37 @@ std::filesystem::path make_session_directory()
 
 }  // namespace
 
-Environment::Environment() : session_directory_(make_session_directory())
+Environment::Environment()
 {
-  int provided = 0;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
-  if (!session_directory_.empty()) ::unsetenv(tmpdir_base);  // not for children
-  check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"),
-        "starting");  // signals are the program's
-  check(PetscInitializeNoArguments(), "starting");
+  int has_mpi = 0;
+  MPI_Initialized(&has_mpi);
+  if (has_mpi == 0)
+  {
+    session_directory_ = make_session_directory();
+    int provided = 0;
+    started_mpi_ = MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided) == MPI_SUCCESS;
+    if (!session_directory_.empty()) ::unsetenv(tmpdir_base);  // not for children
+    if (!started_mpi_) throw SolveError("MPI does not start");
+  }
+  PetscBool has_petsc = PETSC_FALSE;
+  check(PetscInitialized(&has_petsc), "starting");
+  if (!has_petsc)
+  {
+    check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"),
+          "starting");  // signals are the program's
+    check(PetscInitializeNoArguments(), "starting");
+    started_petsc_ = true;
+  }
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  MPI_Comm_dup(MPI_COMM_SELF, &detail::own_communicator);
 }
 
 Environment::~Environment()
 {
-  PetscFinalize();
-  MPI_Finalize();
+  MPI_Comm_free(&detail::own_communicator);
+  PetscPopErrorHandler();
+  if (started_petsc_) PetscFinalize();
+  if (started_mpi_) MPI_Finalize();
   std::error_code none;
   if (!session_directory_.empty()) std::filesystem::remove_all(session_directory_, none);
 }
@@ -111,7 +165,7 @@ void MatDeleter::operator()(_p_Mat* mat) const
 SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries) : size_(n)
 {
   Mat mat = nullptr;
-  check(MatCreate(PETSC_COMM_SELF, &mat), "creating a matrix");
+  check(MatCreate(detail::communicator(), &mat), "creating a matrix");
   mat_.reset(mat);
   check(MatSetSizes(mat, n, n, n, n), "creating a matrix");
   check(MatSetType(mat, MATSEQAIJ), "creating a matrix");

@@ -17,8 +17,10 @@ struct _p_Mat;
 namespace tribound::algebra
 {
 
-/// Starts MPI (with threads: PT-Scotch deadlocks otherwise) and PETSc; ends them when destroyed. One per
-/// process, alive as long as matrices and solvers are.
+/// MPI (with threads: PT-Scotch deadlocks otherwise), PETSc and a communicator for the matrices. What the
+/// program that uses the library has started already is taken as it is, and left running; the rest ends when
+/// this is destroyed. One per process, alive as long as matrices and solvers are. Throws SolveError where MPI
+/// or PETSc do not start.
 class Environment
 {
  public:
@@ -28,6 +30,8 @@ class Environment
   Environment& operator=(const Environment&) = delete;
 
  private:
+  bool started_mpi_ = false;
+  bool started_petsc_ = false;
   std::filesystem::path session_directory_;  ///< of Open MPI; empty: not ours
 };
 

@@ -27,8 +27,25 @@ using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 /// The same for reading: PETSc has no vectors of const.
 [[nodiscard]] VecHandle wrap(std::span<const double> values);
 
-/// Sets an option of PETSc unless the user has set it.
-void set_default_option(const char* name, const char* value);
+/// Of this process alone, and of the library alone: what other parts of the program send gets in nobody's
+/// way.
+[[nodiscard]] MPI_Comm communicator();
+
+/// PETSc's options while it is alive: those of the process, which stay as they are, and what the library sets
+/// beside them unless the process does. Around whatever reads options: setting up solvers.
+class Options
+{
+ public:
+  explicit Options(bool multigrid);
+  ~Options();
+  Options(const Options&) = delete;
+  Options& operator=(const Options&) = delete;
+
+ private:
+  void set_default(const char* name, const char* value);
+
+  PetscOptions own_ = nullptr;
+};
 /// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
 void configure_mumps(Mat factors, int dim);
 

@@ -3,8 +3,8 @@
 /// @file describe.h
 /// How messages name the parts of a mesh.
 
-#include <fmt/format.h>
-
+#include <array>
+#include <span>
 #include <string>
 
 #include "tribound/mesh/mesh.h"
@@ -13,19 +13,19 @@ namespace tribound::mesh
 {
 
 /// "(0.5, 1)".
+[[nodiscard]] std::string describe_point(std::span<const double> x);
+
 template <int dim>
 [[nodiscard]] std::string describe(const Point<dim>& x)
 {
-  std::string text = "(";
-  for (int i = 0; i < dim; ++i) text += fmt::format("{}{:.9g}", i > 0 ? ", " : "", x[i]);
-  return text + ")";
+  return describe_point({x.data(), dim});
 }
 
 /// "vertex 3 at (0.5, 1)".
 template <int dim>
 [[nodiscard]] std::string describe_vertex(const MeshData<dim>& data, Index v)
 {
-  return fmt::format("vertex {} at {}", v, describe(data.vertices[v]));
+  return "vertex " + std::to_string(v) + " at " + describe(data.vertices[v]);
 }
 
 /// "(0, 0), (1, 0)": the positions of the given vertices.
@@ -48,8 +48,8 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::string describe_cell(const MeshData<dim>& data, Index c)
 {
-  return fmt::format("{} {} of region \"{}\" with corners {}", dim == 2 ? "triangle" : "tetrahedron", c,
-                     data.region_names[data.regions[c]], describe_corners(data, data.cells[c]));
+  return (dim == 2 ? "triangle " : "tetrahedron ") + std::to_string(c) + " of region \"" +
+         data.region_names[data.regions[c]] + "\" with corners " + describe_corners(data, data.cells[c]);
 }
 
 }  // namespace tribound::mesh

@@ -1,5 +1,7 @@
 #include "tribound/mesh/verify.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 

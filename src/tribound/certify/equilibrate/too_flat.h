@@ -3,6 +3,8 @@
 /// @file too_flat.h
 /// The message where rounding leaves no equilibrated stress.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tribound/base/error.h"
