@@ -88,8 +88,8 @@ struct CertifiedLevel
 };
 
 /// Whether iterating further is pointless, method section 6:
-/// eta_lin1 + eta_lin2n + eta_lin2t <= gamma_lin (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc), where T
-/// is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
+/// eta_lin1 + eta_lin2n + eta_lin2t <= gamma_lin (eta_osc + eta_quad + eta_str + eta_Neu + eta_cnt +
+/// eta_frc), where T is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
 [[nodiscard]] bool linearisation_is_negligible(const certify::BoundComponents& eta, double gamma_lin);
 
 /// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.

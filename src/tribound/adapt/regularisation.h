@@ -22,7 +22,8 @@ struct RegularisationOptions
 };
 
 /// Whether a smaller delta is pointless:
-/// eta_reg1 + eta_reg2n + eta_reg2t <= gamma_reg (eta_osc + eta_str + eta_Neu + eta_cnt + eta_frc).
+/// eta_reg1 + eta_reg2n + eta_reg2t <= gamma_reg (eta_osc + eta_quad + eta_str + eta_Neu + eta_cnt +
+/// eta_frc).
 [[nodiscard]] bool regularisation_is_negligible(const certify::BoundComponents& eta, double gamma_reg);
 
 /// The root mean square of |t| over Gamma_C, t given at the contact points; 0 without contact.

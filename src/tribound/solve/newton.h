@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file newton.h
-/// The generalised Newton method of section 2 with damping and running traction.
+/// The generalised Newton method of method section 2 with damping and running traction.
 
 #include <functional>
 #include <optional>

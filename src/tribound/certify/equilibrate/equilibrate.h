@@ -29,7 +29,7 @@ class Equilibrator
   Equilibrator& operator=(const Equilibrator&) = delete;
 
   /// sigma_dis and sigma_lin on vertex patches in the Arnold-Falk-Winther spaces of the degree of the space
-  /// [FD24, section 4]. For delta > 0 Newton's method linearises T_delta: then sigma_lin has the traction
+  /// (method section 4). For delta > 0 Newton's method linearises T_delta: then sigma_lin has the traction
   /// psi_a (t^k - T_delta(u^k)) on Gamma_C, and a third part sigma_reg, method section 7, has
   /// psi_a (T_delta(u^k) - T(u^k)).
   [[nodiscard]] Stress<dim> operator()(std::span<const double> u, std::span<const Point<dim>> t,

@@ -29,7 +29,8 @@ class Patch
   void begin(Index vertex);
   /// `shares` takes the results: dis, and on Gamma_C those of the other problems.
   void add_cell(Index cell, const PreparedCell<dim, p>& prepared, std::span<CellShare<dim, p>> shares);
-  /// Solves the problems. Throws SolveError naming the place if the patch is not what section 4 requires.
+  /// Solves the problems. Throws SolveError naming the place if the patch is not what method section 4
+  /// requires.
   void solve();
 
  private:
