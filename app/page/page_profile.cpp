@@ -18,12 +18,13 @@ std::vector<Point<1>> even_points(std::size_t n)
   return points;
 }
 
-void add_point(ContactProfile& profile, const contact::ContactState<2>& state, const Point<2>& u, double arc)
+void add_point(ContactProfile& profile, const contact::ContactState<2>& state, double arc)
 {
   const Point<2> tangent(-state.normal[1], state.normal[0]);
   profile.arc.push_back(arc);
   profile.points.insert(profile.points.end(), state.point.begin(), state.point.end());
-  profile.displacement.insert(profile.displacement.end(), u.begin(), u.end());
+  profile.displacement.insert(profile.displacement.end(), state.displacement.begin(),
+                              state.displacement.end());
   profile.normal.insert(profile.normal.end(), state.normal.begin(), state.normal.end());
   profile.pressure.push_back(state.pressure);
   profile.friction.push_back(state.traction.dot(tangent));
@@ -42,18 +43,16 @@ ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<co
   if (links.empty()) return profile;
   const std::size_t n = std::clamp<std::size_t>(n_points / links.size(), form.space().degree(), 24);
   const std::vector<Point<1>> points = even_points(n);
-  const fem::FacetTabulation<2> table = fem::tabulate_on_facets<2>(form.space().basis(), points);
+  const contact::SegmentTables<2> tables(form.space().basis(), form.segments(), points);
   for (const io::ChainLink& link : links)
   {
-    const contact::ContactFacet<2>& facet = form.contact_facets()[link.facet];
-    const std::vector<contact::ContactState<2>> states = form.contact_states(u, link.facet, table);
+    const double length = form.segments()[link.segment].measure;
+    const std::vector<contact::ContactState<2>> states =
+        form.contact_states(u, link.segment, tables[link.segment]);
     for (std::size_t i = 0; i <= n; ++i)
     {
       const std::size_t q = link.reversed ? n - i : i;
-      const auto values = table.on_facet[facet.facet.local].values_at(static_cast<int>(q));
-      add_point(profile, states[q],
-                contact::value_at<2>(form.space().cell_nodes(facet.facet.cell), u, values),
-                link.arc + facet.geometry.measure * points[i][0]);
+      add_point(profile, states[q], link.arc + length * points[i][0]);
     }
   }
   return profile;

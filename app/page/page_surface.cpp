@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "tribound/fem/evaluation.h"
 #include "tribound/io/fields/vtu.h"
 
 namespace tribound::app
@@ -27,8 +28,8 @@ std::vector<Face> contact_faces(const contact::NitscheForm<dim>& form)
 {
   std::vector<Face> faces;
   if constexpr (dim == 3)
-    for (const contact::ContactFacet<3>& contact : form.contact_facets())
-      faces.push_back({contact.facet.cell, contact.facet.local});
+    for (const contact::ContactSegment<3>& segment : form.segments())
+      faces.push_back({segment.slave.facet.cell, segment.slave.facet.local});
   return faces;
 }
 
@@ -154,8 +155,7 @@ class SurfaceSampler
   Index add_vertex(Index cell, int node, const mesh::CellMap<dim>& map)
   {
     const Point<dim> x = map(space_.basis().node_point(node));
-    const Point<dim> u =
-        contact::value_at<dim>(form_.space().cell_nodes(cell), u_, at_nodes_.values_at(node));
+    const Point<dim> u = fem::value_at<dim>(form_.space().cell_nodes(cell), u_, at_nodes_.values_at(node));
     surface_.points.insert(surface_.points.end(), x.begin(), x.end());
     surface_.displacement.insert(surface_.displacement.end(), u.begin(), u.end());
     return static_cast<Index>(surface_.points.size() / dim) - 1;
@@ -194,32 +194,32 @@ SurfaceContact sample_contact(const contact::NitscheForm<3>& form, std::span<con
   for (int local = 0; local <= 3; ++local)
   {
     // Facets with the same local number share their tables; they are put in their places afterwards.
-    const fem::FacetTabulation<3> at_points =
-        fem::tabulate_on_facets<3>(form.space().basis(), face_lattice<3>(lattice, local).on_face);
-    const fem::FacetTabulation<3> at_middles =
-        fem::tabulate_on_facets<3>(form.space().basis(), triangle_middles(k, local % 2 == 1));
-    const std::size_t n = at_points.points.size();
-    const std::size_t n_middles = at_middles.points.size();
+    const contact::SegmentTables<3> at_points(form.space().basis(), form.segments(),
+                                              face_lattice<3>(lattice, local).on_face);
+    const contact::SegmentTables<3> at_middles(form.space().basis(), form.segments(),
+                                               triangle_middles(k, local % 2 == 1));
+    const std::size_t n = at_points.n_points();
+    const std::size_t n_middles = at_middles.n_points();
     for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})
-      column->resize(form.contact_facets().size() * n);
-    contact.point_status.resize(form.contact_facets().size() * n);
-    contact.status.resize(form.contact_facets().size() * n_middles);
-    for (int facet = 0; facet < static_cast<int>(form.contact_facets().size()); ++facet)
+      column->resize(form.segments().size() * n);
+    contact.point_status.resize(form.segments().size() * n);
+    contact.status.resize(form.segments().size() * n_middles);
+    for (std::size_t segment = 0; segment < form.segments().size(); ++segment)
     {
-      if (form.contact_facets()[facet].facet.local != local) continue;
-      std::size_t place = facet * n;
-      for (const contact::ContactState<3>& state : form.contact_states(u, facet, at_points))
+      if (form.segments()[segment].slave.facet.local != local) continue;
+      std::size_t i = segment * n;
+      for (const contact::ContactState<3>& state : form.contact_states(u, segment, at_points[segment]))
       {
-        contact.pressure[place] = state.pressure;
-        contact.friction[place] = (state.traction + state.pressure * state.normal).norm();
-        contact.limit[place] = state.limit;
-        contact.gap[place] = state.gap;
-        contact.point_status[place] = static_cast<Index>(state.status);
-        contact.slip[place++] = state.slip.norm();
+        contact.pressure[i] = state.pressure;
+        contact.friction[i] = (state.traction + state.pressure * state.normal).norm();
+        contact.limit[i] = state.limit;
+        contact.gap[i] = state.gap;
+        contact.point_status[i] = static_cast<Index>(state.status);
+        contact.slip[i++] = state.slip.norm();
       }
-      place = facet * n_middles;
-      for (const contact::ContactState<3>& state : form.contact_states(u, facet, at_middles))
-        contact.status[place++] = static_cast<Index>(state.status);
+      i = segment * n_middles;
+      for (const contact::ContactState<3>& state : form.contact_states(u, segment, at_middles[segment]))
+        contact.status[i++] = static_cast<Index>(state.status);
     }
   }
   return contact;

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "app/page/page_surface.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/mesh/geometry.h"
 
@@ -35,8 +36,7 @@ Volume sample_volume(const contact::NitscheForm<3>& form, std::span<const double
       weight[vertex] += det;
       const std::array<double, 6> components = io::symmetric_part<3>(values[i], 0.0);
       for (std::size_t s = 0; s < components.size(); ++s) volume.stress[s][vertex] += det * components[s];
-      const Point<3> at_vertex =
-          contact::value_at<3>(form.space().cell_nodes(cell), u, at_corners.values_at(i));
+      const Point<3> at_vertex = fem::value_at<3>(form.space().cell_nodes(cell), u, at_corners.values_at(i));
       for (int c = 0; c < 3; ++c) volume.displacement[3 * vertex + c] = at_vertex[c];
     }
   }

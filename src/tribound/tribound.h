@@ -12,6 +12,7 @@
 #include "tribound/case/config.h"
 #include "tribound/case/resolve.h"
 #include "tribound/case/sweep_values.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
 #include "tribound/problem/problem.h"
@@ -29,7 +30,8 @@
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/contact/nitsche/traction.h"
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/contact/nitsche/segment_values.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/bernstein.h"
 #include "tribound/fem/degree.h"

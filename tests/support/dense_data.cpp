@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 
 namespace tribound::test
@@ -46,7 +47,7 @@ DenseCell<dim> make_cell(const contact::NitscheForm<dim>& form, std::span<const 
     cell.weight.push_back(rule.weights[q] * map.det);
     cell.sigma.push_back(contact::sigma<dim>(
         form.problem().material(mesh.region(c)),
-        contact::gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose)));
+        fem::gradient_at<dim>(space.cell_nodes(c), u, table.gradients_at(q), map.inverse_transpose)));
     fem::orthonormal_gradients<dim>(p, cell.reference(x), values, gradients);
     cell.phi.push_back(cell.basis(p, x));
     auto& dphi = cell.dphi.emplace_back();
@@ -80,9 +81,9 @@ void coarsen(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& b
 {
   const int p = form.space().degree();
   const fem::Quadrature<dim - 1> wrong = fem::quadrature<dim - 1>(p);
-  const auto table = fem::tabulate_on_facets<dim>(form.space().basis(), wrong.points);
+  const contact::SegmentTables<dim> tables(form.space().basis(), form.segments(), wrong.points);
   const auto points = points_on(form.space().mesh(), boundary.cell, boundary.local, p, wrong);
-  const std::vector<contact::ContactState<dim>> states = form.contact_states(u, contact, table);
+  const std::vector<contact::ContactState<dim>> states = form.contact_states(u, contact, tables[contact]);
   for (DataPoint<dim>& point : facet.data) point.traction[0].setZero();
   for (std::size_t q = 0; q < points.size(); ++q)
     facet.data.push_back({points[q], {states[q].traction, Point<dim>::Zero()}});
@@ -116,7 +117,7 @@ std::vector<DenseFacet<dim>> dense_facets(const contact::NitscheForm<dim>& form,
   }
   const std::vector<Point<dim>> T = form.traction(u);
   int contact = 0;
-  std::vector<Point<dim>> load(form.n_facet_points());
+  std::vector<Point<dim>> load(form.facet_rule().size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& boundary = mesh.boundary()[number];

@@ -74,18 +74,15 @@ struct Sample
 template <int dim>
 std::vector<Sample> pressure_samples(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
-  const auto table = fem::tabulate_on_facets<dim>(form.space().basis(), rule.points);
   std::vector<Sample> samples;
-  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
-    const double scale = form.contact_facets()[k].geometry.measure * (dim - 1);
-    const auto states = form.contact_states(u, static_cast<int>(k), table);
-    for (int q = 0; q < rule.size(); ++q)
+    const auto states = form.contact_states(u, k);
+    for (std::size_t q = 0; q < states.size(); ++q)
     {
       const Point<dim>& x = states[q].point;
       const double r = dim == 2 ? std::abs(x[0]) : std::hypot(x[0], x[dim - 1]);
-      samples.push_back({r, states[q].pressure, scale * rule.weights[q]});
+      samples.push_back({r, states[q].pressure, form.contact_points(k)[q].weight});
     }
   }
   return samples;
@@ -97,11 +94,12 @@ double largest_facet(const contact::NitscheForm<dim>& form, double r_max)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   double largest = 0;
-  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
+  for (const contact::ContactSegment<dim>& segment : form.segments())
   {
-    const auto vertices = mesh::facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local);
+    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
     if (std::ranges::any_of(vertices, [&](Index v) { return mesh.vertex(v).norm() < r_max; }))
-      largest = std::max(largest, facet.geometry.diameter);
+      largest = std::max(largest, segment.h);
   }
   return largest;
 }
@@ -117,8 +115,8 @@ void run_example(const case_file::Config& config,
   const auto show = [&](const adapt::LevelView<dim>& view)
   {
     fmt::print("level {}: {} cells, {} contact facets, {} Newton steps, bound {:.3g} %\n", view.number,
-               view.discrete.mesh.n_cells(), view.discrete.form.contact_facets().size(),
-               view.level.steps.size(), 100 * view.level.estimate.total_sharp / view.level.norms.sigma);
+               view.discrete.mesh.n_cells(), view.discrete.form.segments().size(), view.level.steps.size(),
+               100 * view.level.estimate.total_sharp / view.level.norms.sigma);
     look(view);
   };
   const certify::Verdict verdict =
@@ -257,10 +255,9 @@ TEST(Hertz, Sphere)
 /// u_x on the base y = 0, piecewise linear between the quadrature points (and beyond the outermost ones).
 double base_displacement(const contact::NitscheForm<2>& form, std::span<const double> u, double x)
 {
-  const auto table = fem::tabulate_on_facets<2>(form.space().basis(), form.facet_rule().points);
   std::vector<std::pair<double, double>> points;
-  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
-    for (const contact::ContactState<2>& state : form.contact_states(u, static_cast<int>(k), table))
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+    for (const contact::ContactState<2>& state : form.contact_states(u, k))
       points.emplace_back(state.point[0], state.slip[0]);
   std::ranges::sort(points);
   const auto after = std::ranges::upper_bound(points, std::pair(x, 0.0));

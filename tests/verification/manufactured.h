@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/discrete_case.h"
+#include "tribound/fem/evaluation.h"
 
 namespace tribound::test
 {
@@ -103,8 +104,8 @@ EnergyError energy_error(const DiscreteCase<dim>& c, std::span<const double> u, 
     const mesh::CellMap<dim> map = mesh::cell_map(c.mesh, cell);
     for (int q = 0; q < rule.size(); ++q)
     {
-      const Tensor<dim> discrete = contact::gradient_at<dim>(c.space.cell_nodes(cell), u,
-                                                             table.gradients_at(q), map.inverse_transpose);
+      const Tensor<dim> discrete =
+          fem::gradient_at<dim>(c.space.cell_nodes(cell), u, table.gradients_at(q), map.inverse_transpose);
       const Tensor<dim> g = exact.gradient(map(rule.points[q]));
       sum.error += rule.weights[q] * map.det * density(g - discrete);
       sum.exact += rule.weights[q] * map.det * density(g);

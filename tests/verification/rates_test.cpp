@@ -59,8 +59,8 @@ template <int dim>
 void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution)
 {
   const ExactField<dim> exact(solution);
-  const contact::ContactFacet<dim>& facet = c.form.contact_facets().front();
-  const Point<dim> n = facet.geometry.normal;
+  const contact::ContactSegment<dim>& segment = c.form.segments().front();
+  const Point<dim> n = segment.normal;
   std::mt19937 random(2);
   for (int i = 0; i < 20; ++i)
   {
@@ -71,7 +71,7 @@ void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution
     const double sigma_n = traction.dot(n);
     const Point<dim> sigma_t = traction - sigma_n * n;
     const double limit =
-        cone(facet.contact->law).closed_limit(problem::strength_at<dim>(facet.contact->law, x), sigma_n);
+        cone(segment.contact->law).closed_limit(problem::strength_at<dim>(segment.contact->law, x), sigma_n);
     EXPECT_LT(sigma_n, 0);
     EXPECT_EQ(u.dot(n), 0);
     EXPECT_LE(sigma_t.norm(), limit * (1 + 1e-10));

@@ -15,14 +15,12 @@ double mean_contact_traction(const contact::NitscheForm<dim>& form, std::span<co
 {
   double square = 0;
   double measure = 0;
-  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
-    for (int q = 0; q < form.n_facet_points(); ++q)
-    {
-      const double weight =
-          form.contact_facets()[k].geometry.measure * (dim - 1) * form.facet_rule().weights[q];
-      square += weight * t[k * form.n_facet_points() + q].squaredNorm();
-      measure += weight;
-    }
+  for (std::size_t i = 0; i < t.size(); ++i)
+  {
+    const double weight = form.contact_points()[i].weight;
+    square += weight * t[i].squaredNorm();
+    measure += weight;
+  }
   return measure > 0 ? std::sqrt(square / measure) : 0;
 }
 

@@ -4,6 +4,7 @@
 #include <dmumps_c.h>
 #include <mpi.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdlib>
 #include <filesystem>
@@ -181,6 +182,7 @@ SparseMatrix SparseMatrix::duplicate() const
 {
   SparseMatrix copy;
   copy.size_ = size_;
+  copy.has_more_ = has_more_;
   Mat mat = nullptr;
   check(MatDuplicate(mat_.get(), MAT_COPY_VALUES, &mat), "copying a matrix");
   copy.mat_.reset(mat);
@@ -206,9 +208,60 @@ void SparseMatrix::set_values(std::span<const double> values)
   check(MatSetValuesCOO(mat_.get(), values.data(), INSERT_VALUES), "assembling a matrix");
 }
 
+namespace
+{
+
+/// Rows and columns of a matrix, given back at the end.
+class Pattern
+{
+ public:
+  explicit Pattern(Mat mat) : mat_(mat)
+  {
+    check(MatGetRowIJ(mat_, 0, PETSC_FALSE, PETSC_FALSE, &n_, &rows_, &columns_, &done_), "reading a matrix");
+  }
+  ~Pattern() { MatRestoreRowIJ(mat_, 0, PETSC_FALSE, PETSC_FALSE, &n_, &rows_, &columns_, &done_); }
+  Pattern(const Pattern&) = delete;
+  Pattern& operator=(const Pattern&) = delete;
+
+  /// Whether all entries of the other are among its own; columns are sorted.
+  [[nodiscard]] bool contains(const Pattern& other) const
+  {
+    for (PetscInt i = 0; i < n_; ++i)
+      if (!std::includes(columns_ + rows_[i], columns_ + rows_[i + 1], other.columns_ + other.rows_[i],
+                         other.columns_ + other.rows_[i + 1]))
+        return false;
+    return true;
+  }
+
+ private:
+  Mat mat_;
+  PetscInt n_ = 0;
+  const PetscInt* rows_ = nullptr;
+  const PetscInt* columns_ = nullptr;
+  PetscBool done_ = PETSC_FALSE;
+};
+
+}  // namespace
+
+SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
+{
+  SparseMatrix result = a.duplicate();
+  result.has_more_ = !Pattern(a.mat_.get()).contains(Pattern(b.mat_.get()));
+  check(MatAXPY(result.mat_.get(), 1.0, b.mat_.get(),
+                result.has_more_ ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN),
+        "adding matrices");
+  return result;
+}
+
 void SparseMatrix::assign_sum(const SparseMatrix& a, const SparseMatrix& b)
 {
-  check(MatCopy(a.mat_.get(), mat_.get(), SAME_NONZERO_PATTERN), "copying a matrix");
+  if (has_more_)
+  {
+    check(MatZeroEntries(mat_.get()), "adding matrices");
+    check(MatAXPY(mat_.get(), 1.0, a.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices");
+  }
+  else
+    check(MatCopy(a.mat_.get(), mat_.get(), SAME_NONZERO_PATTERN), "copying a matrix");
   check(MatAXPY(mat_.get(), 1.0, b.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices");
 }
 

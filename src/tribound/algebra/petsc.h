@@ -60,13 +60,15 @@ class SparseMatrix
 
   /// A matrix of the same pattern and values.
   [[nodiscard]] SparseMatrix duplicate() const;
+  /// a + b, whose pattern is the union of theirs.
+  [[nodiscard]] static SparseMatrix sum(const SparseMatrix& a, const SparseMatrix& b);
   [[nodiscard]] Index size() const { return size_; }
   /// A x.
   [[nodiscard]] std::vector<double> multiply(std::span<const double> x) const;
   [[nodiscard]] std::vector<double> diagonal() const;
   /// New values for the entries the matrix was made of, in the same order.
   void set_values(std::span<const double> values);
-  /// this = a + b; this has the pattern of a, which contains the pattern of b.
+  /// this = a + b again with other values, after sum(a, b).
   void assign_sum(const SparseMatrix& a, const SparseMatrix& b);
 
   [[nodiscard]] _p_Mat* handle() const { return mat_.get(); }
@@ -75,6 +77,7 @@ class SparseMatrix
   SparseMatrix() = default;
 
   Index size_ = 0;
+  bool has_more_ = false;  ///< a sum whose second pattern is not within the first
   std::unique_ptr<_p_Mat, MatDeleter> mat_;
 };
 

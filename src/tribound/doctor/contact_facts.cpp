@@ -45,22 +45,21 @@ class Collector
 
   [[nodiscard]] ContactBoundaryFacts collect(std::span<const std::array<int, 2>> neighbours)
   {
-    for (const contact::ContactFacet<dim>& facet : form_.contact_facets())
-      if (facet.facet.tag == tag_) add_facet(facet);
+    for (std::size_t k = 0; k < form_.segments().size(); ++k)
+      if (form_.segments()[k].slave.facet.tag == tag_) add_segment(k);
     add_spread();
-    for (const auto& [k, l] : neighbours) add_kink(form_.contact_facets()[k], form_.contact_facets()[l]);
+    for (const auto& [k, l] : neighbours) add_kink(form_.segments()[k], form_.segments()[l]);
     return facts_;
   }
 
  private:
-  void add_facet(const contact::ContactFacet<dim>& facet)
+  void add_segment(std::size_t k)
   {
+    const contact::ContactSegment<dim>& segment = form_.segments()[k];
     ++facts_.facets;
-    facts_.measure += facet.geometry.measure;
-    mean_ += facet.geometry.measure * facet.geometry.normal;
-    const mesh::FacetMap<dim> map =
-        mesh::facet_map(form_.space().mesh(), facet.facet.cell, facet.facet.local);
-    for (const Point<dim - 1>& s : form_.facet_rule().points) add_gap(*facet.contact, map(s));
+    facts_.measure += segment.measure;
+    mean_ += segment.measure * segment.normal;
+    for (const auto& point : form_.contact_points(k)) add_gap(*segment.contact, point.x);
   }
 
   void add_gap(const problem::Contact& contact, const Point<dim>& x)
@@ -84,18 +83,18 @@ class Collector
     if (mean_.norm() <= closed_surface * facts_.measure) return;
     const Point<dim> mean = mean_.normalized();
     facts_.normal = place<dim>(mean);
-    for (const contact::ContactFacet<dim>& facet : form_.contact_facets())
-      if (facet.facet.tag == tag_)
-        facts_.spread = std::max(facts_.spread, degrees_between<dim>(mean, facet.geometry.normal));
+    for (const contact::ContactSegment<dim>& segment : form_.segments())
+      if (segment.slave.facet.tag == tag_)
+        facts_.spread = std::max(facts_.spread, degrees_between<dim>(mean, segment.normal));
   }
 
-  void add_kink(const contact::ContactFacet<dim>& a, const contact::ContactFacet<dim>& b)
+  void add_kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b)
   {
-    if (a.facet.tag != tag_) return;
+    if (a.slave.facet.tag != tag_) return;
     const double angle = kink(a, b);
     if (angle <= facts_.kink) return;
     facts_.kink = angle;
-    facts_.kink_at = place<dim>(shared_point(form_.space().mesh(), a.facet, b.facet));
+    facts_.kink_at = place<dim>(shared_point(form_.space().mesh(), a.slave.facet, b.slave.facet));
   }
 
   const contact::NitscheForm<dim>& form_;
@@ -107,11 +106,11 @@ class Collector
 }  // namespace
 
 template <int dim>
-double kink(const contact::ContactFacet<dim>& a, const contact::ContactFacet<dim>& b)
+double kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b)
 {
   constexpr double corner = 45;
   constexpr double round_off = 0.01;
-  const double angle = degrees_between<dim>(a.geometry.normal, b.geometry.normal);
+  const double angle = degrees_between<dim>(a.normal, b.normal);
   return angle < corner && angle > round_off ? angle : 0;
 }
 
@@ -122,9 +121,9 @@ std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<di
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::map<std::pair<int, Ridge>, int> waiting;
   std::vector<std::array<int, 2>> neighbours;
-  for (int k = 0; k < static_cast<int>(form.contact_facets().size()); ++k)
+  for (int k = 0; k < static_cast<int>(form.segments().size()); ++k)
   {
-    const mesh::BoundaryFacet& facet = form.contact_facets()[k].facet;
+    const mesh::BoundaryFacet& facet = form.segments()[k].slave.facet;
     const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
     for (int left_out = 0; left_out < dim; ++left_out)
     {
@@ -154,8 +153,8 @@ std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheF
 
 template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<2>&);
 template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<3>&);
-template double kink(const contact::ContactFacet<2>&, const contact::ContactFacet<2>&);
-template double kink(const contact::ContactFacet<3>&, const contact::ContactFacet<3>&);
+template double kink(const contact::ContactSegment<2>&, const contact::ContactSegment<2>&);
+template double kink(const contact::ContactSegment<3>&, const contact::ContactSegment<3>&);
 template std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<2>&);
 template std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<3>&);
 

@@ -30,14 +30,14 @@ struct ContactBoundaryFacts
 /// The angle between the normals of neighbouring facets, degrees; 0 from 45 on: that is a corner of the body,
 /// not a curved surface, and below 0.01: that is round-off of the coordinates in a file.
 template <int dim>
-[[nodiscard]] double kink(const contact::ContactFacet<dim>& a, const contact::ContactFacet<dim>& b);
+[[nodiscard]] double kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b);
 
 /// Facts of every contact boundary that has facets, in the order of the problem.
 template <int dim>
 [[nodiscard]] std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<dim>& form);
 
-/// Pairs of contact facets of one boundary that share a vertex (2D) or an edge (3D), by their numbers in the
-/// form.
+/// Pairs of segments of one boundary whose facets share a vertex (2D) or an edge (3D), by their numbers in
+/// the form.
 template <int dim>
 [[nodiscard]] std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<dim>& form);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tribound/fem/evaluation.h"
+
 namespace tribound::doctor
 {
 
@@ -21,23 +23,16 @@ RegionMaterial region_material(const problem::Problem<dim>& problem, int region)
 template <int dim>
 void measure_extent(const mesh::Mesh<dim>& mesh, LoadFacts& facts)
 {
-  Point<dim> lower = mesh.vertex(0);
-  Point<dim> upper = mesh.vertex(0);
-  for (const Point<dim>& x : mesh.vertices())
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  const Point<dim> extent = upper - lower;
+  const mesh::BoundingBox<dim> box = mesh::bounding_box(mesh.vertices());
+  const Point<dim> extent = box.upper - box.lower;
   facts.extent = {extent.begin(), extent.end()};
-  facts.size = extent.maxCoeff();
+  facts.size = box.longest_edge();
 }
 
 /// The integral of f; sets the largest mean of |f| over a cell.
 template <int dim>
 Point<dim> body_force_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
-  constexpr double factorial = dim == 2 ? 2 : 6;
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const fem::Quadrature<dim>& rule = form.data().cell_rule();
   Point<dim> resultant = Point<dim>::Zero();
@@ -47,10 +42,10 @@ Point<dim> body_force_resultant(const contact::NitscheForm<dim>& form, LoadFacts
     if (!form.data().has_body_force(c)) continue;
     form.data().body_force(c, f);
     double magnitude = 0;  // mean
-    for (int q = 0; q < rule.size(); ++q)
+    for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), rule))
     {
-      magnitude += factorial * rule.weights[q] * f[q].norm();
-      resultant += mesh::cell_map(mesh, c).det * rule.weights[q] * f[q];
+      magnitude += mesh::factorial<dim> * rule.weights[q] * f[q].norm();
+      resultant += dx * f[q];
     }
     facts.largest_body_force = std::max(facts.largest_body_force, magnitude);
   }
@@ -77,14 +72,12 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
-    const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
-    loads[facet.tag].measure += measure;
     form.data().traction(k, g);
-    for (int q = 0; q < rule.size(); ++q)
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
     {
-      const double weight = measure * (dim - 1) * rule.weights[q];
-      resultant += weight * g[q];
-      loads[facet.tag].magnitude += weight * g[q].norm();
+      resultant += dx * g[q];
+      loads[facet.tag].magnitude += dx * g[q].norm();
+      loads[facet.tag].measure += dx;
     }
   }
   for (const BoundaryLoad& load : loads)
@@ -103,10 +96,9 @@ std::vector<Suction> find_suction(const contact::NitscheForm<dim>& form)
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     if (facet.tag < 0 || !boundaries[facet.tag].pressure) continue;
-    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
-    for (const Point<dim - 1>& s : form.facet_rule().points)
-      if (const double p = (*boundaries[facet.tag].pressure)(map(s)); p < lowest[facet.tag].lowest)
-        lowest[facet.tag] = {boundaries[facet.tag].name, p, place<dim>(map(s))};
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, form.facet_rule()))
+      if (const double p = (*boundaries[facet.tag].pressure)(x); p < lowest[facet.tag].lowest)
+        lowest[facet.tag] = {boundaries[facet.tag].name, p, place<dim>(x)};
   }
   std::erase_if(lowest, [](const Suction& suction) { return suction.lowest == 0; });
   return lowest;

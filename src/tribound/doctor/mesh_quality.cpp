@@ -44,11 +44,10 @@ std::array<double, 2> extreme_angles(const mesh::Mesh<dim>& mesh, Index cell)
 template <int dim>
 double aspect_ratio(const mesh::Mesh<dim>& mesh, Index cell)
 {
-  constexpr double factorial = dim == 2 ? 2 : 6;
   const double regular = 2 * std::sqrt(dim == 2 ? 3.0 : 6.0);
   double surface = 0;
   for (int f = 0; f <= dim; ++f) surface += mesh::facet_geometry(mesh, cell, f).measure;
-  const double inradius = dim * mesh::cell_map(mesh, cell).det / factorial / surface;
+  const double inradius = dim * mesh::cell_map(mesh, cell).measure() / surface;
   return mesh::cell_diameter(mesh, cell) / (regular * inradius);
 }
 

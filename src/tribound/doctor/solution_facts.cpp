@@ -30,14 +30,14 @@ struct FacetOutcome
 
 /// Adds the states on a facet to the outcome of its boundary.
 template <int dim>
-FacetOutcome<dim> add_facet(const fem::Quadrature<dim - 1>& rule, double measure,
+FacetOutcome<dim> add_facet(std::span<const contact::ContactPoint<dim>> points, double measure,
                             std::span<const contact::ContactState<dim>> states, ContactOutcome& outcome)
 {
   FacetOutcome<dim> facet{.measure = measure};
-  for (int q = 0; q < rule.size(); ++q)
+  for (std::size_t q = 0; q < points.size(); ++q)
   {
     const contact::ContactState<dim>& state = states[q];
-    const double share = rule.weights[q] * (dim - 1);  // of the facet
+    const double share = points[q].weight / measure;
     facet.centre += share * state.point;
     facet.pressure += share * state.pressure;
     facet.closed = facet.closed && state.pressure > 0;
@@ -123,7 +123,7 @@ void add_zigzag(const contact::NitscheForm<dim>& form, std::span<const FacetOutc
   for (std::size_t k = 0; k < facets.size(); ++k)
   {
     if (!facets[k].closed) continue;
-    const int tag = form.contact_facets()[k].facet.tag;
+    const int tag = form.segments()[k].slave.facet.tag;
     Squares& sums = squares[tag];
     sums.amplitude += facets[k].measure * amplitudes[k] * amplitudes[k];
     sums.pressure += facets[k].measure * facets[k].pressure * facets[k].pressure;
@@ -140,10 +140,10 @@ void add_kinks(const contact::NitscheForm<dim>& form, std::span<const FacetOutco
 {
   for (const auto& [k, l] : pairs)
   {
-    const double angle = kink(form.contact_facets()[k], form.contact_facets()[l]);
+    const double angle = kink(form.segments()[k], form.segments()[l]);
     const FacetOutcome<dim>& facet = facets[facets[k].largest_pressure > facets[l].largest_pressure ? k : l];
     if (angle == 0 || facet.largest_pressure == 0) continue;
-    ContactOutcome& outcome = outcomes.at(form.contact_facets()[k].facet.tag);
+    ContactOutcome& outcome = outcomes.at(form.segments()[k].slave.facet.tag);
     outcome.kink = std::max(outcome.kink, angle);
     if (facet.largest_pressure <= outcome.kink_pressure) continue;
     outcome.kink_pressure = facet.largest_pressure;
@@ -156,21 +156,19 @@ void add_kinks(const contact::NitscheForm<dim>& form, std::span<const FacetOutco
 template <int dim>
 std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const fem::FacetTabulation<dim> table =
-      fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
   std::map<int, ContactOutcome> outcomes;  // by boundary
   std::vector<FacetOutcome<dim>> facets;
-  facets.reserve(form.contact_facets().size());
-  for (int k = 0; k < static_cast<int>(form.contact_facets().size()); ++k)
+  facets.reserve(form.segments().size());
+  for (int k = 0; k < static_cast<int>(form.segments().size()); ++k)
   {
-    const contact::ContactFacet<dim>& facet = form.contact_facets()[k];
-    ContactOutcome& outcome = outcomes[facet.facet.tag];
-    outcome.boundary = form.problem().boundary(facet.facet.tag).name;
-    const problem::FrictionCone friction = cone(facet.contact->law);
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    ContactOutcome& outcome = outcomes[segment.slave.facet.tag];
+    outcome.boundary = form.problem().boundary(segment.slave.facet.tag).name;
+    const problem::FrictionCone friction = cone(segment.contact->law);
     outcome.has_friction = friction.resists_sliding();
     if (friction.coefficient > 0) outcome.coefficient = friction.coefficient;
     facets.push_back(
-        add_facet<dim>(form.facet_rule(), facet.geometry.measure, form.contact_states(u, k, table), outcome));
+        add_facet<dim>(form.contact_points(k), segment.measure, form.contact_states(u, k), outcome));
   }
   const std::vector<std::array<int, 2>> pairs = contact_neighbours(form);
   add_zigzag<dim>(form, facets, pairs, outcomes);

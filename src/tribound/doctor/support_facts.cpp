@@ -83,13 +83,13 @@ std::vector<std::optional<Point<dim>>> normals_of_planes(const contact::NitscheF
 {
   constexpr double cos_limit = 0.985;
   std::vector<Point<dim>> sum(form.problem().boundaries().size(), Point<dim>::Zero());
-  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
-    sum[facet.facet.tag] += facet.geometry.measure * facet.geometry.normal;
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+    sum[segment.slave.facet.tag] += segment.measure * segment.normal;
   std::vector<std::optional<Point<dim>>> normals(sum.size());
   for (std::size_t tag = 0; tag < sum.size(); ++tag)
     if (sum[tag].norm() > 0) normals[tag] = sum[tag].normalized();
-  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
-    if (auto& normal = normals[facet.facet.tag]; normal && facet.geometry.normal.dot(*normal) < cos_limit)
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+    if (auto& normal = normals[segment.slave.facet.tag]; normal && segment.normal.dot(*normal) < cos_limit)
       normal.reset();
   return normals;
 }
@@ -169,21 +169,24 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const contact::Nitsch
   const FixedVertices fixed = vertices_on_displacement_boundaries(problem, mesh);
   std::map<std::pair<int, int>, OverconstrainedCorner> corners;  // by contact and displacement boundary
   std::map<std::pair<int, int>, std::set<Index>> seen;
-  for (const contact::ContactFacet<dim>& facet : form.contact_facets())
-    for (const Index v : mesh::facet_vertices(mesh.cell(facet.facet.cell), facet.facet.local))
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+  {
+    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
     {
       const auto boundaries = fixed.find(v);
       if (boundaries == fixed.end()) continue;
       for (const int tag : boundaries->second)
       {
         const problem::BoundaryCondition<dim>& condition = problem.boundary(tag);
-        const auto normal = fixed_normal_displacement<dim>(condition, facet.geometry.normal, mesh.vertex(v));
+        const auto normal = fixed_normal_displacement<dim>(condition, segment.normal, mesh.vertex(v));
         if (!normal) continue;
-        const std::pair key(facet.facet.tag, tag);
-        add<dim>(corners[key], {problem.boundary(facet.facet.tag), condition, mesh.vertex(v), *normal,
+        const std::pair key(facet.tag, tag);
+        add<dim>(corners[key], {problem.boundary(facet.tag), condition, mesh.vertex(v), *normal,
                                 seen[key].insert(v).second});
       }
     }
+  }
   std::vector<OverconstrainedCorner> result;
   result.reserve(corners.size());
   for (auto& [key, corner] : corners) result.push_back(std::move(corner));

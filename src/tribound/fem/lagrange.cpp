@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
-#include "tribound/mesh/geometry.h"
 
 namespace tribound::fem
 {
@@ -98,14 +98,29 @@ FacetTabulation<dim> tabulate_on_facets(const LagrangeBasis<dim>& basis,
   FacetTabulation<dim> table;
   table.points.assign(points.begin(), points.end());
   for (int facet = 0; facet <= dim; ++facet)
-  {
-    std::vector<Point<dim>> in_cell;
-    for (const Point<dim - 1>& s : points) in_cell.push_back(mesh::facet_to_cell<dim>(facet, s));
-    table.on_facet[facet] = basis.tabulate(in_cell);
-  }
+    table.on_facet[facet] = basis.tabulate(points_on_facet<dim>(facet, points));
   return table;
 }
 
+template <int dim>
+std::vector<Tensor<dim>> gradient_products(const LagrangeBasis<dim>& basis)
+{
+  const Quadrature<dim> rule = quadrature<dim>(2 * basis.degree() - 2);
+  const Tabulation<dim> table = basis.tabulate(rule.points);
+  const int n = basis.n_nodes();
+  std::vector<Tensor<dim>> products(static_cast<std::size_t>(n) * n, Tensor<dim>::Zero());
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    const auto gradients = table.gradients_at(q);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        products[i * n + j] += rule.weights[q] * gradients[i] * gradients[j].transpose();
+  }
+  return products;
+}
+
+template std::vector<Tensor<2>> gradient_products(const LagrangeBasis<2>&);
+template std::vector<Tensor<3>> gradient_products(const LagrangeBasis<3>&);
 template class LagrangeBasis<1>;
 template class LagrangeBasis<2>;
 template class LagrangeBasis<3>;

@@ -66,4 +66,8 @@ template <int dim>
 [[nodiscard]] FacetTabulation<dim> tabulate_on_facets(const LagrangeBasis<dim>& basis,
                                                       std::span<const Point<dim - 1>> points);
 
+/// The integrals of (grad phi_i)(grad phi_j)^T over the reference cell, [i * n_nodes + j].
+template <int dim>
+[[nodiscard]] std::vector<Tensor<dim>> gradient_products(const LagrangeBasis<dim>& basis);
+
 }  // namespace tribound::fem

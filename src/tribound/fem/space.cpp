@@ -146,20 +146,6 @@ Index Constraints::n_fixed() const
 namespace
 {
 
-/// Largest extent of the mesh, the length scale of displacements.
-template <int dim>
-double extent(const mesh::Mesh<dim>& mesh)
-{
-  Point<dim> lower = mesh.vertex(0);
-  Point<dim> upper = mesh.vertex(0);
-  for (const Point<dim>& x : mesh.vertices())
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  return (upper - lower).maxCoeff();
-}
-
 /// Name of the first boundary that fixes component a at the node, empty if none does.
 template <int dim>
 std::string fixing_boundary(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space, Index node,
@@ -183,7 +169,7 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const LagrangeBasis<dim>& basis = space.basis();
-  const double tolerance = 1e-12 * extent(mesh);
+  const double tolerance = 1e-12 * mesh::bounding_box(mesh.vertices()).longest_edge();
   Constraints constraints{std::vector<char>(space.n_dofs(), 0), std::vector<double>(space.n_dofs(), 0.0)};
 
   const auto fix =

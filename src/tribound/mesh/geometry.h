@@ -16,6 +16,12 @@
 namespace tribound::mesh
 {
 
+/// n!: the reference n-simplex has the measure 1 / n!.
+template <int n>
+inline constexpr int factorial = n* factorial<n - 1>;
+template <>
+inline constexpr int factorial<0> = 1;
+
 /// The map x = x_0 + J xhat from the reference simplex {xhat >= 0, sum <= 1} onto a cell.
 template <int dim>
 struct CellMap
@@ -26,6 +32,8 @@ struct CellMap
   double det;                     ///< det J = dim! |T| > 0
 
   [[nodiscard]] Point<dim> operator()(const Point<dim>& xhat) const { return origin + jacobian * xhat; }
+  /// |T|.
+  [[nodiscard]] double measure() const { return det / factorial<dim>; }
 };
 
 /// The map x = x_0 + J s from the reference facet onto a facet, from its own vertices: a coordinate that they
@@ -45,7 +53,34 @@ struct FacetGeometry
   Point<dim> normal;  ///< outward unit normal of the cell
   double measure;     ///< length or area |F|
   double diameter;    ///< h_F: the longest edge
+
+  /// |F| / |reference facet|.
+  [[nodiscard]] double det() const { return factorial<dim - 1> * measure; }
 };
+
+/// The smallest box with edges along the axes that contains given points.
+template <int dim>
+struct BoundingBox
+{
+  Point<dim> lower;
+  Point<dim> upper;
+
+  [[nodiscard]] double longest_edge() const { return (upper - lower).maxCoeff(); }
+  [[nodiscard]] double diagonal() const { return (upper - lower).norm(); }
+};
+
+/// Of at least one point.
+template <int dim>
+[[nodiscard]] BoundingBox<dim> bounding_box(std::span<const Point<dim>> points)
+{
+  BoundingBox<dim> box{points[0], points[0]};
+  for (const Point<dim>& x : points)
+  {
+    box.lower = box.lower.cwiseMin(x);
+    box.upper = box.upper.cwiseMax(x);
+  }
+  return box;
+}
 
 /// a x b.
 [[nodiscard]] inline Point<3> cross(const Point<3>& a, const Point<3>& b)

@@ -170,7 +170,7 @@ void check_shapes(const MeshData<dim>& data)
     throw InputError(data.source,
                      fmt::format("{} is degenerate: its {} is {:.3g} for a diameter of {:.3g}",
                                  describe_cell(data, static_cast<Index>(c)), dim == 2 ? "area" : "volume",
-                                 std::abs(det) / (dim == 2 ? 2 : 6), h),
+                                 std::abs(det) / factorial<dim>, h),
                      "mesh again with a better size, or remove duplicate points");
   }
 }

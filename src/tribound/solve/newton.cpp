@@ -40,7 +40,7 @@ class Newton
                    contact::stiffness(form.problem(), form.space(), form.constraints())),
         contact_(form.space().n_dofs(), dim,
                  form.contact_tangent(contact::Linearisation::closed_sticking, zero())),
-        tangent_(stiffness_.duplicate()),
+        tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
         diagonal_(stiffness_.diagonal()),
         linear_solver_(solver, std::span<const Point<dim>>(form.space().node_points()))
   {
@@ -161,11 +161,7 @@ bool Newton<dim>::traction_settled() const
   const std::vector<Point<dim>> t = form_.traction(u_, delta_);
   double sum = 0;
   for (std::size_t i = 0; i < t.size(); ++i)
-  {
-    const double measure = form_.contact_facets()[i / form_.n_facet_points()].geometry.measure * (dim - 1);
-    const double weight = measure * form_.facet_rule().weights[i % form_.n_facet_points()];
-    sum += (weight * (t[i] - traction_[i])).squaredNorm();
-  }
+    sum += (form_.contact_points()[i].weight * (t[i] - traction_[i])).squaredNorm();
   return std::sqrt(sum) <= margin * smallest_residual();
 }
 

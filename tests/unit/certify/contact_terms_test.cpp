@@ -55,10 +55,10 @@ certify::ContactSquares sum_over_facets(const DiscreteCase<dim>& c, const std::v
   const certify::Stress<dim> stress = no_stress(c);
   const certify::ContactTerms<dim> terms(c.form, rule);
   certify::ContactSquares sum;
-  for (std::size_t k = 0; k < c.form.contact_facets().size(); ++k)
+  for (std::size_t k = 0; k < c.form.segments().size(); ++k)
   {
     const certify::ContactSquares squares = terms(static_cast<int>(k), u, stress);
-    const double h = c.form.contact_facets()[k].geometry.diameter;
+    const double h = c.form.segments()[k].h;
     sum.cnt += squares.cnt / h;
     sum.frc += squares.frc / h;
   }

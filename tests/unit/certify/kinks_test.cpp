@@ -11,8 +11,6 @@
 #include <random>
 #include <vector>
 
-#include "tribound/contact/nitsche/traction.h"
-
 namespace tribound::test
 {
 

@@ -15,6 +15,7 @@
 #include "support/discrete_case.h"
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 
 namespace tribound::test
@@ -91,7 +92,7 @@ TYPED_TEST(TrueError, DualNormOfAResidualWithKnownRepresentative)
   for (int p = 1; p <= 2; ++p)
   {
     const DiscreteCase<dim> c(fmt::format("degree = {}\n", p) + known.toml());
-    ASSERT_NEAR(c.form.contact_facets()[0].gamma, known.gamma, 1e-12 * known.gamma);
+    ASSERT_NEAR(c.form.segments()[0].gamma, known.gamma, 1e-12 * known.gamma);
     Point<dim> down = Point<dim>::Zero();
     down[1] = -known.delta;
     const std::vector<double> u = interpolate(c.space, [&](const Point<dim>&) { return down; });
@@ -112,7 +113,7 @@ TEST(DualNorm, IntegratesAKinkedTraction)
       "material = { E = 1, nu = 0.25 }\nboundary.bottom.contact = {}\n");
   constexpr double a = 0.02;
   constexpr double d = 0.5 / 16 * 0.24;  // a contact facet in 16 parts, each with 6 Gauss points
-  const double slope = c.form.contact_facets()[0].gamma * a;
+  const double slope = c.form.segments()[0].gamma * a;
   for (const double x_0 : {0.613, 1.28, 1.9})
   {
     const std::vector<double> u =
@@ -207,9 +208,9 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
     const mesh::CellMap<2> map = mesh::cell_map(c.mesh, cell);
     for (int q = 0; q < rule.size(); ++q)
     {
-      const Tensor<2> error = gradient(map(rule.points[q])) -
-                              contact::gradient_at<2>(c.space.cell_nodes(cell), result.u,
-                                                      table.gradients_at(q), map.inverse_transpose);
+      const Tensor<2> error =
+          gradient(map(rule.points[q])) - fem::gradient_at<2>(c.space.cell_nodes(cell), result.u,
+                                                              table.gradients_at(q), map.inverse_transpose);
       const Tensor<2> s = contact::sigma<2>(material, error);
       energy += rule.weights[q] * map.det * s.cwiseProduct(error).sum();
       stress += rule.weights[q] * map.det * s.squaredNorm();

@@ -83,12 +83,9 @@ std::vector<double> displaced(const DiscreteCase<dim>& c, problem::ContactStatus
 template <int dim>
 std::vector<problem::ContactStatus> statuses(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
-  const fem::FacetTabulation<dim> table =
-      fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points);
   std::vector<problem::ContactStatus> result;
-  for (std::size_t k = 0; k < form.contact_facets().size(); ++k)
-    for (const contact::ContactState<dim>& state : form.contact_states(u, static_cast<int>(k), table))
-      result.push_back(state.status);
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+    for (const contact::ContactState<dim>& state : form.contact_states(u, k)) result.push_back(state.status);
   return result;
 }
 
@@ -321,10 +318,10 @@ TEST(ContactStates, ClosedFormOnAFlatBottom)
 {
   const FlatBlock block("friction = \"coulomb\", coefficient = 0.1");
   const std::vector<Point<1>> middle{Point<1>(0.5)};
-  const auto table = fem::tabulate_on_facets<2>(block.c.space.basis(), middle);
+  const contact::SegmentTables<2> tables(block.c.space.basis(), block.c.form.segments(), middle);
   for (int k = 0; k < 4; ++k)
   {
-    const auto states = block.c.form.contact_states(block.u, k, table);
+    const auto states = block.c.form.contact_states(block.u, k, tables[k]);
     ASSERT_EQ(states.size(), 1u);
     EXPECT_NEAR(std::fmod(states[0].point[0], 0.5), 0.25, 1e-14);
     EXPECT_LE((states[0].normal - Point<2>(0, -1)).norm(), 1e-14);

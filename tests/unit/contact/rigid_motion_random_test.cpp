@@ -63,14 +63,12 @@ struct RandomCase
   }
 
   /// A traction that contact can exert, often one of the largest.
-  Point<dim> traction(const contact::ContactFacet<dim>& facet, const Point<dim>& x)
+  Point<dim> traction(const problem::ContactLaw& law, const Point<dim>& n, const Point<dim>& x)
   {
-    const Point<dim>& n = facet.geometry.normal;
     const double pressure = random() % 2 == 0 ? 0 : std::pow(pick(0, 1), 4);
     double limit = 0;
-    if (const auto* tresca = std::get_if<problem::Tresca>(&facet.contact->law)) limit = tresca->threshold(x);
-    if (const auto* coulomb = std::get_if<problem::Coulomb>(&facet.contact->law))
-      limit = coulomb->coefficient * pressure;
+    if (const auto* tresca = std::get_if<problem::Tresca>(&law)) limit = tresca->threshold(x);
+    if (const auto* coulomb = std::get_if<problem::Coulomb>(&law)) limit = coulomb->coefficient * pressure;
     const Point<dim> any = Point<dim>::Random();
     const Point<dim> direction = (any - any.dot(n) * n).normalized();
     return -pressure * n + (random() % 2 == 0 ? limit : pick(0, limit)) * direction;
@@ -94,12 +92,10 @@ void never_refused(int n_cases)
     // On a third of the cases all friction pulls in one direction as hard as it can.
     const Point<dim> pull = Point<dim>::Random();
     std::vector<Point<dim>> t;
-    for (const contact::ContactFacet<dim>& facet : c.form.contact_facets())
-      for (const Point<dim - 1>& s : c.form.facet_rule().points)
+    for (std::size_t k = 0; k < c.form.segments().size(); ++k)
+      for (const auto& [x, weight, n, gap, strength] : c.form.contact_points(k))
       {
-        t.push_back(any.traction(
-            facet, mesh::cell_map(c.mesh, facet.facet.cell)(mesh::facet_to_cell<dim>(facet.facet.local, s))));
-        const Point<dim>& n = facet.geometry.normal;
+        t.push_back(any.traction(c.form.segments()[k].contact->law, n, x));
         const Point<dim> along = pull - pull.dot(n) * n;
         const Point<dim> friction = t.back() - t.back().dot(n) * n;
         if (i % 3 == 0) t.back() += friction.norm() * along.normalized() - friction;

@@ -68,7 +68,7 @@ TEST(ContactCsv, RunsAlongEachBoundary)
   const BoxCase<2> box(two_contacts);
   const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], 0.01); });
   const Table table(io::contact_csv(box.form, u, 0));
-  const std::size_t n = 4 * box.form.n_facet_points();
+  const std::size_t n = 4 * box.form.n_segment_points();
   ASSERT_EQ(table.size(), 2 * n);
 
   std::map<std::string, double> previous;
@@ -268,7 +268,7 @@ contact = { friction = "coulomb", coefficient = 0.5, gap = 0 }
             "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
             "slip_y,slip_z,weight,level");
   const Table table(csv);
-  ASSERT_EQ(table.size(), 8u * box.form.n_facet_points());
+  ASSERT_EQ(table.size(), 8u * box.form.n_segment_points());
   for (std::size_t row = 0; row < table.size(); ++row)
   {
     EXPECT_EQ(table(row, "z"), 0.0);

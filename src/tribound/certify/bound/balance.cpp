@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tribound/certify/equilibrate/frame_table.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
@@ -53,10 +54,9 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     if (!form.data().has_body_force(c)) continue;
-    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     form.data().body_force(c, f);
-    for (int q = 0; q < rule.size(); ++q)
-      loads.regions[mesh.region(c)].add(map(rule.points[q]) - about, rule.weights[q] * map.det * f[q]);
+    for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), rule))
+      loads.regions[mesh.region(c)].add(x - about, dx * f[q]);
   }
   const fem::Quadrature<dim - 1>& facet_rule = form.facet_rule();
   std::vector<Point<dim>> g(facet_rule.size());
@@ -64,13 +64,9 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
-    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
-    const double scale =
-        mesh::facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
     form.data().traction(k, g);
-    for (int q = 0; q < facet_rule.size(); ++q)
-      loads.boundaries[facet.tag].add(map(facet_rule.points[q]) - about,
-                                      scale * facet_rule.weights[q] * g[q]);
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
+      loads.boundaries[facet.tag].add(x - about, dx * g[q]);
   }
   return loads;
 }
@@ -81,7 +77,10 @@ std::vector<Point<dim>> points_on_facets(const fem::Quadrature<dim - 1>& rule)
 {
   std::vector<Point<dim>> points;
   for (int local = 0; local <= dim; ++local)
-    for (const Point<dim - 1>& s : rule.points) points.push_back(mesh::facet_to_cell<dim>(local, s));
+  {
+    const std::vector<Point<dim>> on_facet = fem::points_on_facet<dim>(local, rule.points);
+    points.insert(points.end(), on_facet.begin(), on_facet.end());
+  }
   return points;
 }
 
@@ -105,16 +104,14 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
     for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
       for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
     table.evaluate(make_frame(mesh, facet.cell), block, sigma);
-    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
-    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    for (int q = 0; q < rule.size(); ++q)
+    const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
     {
       Point<dim> t = Point<dim>::Zero();
       for (int r = 0; r < dim; ++r)
         for (int c = 0; c < dim && (condition.contact || condition.fixes(r)); ++c)
-          t[r] += sigma[(dim * r + c) * n + facet.local * rule.size() + q] * geometry.normal[c];
-      const double weight = geometry.measure * (dim - 1) * rule.weights[q];
-      result[facet.tag].add(map(rule.points[q]) - about, weight * t);
+          t[r] += sigma[(dim * r + c) * n + facet.local * rule.size() + q] * normal[c];
+      result[facet.tag].add(x - about, dx * t);
     }
   }
   return result;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -119,12 +120,10 @@ double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form)
   {
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     if (!boundary.fixes_any()) continue;
-    const mesh::FacetMap<dim> map = mesh::facet_map(space.mesh(), facet.cell, facet.local);
-    for (int q = 0; q < form.n_facet_points(); ++q)
+    for (const auto& [q, x, dx] : fem::facet_points(space.mesh(), facet.cell, facet.local, form.facet_rule()))
     {
-      const Point<dim> interpolant = contact::value_at<dim>(
+      const Point<dim> interpolant = fem::value_at<dim>(
           space.cell_nodes(facet.cell), form.constraints().values, table.on_facet[facet.local].values_at(q));
-      const Point<dim> x = map(table.points[q]);
       for (int c = 0; c < dim; ++c)
         if (boundary.fixes(c))
           largest = std::max(largest, std::abs((*boundary.displacement[c])(x)-interpolant[c]));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 
@@ -184,30 +185,6 @@ double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index c
   return sum;
 }
 
-/// sum over the free components of ||Pi^p_F (sigma_h n - t)||_F^2 with t at the points x of the rule.
-template <int dim>
-double squared_trace_defect(const CellStress<dim>& sigma, int degree, const fem::Quadrature<dim - 1>& rule,
-                            std::span<const Point<dim>> x, std::span<const Point<dim>> t,
-                            const mesh::FacetGeometry<dim>& geometry,
-                            const problem::BoundaryCondition<dim>& boundary)
-{
-  const int n = fem::polynomial_dimension(dim - 1, degree);
-  const double scale = geometry.measure * (dim - 1);  // |F| / |reference facet|
-  std::vector<double> theta(n);
-  std::vector<Point<dim>> moments(n, Point<dim>::Zero());
-  for (int q = 0; q < rule.size(); ++q)
-  {
-    fem::orthonormal_values<dim - 1>(degree, rule.points[q], theta);
-    const Point<dim> value = sigma.normal_trace_at(x[q], geometry.normal) - t[q];
-    for (int i = 0; i < n; ++i) moments[i] += rule.weights[q] * std::sqrt(scale) * theta[i] * value;
-  }
-  double sum = 0;
-  for (const Point<dim>& moment : moments)
-    for (int c = 0; c < dim; ++c)
-      if (!boundary.fixes(c)) sum += moment[c] * moment[c];
-  return sum;
-}
-
 /// Sums of squares on the cells, and the square of the norm of sigma_h.
 template <int dim>
 double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
@@ -250,7 +227,7 @@ double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const
       const double* const phi_here = tables.on_facet[here.facet_opposite(opposite(first, facet))].data();
       const double* const phi_there = tables.on_facet[there.facet_opposite(opposite(second, facet))].data();
       for (int q = 0; q < tables.jump_rule.size(); ++q)
-        sum += geometry.diameter * tables.jump_rule.weights[q] * geometry.measure * (dim - 1) *
+        sum += geometry.diameter * tables.jump_rule.weights[q] * geometry.det() *
                (here.normal_trace(phi_here + q * tables.n, geometry.normal) -
                 there.normal_trace(phi_there + q * tables.n, geometry.normal))
                    .squaredNorm();
@@ -258,30 +235,79 @@ double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const
   return sum;
 }
 
+/// moments += weight theta_i t at the point s of the reference facet, theta orthonormal on the facet with the
+/// given determinant.
+template <int dim>
+void add_moments(int degree, const Point<dim - 1>& s, double weight, double det, const Point<dim>& t,
+                 std::span<Point<dim>> moments)
+{
+  std::vector<double> theta(moments.size());
+  fem::orthonormal_values<dim - 1>(degree, s, theta);
+  for (std::size_t i = 0; i < moments.size(); ++i) moments[i] += weight / std::sqrt(det) * theta[i] * t;
+}
+
+/// The moments of what acts on each boundary facet: g_N, t^k on slaves, -t^k on masters; empty: nothing.
+template <int dim>
+std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheForm<dim>& form,
+                                                        std::span<const Point<dim>> t, int degree)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
+  std::vector<std::vector<Point<dim>>> moments(mesh.boundary().size());
+  const auto add = [&](std::size_t number, const Point<dim - 1>& s, double weight, const Point<dim>& traction)
+  {
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    moments[number].resize(fem::polynomial_dimension(dim - 1, degree), Point<dim>::Zero());
+    add_moments<dim>(degree, s, weight, mesh::facet_geometry(mesh, facet.cell, facet.local).det(), traction,
+                     moments[number]);
+  };
+  std::vector<Point<dim>> g(rule.size());
+  for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
+  {
+    if (!form.data().has_traction(number)) continue;
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    form.data().traction(number, g);
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+      add(number, rule.points[q], dx, g[q]);
+  }
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+    for (int q = 0; q < rule.size(); ++q)
+      form.segments()[k].for_each_side(
+          [&](const contact::SegmentSide<dim>& side)
+          {
+            const std::size_t i = k * rule.size() + q;
+            add(side.number, side.on_facet(rule.points[q]), form.contact_points()[i].weight,
+                side.sign * t[i]);
+          });
+  return moments;
+}
+
+/// sum h_F ||Pi^p_F (sigma_h n) - prescribed||_F^2 over the free components.
 template <int dim>
 void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t,
                     const Stress<dim>& stress, IdentityDefects& squares)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
-  std::size_t contact_point = 0;
-  std::vector<Point<dim>> traction(rule.size());
+  const auto prescribed = prescribed_moments(form, t, stress.degree);
+  std::vector<char> in_contact(mesh.boundary().size(), 0);
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+    segment.for_each_side([&](const contact::SegmentSide<dim>& side) { in_contact[side.number] = 1; });
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
-    std::vector<Point<dim>> x;
-    for (const Point<dim - 1>& s : rule.points) x.push_back(map(s));
-    if (boundary.contact)
-      for (Point<dim>& at_point : traction) at_point = t[contact_point++];
-    else
-      form.data().traction(number, traction);
-    const double defect =
-        geometry.diameter * squared_trace_defect<dim>(CellStress<dim>(mesh, stress, facet.cell),
-                                                      stress.degree, rule, x, traction, geometry, boundary);
-    (boundary.contact ? squares.contact : squares.neumann) += defect;
+    const CellStress<dim> sigma(mesh, stress, facet.cell);
+    std::vector<Point<dim>> moments(fem::polynomial_dimension(dim - 1, stress.degree), Point<dim>::Zero());
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+      add_moments<dim>(stress.degree, rule.points[q], dx, geometry.det(),
+                       sigma.normal_trace_at(x, geometry.normal), moments);
+    for (std::size_t i = 0; i < prescribed[number].size(); ++i) moments[i] -= prescribed[number][i];
+    double& sum = in_contact[number] ? squares.contact : squares.neumann;
+    for (const Point<dim>& moment : moments)
+      for (int c = 0; c < dim; ++c)
+        if (!boundary.fixes(c)) sum += geometry.diameter * moment[c] * moment[c];
   }
 }
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "tribound/contact/nitsche/traction.h"
+#include "tribound/base/error.h"
 #include "tribound/fem/degree.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 
 namespace tribound::certify
@@ -39,22 +40,22 @@ std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
 
 /// h_F |F| / |Fhat|.
 template <int dim>
-double norm_scale(const contact::ContactFacet<dim>& contact)
+double norm_scale(const contact::ContactSegment<dim>& segment)
 {
-  return contact.geometry.diameter * contact.geometry.measure * (dim - 1);
+  return segment.h * segment.det();
 }
 
 /// Adds h_F ||t^n||_F^2 and h_F ||t^t||_F^2 of a traction with the given coefficients.
 template <int dim>
-void add_squares(std::span<const Point<dim>> traction, const contact::ContactFacet<dim>& contact,
+void add_squares(std::span<const Point<dim>> traction, const contact::ContactSegment<dim>& segment,
                  double& normal_part, double& tangential_part)
 {
-  const Point<dim>& n = contact.geometry.normal;
+  const Point<dim>& n = segment.normal;
   for (const Point<dim>& coefficient : traction)
   {
     const double normal = coefficient.dot(n);
-    normal_part += norm_scale(contact) * normal * normal;
-    tangential_part += norm_scale(contact) * (coefficient - normal * n).squaredNorm();
+    normal_part += norm_scale(segment) * normal * normal;
+    tangential_part += norm_scale(segment) * (coefficient - normal * n).squaredNorm();
   }
 }
 
@@ -64,18 +65,16 @@ template <int dim>
 ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRule rule)
     : form_(form),
       rule_(rule),
-      space_table_(fem::tabulate_on_facets<dim>(form.space().basis(), form.facet_rule().points)),
       n_(fem::polynomial_dimension(dim - 1, form.space().degree())),
       kinks_(form.facet_rule(), form.space().degree() + 2)
 {
   fem::require_degree(form.space().degree());
+  if (!std::ranges::all_of(form.segments(), &contact::ContactSegment<dim>::is_obstacle_facet))
+    throw InputError({}, "the bound is not known for contact on parts of facets or between bodies",
+                     "take contact with rigid obstacles, on whole facets");
   const fem::Quadrature<dim - 1>& points = form.facet_rule();
   for (int local = 0; local <= dim; ++local)
-  {
-    std::vector<Point<dim>> in_cell;
-    for (const FacetPoint& s : points.points) in_cell.push_back(mesh::facet_to_cell<dim>(local, s));
-    stress_table_.emplace_back(form.space().degree(), in_cell);
-  }
+    stress_table_.emplace_back(form.space().degree(), fem::points_on_facet<dim>(local, points.points));
   theta_.resize(static_cast<std::size_t>(n_) * points.size());
   for (int q = 0; q < points.size(); ++q)
     fem::orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
@@ -96,47 +95,38 @@ std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> v
 template <int dim>
 std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const double> block) const
 {
-  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
-  const int n_points = form_.n_facet_points();
+  const contact::SegmentSide<dim>& slave = form_.segments()[k].slave;
+  const int n_points = form_.n_segment_points();
   std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
-  stress_table_[facet.local].evaluate(make_frame(form_.space().mesh(), facet.cell), block, entries);
+  stress_table_[slave.facet.local].evaluate(make_frame(form_.space().mesh(), slave.facet.cell), block,
+                                            entries);
   std::vector<Point<dim>> values(n_points, Point<dim>::Zero());
   for (int q = 0; q < n_points; ++q)
     for (int r = 0; r < dim; ++r)
       for (int c = 0; c < dim; ++c)
-        values[q][r] += entries[(dim * r + c) * n_points + q] * geometry.normal[c];
+        values[q][r] += entries[(dim * r + c) * n_points + q] * slave.stress_direction[c];
   return project(values);
 }
 
 template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
 {
-  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
-  const Point<dim>& n = geometry.normal;
-  const fem::LagrangeSpace<dim>& space = form_.space();
-  const problem::Material& material = form_.problem().material(space.mesh().region(facet.cell));
-  const std::span<const Index> nodes = space.cell_nodes(facet.cell);
-  const fem::Tabulation<dim>& table = space_table_.on_facet[facet.local];
-  const Tensor<dim> inverse_transpose = mesh::cell_map(space.mesh(), facet.cell).inverse_transpose;
-  const int n_points = form_.n_facet_points();
-
-  std::vector<Point<dim>> values(n_points);
-  for (int q = 0; q < n_points; ++q)
-    values[q] = contact::augmented_traction<dim>(
-        material, gamma, 0, n, contact::value_at<dim>(nodes, u, table.values_at(q)),
-        contact::gradient_at<dim>(nodes, u, table.gradients_at(q), inverse_transpose));
-  return {project(values), normal_trace(k, stress.dis_in(facet.cell))};
+  const contact::SegmentValues<dim> on_segment = form_.values(k);
+  std::vector<Point<dim>> augmented;
+  for (int q = 0; q < form_.n_segment_points(); ++q) augmented.push_back(on_segment.augmented_traction(u, q));
+  return {project(augmented), normal_trace(k, stress.dis_in(form_.segments()[k].slave.facet.cell))};
 }
 
 template <int dim>
 auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece) const -> Integrals
 {
-  const auto& [facet, geometry, gamma, contact, number] = form_.contact_facets()[k];
-  const Point<dim>& n = geometry.normal;
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  const mesh::BoundaryFacet& facet = segment.slave.facet;
+  const Point<dim>& n = segment.normal;
   const mesh::FacetMap<dim> map = mesh::facet_map(form_.space().mesh(), facet.cell, facet.local);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
-  const problem::ContactLaw& law = contact->law;
+  const problem::ContactLaw& law = segment.contact->law;
   Integrals result;
   std::vector<Point<dim>> augmented(rule.size());
   std::vector<double> strengths(rule.size());
@@ -146,7 +136,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     const FacetPoint s = fem::point_in<dim - 1>(piece, rule.points[q]);
     fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
     const Point<dim> x = map(s);
-    const double closing = gamma * problem::gap_at<dim>(*contact, x);
+    const double closing = segment.gamma * problem::gap_at<dim>(*segment.contact, x);
     Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
@@ -233,17 +223,17 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
                                              const Stress<dim>& stress) const
 {
   const Fields on_facet = fields(k, u, stress);
-  const contact::ContactFacet<dim>& contact = form_.contact_facets()[k];
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result = linearisation(k, stress);
   const contact::ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
-  std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(contact.number);
+  std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(segment.slave.number);
   if (parts.empty()) parts = std::span(&whole, 1);
   std::vector<Integrals> integrals;
   for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));
   if (rule_ == ContactRule::resolved) settle(k, on_facet, parts, integrals);
-  for (std::size_t i = 0; i < parts.size(); ++i) add_part(contact, parts[i], integrals[i], result);
-  if (const auto reg = stress.reg_in(contact.facet.cell); !reg.empty())
-    add_squares<dim>(normal_trace(k, reg), contact, result.reg2n, result.reg2t);
+  for (std::size_t i = 0; i < parts.size(); ++i) add_part(segment, parts[i], integrals[i], result);
+  if (const auto reg = stress.reg_in(segment.slave.facet.cell); !reg.empty())
+    add_squares<dim>(normal_trace(k, reg), segment, result.reg2n, result.reg2t);
   return result;
 }
 
@@ -251,18 +241,17 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
 /// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
 /// the rule and at most 2 |K|^{1/2} times what the remainders change.
 template <int dim>
-void ContactTerms<dim>::add_part(const contact::ContactFacet<dim>& contact,
+void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment,
                                  const contact::ContactDatumPart<dim>& part, const Integrals& integrals,
                                  ContactSquares& squares) const
 {
-  const double scale = norm_scale(contact);
-  const double missed =
-      2 * std::sqrt(contact.geometry.diameter * contact.geometry.measure * fem::fraction<dim - 1>(part.part));
+  const double scale = norm_scale(segment);
+  const double missed = 2 * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(part.part));
   // Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
   // polynomial up to gamma delta, with which it was seen at the points, too.
-  const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * contact.gamma * part.gap;
-  const double pressure = open ? 0 : contact.gamma * part.gap;
-  const double limit = cone(contact.contact->law).closed_limit(part.strength, -pressure);
+  const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * segment.gamma * part.gap;
+  const double pressure = open ? 0 : segment.gamma * part.gap;
+  const double limit = cone(segment.contact->law).closed_limit(part.strength, -pressure);
   squares.cnt += std::pow(std::sqrt(scale * integrals.normal) + missed * pressure, 2);
   squares.frc += std::pow(std::sqrt(scale * integrals.tangential) + missed * limit, 2);
 }
@@ -270,9 +259,10 @@ void ContactTerms<dim>::add_part(const contact::ContactFacet<dim>& contact,
 template <int dim>
 ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress) const
 {
-  const contact::ContactFacet<dim>& contact = form_.contact_facets()[k];
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result;
-  add_squares<dim>(normal_trace(k, stress.lin_in(contact.facet.cell)), contact, result.lin2n, result.lin2t);
+  add_squares<dim>(normal_trace(k, stress.lin_in(segment.slave.facet.cell)), segment, result.lin2n,
+                   result.lin2t);
   return result;
 }
 

@@ -20,7 +20,7 @@ enum class ContactRule
   reference
 };
 
-/// Squares of the components on one facet F of Gamma_C.
+/// Squares of the components on one segment, a whole facet F of Gamma_C.
 struct ContactSquares
 {
   double cnt = 0;    ///< h_F ||[P^n]_- - sigma_dis^n||_F^2
@@ -38,9 +38,11 @@ template <int dim>
 class ContactTerms
 {
  public:
+  /// Throws InputError for segments other than whole facets against rigid obstacles, on which the bound is
+  /// not known.
   ContactTerms(const contact::NitscheForm<dim>& form, ContactRule rule);
 
-  /// On contact facet k of the form for the iterate u.
+  /// On segment k of the form for the iterate u.
   [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Stress<dim>& stress) const;
   /// lin2n and lin2t alone, from sigma_lin alone; the others are 0.
   [[nodiscard]] ContactSquares linearisation(int k, const Stress<dim>& stress) const;
@@ -84,7 +86,7 @@ class ContactTerms
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Stress<dim>& stress) const;
   [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> values) const;
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
-  void add_part(const contact::ContactFacet<dim>& contact, const contact::ContactDatumPart<dim>& part,
+  void add_part(const contact::ContactSegment<dim>& segment, const contact::ContactDatumPart<dim>& part,
                 const Integrals& integrals, ContactSquares& squares) const;
   [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                              const Integrals& whole) const;
@@ -93,11 +95,11 @@ class ContactTerms
 
   const contact::NitscheForm<dim>& form_;
   ContactRule rule_;
-  fem::FacetTabulation<dim> space_table_;      ///< of the space at the points of the facet rule
-  std::vector<FrameTable<dim>> stress_table_;  ///< of the stress there, per local facet
-  std::vector<double> theta_;                  ///< basis on the facet there, [q * n + i]
-  int n_;                                      ///< dim P^p(F)
-  KinkFinder<dim> kinks_;  ///< for P^{p+2}, in which P^n is up to the remainder of the gap
+  std::vector<FrameTable<dim>>
+      stress_table_;           ///< of the stress at the points of the facet rule, per local facet
+  std::vector<double> theta_;  ///< basis on the facet there, [q * n + i]
+  int n_;                      ///< dim P^p(F)
+  KinkFinder<dim> kinks_;      ///< for P^{p+2}, in which P^n is up to the remainder of the gap
 };
 
 }  // namespace tribound::certify

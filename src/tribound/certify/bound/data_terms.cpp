@@ -41,7 +41,7 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form)
     if (oscillation == 0 && mean == 0) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     const double h = mesh::cell_diameter(mesh, facet.cell);
-    const double volume = mesh::cell_map(mesh, facet.cell).det / (dim == 2 ? 2 : 6);
+    const double volume = mesh::cell_map(mesh, facet.cell).measure();
     const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
     missed[facet.cell] += mean;
     terms.neu[facet.cell] +=
@@ -49,7 +49,7 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form)
   }
   double squares = 0;
   for (Index c = 0; c < mesh.n_cells(); ++c)
-    if (missed[c] > 0) squares += missed[c] * missed[c] / (mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6));
+    if (missed[c] > 0) squares += missed[c] * missed[c] / mesh::cell_map(mesh, c).measure();
   terms.missed = std::sqrt(squares);
   return terms;
 }

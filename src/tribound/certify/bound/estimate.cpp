@@ -96,7 +96,7 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
 {
   BoundComponents squares;
   for (const double x : stress.lin) squares.lin1 += x * x;
-  for (std::size_t k = 0; k < form_.contact_facets().size(); ++k)
+  for (std::size_t k = 0; k < form_.segments().size(); ++k)
   {
     const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress);
     squares.lin2n += facet.lin2n;
@@ -166,19 +166,19 @@ template <int dim>
 void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>& stress,
                                    Estimate& result) const
 {
-  const auto facets = form_.contact_facets();
+  const auto segments = form_.segments();
   std::vector<Index> touched;
-  for (std::size_t k = 0; k < facets.size(); ++k)  // squares first: a cell may have several facets
+  for (std::size_t k = 0; k < segments.size(); ++k)  // squares first: a cell may have several
   {
     const ContactSquares squares = contact_(static_cast<int>(k), u, stress);
-    BoundComponents& cell = result.cells[facets[k].facet.cell];
+    BoundComponents& cell = result.cells[segments[k].slave.facet.cell];
     cell.cnt += squares.cnt;
     cell.frc += squares.frc;
     cell.lin2n += squares.lin2n;
     cell.lin2t += squares.lin2t;
     cell.reg2n += squares.reg2n;
     cell.reg2t += squares.reg2t;
-    touched.push_back(facets[k].facet.cell);
+    touched.push_back(segments[k].slave.facet.cell);
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());

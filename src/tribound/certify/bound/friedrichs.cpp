@@ -88,7 +88,7 @@ Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proo
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    const double volume = map.det / (dim == 2 ? 2 : 6);
+    const double volume = map.measure();
     std::array<Point<dim>, dim + 1> gradients;  // of -lambda_i
     gradients[0] = map.inverse_transpose.rowwise().sum();
     for (int i = 0; i < dim; ++i) gradients[i + 1] = -map.inverse_transpose.col(i);

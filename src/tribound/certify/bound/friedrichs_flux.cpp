@@ -25,7 +25,7 @@ std::vector<double> potential_fluxes(const mesh::Mesh<dim>& mesh, std::span<cons
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    const double volume = map.det / (dim == 2 ? 2 : 6);
+    const double volume = map.measure();
     std::array<Point<dim>, dim + 1> hat_gradients;
     hat_gradients[0] = -map.inverse_transpose.rowwise().sum();
     for (int i = 0; i < dim; ++i) hat_gradients[i + 1] = map.inverse_transpose.col(i);
@@ -68,7 +68,7 @@ double smallest_value(const mesh::Mesh<dim>& mesh, std::span<const double> fluxe
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     const auto points = mesh::points_of(mesh.vertices(), mesh.cell(c));
-    const double volume = mesh::determinant<dim>(points) / (dim == 2 ? 2 : 6);
+    const double volume = mesh::determinant<dim>(points) / mesh::factorial<dim>;
     std::array<double, dim + 1> outward;
     double divergence = 0;
     for (int i = 0; i <= dim; ++i)

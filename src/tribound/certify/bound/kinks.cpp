@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tribound/contact/nitsche/traction.h"
 #include "tribound/fem/bernstein.h"
 
 namespace tribound::certify

@@ -1,8 +1,10 @@
 #include "tribound/certify/equilibrate/facet_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tribound/certify/equilibrate/frame.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 
@@ -12,69 +14,49 @@ namespace tribound::certify
 namespace
 {
 
-/// Hat functions and facet basis at the points of the facet rule, for one way in which the ascending order of
-/// the facet's vertices differs from the order of the cell.
+/// Adds moments of tractions on one boundary facet of a cell.
 template <int dim, int p>
-struct FacetTable
+class FacetMoments
 {
-  std::array<int, dim>
-      order;  ///< order[i]: place among the facet's vertices, in cell order, of the i-th ascending
-  std::vector<std::array<double, dim>> hat;
-  std::vector<std::array<double, Sizes<dim, p>::facet>> basis;
-};
+ public:
+  using Moments = typename FacetData<dim, p>::Moments;
 
-template <int dim, int p>
-FacetTable<dim, p> make_table(const std::array<int, dim>& order, const fem::Quadrature<dim - 1>& rule)
-{
-  FacetTable<dim, p> table{order, {}, {}};
-  for (const Point<dim - 1>& s : rule.points)
+  FacetMoments(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
+  {
+    const Frame<dim> frame = make_frame(mesh, facet.cell);
+    for (int i = 0, n = 0; i <= dim; ++i)
+      if (frame.local[i] != facet.local) order_[n++] = frame.local[i] - (frame.local[i] > facet.local);
+    scale_ = 1 / std::sqrt(mesh::facet_geometry(mesh, facet.cell, facet.local).det());
+  }
+
+  /// Hat functions and theta at a point of the reference facet.
+  void at(const Point<dim - 1>& s)
   {
     std::array<double, dim> in_cell_order;
     in_cell_order[0] = 1 - s.sum();
     for (int i = 1; i < dim; ++i) in_cell_order[i] = s[i - 1];
-    std::array<double, dim> hat;
-    for (int i = 0; i < dim; ++i) hat[i] = in_cell_order[order[i]];
+    for (int i = 0; i < dim; ++i) hat_[i] = in_cell_order[order_[i]];
     Point<dim - 1> sorted;
-    for (int i = 1; i < dim; ++i) sorted[i - 1] = hat[i];
-    table.hat.push_back(hat);
-    fem::orthonormal_values<dim - 1>(p, sorted, table.basis.emplace_back());
+    for (int i = 1; i < dim; ++i) sorted[i - 1] = hat_[i];
+    fem::orthonormal_values<dim - 1>(p, sorted, theta_);
   }
-  return table;
-}
 
-template <int dim, int p>
-class FacetTables
-{
- public:
-  explicit FacetTables(const fem::Quadrature<dim - 1>& rule) : rule_(rule) {}
-
-  /// The table of local facet `local` of the frame's cell (numbered as in Mesh::cell).
-  const FacetTable<dim, p>& operator()(const Frame<dim>& frame, int local)
+  /// moments += weight psi_v theta_i t there.
+  void add(double weight, const Point<dim>& t, Moments& moments) const
   {
-    std::array<int, dim> order;
-    for (int i = 0, n = 0; i <= dim; ++i)
-      if (frame.local[i] != local) order[n++] = frame.local[i] - (frame.local[i] > local);
-    for (const auto& table : tables_)
-      if (table.order == order) return table;
-    return tables_.emplace_back(make_table<dim, p>(order, rule_));
+    for (int v = 0; v < dim; ++v)
+      for (int c = 0; c < dim; ++c)
+        for (int i = 0; i < n; ++i) moments[v][c * n + i] += weight * scale_ * hat_[v] * theta_[i] * t[c];
   }
 
  private:
-  const fem::Quadrature<dim - 1>& rule_;
-  std::vector<FacetTable<dim, p>> tables_;
+  static constexpr int n = Sizes<dim, p>::facet;
+  std::array<int, dim> order_;  ///< order_[i]: number among the facet's vertices, in cell order, of the i-th
+                                ///< ascending
+  double scale_;                ///< normalises theta on the facet
+  std::array<double, dim> hat_;
+  std::array<double, n> theta_;
 };
-
-/// moments += weight lambda_v theta_i t for one point.
-template <int dim, int p>
-void add_point(typename FacetData<dim, p>::Moments& moments, const FacetTable<dim, p>& table, int q,
-               double weight, const Point<dim>& t)
-{
-  constexpr int n = Sizes<dim, p>::facet;
-  for (int v = 0; v < dim; ++v)
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < n; ++i)
-        moments[v][c * n + i] += weight * table.hat[q][v] * table.basis[q][i] * t[c];
-}
 
 }  // namespace
 
@@ -86,47 +68,75 @@ FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<co
       n_parts_(delta > 0 ? 3 : 2)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
-  FacetTables<dim, p> tables(rule);
-  const std::vector<Point<dim>> t_u = form.traction(u);
-  const std::vector<Point<dim>> t_delta = delta > 0 ? form.traction(u, delta) : t_u;
-  std::size_t contact_point = 0;  // contact facets come in the order of Mesh::boundary()
-  std::vector<Point<dim>> load(rule.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
-    const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     Condition& condition = conditions_.emplace_back();
-    number_[mesh.topology().cell_facets[facet.cell][facet.local]] = static_cast<int>(conditions_.size()) - 1;
-    for (int c = 0; c < dim; ++c) condition.fixed[c] = boundary.fixes(c);
-    if (!boundary.contact && !boundary.is_loaded()) continue;
+    number_[mesh.topology().cell_facets[facet.cell][facet.local]] = static_cast<int>(number);
+    for (int c = 0; c < dim; ++c) condition.fixed[c] = form.problem().boundary(facet.tag).fixes(c);
+    if (form.data().has_traction(number)) add_load(form, number);
+  }
+  const std::vector<Point<dim>> t_u = form.traction(u);
+  const std::vector<Point<dim>> t_delta = delta > 0 ? form.traction(u, delta) : t_u;
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+    form.segments()[k].for_each_side(
+        [&](const contact::SegmentSide<dim>& side) {
+          add_contact(form, k, side, {t_u, t_delta, t});
+        });
+}
 
-    const Frame<dim> frame = make_frame(mesh, facet.cell);
-    const FacetTable<dim, p>& table = tables(frame, facet.local);
-    const int opposite = static_cast<int>(std::ranges::find(frame.local, facet.local) - frame.local.begin());
-    const double scale = std::sqrt(frame.facet_scale(opposite));  // |F| / |Fhat| times theta's normalisation
+template <int dim, int p>
+auto FacetData<dim, p>::discretisation_of(Condition& condition) -> Moments&
+{
+  if (condition.moments < 0)
+  {
     condition.moments = static_cast<int>(discretisation_.size());
-    Moments& moments = discretisation_.emplace_back();
-    if (boundary.contact)
-    {
-      for (Index v : frame.vertices)
-        if (v != mesh.cell(facet.cell)[facet.local]) on_contact_[v] = 1;
-      condition.contact = static_cast<int>(linearisation_.size());
-      Moments& linearisation = linearisation_.emplace_back();
-      Moments* const regularisation = delta > 0 ? &regularisation_.emplace_back() : nullptr;
-      for (int q = 0; q < rule.size(); ++q, ++contact_point)
-      {
-        const auto add = [&](Moments& part, const Point<dim>& traction)
-        { add_point<dim, p>(part, table, q, scale * rule.weights[q], traction); };
-        add(moments, t_u[contact_point]);
-        add(linearisation, t[contact_point] - t_delta[contact_point]);
-        if (regularisation) add(*regularisation, t_delta[contact_point] - t_u[contact_point]);
-      }
-      continue;
-    }
-    form.data().traction(number, load);
-    for (int q = 0; q < rule.size(); ++q)
-      add_point<dim, p>(moments, table, q, scale * rule.weights[q], load[q]);
+    discretisation_.emplace_back();
+  }
+  return discretisation_[condition.moments];
+}
+
+template <int dim, int p>
+void FacetData<dim, p>::add_load(const contact::NitscheForm<dim>& form, std::size_t number)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
+  std::vector<Point<dim>> load(rule.size());
+  form.data().traction(number, load);
+  Moments& moments = discretisation_of(conditions_[number]);
+  FacetMoments<dim, p> on_facet(mesh, facet);
+  for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+  {
+    on_facet.at(rule.points[q]);
+    on_facet.add(dx, load[q], moments);
+  }
+}
+
+template <int dim, int p>
+void FacetData<dim, p>::add_contact(const contact::NitscheForm<dim>& form, std::size_t k,
+                                    const contact::SegmentSide<dim>& side, const Tractions& t)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  Condition& condition = conditions_[side.number];
+  if (condition.contact < 0)
+  {
+    condition.contact = static_cast<int>(linearisation_.size());
+    linearisation_.emplace_back();
+    if (n_parts_ == 3) regularisation_.emplace_back();
+    for (const Index v : mesh::facet_vertices(mesh.cell(side.facet.cell), side.facet.local))
+      on_contact_[v] = 1;
+  }
+  Moments& discretisation = discretisation_of(condition);
+  FacetMoments<dim, p> on_facet(mesh, side.facet);
+  for (int q = 0; q < form.n_segment_points(); ++q)
+  {
+    const std::size_t i = k * form.n_segment_points() + q;
+    const double weight = side.sign * form.contact_points()[i].weight;
+    on_facet.at(side.on_facet(form.facet_rule().points[q]));
+    on_facet.add(weight, t.of_u[i], discretisation);
+    on_facet.add(weight, t.running[i] - t.regularised[i], linearisation_[condition.contact]);
+    if (n_parts_ == 3) on_facet.add(weight, t.regularised[i] - t.of_u[i], regularisation_[condition.contact]);
   }
 }
 

@@ -15,7 +15,8 @@ namespace tribound::certify
 {
 
 /// Conditions and tractions on the boundary facets. Moments (psi_a t, theta_i)_F are taken with the reference
-/// quadrature rule and in the orthonormal basis theta of the facet with its vertices in ascending order.
+/// quadrature rule, on contact facets segment by segment, and in the orthonormal basis theta of the facet
+/// with its vertices in ascending order.
 template <int dim, int p>
 class FacetData
 {
@@ -39,7 +40,7 @@ class FacetData
   [[nodiscard]] bool fixes_any(Index facet) const;
   /// Parts of the stress: dis and lin, and reg for delta > 0.
   [[nodiscard]] int n_parts() const { return n_parts_; }
-  /// psi_a g_N or psi_a T(u); null where the facet carries no load.
+  /// psi_a g_N or psi_a T(u), -psi_a T(u) on a master; null where the facet carries no load.
   [[nodiscard]] const Moments* discretisation(Index facet) const
   {
     const int place = conditions_[number_[facet]].moments;
@@ -64,12 +65,26 @@ class FacetData
   struct Condition
   {
     std::array<bool, dim> fixed{};
-    int moments = -1;  ///< place in discretisation_
-    int contact = -1;  ///< place in linearisation_ and regularisation_
+    int moments = -1;  ///< index in discretisation_
+    int contact = -1;  ///< index in linearisation_ and regularisation_
+  };
+  /// At the contact points.
+  struct Tractions
+  {
+    std::span<const Point<dim>> of_u;         ///< T(u)
+    std::span<const Point<dim>> regularised;  ///< T_delta(u)
+    std::span<const Point<dim>> running;      ///< t^k
   };
 
-  std::vector<int> number_;  ///< per facet: place in conditions_, or -1 inside Omega
-  std::vector<Condition> conditions_;
+  [[nodiscard]] Moments& discretisation_of(Condition& condition);
+  /// g_N on a boundary facet.
+  void add_load(const contact::NitscheForm<dim>& form, std::size_t number);
+  /// What segment k exerts on the facet of one of its sides.
+  void add_contact(const contact::NitscheForm<dim>& form, std::size_t k,
+                   const contact::SegmentSide<dim>& side, const Tractions& t);
+
+  std::vector<int> number_;            ///< per facet: number in Mesh::boundary(), or -1 inside Omega
+  std::vector<Condition> conditions_;  ///< of the boundary facets
   std::vector<Moments> discretisation_;
   std::vector<Moments> linearisation_;
   std::vector<Moments> regularisation_;

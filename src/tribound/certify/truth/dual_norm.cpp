@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tribound/certify/truth/true_error.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 #include "tribound/fem/polynomials.h"
 
@@ -40,22 +41,6 @@ fem::Quadrature<k> composite_rule(int degree, int cuts)
         if (i + j < cuts - 1) add({(i + 1) * size, (j + 1) * size}, -size);
       }
   return composite;
-}
-
-/// (d_a phi_i, d_b phi_j) on the reference cell: [i * n + j].
-template <int dim>
-std::vector<Tensor<dim>> reference_gradients(const fem::LagrangeBasis<dim>& basis)
-{
-  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * basis.degree() - 2);
-  const fem::Tabulation<dim> table = basis.tabulate(rule.points);
-  const int n = basis.n_nodes();
-  std::vector<Tensor<dim>> result(static_cast<std::size_t>(n) * n, Tensor<dim>::Zero());
-  for (int q = 0; q < rule.size(); ++q)
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        result[i * n + j] +=
-            rule.weights[q] * table.gradients_at(q)[i] * table.gradients_at(q)[j].transpose();
-  return result;
 }
 
 /// (phi_j, phi_i) on the reference facet, for each local facet: [i * n + j].
@@ -109,16 +94,16 @@ void DualNorm<dim>::find_contact_parts()
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
   std::vector<std::array<int, dim + 1>> whole(mesh.n_cells());  // number of the contact facet, or -1
   for (auto& facets : whole) facets.fill(-1);
-  for (std::size_t k = 0; k < form_.contact_facets().size(); ++k)
+  for (std::size_t k = 0; k < form_.segments().size(); ++k)
   {
-    const mesh::BoundaryFacet& facet = form_.contact_facets()[k].facet;
+    const mesh::BoundaryFacet& facet = form_.segments()[k].slave.facet;
     whole[facet.cell][facet.local] = static_cast<int>(k);
   }
   for (const mesh::BoundaryFacet& facet : refined_.mesh.boundary())
   {
     if (!form_.problem().boundary(facet.tag).contact) continue;
-    const Point<dim> centre = mesh::cell_map(refined_.mesh, facet.cell)(
-        mesh::facet_to_cell<dim>(facet.local, Point<dim - 1>::Constant(1.0 / dim)));
+    const Point<dim> centre =
+        mesh::facet_map(refined_.mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
     const Index ancestor = refined_.ancestor(facet.cell);
     const auto lambda = fem::barycentric<dim>(fem::reference_point(mesh::cell_map(mesh, ancestor), centre));
     const auto local = std::ranges::min_element(lambda) - lambda.begin();
@@ -160,7 +145,7 @@ algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) cons
   algebra::Triplets entries;
   entries.reserve(static_cast<std::size_t>(space_.mesh().n_cells()) * n * n);
   std::vector<double> block(static_cast<std::size_t>(n) * n);
-  const std::vector<Tensor<dim>> reference = reference_gradients(space_.basis());
+  const std::vector<Tensor<dim>> reference = fem::gradient_products(space_.basis());
   for (Index c = 0; c < space_.mesh().n_cells(); ++c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(space_.mesh(), c);
@@ -172,8 +157,8 @@ algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) cons
   const auto masses = reference_facet_masses(space_.basis());
   for (const auto& [facet, whole] : contact_parts_)
   {
-    const double area = mesh::facet_geometry(space_.mesh(), facet.cell, facet.local).measure * (dim - 1);
-    const double h_F = form_.contact_facets()[whole].geometry.diameter;
+    const double area = mesh::facet_geometry(space_.mesh(), facet.cell, facet.local).det();
+    const double h_F = form_.segments()[whole].h;
     for (std::size_t k = 0; k < block.size(); ++k) block[k] = area / h_F * masses[facet.local][k];
     add_block(space_.cell_nodes(facet.cell), fixed, block, entries);
   }
@@ -187,31 +172,23 @@ void DualNorm<dim>::add_contact_load(std::span<const double> u, std::span<double
   const fem::Quadrature<dim - 1> rule =
       composite_rule<dim - 1>(fem::data_quadrature_degree(space_.degree()), contact_cuts);
   const fem::FacetTabulation<dim> values = fem::tabulate_on_facets<dim>(space_.basis(), rule.points);
-  fem::FacetTabulation<dim> table;  // the form's basis at the same points
   for (const auto& [facet, whole] : contact_parts_)
   {
-    const mesh::BoundaryFacet& ancestor = form_.contact_facets()[whole].facet;
-    const mesh::CellMap<dim> map = mesh::cell_map(refined_.mesh, facet.cell);
+    const mesh::BoundaryFacet& ancestor = form_.segments()[whole].slave.facet;
     const mesh::CellMap<dim> ancestor_map = mesh::cell_map(form_.space().mesh(), ancestor.cell);
-    std::vector<Point<dim>> points;
-    table.points.clear();
-    for (const Point<dim - 1>& s : rule.points)
+    const auto points = fem::facet_points(refined_.mesh, facet.cell, facet.local, rule);
+    std::vector<Point<dim>> in_ancestor;
+    std::vector<Point<dim - 1>> on_ancestor;
+    for (const auto& [q, x, dx] : points)
     {
-      points.push_back(fem::reference_point(ancestor_map, map(mesh::facet_to_cell<dim>(facet.local, s))));
-      table.points.push_back(mesh::cell_to_facet<dim>(ancestor.local, points.back()));
+      in_ancestor.push_back(fem::reference_point(ancestor_map, x));
+      on_ancestor.push_back(mesh::cell_to_facet<dim>(ancestor.local, in_ancestor.back()));
     }
-    table.on_facet[ancestor.local] = form_.space().basis().tabulate(points);
-    const std::vector<contact::ContactState<dim>> states = form_.contact_states(u, whole, table);
-
-    const double area = mesh::facet_geometry(refined_.mesh, facet.cell, facet.local).measure * (dim - 1);
-    const std::span<const Index> nodes = space_.cell_nodes(facet.cell);
-    for (int q = 0; q < rule.size(); ++q)
-    {
-      const Point<dim> force = area * rule.weights[q] * states[q].traction;
-      const auto phi = values.on_facet[facet.local].values_at(q);
-      for (std::size_t i = 0; i < nodes.size(); ++i)
-        for (int a = 0; a < dim; ++a) vector[dim * nodes[i] + a] += phi[i] * force[a];
-    }
+    const fem::Tabulation<dim> table = form_.space().basis().tabulate(in_ancestor);
+    const auto states = form_.contact_states(u, whole, {on_ancestor, &table});
+    for (const auto& [q, x, dx] : points)
+      fem::add_at_point<dim>(space_.cell_nodes(facet.cell), values.on_facet[facet.local].values_at(q),
+                             dx * states[q].traction, vector);
   }
 }
 

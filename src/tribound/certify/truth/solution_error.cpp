@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/overlay.h"
@@ -41,8 +42,8 @@ class CellGradients
                                         const fem::Tabulation<dim>& table)
   {
     for (int q = 0; q < table.n_points; ++q)
-      values_[q] = contact::gradient_at<dim>(space_->cell_nodes(cell), u_, table.gradients_at(q),
-                                             map.inverse_transpose);
+      values_[q] =
+          fem::gradient_at<dim>(space_->cell_nodes(cell), u_, table.gradients_at(q), map.inverse_transpose);
     return values_;
   }
 

@@ -5,7 +5,6 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/penalty.h"
-#include "tribound/contact/nitsche/traction.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
@@ -21,25 +20,11 @@ constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts = 4096;
 
-/// The diagonal of the bounding box.
-template <int dim>
-double extent(const mesh::Mesh<dim>& mesh)
-{
-  Point<dim> lower = mesh.vertex(0);
-  Point<dim> upper = lower;
-  for (const Point<dim>& x : mesh.vertices())
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  return (upper - lower).norm();
-}
-
 template <int dim>
 SimplexMap<dim, dim> simplex_map(const mesh::Mesh<dim>& mesh, Index cell)
 {
   const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
-  return {map.origin, map.jacobian, map.det / (dim == 2 ? 2 : 6)};
+  return {map.origin, map.jacobian, map.measure()};
 }
 
 template <int dim>
@@ -77,7 +62,7 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
       gamma0_(gamma0),
       cell_moments_(degree, degree - 1),
       facet_moments_(degree, degree),
-      size_(extent(mesh))
+      size_(mesh::bounding_box(mesh.vertices()).diagonal())
 {
   count_formulas();
   double allowed = 0;

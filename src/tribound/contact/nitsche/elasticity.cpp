@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "tribound/contact/nitsche/discrete_data.h"
-#include "tribound/fem/quadrature.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
@@ -16,26 +16,8 @@ namespace tribound::contact
 namespace
 {
 
-/// R_ij = integral over the reference cell of (grad phi_i)(grad phi_j)^T, [i * n + j].
-template <int dim>
-std::vector<Tensor<dim>> reference_stiffness(const fem::LagrangeBasis<dim>& basis)
-{
-  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * basis.degree() - 2);
-  const fem::Tabulation<dim> table = basis.tabulate(rule.points);
-  const int n = basis.n_nodes();
-  std::vector<Tensor<dim>> reference(static_cast<std::size_t>(n) * n, Tensor<dim>::Zero());
-  for (int q = 0; q < rule.size(); ++q)
-  {
-    const auto gradients = table.gradients_at(q);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        reference[i * n + j] += rule.weights[q] * gradients[i] * gradients[j].transpose();
-  }
-  return reference;
-}
-
 /// The block a(phi_j e_b, phi_i e_a) = lambda S_ab + mu S_ba + mu tr(S) delta_ab, where
-/// S = (d_a phi_i, d_b phi_j)_T = det J J^{-T} R_ij J^{-1}.
+/// S = (d_a phi_i, d_b phi_j)_T = det J J^{-T} R_ij J^{-1}, R the products of reference gradients.
 template <int dim>
 Tensor<dim> stiffness_block(const problem::Material& material, const mesh::CellMap<dim>& map,
                             const Tensor<dim>& reference)
@@ -92,7 +74,7 @@ class BlockRow
   BlockRow(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space)
       : problem_(&problem),
         space_(&space),
-        reference_(reference_stiffness(space.basis())),
+        reference_(fem::gradient_products(space.basis())),
         place_(space.n_nodes(), -1)
   {
   }
@@ -181,7 +163,7 @@ std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
       // (sigma(u), grad phi_i)_T, with J^{-1} moved from the test function to sigma
       const auto gradients = table.gradients_at(q);
       const Tensor<dim> stress =
-          sigma<dim>(material, gradient_at<dim>(nodes, u, gradients, map.inverse_transpose));
+          sigma<dim>(material, fem::gradient_at<dim>(nodes, u, gradients, map.inverse_transpose));
       const Tensor<dim> pulled_back = rule.weights[q] * map.det * (stress * map.inverse_transpose);
       for (int i = 0; i < table.n_nodes; ++i)
       {
@@ -218,7 +200,7 @@ double stress_that_matters(const problem::Problem<dim>& problem, const fem::Lagr
   double mu = std::numeric_limits<double>::infinity();
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
-    volume += mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
+    volume += mesh::cell_map(mesh, c).measure();
     mu = std::min(mu, problem.material(mesh.region(c)).mu);
   }
   double size = 0;
@@ -254,7 +236,7 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
     {
       const double weight = rule.weights[q] * map.det;
       const auto gradients = table.gradients_at(q);
-      const Tensor<dim> gradient = gradient_at<dim>(nodes, u, gradients, map.inverse_transpose);
+      const Tensor<dim> gradient = fem::gradient_at<dim>(nodes, u, gradients, map.inverse_transpose);
       const Tensor<dim> stress = sigma<dim>(material, gradient);
       norms.energy += weight * stress.cwiseProduct(gradient).sum();
       norms.sigma += weight * stress.squaredNorm();
@@ -277,20 +259,6 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   return norms;
 }
 
-namespace
-{
-
-/// load_i += weight f . phi_i at one point of a cell.
-template <int dim>
-void add_point_load(std::span<const Index> nodes, std::span<const double> values, const Point<dim>& force,
-                    std::span<double> load)
-{
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (int a = 0; a < dim; ++a) load[static_cast<std::size_t>(dim) * nodes[i] + a] += values[i] * force[a];
-}
-
-}  // namespace
-
 template <int dim>
 std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
 {
@@ -304,11 +272,9 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     if (!data.has_body_force(c)) continue;
-    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     data.body_force(c, f);
-    for (int q = 0; q < cell_rule.size(); ++q)
-      add_point_load<dim>(space.cell_nodes(c), cell_table.values_at(q), cell_rule.weights[q] * map.det * f[q],
-                          load);
+    for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), cell_rule))
+      fem::add_at_point<dim>(space.cell_nodes(c), cell_table.values_at(q), dx * f[q], load);
   }
 
   // (g_N, phi_i)_N
@@ -320,12 +286,10 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
   {
     if (!data.has_traction(k)) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
-    const double scale =
-        mesh::facet_geometry(mesh, facet.cell, facet.local).measure * (dim - 1);  // |F| / |reference facet|
     data.traction(k, g);
-    for (int q = 0; q < facet_rule.size(); ++q)
-      add_point_load<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
-                          scale * facet_rule.weights[q] * g[q], load);
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
+      fem::add_at_point<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
+                             dx * g[q], load);
   }
   return load;
 }

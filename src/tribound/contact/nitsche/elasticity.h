@@ -26,31 +26,6 @@ template <int dim>
   return s;
 }
 
-/// grad u in a cell, from tabulated reference gradients at one point.
-template <int dim>
-[[nodiscard]] Tensor<dim> gradient_at(std::span<const Index> nodes, std::span<const double> u,
-                                      std::span<const Point<dim>> reference_gradients,
-                                      const Tensor<dim>& inverse_transpose)
-{
-  Tensor<dim> reference = Tensor<dim>::Zero();
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (int a = 0; a < dim; ++a)
-      reference.row(a) +=
-          u[static_cast<std::size_t>(dim) * nodes[i] + a] * reference_gradients[i].transpose();
-  return reference * inverse_transpose.transpose();
-}
-
-/// u in a cell, from tabulated values at one point.
-template <int dim>
-[[nodiscard]] Point<dim> value_at(std::span<const Index> nodes, std::span<const double> u,
-                                  std::span<const double> values)
-{
-  Point<dim> result = Point<dim>::Zero();
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (int a = 0; a < dim; ++a) result[a] += u[static_cast<std::size_t>(dim) * nodes[i] + a] * values[i];
-  return result;
-}
-
 /// a(phi_j, phi_i) over free i and j, every place once, in the order of rows and columns: a seventh of the
 /// cells' own entries in 3D. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal alone, which
 /// decouples it without spoiling the scaling.

@@ -10,6 +10,7 @@
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/discrete_data.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/segment_values.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/geometry.h"
@@ -28,19 +29,20 @@ struct ContactState
   Point<dim> traction;  ///< T = [P^n]_- n + [P^t]_S
   double limit;         ///< S_h: what |T^t| may reach
   problem::ContactStatus status;
-  double gap;       ///< g - u^n: distance left
-  Point<dim> slip;  ///< u^t
+  double gap;               ///< g - [u]^n: distance left
+  Point<dim> slip;          ///< [u]^t
+  Point<dim> displacement;  ///< u of the slave
 };
 
-/// A facet of Gamma_C with what the integrals need.
+/// A quadrature point of a contact segment.
 template <int dim>
-struct ContactFacet
+struct ContactPoint
 {
-  mesh::BoundaryFacet facet;
-  mesh::FacetGeometry<dim> geometry;
-  double gamma;  ///< gamma_0 min(lambda + 2 mu, 34 mu) / h_F
-  const problem::Contact* contact;
-  std::size_t number;  ///< in Mesh::boundary()
+  Point<dim> x;       ///< on the slave
+  double weight;      ///< of the rule, times measure
+  Point<dim> normal;  ///< of the segment
+  double gap;         ///< g
+  double strength;    ///< s of the law, 0 where it has none
 };
 
 /// Which linearisation of T a Newton step uses.
@@ -51,16 +53,20 @@ enum class Linearisation
 };
 
 /// The discrete problem on one mesh. Contact integrals touch only cells on Gamma_C. Contact quantities live
-/// at the quadrature points of the contact facets: point q of contact facet k has number k * n_facet_points()
+/// at the quadrature points of the contact segments: point q of segment k has number k * n_segment_points()
 /// + q. Keeps references to problem and space. Where delta > 0 (a stress) is given, the projections of T are
 /// the regularised ones of method section 7: T_delta.
 template <int dim>
 class NitscheForm
 {
  public:
-  /// `accuracy` and errors: as DiscreteData.
+  /// Contact with rigid obstacles. `accuracy` and errors: as DiscreteData.
   NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
               const DataAccuracy& accuracy = {});
+  /// Contact on the given segments of the mesh. Gaps and strengths on parts of facets are those of the
+  /// formulas at the points.
+  NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
+              std::vector<ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
   [[nodiscard]] const problem::Problem<dim>& problem() const { return *problem_; }
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
@@ -70,10 +76,22 @@ class NitscheForm
   /// L(phi_i) for every degree of freedom, fixed ones included.
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
-  [[nodiscard]] std::span<const ContactFacet<dim>> contact_facets() const { return contact_facets_; }
-  [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return facet_rule_; }
-  [[nodiscard]] int n_facet_points() const { return facet_rule_.size(); }
-  [[nodiscard]] std::size_t n_contact_points() const { return contact_facets_.size() * facet_rule_.size(); }
+  [[nodiscard]] std::span<const ContactSegment<dim>> segments() const { return segments_; }
+  /// The rule on segments, and on boundary facets in general.
+  [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return data_.facet_rule(); }
+  [[nodiscard]] int n_segment_points() const { return facet_rule().size(); }
+  [[nodiscard]] std::size_t n_contact_points() const { return points_.size(); }
+  [[nodiscard]] std::span<const ContactPoint<dim>> contact_points() const { return points_; }
+  /// Those of segment k.
+  [[nodiscard]] std::span<const ContactPoint<dim>> contact_points(std::size_t k) const
+  {
+    return contact_points().subspan(k * n_segment_points(), n_segment_points());
+  }
+  /// What evaluates functions of the space at the contact points of segment k.
+  [[nodiscard]] SegmentValues<dim> values(std::size_t k) const
+  {
+    return {*problem_, *space_, segments_[k], tables_[k]};
+  }
 
   /// T(u) at the contact points.
   [[nodiscard]] std::vector<Point<dim>> traction(std::span<const double> u, double delta = 0) const;
@@ -81,27 +99,37 @@ class NitscheForm
   [[nodiscard]] std::vector<Point<dim>> linearised_traction(Linearisation kind, std::span<const double> u,
                                                             std::span<const double> w,
                                                             double delta = 0) const;
-  /// vector_i += (t, phi_i)_C with t given at the contact points.
+  /// vector_i += (t, [phi_i])_C with t given at the contact points.
   void add_contact_load(std::span<const Point<dim>> t, std::span<double> vector) const;
-  /// -(DT(u)[phi_j], phi_i)_C over free i and j. Rows and columns do not depend on u.
+  /// -(DT(u)[phi_j], [phi_i])_C over free i and j. Rows and columns do not depend on u.
   [[nodiscard]] algebra::Triplets contact_tangent(Linearisation kind, std::span<const double> u,
                                                   double delta = 0) const;
 
-  /// States on contact facet k at the points of `table`.
-  [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, int k,
-                                                              const fem::FacetTabulation<dim>& table) const;
+  /// States on segment k at its contact points, or at the points of `table`.
+  [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, std::size_t k) const
+  {
+    return contact_states(u, k, tables_[k]);
+  }
+  [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, std::size_t k,
+                                                              const SegmentTable<dim>& table) const;
 
  private:
-  /// P(u) = sigma(u) n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
-  [[nodiscard]] Point<dim> augmented_traction(std::span<const double> u, std::size_t k, int q,
-                                              const Tensor<dim>& inverse_transpose) const;
-  [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, std::size_t i) const;
-  /// M with DT(u)[w] = M (sigma(w) n - gamma w), from P(u) at contact point i of facet k.
-  [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, std::size_t i,
+  [[nodiscard]] std::vector<ContactPoint<dim>> make_points() const;
+  /// P(u) = {sigma(u)} - gamma ([u] - g n), so that P^n = P.n and P^t = P - P^n n.
+  [[nodiscard]] Point<dim> augmented_traction(const SegmentValues<dim>& values, std::span<const double> u,
+                                              std::size_t k, int q) const;
+  /// T from P = `augmented` at a contact point of segment k.
+  [[nodiscard]] Point<dim> respond(std::size_t k, int q, const Point<dim>& augmented, double delta) const;
+  /// M with DT(u)[w] = M ({sigma(w)} - gamma [w]), from P(u) at point q of segment k.
+  [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, int q,
                                                 const Point<dim>& augmented, double delta) const;
-  [[nodiscard]] Tensor<dim> inverse_transpose(std::size_t k) const;
-  /// Appends the rows of the nodes on the facet; block [i * n_nodes + j] belongs to local nodes i and j.
-  void add_block_entries(const mesh::BoundaryFacet& facet, std::span<const Tensor<dim>> block,
+  /// -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, [i * columns + j](a, b), i and j over the nodes of all
+  /// sides.
+  [[nodiscard]] std::vector<Tensor<dim>> tangent_block(Linearisation kind, std::span<const double> u,
+                                                       std::size_t k, double delta,
+                                                       const SegmentValues<dim>& on_segment) const;
+  /// Appends the rows of a block that belong to nodes on the facets.
+  void add_block_entries(const SegmentValues<dim>& on_segment, std::span<const Tensor<dim>> block,
                          algebra::Triplets& entries) const;
 
   const problem::Problem<dim>* problem_;
@@ -110,11 +138,9 @@ class NitscheForm
   fem::Constraints constraints_;
   DiscreteData<dim> data_;
   std::vector<double> load_;
-  fem::Quadrature<dim - 1> facet_rule_;
-  fem::FacetTabulation<dim> facet_table_;
-  std::vector<ContactFacet<dim>> contact_facets_;
-  std::vector<double> gap_;       ///< g at the contact points
-  std::vector<double> strength_;  ///< s at the contact points, 0 where the law has none
+  std::vector<ContactSegment<dim>> segments_;
+  std::vector<ContactPoint<dim>> points_;
+  SegmentTables<dim> tables_;  ///< at the contact points
 };
 
 /// Resultants of a contact traction t given at the contact points.
@@ -127,7 +153,7 @@ struct ContactResultants
   double abs_tangential = 0;  ///< integral of |t^t|
 };
 
-/// Over the contact facets with boundary number `tag`, or over all for tag < 0.
+/// Over the segments whose slave has boundary number `tag`, or over all for tag < 0.
 template <int dim>
 [[nodiscard]] ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form,
                                                         std::span<const Point<dim>> t, int tag = -1);

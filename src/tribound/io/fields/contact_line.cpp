@@ -21,11 +21,10 @@ using Chain = std::vector<ChainLink>;
 class FacetGraph
 {
  public:
-  FacetGraph(const contact::NitscheForm<2>& form, int tag)
-      : form_(form), visited_(form.contact_facets().size(), 0)
+  FacetGraph(const contact::NitscheForm<2>& form, int tag) : form_(form), visited_(form.segments().size(), 0)
   {
     for (int k = 0; k < static_cast<int>(visited_.size()); ++k)
-      if (form.contact_facets()[k].facet.tag == tag)
+      if (form.segments()[k].slave.facet.tag == tag)
         for (const Index v : ends(k)) facets_at_[v].push_back(k);
   }
 
@@ -51,7 +50,7 @@ class FacetGraph
   /// The vertices of a facet along its reference coordinate.
   [[nodiscard]] std::array<Index, 2> ends(int facet) const
   {
-    const mesh::BoundaryFacet& f = form_.contact_facets()[facet].facet;
+    const mesh::BoundaryFacet& f = form_.segments()[facet].slave.facet;
     const mesh::Cell<2>& cell = form_.space().mesh().cell(f.cell);
     return {cell[f.local == 0 ? 1 : 0], cell[f.local == 2 ? 1 : 2]};
   }
@@ -64,7 +63,7 @@ class FacetGraph
 
   [[nodiscard]] Index first_vertex(const ChainLink& link) const
   {
-    return ends(link.facet)[link.reversed ? 1 : 0];
+    return ends(link.segment)[link.reversed ? 1 : 0];
   }
 
   /// From a vertex on, through facets not visited so far.
@@ -110,10 +109,7 @@ template <int dim>
 struct Rows
 {
   Rows(const contact::NitscheForm<dim>& f, std::span<const double> displacement, int number)
-      : form(f),
-        u(displacement),
-        level(number),
-        at_rule(fem::tabulate_on_facets<dim>(f.space().basis(), f.facet_rule().points))
+      : form(f), u(displacement), level(number)
   {
     double size = 0;
     for (const Point<dim>& x : f.space().mesh().vertices()) size = std::max(size, x.cwiseAbs().maxCoeff());
@@ -121,12 +117,11 @@ struct Rows
   }
 
   /// `arc` is absent in 3D.
-  void add(CsvTable& table, int facet, int q, const contact::ContactState<dim>& state,
+  void add(CsvTable& table, int segment, int q, const contact::ContactState<dim>& state,
            const double* arc) const
   {
-    const contact::ContactFacet<dim>& contact = form.contact_facets()[facet];
-    table.add(form.problem().boundary(contact.facet.tag).name);
-    table.add(facet);
+    table.add(form.problem().boundary(form.segments()[segment].slave.facet.tag).name);
+    table.add(segment);
     add_point<dim>(table, state.point, round_off);
     add_point<dim>(table, state.normal, relative_round_off);
     if (arc) table.add(*arc);
@@ -136,7 +131,7 @@ struct Rows
     table.add(static_cast<int>(state.status));
     table.add(state.gap);
     add_point<dim>(table, state.slip);
-    table.add(contact.geometry.measure * (dim - 1) * form.facet_rule().weights[q]);
+    table.add(form.contact_points(segment)[q].weight);
     table.add(level);
     table.end_row();
   }
@@ -145,7 +140,6 @@ struct Rows
   const contact::NitscheForm<dim>& form;
   std::span<const double> u;
   int level;
-  fem::FacetTabulation<dim> at_rule;
   double round_off = 0;  ///< of coordinates
 };
 
@@ -158,25 +152,25 @@ void add_chains(CsvTable& table, const Rows<2>& rows, int tag)
 
   for (const ChainLink& link : contact_chains(rows.form, tag))
   {
-    const double length = rows.form.contact_facets()[link.facet].geometry.measure;
-    const auto states = rows.form.contact_states(rows.u, link.facet, rows.at_rule);
+    const double length = rows.form.segments()[link.segment].measure;
+    const auto states = rows.form.contact_states(rows.u, link.segment);
     for (std::size_t i = 0; i < along.size(); ++i)
     {
       const int q = along[link.reversed ? along.size() - 1 - i : i];
       const double s = rule.points[q][0];
       const double arc = link.arc + length * (link.reversed ? 1.0 - s : s);
-      rows.add(table, link.facet, q, states[q], &arc);
+      rows.add(table, link.segment, q, states[q], &arc);
     }
   }
 }
 
 void add_facets(CsvTable& table, const Rows<3>& rows, int tag)
 {
-  const auto facets = rows.form.contact_facets();
-  for (int k = 0; k < static_cast<int>(facets.size()); ++k)
+  const auto segments = rows.form.segments();
+  for (int k = 0; k < static_cast<int>(segments.size()); ++k)
   {
-    if (facets[k].facet.tag != tag) continue;
-    const auto states = rows.form.contact_states(rows.u, k, rows.at_rule);
+    if (segments[k].slave.facet.tag != tag) continue;
+    const auto states = rows.form.contact_states(rows.u, k);
     for (int q = 0; q < static_cast<int>(states.size()); ++q) rows.add(table, k, q, states[q], nullptr);
   }
 }
@@ -191,7 +185,7 @@ std::vector<ChainLink> contact_chains(const contact::NitscheForm<2>& form, int t
     for (ChainLink link : chain)
     {
       link.arc = arc;
-      arc += form.contact_facets()[link.facet].geometry.measure;
+      arc += form.segments()[link.segment].measure;
       links.push_back(link);
     }
   return links;

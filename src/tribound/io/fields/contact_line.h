@@ -13,10 +13,10 @@
 namespace tribound::io
 {
 
-/// A contact facet as a stretch of a chain.
+/// A contact segment as a link of a chain.
 struct ChainLink
 {
-  int facet;      ///< number in NitscheForm::contact_facets()
+  int segment;    ///< number in NitscheForm::segments()
   bool reversed;  ///< whether the chain runs through it against its reference coordinate
   double arc;     ///< arc length at its first end
 };

@@ -1,4 +1,5 @@
 #include "tribound/io/fields/vtu.h"
+#include "tribound/fem/evaluation.h"
 
 #include <fmt/format.h>
 
@@ -184,8 +185,8 @@ TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::L
             const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
             for (int i = 0; i < tabulation->n_points; ++i)
               values[i] = contact::sigma<dim>(
-                  material, contact::gradient_at<dim>(space.cell_nodes(cell), u, tabulation->gradients_at(i),
-                                                      map.inverse_transpose));
+                  material, fem::gradient_at<dim>(space.cell_nodes(cell), u, tabulation->gradients_at(i),
+                                                  map.inverse_transpose));
           }};
 }
 

@@ -72,7 +72,7 @@ void write_level_vtu(const std::filesystem::path& path, int level, const problem
                      std::span<const CellField> cell_fields = {},
                      std::span<const TensorField<dim>> tensors = {});
 
-/// Writes the facets of Gamma_C as curves or triangles of degree p, in the order of form.contact_facets():
+/// Writes the segments of Gamma_C as curves or triangles of degree p, in the order of form.segments():
 /// point data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick,
 /// 2 slip), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary group).
 /// Throws WriteError when the file cannot be written.

@@ -33,7 +33,7 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   {
     RegionFacts& region = regions[mesh.region(c)];
     ++region.cells;
-    region.measure += mesh::cell_map(mesh, c).det / (dim == 2 ? 2.0 : 6.0);
+    region.measure += mesh::cell_map(mesh, c).measure();
   }
   return regions;
 }

@@ -1,0 +1,91 @@
+#pragma once
+
+/// @file segment.h
+/// The contact boundary in segments: parts of a facet of the body with what it may touch there, a rigid
+/// obstacle or one facet of a body. All contact integrals are sums over segments.
+
+#include <optional>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/fem/simplex_parts.h"
+#include "tribound/mesh/geometry.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::contact
+{
+
+/// One side of a segment: a part of a boundary facet, which may be all of it.
+template <int dim>
+struct SegmentSide
+{
+  mesh::BoundaryFacet facet;
+  std::size_t number = 0;  ///< of the facet in Mesh::boundary()
+  /// Corners in the coordinates of the reference facet, whose place in the cell is mesh::facet_to_cell();
+  /// absent: the whole facet. Corner i of the slave lies opposite corner i of the master.
+  std::optional<fem::Part<dim - 1>> part{};
+  /// w n on the slave, -w dM/dS n on the master, n the outward normal of the facet: {sigma} is the sum of
+  /// sigma * stress_direction over the sides.
+  Point<dim> stress_direction = Point<dim>::Zero();
+  double sign = 1;  ///< of v in [v] = v^s - v^m
+
+  /// The point of the reference facet with coordinates s on the segment.
+  [[nodiscard]] Point<dim - 1> on_facet(const Point<dim - 1>& s) const
+  {
+    return part ? fem::point_in<dim - 1>(*part, s) : s;
+  }
+};
+
+/// A part of the contact boundary. With [v] = v^s - v^m o Pi, Pi the affine map onto the master,
+///     P(v) = {sigma(v)} - gamma ([v] - g n);
+/// against a rigid obstacle [v] = v and {sigma} = sigma n.
+template <int dim>
+struct ContactSegment
+{
+  SegmentSide<dim> slave;
+  std::optional<SegmentSide<dim>> master{};  ///< absent: a rigid obstacle
+  /// Unit vector by which normal and tangential parts are taken; by default the slave's outward normal, but
+  /// any serves: with n, P^n and P^t are the parts of P in an orthonormal frame.
+  Point<dim> normal;
+  double measure;  ///< of the part of the slave
+  double h;        ///< the smaller diameter of the facets
+  double gamma;    ///< gamma_0 c, c the harmonic sum of modulus / diameter of the sides
+  const problem::Contact* contact;
+
+  /// |segment| / |reference facet|.
+  [[nodiscard]] double det() const { return mesh::factorial<dim - 1> * measure; }
+  /// Calls visit(side) for the slave, and for the master if there is one.
+  template <typename Visit>
+  void for_each_side(const Visit& visit) const
+  {
+    visit(slave);
+    if (master) visit(*master);
+  }
+  /// Whether it is a whole facet against a rigid obstacle.
+  [[nodiscard]] bool is_obstacle_facet() const { return !master && !slave.part; }
+};
+
+/// A boundary facet, or the part of it with the given corners.
+template <int dim>
+struct FacetPart
+{
+  std::size_t number;  ///< in Mesh::boundary()
+  std::optional<fem::Part<dim - 1>> part{};
+};
+
+/// The segment between a part of the slave and a part of the master, or an obstacle. The sides are weighted
+/// by their stiffness, with M = the penalty modulus of a side, J = dM/dS:
+///     c_s = M_s/h_s,  c_m = J M_m/h_m,  w_s = c_m/(c_s + c_m),  w_m = c_s/(c_s + c_m),
+///     gamma = gamma_0 c_s c_m/(c_s + c_m);  against an obstacle w_s = 1, gamma = gamma_0 c_s.
+template <int dim>
+[[nodiscard]] ContactSegment<dim> make_segment(const problem::Problem<dim>& problem,
+                                               const mesh::Mesh<dim>& mesh, double gamma0,
+                                               const FacetPart<dim>& slave,
+                                               const std::optional<FacetPart<dim>>& master = {});
+
+/// The facets of Gamma_C against rigid obstacles, each a segment.
+template <int dim>
+[[nodiscard]] std::vector<ContactSegment<dim>> obstacle_segments(const problem::Problem<dim>& problem,
+                                                                 const mesh::Mesh<dim>& mesh, double gamma0);
+
+}  // namespace tribound::contact

@@ -1,0 +1,87 @@
+#include "tribound/contact/nitsche/segment_values.h"
+
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/evaluation.h"
+
+namespace tribound::contact
+{
+
+template <int dim>
+SegmentTables<dim>::SegmentTables(const fem::LagrangeBasis<dim>& basis,
+                                  std::span<const ContactSegment<dim>> segments,
+                                  std::span<const Point<dim - 1>> points)
+    : points_(points.begin(), points.end())
+{
+  for (int local = 0; local <= dim; ++local)
+    tables_.push_back(basis.tabulate(fem::points_on_facet<dim>(local, points)));
+  const auto table_of = [&](const SegmentSide<dim>& side)
+  {
+    if (!side.part) return side.facet.local;
+    std::vector<Point<dim - 1>> on_facet;
+    for (const Point<dim - 1>& s : points) on_facet.push_back(side.on_facet(s));
+    tables_.push_back(basis.tabulate(fem::points_on_facet<dim>(side.facet.local, on_facet)));
+    return static_cast<int>(tables_.size()) - 1;
+  };
+  for (const ContactSegment<dim>& segment : segments)
+  {
+    const int slave = table_of(segment.slave);
+    tables_of_.push_back({slave, segment.master ? table_of(*segment.master) : -1});
+  }
+}
+
+template <int dim>
+SegmentValues<dim>::SegmentValues(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                  const ContactSegment<dim>& segment, const SegmentTable<dim>& table)
+    : gamma_(segment.gamma), n_sides_(segment.master ? 2 : 1)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const auto make_side = [&](const SegmentSide<dim>& side, const fem::Tabulation<dim>* tabulation) -> Side
+  {
+    const Index cell = side.facet.cell;
+    return {&side, tabulation, &problem.material(mesh.region(cell)), space.cell_nodes(cell),
+            mesh::cell_map(mesh, cell).inverse_transpose};
+  };
+  sides_[0] = make_side(segment.slave, table.slave);
+  if (segment.master) sides_[1] = make_side(*segment.master, table.master);
+}
+
+template <int dim>
+Point<dim> SegmentValues<dim>::jump(std::span<const double> u, int q) const
+{
+  Point<dim> result = Point<dim>::Zero();
+  for (const Side& side : sides())
+    result += side.side->sign * fem::value_at<dim>(side.nodes, u, side.table->values_at(q));
+  return result;
+}
+
+template <int dim>
+Point<dim> SegmentValues<dim>::augmented_traction(std::span<const double> u, int q) const
+{
+  Point<dim> stress = Point<dim>::Zero();
+  for (const Side& side : sides())
+    stress += sigma<dim>(*side.material, fem::gradient_at<dim>(side.nodes, u, side.table->gradients_at(q),
+                                                               side.inverse_transpose)) *
+              side.side->stress_direction;
+  return stress - gamma_ * jump(u, q);
+}
+
+/// Column b is sigma(phi e_b) m - gamma [phi e_b] = lambda (d_b phi) m + mu m_b grad phi + (mu grad phi . m -
+/// gamma sign phi) e_b.
+template <int dim>
+Tensor<dim> SegmentValues<dim>::augmented_derivative(const Side& side, int i, int q) const
+{
+  const Point<dim>& m = side.side->stress_direction;
+  const Point<dim> gradient = side.inverse_transpose * side.table->gradients_at(q)[i];
+  Tensor<dim> block =
+      side.material->lambda * m * gradient.transpose() + side.material->mu * gradient * m.transpose();
+  block.diagonal().array() +=
+      side.material->mu * gradient.dot(m) - gamma_ * side.side->sign * side.table->values_at(q)[i];
+  return block;
+}
+
+template class SegmentTables<2>;
+template class SegmentTables<3>;
+template class SegmentValues<2>;
+template class SegmentValues<3>;
+
+}  // namespace tribound::contact

@@ -1,0 +1,79 @@
+#pragma once
+
+/// @file segment_values.h
+/// Finite element functions on contact segments: [u], {sigma(u)} and P(u).
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/fem/space.h"
+
+namespace tribound::contact
+{
+
+/// Points of a segment, and the basis functions of the cells of its sides there. A view.
+template <int dim>
+struct SegmentTable
+{
+  std::span<const Point<dim - 1>> points;  ///< coordinates on the segment
+  const fem::Tabulation<dim>* slave = nullptr;
+  const fem::Tabulation<dim>* master = nullptr;  ///< against an obstacle null
+};
+
+/// The basis functions at the same points of each segment. Whole facets share their tables.
+template <int dim>
+class SegmentTables
+{
+ public:
+  SegmentTables(const fem::LagrangeBasis<dim>& basis, std::span<const ContactSegment<dim>> segments,
+                std::span<const Point<dim - 1>> points);
+
+  /// Of segment k; valid as long as this is.
+  [[nodiscard]] SegmentTable<dim> operator[](std::size_t k) const
+  {
+    const auto [slave, master] = tables_of_[k];
+    return {points_, &tables_[slave], master < 0 ? nullptr : &tables_[master]};
+  }
+  [[nodiscard]] std::size_t n_points() const { return points_.size(); }
+
+ private:
+  std::vector<Point<dim - 1>> points_;
+  std::vector<fem::Tabulation<dim>> tables_;   ///< of whole facets first, by their local numbers
+  std::vector<std::array<int, 2>> tables_of_;  ///< of slave and master; -1: there is none
+};
+
+/// Evaluates functions of a space on one segment at the points of its table. Keeps references to all it is
+/// made from.
+template <int dim>
+class SegmentValues
+{
+ public:
+  struct Side
+  {
+    const SegmentSide<dim>* side;
+    const fem::Tabulation<dim>* table;
+    const problem::Material* material;
+    std::span<const Index> nodes;
+    Tensor<dim> inverse_transpose;  ///< J^{-T} of the cell
+  };
+
+  SegmentValues(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                const ContactSegment<dim>& segment, const SegmentTable<dim>& table);
+
+  [[nodiscard]] std::span<const Side> sides() const { return std::span(sides_).first(n_sides_); }
+  /// [u] at point q.
+  [[nodiscard]] Point<dim> jump(std::span<const double> u, int q) const;
+  /// {sigma(u)} - gamma [u] at point q: P(u) without the gap.
+  [[nodiscard]] Point<dim> augmented_traction(std::span<const double> u, int q) const;
+  /// Its derivative by node i of a side: column b belongs to component b.
+  [[nodiscard]] Tensor<dim> augmented_derivative(const Side& side, int i, int q) const;
+
+ private:
+  double gamma_;
+  std::array<Side, 2> sides_;
+  std::size_t n_sides_;
+};
+
+}  // namespace tribound::contact

@@ -1,0 +1,356 @@
+/// @file segment_test.cpp
+/// Contact on segments: two elastic blocks on meshes that match or not, parts of facets, and normals that are
+/// not those of the facets.
+
+#include "tribound/contact/nitsche/segment.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/fields.h"
+#include "support/meshes.h"
+#include "tribound/base/error.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/penalty.h"
+#include "tribound/solve/newton.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+constexpr double distance = 0.1;  ///< between the blocks
+constexpr double gap = 0.01;      ///< the datum
+constexpr double pressed = 0.05;  ///< displacement of the top, downwards
+
+template <int dim>
+mesh::MeshData<dim> blocks(int n_upper, int n_lower)
+{
+  Point<dim> corner = Point<dim>::Ones();
+  corner[0] = 2;
+  Point<dim> low = Point<dim>::Zero();
+  Point<dim> low_top = corner;
+  low[1] = -1 - distance;
+  low_top[1] = -distance;
+  std::array<int, dim> upper;
+  std::array<int, dim> lower;
+  upper.fill(n_upper);
+  lower.fill(n_lower);
+  return side_by_side(box<dim>(Point<dim>::Zero(), corner, upper), box<dim>(low, low_top, lower), "_below");
+}
+
+/// The upper block pressed on the lower one and moved aside by `shift`; u_x = 0 on the ends of both if
+/// `confined`.
+template <int dim>
+problem::Problem<dim> pressed_blocks(const mesh::Mesh<dim>& mesh, const problem::ContactLaw& law,
+                                     double E_below, double shift, bool confined)
+{
+  std::array<std::optional<problem::Field>, dim> top;
+  std::array<std::optional<problem::Field>, dim> floor;
+  top.fill(0.0);
+  floor.fill(0.0);
+  top[0] = shift;
+  top[1] = -pressed;
+  std::vector<problem::BoundaryCondition<dim>> conditions = {
+      problem::with_displacement<dim>("top", top), problem::with_displacement<dim>("bottom_below", floor),
+      problem::with_contact<dim>("bottom", law, gap), problem::with_contact<dim>("top_below", law, gap)};
+  const auto roller = [&](const std::string& name, int component)
+  {
+    std::array<std::optional<problem::Field>, dim> fixed;
+    fixed[component] = 0.0;
+    conditions.push_back(problem::with_displacement<dim>(name, fixed));
+  };
+  for (const char* suffix : {"", "_below"})
+  {
+    if (!confined) continue;
+    roller(std::string("left") + suffix, 0);
+    roller(std::string("right") + suffix, 0);
+    if (dim == 2) continue;
+    roller(std::string("back") + suffix, 2);
+    roller(std::string("front") + suffix, 2);
+  }
+  return problem::Problem<dim>(mesh,
+                               {{.name = "box", .material = problem::lame(1, 0.3)},
+                                {.name = "box_below", .material = problem::lame(E_below, 0.2)}},
+                               conditions);
+}
+
+/// Coordinates on the reference facet of the point above or below x.
+template <int dim>
+Point<dim - 1> coordinates(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, const Point<dim>& x)
+{
+  const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
+  Eigen::Matrix<double, dim, dim - 1> flat = map.jacobian;
+  Point<dim> to_x = x - map.origin;
+  flat.row(1).setZero();
+  to_x[1] = 0;
+  return (flat.transpose() * flat).inverse() * (flat.transpose() * to_x);
+}
+
+/// What two facets have in common, by the corners of the part; in 3D for facets that match only.
+template <int dim>
+std::vector<Point<dim>> common_corners(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& a,
+                                       const mesh::BoundaryFacet& b)
+{
+  const auto x = mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(a.cell), a.local));
+  const auto y = mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(b.cell), b.local));
+  if constexpr (dim == 2)
+  {
+    const auto [x0, x1] = std::minmax(x[0][0], x[1][0]);
+    const auto [y0, y1] = std::minmax(y[0][0], y[1][0]);
+    const double first = std::max(x0, y0);
+    const double last = std::min(x1, y1);
+    if (last - first < 1e-12) return {};
+    return {{first, 0}, {last, 0}};
+  }
+  for (const Point<dim>& corner : x)
+    if (std::ranges::none_of(y, [&](const Point<dim>& other)
+                             { return std::hypot(corner[0] - other[0], corner[2] - other[2]) < 1e-12; }))
+      return {};
+  return {x.begin(), x.end()};
+}
+
+template <int dim>
+fem::Part<dim - 1> part_of(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet,
+                           const std::vector<Point<dim>>& corners)
+{
+  fem::Part<dim - 1> part;
+  for (int i = 0; i < dim; ++i) part[i] = coordinates<dim>(mesh, facet, corners[i]);
+  return part;
+}
+
+/// The overlay of the boundaries named `slave` and `master`.
+template <int dim>
+std::vector<contact::ContactSegment<dim>> overlay(const problem::Problem<dim>& problem,
+                                                  const mesh::Mesh<dim>& mesh, double gamma0,
+                                                  const std::string& slave, const std::string& master)
+{
+  const auto is = [&](const mesh::BoundaryFacet& facet, const std::string& name)
+  { return facet.tag >= 0 && problem.boundary(facet.tag).name == name; };
+  std::vector<contact::ContactSegment<dim>> segments;
+  for (std::size_t s = 0; s < mesh.boundary().size(); ++s)
+    for (std::size_t m = 0; m < mesh.boundary().size(); ++m)
+    {
+      const mesh::BoundaryFacet& a = mesh.boundary()[s];
+      const mesh::BoundaryFacet& b = mesh.boundary()[m];
+      if (!is(a, slave) || !is(b, master)) continue;
+      const std::vector<Point<dim>> corners = common_corners<dim>(mesh, a, b);
+      if (corners.empty()) continue;
+      segments.push_back(
+          contact::make_segment<dim>(problem, mesh, gamma0, {s, part_of<dim>(mesh, a, corners)},
+                                     contact::FacetPart<dim>{m, part_of<dim>(mesh, b, corners)}));
+    }
+  return segments;
+}
+
+struct Setting
+{
+  problem::ContactLaw law = problem::Frictionless();
+  int p = 1;
+  int n_upper = 3;
+  int n_lower = 3;
+  double E_below = 2;
+  double shift = 0;
+  bool confined = false;
+  bool swapped = false;  ///< the lower block is the slave
+};
+
+template <int dim>
+solve::NewtonResult<dim> solve_directly(const contact::NitscheForm<dim>& form)
+{
+  const solve::NewtonResult<dim> newton =
+      solve::solve<dim>(form, {}, {}, {.method = algebra::LinearMethod::direct});
+  EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
+  return newton;
+}
+
+template <int dim>
+struct Blocks
+{
+  explicit Blocks(const Setting& setting)
+      : mesh(blocks<dim>(setting.n_upper, setting.n_lower)),
+        problem(pressed_blocks<dim>(mesh, setting.law, setting.E_below, setting.shift, setting.confined)),
+        space(mesh, setting.p),
+        gamma0(contact::default_gamma0(setting.p)),
+        form(problem, space, gamma0,
+             overlay<dim>(problem, mesh, gamma0, setting.swapped ? "top_below" : "bottom",
+                          setting.swapped ? "bottom" : "top_below"))
+  {
+  }
+
+  [[nodiscard]] solve::NewtonResult<dim> solve() const { return solve_directly(form); }
+
+  mesh::Mesh<dim> mesh;
+  problem::Problem<dim> problem;
+  fem::LagrangeSpace<dim> space;
+  double gamma0;
+  contact::NitscheForm<dim> form;
+};
+
+const std::vector<problem::ContactLaw> laws = {problem::Frictionless(), problem::Tresca(0.005),
+                                               problem::Coulomb(0.3)};
+
+/// In uniaxial strain the stress is constant, through facets that do not match, too.
+template <int dim>
+void expect_constant_pressure(int p, int n_upper, int n_lower, double E_below)
+{
+  const Blocks<dim> c({.p = p, .n_upper = n_upper, .n_lower = n_lower, .E_below = E_below, .confined = true});
+  const auto stiffness = [&](int region)
+  { return c.problem.material(region).lambda + 2 * c.problem.material(region).mu; };
+  const double pressure = (pressed - gap) / (1 / stiffness(0) + 1 / stiffness(1));
+  const solve::NewtonResult<dim> newton = c.solve();
+  for (std::size_t k = 0; k < c.form.segments().size(); ++k)
+    for (const contact::ContactState<dim>& state : c.form.contact_states(newton.u, k))
+    {
+      EXPECT_NEAR(state.pressure, pressure, 1e-11 * pressure);
+      EXPECT_NEAR(state.gap, 0, 1e-12);
+    }
+  const contact::ContactResultants<dim> sum = contact::contact_resultants<dim>(c.form, newton.traction);
+  EXPECT_NEAR(sum.normal, -2 * pressure, 1e-11 * pressure);
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, newton.u, newton.traction);
+  EXPECT_LE(certify::check_identities<dim>(c.form, newton.traction, stress).largest(p), 1e-10);
+}
+
+TEST(ContactSegments, ConstantPressureThroughFacetsThatDoNotMatch)
+{
+  for (const int p : {1, 2, 3})
+    for (const double E_below : {1e-2, 2.0, 1e2})
+    {
+      expect_constant_pressure<2>(p, 4, 3, E_below);
+      expect_constant_pressure<2>(p, 2, 5, E_below);
+    }
+  for (const int p : {1, 2}) expect_constant_pressure<3>(p, 2, 2, 5);
+}
+
+/// The derivative of T(u) in a direction against differences, and the tangent against the derivative.
+template <int dim>
+void expect_tangent(const contact::NitscheForm<dim>& form)
+{
+  const std::vector<double> pushed = interpolate<dim>(
+      form.space(),
+      [](const Point<dim>& x) -> Point<dim>
+      {
+        return x[1] > -distance / 2 ? Point<dim>(0.05 * Point<dim>::Unit(0) - 0.1 * Point<dim>::Unit(1))
+                                    : Point<dim>(Point<dim>::Zero());
+      });
+  const std::vector<double> u = sum(pushed, 1, random_free_vector(form.constraints(), 0.003, 1));
+  const std::vector<double> w = random_free_vector(form.constraints(), 1, 2);
+  constexpr double step = 1e-6;
+  const auto forces = [&](const std::vector<double>& at)
+  {
+    std::vector<double> result(form.space().n_dofs(), 0.0);
+    form.add_contact_load(form.traction(at), result);
+    return free_part(form.constraints(), result);
+  };
+  const std::vector<double> difference = sum(forces(sum(u, step, w)), -1, forces(sum(u, -step, w)));
+  const algebra::Triplets tangent = form.contact_tangent(contact::Linearisation::newton, u);
+  std::vector<double> product(form.space().n_dofs(), 0.0);
+  for (std::size_t i = 0; i < tangent.values.size(); ++i)
+    if (tangent.rows[i] >= 0 && tangent.cols[i] >= 0)
+      product[tangent.rows[i]] += tangent.values[i] * w[tangent.cols[i]];
+  EXPECT_GT(norm(product), 0);
+  EXPECT_LE(norm(sum(product, 1 / (2 * step), difference)), 1e-6 * norm(product));
+}
+
+TEST(ContactSegments, TangentIsTheDerivative)
+{
+  for (const problem::ContactLaw& law : laws)
+  {
+    for (const int p : {1, 3})
+      expect_tangent(Blocks<2>({.law = law, .p = p, .n_upper = 4, .n_lower = 3}).form);
+    expect_tangent(Blocks<3>({.law = law, .p = 2, .n_upper = 1, .n_lower = 1}).form);
+  }
+}
+
+/// Every body is in equilibrium: identities on both sides, and no force is lost between them.
+template <int dim>
+void expect_equilibrium(const Setting& setting)
+{
+  const Blocks<dim> c(setting);
+  const solve::NewtonResult<dim> newton = c.solve();
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, newton.u, newton.traction);
+  const certify::IdentityDefects identities = certify::check_identities<dim>(c.form, newton.traction, stress);
+  EXPECT_LE(identities.largest(setting.p), 1e-10);
+  std::vector<double> forces(c.space.n_dofs(), 0.0);
+  c.form.add_contact_load(newton.traction, forces);
+  Point<dim> sum = Point<dim>::Zero();
+  for (Index node = 0; node < c.space.n_nodes(); ++node) sum += Point<dim>(&forces[dim * node]);
+  EXPECT_GT(norm(forces), 1e-4);
+  EXPECT_LE(sum.norm(), 1e-13 * norm(forces));
+}
+
+TEST(ContactSegments, BothBodiesAreInEquilibrium)
+{
+  for (const problem::ContactLaw& law : laws)
+  {
+    for (const int p : {1, 2, 3})
+      expect_equilibrium<2>({.law = law, .p = p, .n_upper = 4, .n_lower = 3, .shift = 0.02});
+    for (const int p : {1, 2})
+      expect_equilibrium<3>({.law = law, .p = p, .n_upper = 2, .n_lower = 2, .shift = 0.02});
+  }
+}
+
+TEST(ContactSegments, OnAFlatInterfaceEitherSideMayBeTheSlave)
+{
+  for (const problem::ContactLaw& law : laws)
+  {
+    Setting setting{.law = law, .p = 2, .n_upper = 4, .n_lower = 3, .E_below = 30, .shift = 0.02};
+    const std::vector<double> u = Blocks<2>(setting).solve().u;
+    setting.swapped = true;
+    const std::vector<double> of_swapped = Blocks<2>(setting).solve().u;
+    EXPECT_LE(norm(sum(u, -1, of_swapped)), 1e-9 * norm(u));
+  }
+}
+
+TEST(ContactSegments, AStiffMasterIsAnObstacle)
+{
+  const Blocks<2> c(
+      {.law = problem::Coulomb(0.3), .p = 2, .n_upper = 3, .n_lower = 3, .E_below = 1e8, .shift = 0.02});
+  const contact::NitscheForm<2> on_obstacle(
+      c.problem, c.space, c.gamma0,
+      [&]
+      {
+        auto segments = contact::obstacle_segments(c.problem, c.mesh, c.gamma0);
+        std::erase_if(segments, [&](const auto& segment)
+                      { return c.problem.boundary(segment.slave.facet.tag).name == "top_below"; });
+        return segments;
+      }());
+  const auto force = [](const contact::NitscheForm<2>& form)
+  { return contact::contact_resultants<2>(form, solve_directly(form).traction).force; };
+  const Point<2> expected = force(on_obstacle);
+  EXPECT_LE((force(c.form) - expected).norm(), 1e-6 * expected.norm());
+}
+
+/// Normal and tangential parts may be taken by any unit vector.
+TEST(ContactSegments, NormalsNeedNotBeThoseOfTheFacets)
+{
+  const Blocks<2> c({.law = problem::Coulomb(0.3), .p = 2, .n_upper = 4, .n_lower = 3, .shift = 0.02});
+  std::vector<contact::ContactSegment<2>> segments(c.form.segments().begin(), c.form.segments().end());
+  for (auto& segment : segments) segment.normal = Point<2>(0.3, -1).normalized();
+  const contact::NitscheForm<2> form(c.problem, c.space, c.gamma0, std::move(segments));
+  expect_tangent(form);
+  const solve::NewtonResult<2> newton = solve_directly(form);
+  const certify::Stress<2> stress = certify::equilibrate<2>(form, newton.u, newton.traction);
+  EXPECT_LE(certify::check_identities<2>(form, newton.traction, stress).largest(2), 1e-10);
+}
+
+TEST(ContactSegments, NoBoundBetweenBodies)
+{
+  const Blocks<2> c({});
+  EXPECT_THROW(certify::Estimator<2>{c.form}, InputError);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
