@@ -49,10 +49,10 @@ class CellComponents
   CellComponents(const certify::Estimate& estimate, bool regularised)
   {
     add("eta_tot", estimate, [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
-    for (const auto& [name, member] : certify::names_of_components(regularised))
-      if (certify::is_of_cells(member))
-        add(std::string("eta_") + name, estimate,
-            [m = member](const certify::BoundComponents& cell) { return cell.*m; });
+    for (const certify::Component& c : certify::components_of_run(regularised))
+      if (c.is_of_cells())
+        add(std::string("eta_") + c.name, estimate,
+            [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
   }
 
   [[nodiscard]] std::vector<io::CellField> fields() const

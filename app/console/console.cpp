@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
@@ -89,37 +88,21 @@ std::string paragraph(std::string_view caption, std::string_view text)
   return line(caption, wrapped(text, 80 - caption_width));
 }
 
-/// What each component measures, in the order of all_component_names.
-constexpr std::array<std::string_view, certify::all_component_names.size()> component_meaning = {
-    "data oscillation",
-    "stress",
-    "Neumann data",
-    "linearisation, in the body",
-    "contact condition",
-    "friction",
-    "linearisation, normal",
-    "linearisation, tangential",
-    "quadrature of the loads",
-    "regularisation, body",
-    "regularisation, normal",
-    "regularisation, tangential"};
-
 /// Component by component with its share of the sum of squares.
 std::string component_lines(const certify::BoundComponents& components, bool regularised)
 {
   constexpr double round_off = 1e-12;
-  const std::span<const certify::NamedComponent> names = certify::names_of_components(regularised);
+  const std::span<const certify::Component> all = certify::components_of_run(regularised);
   double squares = 0;
-  for (const auto& [name, member] : names) squares += components.*member * components.*member;
+  for (const certify::Component& c : all) squares += components.*c.value * components.*c.value;
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
+  for (const certify::Component& c : all)
   {
-    double value = components.*names[i].second;
+    double value = components.*c.value;
     if (value <= round_off * std::sqrt(squares)) value = 0;
-    if (value == 0 && !certify::is_of_cells(names[i].second)) continue;
+    if (value == 0 && !c.is_of_cells()) continue;
     const double share = squares > 0 ? 100 * value * value / squares : 0;
-    text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", names[i].first, component_meaning[i],
-                                 value, share));
+    text += line("", fmt::format("{:<5}  {:<26}  {:>12.5g}  {:>5.1f} %", c.name, c.meaning, value, share));
   }
   return text;
 }

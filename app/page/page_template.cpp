@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "app/machine.h"
+#include "tribound/certify/bound/components.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 
@@ -62,6 +63,17 @@ std::string machine_json()
                   {"system", machine.system},
                   {"written", date_and_time()}}
       .dump(-1, ' ', false, io::Json::error_handler_t::replace);
+}
+
+std::string components_json(bool regularised)
+{
+  io::Json components = io::Json::array();
+  for (const certify::Component& c : certify::components_of_run(regularised))
+    components.push_back({{"name", c.name},
+                          {"meaning", c.meaning},
+                          {"part", certify::to_string(c.part)},
+                          {"cause", certify::to_string(c.cause)}});
+  return components.dump();
 }
 
 std::string files_json(const std::filesystem::path& directory, std::span<const std::string> names)

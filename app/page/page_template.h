@@ -42,6 +42,9 @@ class PageTemplate
 /// This computer, and when it writes.
 [[nodiscard]] std::string machine_json();
 
+/// What is said of the components of the bound that a run has, plain or regularised.
+[[nodiscard]] std::string components_json(bool regularised);
+
 /// Those of the files that are in the directory, in this order.
 [[nodiscard]] std::string files_json(const std::filesystem::path& directory,
                                      std::span<const std::string> names);

@@ -14,6 +14,7 @@
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/facts_json.h"
+#include "tribound/io/record/tables.h"
 
 namespace tribound::app
 {
@@ -80,8 +81,8 @@ std::string component_members(const Surface& surface, const certify::Estimate& e
                            pack_logarithmic(values, component_bits, component_decades));
   };
   add("tot", [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
-  for (const auto& [name, component] : certify::all_component_names)
-    add(name, [c = component](const certify::BoundComponents& cell) { return cell.*c; });
+  for (const certify::Component& c : certify::all_components)
+    add(c.name, [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
   return members;
 }
 
@@ -256,10 +257,11 @@ void ReportPage::write(const std::filesystem::path& directory, const io::RunReco
   if (template_.empty()) return;
   const std::string contact = levels_.empty() ? "null" : table(read_text(directory / "contact.csv"));
   const std::string head = fmt::format(
-      R"({{"certificate":{},"case":{},"newton":{},"tables":{{"convergence.csv":{},"contact.csv":{}}},"machine":{},)"
+      R"({{"certificate":{},"components":{},"case":{},"newton":{},"tables":{{"convergence.csv":{},"contact.csv":{}}},"machine":{},)"
       R"("files":{},"volume":{},"fields":[)",
-      io::certificate_json(run), case_json(run), nlohmann::json(io::newton_csv(run)).dump(),
-      table(io::convergence_csv(run)), contact, machine_json(), files_json(directory, run_files(run)),
+      io::certificate_json(run), components_json(std::ranges::any_of(run.levels, io::is_regularised)),
+      case_json(run), nlohmann::json(io::newton_csv(run.levels)).dump(),
+      table(io::convergence_csv(run.levels)), contact, machine_json(), files_json(directory, run_files(run)),
       volume_);
   std::vector<std::string_view> json = {head};
   for (const PageLevel& level : levels_)

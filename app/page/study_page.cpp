@@ -46,7 +46,8 @@ void write_study_page(const std::filesystem::path& page_template, const std::fil
 {
   const PageTemplate page(page_template);
   if (page.empty()) return;
-  const std::string json = fmt::format(R"({{"study":{},"machine":{},"files":{}}})", study_json(study),
+  const std::string json = fmt::format(R"({{"study":{},"components":{},"machine":{},"files":{}}})",
+                                       study_json(study), components_json(is_regularised(study)),
                                        machine_json(), files_json(directory, study_files(directory, study)));
   page.write(directory / "report.html", "study-data", std::vector<std::string_view>{json});
 }

@@ -6,9 +6,9 @@
 
 #include "tribound/adapt/rate.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/io/file/csv.h"
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/facts_json.h"
+#include "tribound/io/record/tables.h"
 
 namespace tribound::app
 {
@@ -33,11 +33,6 @@ std::optional<double> bound_of(const StudiedLevel& level)
   return level.record.bound ? std::optional(level.record.bound->total_sharp) : std::nullopt;
 }
 
-std::optional<double> plain_bound_of(const StudiedLevel& level)
-{
-  return level.record.bound ? std::optional(level.record.bound->total) : std::nullopt;
-}
-
 using LevelValue = std::optional<double> (*)(const StudiedLevel&);
 
 /// The quantity at the levels where it is known.
@@ -49,45 +44,25 @@ std::vector<adapt::RatePoint> rate_points(std::span<const StudiedLevel> levels, 
   return points;
 }
 
-/// The columns of a level with its values, in their order: those of study.csv behind `variant`, and the
-/// fields of study.json.
-struct Column
-{
-  const char* name;
-  std::optional<double> value;
-  bool is_count = false;  ///< a whole number
-};
-
-std::vector<Column> columns(const StudyVariant& variant, std::size_t number)
+/// What study.csv, behind `variant`, and study.json say of a level.
+io::TableRow columns(const StudyVariant& variant, std::size_t number, bool regularised)
 {
   const StudiedLevel& level = variant.levels[number];
   const Rates rates = level_rates(variant, number);
-  std::vector<Column> row = {{"level", level.record.level, true},
-                             {"cells", static_cast<double>(level.record.cells), true},
-                             {"dofs", static_cast<double>(level.record.dofs), true},
-                             {"newton_steps", static_cast<double>(io::newton_steps(level.record)), true}};
-  const std::optional<certify::Bound>& bound = level.record.bound;
-  for (const auto& [name, member] : certify::component_names)
-    row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
-  const std::vector<Column> rest = {{"total", plain_bound_of(level)},
-                                    {"total_sharp", bound_of(level)},
-                                    {"relative", io::relative_bound(level.record)},
-                                    {"energy_error", energy_error(level)},
-                                    {"stress_error", stress_error(level)},
-                                    {"dual_norm", level.dual_norm},
-                                    {"effectivity", level.effectivity()},
-                                    {"effectivity_stress", level.stress_effectivity()},
-                                    {"rate_error", rates.error},
-                                    {"rate_bound", rates.bound},
-                                    {"t_solve", level.record.times.solve},
-                                    {"t_certify", level.record.times.certify},
-                                    {"t_level", level.record.times.level}};
-  row.insert(row.end(), rest.begin(), rest.end());
-  if (!io::is_regularised(level.record)) return row;
-  for (const auto& [name, member] : certify::regularisation_names)
-    row.push_back({name, bound ? std::optional(bound->global.*member) : std::nullopt});
-  row.push_back({"delta", io::last_delta(level.record)});
-  row.push_back({"delta_updates", *level.record.delta_updates, true});
+  io::TableRow row = io::level_columns(level.record);
+  const auto append = [&row](const io::TableRow& further)
+  { row.insert(row.end(), further.begin(), further.end()); };
+  append({{"energy_error", energy_error(level)},
+          {"stress_error", stress_error(level)},
+          {"dual_norm", level.dual_norm},
+          {"effectivity", level.effectivity()},
+          {"effectivity_stress", level.stress_effectivity()},
+          {"rate_error", rates.error},
+          {"rate_bound", rates.bound},
+          {"t_solve", level.record.times.solve},
+          {"t_certify", level.record.times.certify},
+          {"t_level", level.record.times.level}});
+  if (regularised) append(io::regularisation_columns(level.record));
   return row;
 }
 
@@ -103,10 +78,7 @@ io::Json json(const StudyVariant& variant)
   io::Json levels = io::Json::array();
   for (std::size_t i = 0; i < variant.levels.size(); ++i)
   {
-    io::Json object;
-    for (const auto& [name, value, is_count] : columns(variant, i))
-      object[name] = is_count ? io::Json(static_cast<long>(*value)) : io::number_or_null(value);
-    levels.push_back(object);
+    levels.push_back(io::row_json(columns(variant, i, io::is_regularised(variant.levels[i].record))));
   }
   const Rates rates = fitted_rates(variant);
   return {{"status", certify::to_string(variant.status)},
@@ -197,6 +169,13 @@ const StudyVariant* find_variant(const Study& study, std::string_view name)
   return found == study.variants.end() ? nullptr : &*found;
 }
 
+bool is_regularised(const Study& study)
+{
+  return std::ranges::any_of(
+      study.variants, [](const StudyVariant& variant)
+      { return std::ranges::any_of(variant.levels, io::is_regularised, &StudiedLevel::record); });
+}
+
 Rates level_rates(const StudyVariant& variant, std::size_t number)
 {
   if (number == 0) return {};
@@ -243,24 +222,18 @@ std::string violation(const Study& study)
 
 std::string study_csv(const Study& study)
 {
-  const auto regularised = [](const StudyVariant& variant)
-  { return std::ranges::any_of(variant.levels, io::is_regularised, &StudiedLevel::record); };
-  io::CsvTable table(
-      "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
-      "relative,"
-      "energy_error,stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,"
-      "t_certify,t_level" +
-      (std::ranges::any_of(study.variants, regularised) ? io::regularisation_columns() + ",delta_updates"
-                                                        : std::string{}));
+  const auto row = [regularised = is_regularised(study)](const StudyVariant& variant, std::size_t number)
+  {
+    io::TableRow cells = columns(variant, number, regularised);
+    cells.insert(cells.begin(), {"variant", variant.name});
+    return cells;
+  };
+  std::vector<io::TableRow> rows;
   for (const StudyVariant& variant : study.variants)
-    for (std::size_t i = 0; i < variant.levels.size(); ++i)
-    {
-      table.add(variant.name);
-      for (const auto& [name, value, is_count] : columns(variant, i))
-        is_count ? table.add(static_cast<long>(*value)) : table.add(value);
-      table.end_row();
-    }
-  return table.text();
+    for (std::size_t i = 0; i < variant.levels.size(); ++i) rows.push_back(row(variant, i));
+  StudyVariant any;
+  any.levels.emplace_back();
+  return io::csv_text(row(any, 0), rows);
 }
 
 std::string study_json(const Study& study)

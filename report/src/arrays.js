@@ -1,4 +1,4 @@
-// The numbers of src/io/packed_array.h.
+// The numbers of app/page/packed_array.h.
 
 /** The bytes of base64 text. */
 function bytesOf(base64) {

@@ -2,14 +2,14 @@
 
 import * as Plot from "@observablehq/plot";
 import { chartStyle, legend, responsive } from "./charts.js";
-import { boundUnit, components, componentsOf, shares } from "./components.js";
+import { boundUnit, shares } from "./components.js";
 import { element, number, percent, section, table } from "./dom.js";
 import { boundFormula, typeset } from "./math.js";
 
 /** The components of the last level with bars. */
-function componentTable(run) {
-  const part = shares(run.components);
-  const all = componentsOf(run).map((component, i) => ({ ...component, share: part[i] }));
+function componentTable(run, components) {
+  const part = shares(components, run.components);
+  const all = components.map((component, i) => ({ ...component, share: part[i] }));
   const isRoundOff = ({ name }) => run.components[name] <= roundOff * run.bound;
   const rows = all.filter((component) => !isRoundOff(component)).map(({ name, meaning, colour, share }) => [
     element("span", { class: "component" }, element("span", { class: "swatch", style: `--colour:${colour}` }), name), meaning,
@@ -24,8 +24,8 @@ function componentTable(run) {
 // Below this part of the bound a component is round-off.
 const roundOff = 1e-9;
 
-function shareChart(levels) {
-  const rows = levels.flatMap((level) => shares(level.components).map((share, i) =>
+function shareChart(levels, components) {
+  const rows = levels.flatMap((level) => shares(components, level.components).map((share, i) =>
     ({ level: level.level, share, name: components[i].name, meaning: components[i].meaning })));
   const present = components.filter(({ name }) => rows.some((row) => row.name === name && row.share > 5e-4));
   return [responsive("Shares of the components of the bound over the levels", (width, onPaper) => Plot.plot({
@@ -41,14 +41,14 @@ function shareChart(levels) {
   }), { name: "shares", rows: () => rows.map(({ level, name, share }) => ({ level, component: name, share })) }), legend(present.map(({ name, colour, meaning }) => ({ name, colour, title: meaning })))];
 }
 
-export function boundSection(run) {
+export function boundSection(run, components) {
   if (run.bound === null || run.bound === undefined) return null;
   const levels = run.levels.filter((level) => level.bound !== null);
   return section("bound", "Bound", "The bound and its causes",
     `The bound is the root of a sum over all cells${run.components.quad > 0 ? " and, as loads jump along curves, quad" : ""}; `
       + "each component measures one cause of the error. Shares are those of the squares, which add up.",
-    boundFormula(run.components),
+    boundFormula(components, run.components),
     element("div", { class: "two-columns" },
-      element("div", {}, componentTable(run)),
-      levels.length > 1 ? element("figure", {}, shareChart(levels), element("figcaption", {}, "Shares over the levels of adaptation.")) : null));
+      element("div", {}, componentTable(run, components)),
+      levels.length > 1 ? element("figure", {}, shareChart(levels, components), element("figcaption", {}, "Shares over the levels of adaptation.")) : null));
 }

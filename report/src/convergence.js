@@ -1,7 +1,6 @@
 // The convergence of a run: the bound, its components, and true errors where they are known.
 
 import { legend, logLogChart, logRange, slope } from "./charts.js";
-import { components } from "./components.js";
 import { element, number, section } from "./dom.js";
 
 // Drawn over the bound, which they may nearly be equal to.
@@ -11,7 +10,7 @@ const trueErrors = [
 ];
 
 /** The curves of levels, relative to the norm of the stress; components that are round-off are left out. */
-export function boundCurves(levels) {
+export function boundCurves(levels, components) {
   const curve = (style, value) => ({ ...style, points: levels
     .map((level) => ({ x: level.dofs, y: value(level) / level.sigma_norm, level: level.level }))
     .filter(({ y }) => y > 0 && Number.isFinite(y)) });
@@ -33,8 +32,8 @@ export function curveLegend(lines, kind) {
 
 export const valuesOf = (lines) => lines.flatMap(({ points }) => points.map(({ y }) => y));
 
-function convergenceChart(run, levels) {
-  const lines = boundCurves(levels);
+function convergenceChart(run, levels, components) {
+  const lines = boundCurves(levels, components);
   const { points } = lines.find(({ isBound }) => isBound);
   const last = points.slice(Math.min(Math.floor(points.length / 2), Math.max(0, points.length - 3)));
   const rate = run.p / run.d;
@@ -49,8 +48,8 @@ function convergenceChart(run, levels) {
       + (isKnown ? "" : " The true error is not known to a single run; tribound study measures it."))));
 }
 
-export function convergenceSection(run) {
+export function convergenceSection(run, components) {
   const levels = run.levels.filter((level) => level.bound > 0 && level.sigma_norm > 0);
   if (levels.length < 2) return null;
-  return section("convergence", "Convergence", "Convergence", null, element("figure", {}, convergenceChart(run, levels)));
+  return section("convergence", "Convergence", "Convergence", null, element("figure", {}, convergenceChart(run, levels, components)));
 }

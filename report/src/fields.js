@@ -2,7 +2,7 @@
 
 import { unpackAll } from "./arrays.js";
 import { bindCamera, Camera } from "./camera.js";
-import { components, statusColours, statusNames } from "./components.js";
+import { statusColours, statusNames } from "./components.js";
 import { Cut } from "./cut.js";
 import { contactDirection, firstDirection, upAxis } from "./directions.js";
 import { count, element, number, section, withoutNoise } from "./dom.js";
@@ -32,8 +32,9 @@ function usualFactor({ largestDisplacement, box }) {
 }
 
 class FieldView {
-  constructor(data) {
+  constructor(data, components) {
     this.data = data;
+    this.components = components;
     this.levels = data.fields;
     const is2d = this.levels.at(-1).dimension === 2;
     this.state = { level: this.levels.length - 1, field: "von_mises", range: null, factor: null, mesh: null, obstacle: is2d, axis: null, place: 0.5, side: 1 };
@@ -119,7 +120,7 @@ class FieldView {
   takeSurface(surface) {
     if (!this.camera) this.prepare(surface);
     this.state.mesh ??= surface.nFaces * 3 * surface.subdivision <= manySegments;
-    this.fields = fieldsOf(surface, components);
+    this.fields = fieldsOf(surface, this.components);
     this.controls.setFields(this.fields);
   }
 
@@ -287,8 +288,8 @@ class FieldView {
   }
 }
 
-export function fieldsSection(data) {
+export function fieldsSection(data, components) {
   if (data.fields.length === 0) return { element: null, start: async () => {} };
-  const view = new FieldView(data);
+  const view = new FieldView(data, components);
   return { element: section("fields", "Fields", "Mesh and fields", null, view.element), start: () => view.start(), view };
 }

@@ -48,14 +48,14 @@ const total = () => sub(i("\u03b7"), element("math:mtext", {}, "tot"));
 const squared = (names) => sup(bracket("(", names.flatMap((name, k) => (k === 0 ? [eta(name)] : [o("+"), eta(name)])), ")"), n(2));
 const display = (...children) => element("math:math", { display: "block" }, ...children);
 
-/** The bound from its components, all but quad sums over the cells T; `components`: those there are. */
-export function boundFormula(components) {
-  const groups = [["osc", "str", "neu", "lin1", "reg1"], ["cnt", "lin2n", "reg2n"], ["frc", "lin2t", "reg2t"]]
-    .map((names) => names.filter((name) => components[name] !== undefined)).filter(({ length }) => length > 0);
-  const sum = groups.flatMap((names, k) => (k === 0 ? [squared(names)] : [o("+"), squared(names)]));
+/** The bound from its components, sums over the cells T but for those of the whole body, which are shown where they have a value. */
+export function boundFormula(components, values) {
+  const namesOf = (part) => components.filter((component) => component.part === part).map(({ name }) => name);
+  const sum = ["body", "normal", "tangential"].flatMap((part, k) => (k === 0 ? [squared(namesOf(part))] : [o("+"), squared(namesOf(part))]));
   const cells = [sumOver("T"), bracket("[", sum, "]")];
-  if (!(components.quad > 0)) return display(sup(total(), n(2)), o("="), ...cells);
-  return display(total(), o("="), element("math:msqrt", {}, ...cells), o("+"), eta("quad"));
+  const whole = namesOf("whole").filter((name) => values[name] > 0);
+  if (whole.length === 0) return display(sup(total(), n(2)), o("="), ...cells);
+  return display(total(), o("="), element("math:msqrt", {}, ...cells), ...whole.flatMap((name) => [o("+"), eta(name)]));
 }
 
 /** What is guaranteed. */

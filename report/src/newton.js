@@ -9,14 +9,20 @@ function newtonRows(text) {
   return rows.map((row) => Object.fromEntries(row.map((cell, i) => [head[i], cell === "" ? null : Number(cell)])));
 }
 
-// A step in 3D whose linearisation part alone is too large has no other components: the bound was not completed.
-const linearisation = (row) => (row.lin1 === null ? null : row.lin1 + row.lin2n + row.lin2t);
-const others = (row) => (row.osc === null ? null : row.osc + row.str + row.neu + row.cnt + row.frc + row.quad + (row.reg1 ?? 0) + (row.reg2n ?? 0) + (row.reg2t ?? 0));
+/**
+ * The sum of the components in a row, or null where one is not known: a step in 3D whose linearisation part alone is too large has
+ * no other components, as the bound was not completed.
+ */
+function sumOf(components, row) {
+  const values = components.map(({ name }) => row?.[name] ?? null);
+  return values.includes(null) ? null : values.reduce((a, b) => a + b, 0);
+}
 
-function stepCells(level, step, row, isFirst) {
-  const sum = row?.lin1 === undefined ? null : linearisation(row);
+function stepCells(level, step, row, components, isFirst) {
+  const isLinearisation = ({ cause }) => cause === "linearisation";
+  const sum = sumOf(components.filter(isLinearisation), row);
   const lin = sum !== null && step.total !== null ? withoutNoise([sum], step.total)[0] : sum;
-  const rest = row?.osc === undefined ? null : others(row);
+  const rest = sumOf(components.filter((component) => !isLinearisation(component)), row);
   const cells = [isFirst ? String(level.level) : "", String(step.step), number(step.residual, 3), number(step.damping, 3),
     number(step.total), number(lin, 3), lin === null || rest === null ? "\u2013" : percent(lin / rest),
     step.linear_iterations === 0 ? "direct" : String(step.linear_iterations), seconds(step.seconds), step.accepted ? "accepted" : ""];
@@ -24,10 +30,10 @@ function stepCells(level, step, row, isFirst) {
   return cells;
 }
 
-export function newtonSection(run, text) {
+export function newtonSection(run, text, components) {
   const rows = newtonRows(text);
   const steps = run.levels.flatMap((level) => level.newton.map((step, i) => stepCells(level, step,
-    rows.find((row) => row.level === level.level && row.step === step.step), i === 0)));
+    rows.find((row) => row.level === level.level && row.step === step.step), components, i === 0)));
   if (steps.length === 0) return null;
   const body = table(["#level", "#step", "#residual", "#damping", "#bound, plain sums", "#linearisation", "#of the rest",
     "#linear iterations", "#time", ""], steps, { class: "newton long" });

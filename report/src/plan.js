@@ -1,6 +1,5 @@
 // The contact boundary in 3D seen from the body, along its mean normal.
 
-import { components } from "./components.js";
 import { element } from "./dom.js";
 import { exportButtons } from "./export.js";
 import { axes } from "./overlay.js";
@@ -47,7 +46,7 @@ export function contactPlan(surface, quantity) {
     viewBox: `0 0 ${size.left + width + 8} ${size.top + height + size.bottom}` });
   const legend = element("div", { class: "view-legend" });
   const draw = () => {
-    const field = fieldsOf(surface, components).find(({ id }) => id === `contact-${quantity.value}`);
+    const field = fieldsOf(surface, []).find(({ id }) => id === `contact-${quantity.value}`);
     const values = field.corners(surface);
     const range = colourRange(surface, field, values);
     const style = getComputedStyle(document.documentElement);

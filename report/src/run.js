@@ -1,6 +1,7 @@
-// The page of a run, with the data of src/io/report_page.cpp.
+// The page of a run, with the data of app/page/report_page.cpp.
 
 import { boundSection } from "./bound.js";
+import { coloured } from "./components.js";
 import { contactSection } from "./contact.js";
 import { convergenceSection } from "./convergence.js";
 import { caseSection, filesSection, guaranteeSection, levelsSection } from "./facts.js";
@@ -13,10 +14,12 @@ export function runPage(data, trueErrors) {
   const { certificate: run, machine } = data;
   for (const { level, ...errors } of trueErrors ?? [])
     Object.assign(run.levels.find((other) => other.level === level) ?? {}, errors);
-  const fields = fieldsSection(data);
+  const components = coloured(data.components);
+  const fields = fieldsSection(data, components);
   const contact = contactSection(data);
   const { element: top, showContact } = header(data);
-  const sections = [fields.element, boundSection(run), convergenceSection(run), contact.element, newtonSection(run, data.newton),
+  const sections = [fields.element, boundSection(run, components), convergenceSection(run, components), contact.element,
+    newtonSection(run, data.newton, components),
     guaranteeSection(run), caseSection(data), levelsSection(data),
     filesSection(trueErrors ? [...data.files, "../report.html"] : data.files, data)].filter(Boolean);
   const start = async () => {

@@ -1,5 +1,6 @@
-// The page of a study, with the data of src/io/study_page.cpp: what adaptation and the stopping criterion bring.
+// The page of a study, with the data of app/page/study_page.cpp: what adaptation and the stopping criterion bring.
 
+import { coloured } from "./components.js";
 import { count, element, fixed, number, percent, section, seconds, table } from "./dom.js";
 import { definitions, filesSection, timesAndMachine } from "./facts.js";
 import { componentsSection, convergenceSection, effectivitySection } from "./study_charts.js";
@@ -65,8 +66,8 @@ function referenceSection(study) {
       ["largest displacement", `${number(reference.max_displacement, 6)} L`]])));
 }
 
-export function studyPage({ study, machine, files }) {
-  const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study), variantsSection(study, files),
+export function studyPage({ study, components, machine, files }) {
+  const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study, coloured(components)), variantsSection(study, files),
     newtonSection(study), referenceSection(study),
     section("times", "Times", "Times and machine", null, timesAndMachine(study.times, machine, study.program)), filesSection(files)].filter(Boolean);
   return { title: `${study.title || study.file}, study`, header: studyHeader(study, machine), sections, start: async () => {}, machine,

@@ -69,9 +69,9 @@ export function effectivitySection(study) {
     panels(quotients.map(({ title, note, lines }) => ({ title, chart: [quotientChart(title, lines, range), element("p", { class: "note" }, note)] }))), variantLegend(study));
 }
 
-export function componentsSection(study) {
+export function componentsSection(study, components) {
   const variants = variantsOf(study).filter(({ key }) => !key.endsWith("_converged"))
-    .map((variant) => ({ name: variant.name, lines: boundCurves(levelsOf(variant)) })).filter(({ lines }) => lines.length > 0);
+    .map((variant) => ({ name: variant.name, lines: boundCurves(levelsOf(variant), components) })).filter(({ lines }) => lines.length > 0);
   if (variants.length === 0) return null;
   const all = variants.flatMap(({ lines }) => lines);
   const range = logRange(valuesOf(all));

@@ -51,6 +51,7 @@
 // The equilibrated stress, its identities, the components of the bound, and what may be claimed.
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/components.h"
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/data_terms.h"
 #include "tribound/certify/bound/estimate.h"
@@ -79,3 +80,4 @@
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/report.h"
+#include "tribound/io/record/tables.h"

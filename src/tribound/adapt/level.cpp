@@ -41,7 +41,8 @@ namespace
 certify::BoundComponents linearisation_part(const certify::BoundComponents& eta)
 {
   certify::BoundComponents part;
-  for (const auto member : certify::linearisation_components) part.*member = eta.*member;
+  for (const certify::Component& c : certify::all_components)
+    if (c.cause == certify::BoundCause::linearisation) part.*c.value = eta.*c.value;
   return part;
 }
 

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tribound/io/record/tables.h"
+
 namespace tribound
 {
 namespace
@@ -57,7 +59,7 @@ io::RunRecord certified_run()
 
 TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
 {
-  EXPECT_THAT(lines(io::convergence_csv(uncertified_run())),
+  EXPECT_THAT(lines(io::convergence_csv(uncertified_run().levels)),
               ::testing::ElementsAre(
                   "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
                   "relative,energy,contact_normal,contact_tangential,t_solve,t_certify,t_level",
@@ -66,13 +68,13 @@ TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
 
 TEST(Report, ConvergenceOfACertifiedRun)
 {
-  EXPECT_EQ(lines(io::convergence_csv(certified_run()))[1],
+  EXPECT_EQ(lines(io::convergence_csv(certified_run().levels))[1],
             "0,16,24,2,1,2,3,4,5,6,7,8,0,20,10,20,0.1,-2,0.25,1.5,0.25,2");
 }
 
 TEST(Report, NewtonTable)
 {
-  EXPECT_THAT(lines(io::newton_csv(certified_run())),
+  EXPECT_THAT(lines(io::newton_csv(certified_run().levels)),
               ::testing::ElementsAre(
                   "level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,accepted",
                   "0,1,0.5,1,,,,,,,,,,,0", "0,2,1e-12,0.5,1,2,3,4,5,6,7,8,0,20,1"));
@@ -82,7 +84,7 @@ TEST(Report, AStepWithoutABoundShowsItsLinearisationError)
 {
   io::RunRecord run = certified_run();
   run.levels[0].newton[0].linearisation = certify::BoundComponents{.lin1 = 3, .lin2n = 2, .lin2t = 1};
-  EXPECT_EQ(lines(io::newton_csv(run))[1], "0,1,0.5,1,,,,3,,,2,1,,,0");
+  EXPECT_EQ(lines(io::newton_csv(run.levels))[1], "0,1,0.5,1,,,,3,,,2,1,,,0");
 }
 
 TEST(Report, TimesOfEveryStage)
@@ -114,12 +116,13 @@ io::RunRecord regularised_run()
 
 TEST(Report, ARegularisedRunHasItsColumnsAtTheEnd)
 {
-  EXPECT_THAT(lines(io::convergence_csv(regularised_run())),
-              ::testing::ElementsAre(
-                  lines(io::convergence_csv(certified_run()))[0] + ",reg1,reg2n,reg2t,delta,delta_updates",
-                  lines(io::convergence_csv(certified_run()))[1] + ",9,10,11,0.125,3"));
-  const std::vector<std::string> plain = lines(io::newton_csv(certified_run()));
-  EXPECT_THAT(lines(io::newton_csv(regularised_run())),
+  EXPECT_THAT(
+      lines(io::convergence_csv(regularised_run().levels)),
+      ::testing::ElementsAre(
+          lines(io::convergence_csv(certified_run().levels))[0] + ",reg1,reg2n,reg2t,delta,delta_updates",
+          lines(io::convergence_csv(certified_run().levels))[1] + ",9,10,11,0.125,3"));
+  const std::vector<std::string> plain = lines(io::newton_csv(certified_run().levels));
+  EXPECT_THAT(lines(io::newton_csv(regularised_run().levels)),
               ::testing::ElementsAre(plain[0] + ",reg1,reg2n,reg2t,delta", plain[1] + ",,,,0",
                                      plain[2] + ",9,10,11,0.125"));
 }

@@ -11,26 +11,6 @@
 namespace tribound::certify
 {
 
-double BoundComponents::body() const
-{
-  return osc + str + neu + lin1 + reg1;
-}
-
-double BoundComponents::contact() const
-{
-  return std::hypot(cnt + lin2n + reg2n, frc + lin2t + reg2t);
-}
-
-double BoundComponents::total() const
-{
-  return std::hypot(body(), cnt + frc + lin2n + lin2t + reg2n + reg2t);
-}
-
-double BoundComponents::total_sharp() const
-{
-  return std::hypot(body(), contact());
-}
-
 namespace
 {
 
@@ -42,11 +22,11 @@ void add_up(Estimate& estimate, double quad)
   BoundComponents& global = estimate.global;
   for (const BoundComponents& cell : estimate.cells)
   {
-    for (const auto& [name, member] : all_component_names) global.*member += std::pow(cell.*member, 2);
+    for (const Component& c : all_components) global.*c.value += std::pow(cell.*c.value, 2);
     total += std::pow(cell.total(), 2);
     total_sharp += std::pow(cell.total_sharp(), 2);
   }
-  for (const auto& [name, member] : all_component_names) global.*member = std::sqrt(global.*member);
+  for (const Component& c : all_components) global.*c.value = std::sqrt(global.*c.value);
   global.quad = quad;
   estimate.total = std::sqrt(total) + quad;
   estimate.total_sharp = std::sqrt(total_sharp) + quad;
@@ -103,7 +83,7 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
     squares.lin2t += facet.lin2t;
   }
   BoundComponents result;
-  for (const auto member : linearisation_components) result.*member = std::sqrt(squares.*member);
+  for (const Component& c : all_components) result.*c.value = std::sqrt(squares.*c.value);
   return result;
 }
 
@@ -182,10 +162,9 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  for (const Index c : touched)
-    for (const auto member : {&BoundComponents::cnt, &BoundComponents::frc, &BoundComponents::lin2n,
-                              &BoundComponents::lin2t, &BoundComponents::reg2n, &BoundComponents::reg2t})
-      result.cells[c].*member = std::sqrt(result.cells[c].*member);
+  for (const Index cell : touched)
+    for (const Component& c : all_components)
+      if (c.is_on_contact()) result.cells[cell].*c.value = std::sqrt(result.cells[cell].*c.value);
 }
 
 template class Estimator<2>;

@@ -1,13 +1,16 @@
 #pragma once
 
 /// @file csv.h
-/// Rows of comma-separated values (RFC 4180).
+/// Tables, and their text: rows of comma-separated values (RFC 4180).
 
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 namespace tribound::io
 {
@@ -66,5 +69,29 @@ class CsvTable
   std::string text_;
   bool row_is_empty_ = true;
 };
+
+/// A cell with the name of its column: a whole number, a number that may be unknown, or a text.
+struct TableCell
+{
+  const char* name;
+  std::variant<long, std::optional<double>, std::string> value;
+};
+
+using TableRow = std::vector<TableCell>;
+
+/// The rows below the names of their columns, which are those of `any`: a table without rows has them, too.
+[[nodiscard]] inline std::string csv_text(const TableRow& any, std::span<const TableRow> rows)
+{
+  std::string names;
+  for (const TableCell& cell : any) names += (names.empty() ? "" : ",") + csv_cell(cell.name);
+  CsvTable table(names);
+  for (const TableRow& row : rows)
+  {
+    for (const TableCell& cell : row)
+      std::visit([&table](const auto& value) { table.add(value); }, cell.value);
+    table.end_row();
+  }
+  return table.text();
+}
 
 }  // namespace tribound::io

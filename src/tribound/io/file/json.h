@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
+
+#include "tribound/io/file/csv.h"
 
 namespace tribound::io
 {
@@ -23,6 +26,20 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] inline Json text_or_null(const std::string& text)
 {
   return text.empty() ? Json(nullptr) : Json(text);
+}
+
+/// The cells of a row by name.
+[[nodiscard]] inline Json row_json(const TableRow& row)
+{
+  struct Value
+  {
+    Json operator()(long number) const { return number; }
+    Json operator()(const std::optional<double>& number) const { return number_or_null(number); }
+    Json operator()(const std::string& text) const { return text; }
+  };
+  Json object = Json::object();
+  for (const TableCell& cell : row) object[cell.name] = std::visit(Value{}, cell.value);
+  return object;
 }
 
 }  // namespace tribound::io

@@ -7,8 +7,8 @@
 
 #include "tribound/doctor/support_facts.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/io/file/csv.h"
 #include "tribound/io/record/facts_json.h"
+#include "tribound/io/record/tables.h"
 
 namespace tribound::io
 {
@@ -23,38 +23,12 @@ std::optional<double> member(const std::optional<certify::Bound>& bound, double 
   return bound ? std::optional((*bound).*value) : std::nullopt;
 }
 
-void add_components(CsvTable& table, std::span<const certify::NamedComponent> names,
-                    const std::optional<certify::Bound>& bound)
-{
-  for (const auto& [name, value] : names)
-    table.add(bound ? std::optional(bound->global.*value) : std::nullopt);
-}
-
-/// Those that are known of a step.
-void add_components(CsvTable& table, const adapt::CertifiedStep& record)
-{
-  for (const auto& [name, value] : certify::component_names)
-    if (record.bound)
-      table.add(record.bound->global.*value);
-    else if (record.linearisation && std::ranges::count(certify::linearisation_components, value) > 0)
-      table.add((*record.linearisation).*value);
-    else
-      table.add(std::optional<double>{});
-}
-
-void add_regularisation(CsvTable& table, const std::optional<certify::Bound>& bound,
-                        std::optional<double> delta)
-{
-  add_components(table, certify::regularisation_names, bound);
-  table.add(delta);
-}
-
 Json json(const std::optional<certify::Bound>& bound, bool regularised)
 {
   if (!bound) return nullptr;
   Json object;
-  for (const auto& [name, value] : certify::names_of_components(regularised))
-    object[name] = bound->global.*value;
+  for (const certify::Component& c : certify::components_of_run(regularised))
+    object[c.name] = bound->global.*c.value;
   return object;
 }
 
@@ -224,13 +198,6 @@ std::optional<double> last_delta(const LevelRecord& level)
   return level.newton.empty() ? std::nullopt : std::optional(level.newton.back().step.delta);
 }
 
-std::string regularisation_columns()
-{
-  std::string columns;
-  for (const auto& [name, value] : certify::regularisation_names) columns += std::string(",") + name;
-  return columns + ",delta";
-}
-
 std::optional<double> relative_bound(const LevelRecord& level)
 {
   if (!level.bound || level.figures.sigma_norm == 0.0) return std::nullopt;
@@ -274,61 +241,6 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   return figures;
 }
 
-std::string convergence_csv(const RunRecord& run)
-{
-  const bool regularised = std::ranges::any_of(run.levels, is_regularised);
-  CsvTable table(
-      "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,relative,"
-      "energy,"
-      "contact_normal,contact_tangential,t_solve,t_certify,t_level" +
-      (regularised ? regularisation_columns() + ",delta_updates" : std::string{}));
-  for (const LevelRecord& level : run.levels)
-  {
-    table.add(level.level);
-    table.add(level.cells);
-    table.add(level.dofs);
-    table.add(newton_steps(level));
-    add_components(table, certify::component_names, level.bound);
-    table.add(member(level.bound, &certify::Bound::total));
-    table.add(member(level.bound, &certify::Bound::total_sharp));
-    table.add(relative_bound(level));
-    table.add(level.figures.energy);
-    table.add(level.figures.contact.normal);
-    table.add(level.figures.contact.tangential);
-    table.add(level.times.solve);
-    table.add(level.times.certify);
-    table.add(level.times.level);
-    if (regularised)
-    {
-      add_regularisation(table, level.bound, last_delta(level));
-      table.add(level.delta_updates.value_or(0));
-    }
-    table.end_row();
-  }
-  return table.text();
-}
-
-std::string newton_csv(const RunRecord& run)
-{
-  const bool regularised = std::ranges::any_of(run.levels, is_regularised);
-  CsvTable table("level,step,residual,damping,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,accepted" +
-                 (regularised ? regularisation_columns() : std::string{}));
-  for (const LevelRecord& level : run.levels)
-    for (const adapt::CertifiedStep& record : level.newton)
-    {
-      table.add(level.level);
-      table.add(record.step.step);
-      table.add(record.step.residual);
-      table.add(record.step.damping);
-      add_components(table, record);
-      table.add(member(record.bound, &certify::Bound::total));
-      table.add(record.accepted ? 1 : 0);
-      if (regularised) add_regularisation(table, record.bound, record.step.delta);
-      table.end_row();
-    }
-  return table.text();
-}
-
 std::string certificate_json(const RunRecord& run)
 {
   Json object{{"schema", certificate_schema},
@@ -365,8 +277,8 @@ std::string certificate_json(const RunRecord& run)
 void write_report(const std::filesystem::path& directory, const RunRecord& run)
 {
   if (!run.effective.text.empty()) write_file(directory / run.case_file, run.effective.text);
-  write_file(directory / "convergence.csv", convergence_csv(run));
-  write_file(directory / "newton.csv", newton_csv(run));
+  write_file(directory / "convergence.csv", convergence_csv(run.levels));
+  write_file(directory / "newton.csv", newton_csv(run.levels));
   write_file(directory / "certificate.json", certificate_json(run));
 }
 

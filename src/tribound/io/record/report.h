@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file report.h
-/// What a run is reported by: convergence.csv, newton.csv, certificate.json. Plain data in, text out; what is
-/// not known is absent, never zero.
+/// What a run is reported by. Plain data in, text out; what is not known is absent, never zero.
 
 #include <filesystem>
 #include <optional>
@@ -109,9 +108,6 @@ struct LevelRecord
 /// delta of T_delta in the last Newton step.
 [[nodiscard]] std::optional<double> last_delta(const LevelRecord& level);
 
-/// What the tables of a regularised run have at the end of their line of column names, the last being delta.
-[[nodiscard]] std::string regularisation_columns();
-
 /// bound / ||sigma(u_h)||, if both are there.
 [[nodiscard]] std::optional<double> relative_bound(const LevelRecord& level);
 
@@ -133,12 +129,6 @@ struct RunRecord
   std::string case_file = "case.toml";                ///< where it is written in the output directory
   std::vector<std::pair<std::string, double>> times;  ///< s per stage of the whole run
 };
-
-/// A row per level; the columns are those of docs/output.md. Unknown cells are empty.
-[[nodiscard]] std::string convergence_csv(const RunRecord& run);
-
-/// A row per Newton step of every level.
-[[nodiscard]] std::string newton_csv(const RunRecord& run);
 
 /// The certificate, JSON with the fields of docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);

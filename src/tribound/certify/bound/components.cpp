@@ -1,0 +1,58 @@
+#include "tribound/certify/bound/components.h"
+
+#include <cmath>
+
+namespace tribound::certify
+{
+
+double BoundComponents::body() const
+{
+  return osc + str + neu + lin1 + reg1;
+}
+
+double BoundComponents::contact() const
+{
+  return std::hypot(cnt + lin2n + reg2n, frc + lin2t + reg2t);
+}
+
+double BoundComponents::total() const
+{
+  return std::hypot(body(), cnt + frc + lin2n + lin2t + reg2n + reg2t);
+}
+
+double BoundComponents::total_sharp() const
+{
+  return std::hypot(body(), contact());
+}
+
+const char* to_string(BoundPart part)
+{
+  switch (part)
+  {
+    case BoundPart::body:
+      return "body";
+    case BoundPart::normal:
+      return "normal";
+    case BoundPart::tangential:
+      return "tangential";
+    case BoundPart::whole:
+      break;
+  }
+  return "whole";
+}
+
+const char* to_string(BoundCause cause)
+{
+  switch (cause)
+  {
+    case BoundCause::discretisation:
+      return "discretisation";
+    case BoundCause::linearisation:
+      return "linearisation";
+    case BoundCause::regularisation:
+      break;
+  }
+  return "regularisation";
+}
+
+}  // namespace tribound::certify

@@ -1,0 +1,112 @@
+#pragma once
+
+/// @file components.h
+/// The components of the bound, method section 5: their values, and the table of what is said of them
+/// wherever they are summed, tabulated or shown.
+
+#include <array>
+#include <span>
+
+namespace tribound::certify
+{
+
+/// Global or cell values of the components; stress units times length^(dim/2).
+struct BoundComponents
+{
+  double osc = 0;    ///< (h_T / pi) ||f - Pi^{p-1} f||
+  double str = 0;    ///< ||sigma_dis - sigma(u)||
+  double neu = 0;    ///< sum over Neumann facets of C_{T,F} ||g_N - Pi^p_F g_N||
+  double lin1 = 0;   ///< ||sigma_lin||
+  double cnt = 0;    ///< (sum h_F ||[P^n]_- - sigma_dis^n||_F^2)^{1/2}
+  double frc = 0;    ///< (sum h_F ||[P^t]_S - sigma_dis^t||_F^2)^{1/2}
+  double lin2n = 0;  ///< (sum h_F ||sigma_lin^n||_F^2)^{1/2}
+  double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
+  double quad =
+      0;  ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
+  double reg1 = 0;   ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
+  double reg2n = 0;  ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
+  double reg2t = 0;  ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
+
+  /// osc + str + neu + lin1 + reg1: what belongs to the body.
+  [[nodiscard]] double body() const;
+  /// ((cnt + lin2n + reg2n)^2 + (frc + lin2t + reg2t)^2)^{1/2}: what belongs to the contact conditions.
+  [[nodiscard]] double contact() const;
+  /// (a^2 + b^2)^{1/2} with a = body() and b = cnt + frc + lin2n + lin2t + reg2n + reg2t [FD24].
+  [[nodiscard]] double total() const;
+  /// The same with b = contact(): normal and tangential part are orthogonal.
+  [[nodiscard]] double total_sharp() const;
+  /// osc + str + neu + cnt + frc + quad: neither Newton's method nor the regularisation.
+  [[nodiscard]] double discretisation() const { return osc + str + neu + cnt + frc + quad; }
+  [[nodiscard]] double linearisation() const { return lin1 + lin2n + lin2t; }
+  [[nodiscard]] double regularisation() const { return reg1 + reg2n + reg2t; }
+};
+
+/// Where a component stands in eta_tot = (sum_T (body^2 + normal^2 + tangential^2))^{1/2} + whole.
+enum class BoundPart
+{
+  body,        ///< of the cells
+  normal,      ///< of the cells on Gamma_C
+  tangential,  ///< of the cells on Gamma_C
+  whole        ///< of no single cell
+};
+
+/// What would have to change for a component to vanish.
+enum class BoundCause
+{
+  discretisation,  ///< the mesh, with the data on it
+  linearisation,   ///< the number of Newton steps
+  regularisation   ///< delta, method section 7
+};
+
+[[nodiscard]] const char* to_string(BoundPart part);
+[[nodiscard]] const char* to_string(BoundCause cause);
+
+/// What is said of a component.
+struct Component
+{
+  const char* name;  ///< in files and tables
+  double BoundComponents::*value;
+  const char* meaning;  ///< what it measures, for people
+  BoundPart part;
+  BoundCause cause;
+
+  [[nodiscard]] constexpr bool is_of_cells() const { return part != BoundPart::whole; }
+  [[nodiscard]] constexpr bool is_on_contact() const
+  {
+    return part == BoundPart::normal || part == BoundPart::tangential;
+  }
+};
+
+/// In the order of all files and tables.
+inline constexpr std::array<Component, 12> all_components = {{
+    {"osc", &BoundComponents::osc, "data oscillation", BoundPart::body, BoundCause::discretisation},
+    {"str", &BoundComponents::str, "stress", BoundPart::body, BoundCause::discretisation},
+    {"neu", &BoundComponents::neu, "Neumann data", BoundPart::body, BoundCause::discretisation},
+    {"lin1", &BoundComponents::lin1, "linearisation, in the body", BoundPart::body,
+     BoundCause::linearisation},
+    {"cnt", &BoundComponents::cnt, "contact condition", BoundPart::normal, BoundCause::discretisation},
+    {"frc", &BoundComponents::frc, "friction", BoundPart::tangential, BoundCause::discretisation},
+    {"lin2n", &BoundComponents::lin2n, "linearisation, normal", BoundPart::normal, BoundCause::linearisation},
+    {"lin2t", &BoundComponents::lin2t, "linearisation, tangential", BoundPart::tangential,
+     BoundCause::linearisation},
+    {"quad", &BoundComponents::quad, "quadrature of the loads", BoundPart::whole, BoundCause::discretisation},
+    {"reg1", &BoundComponents::reg1, "regularisation, body", BoundPart::body, BoundCause::regularisation},
+    {"reg2n", &BoundComponents::reg2n, "regularisation, normal", BoundPart::normal,
+     BoundCause::regularisation},
+    {"reg2t", &BoundComponents::reg2t, "regularisation, tangential", BoundPart::tangential,
+     BoundCause::regularisation},
+}};
+
+/// Those of every run.
+inline constexpr std::span plain_components = std::span(all_components).first<9>();
+
+/// Those that a regularised run has beside them.
+inline constexpr std::span regularisation_components = std::span(all_components).last<3>();
+
+/// Those that a run has.
+[[nodiscard]] constexpr std::span<const Component> components_of_run(bool regularised)
+{
+  return std::span(all_components).first(regularised ? all_components.size() : plain_components.size());
+}
+
+}  // namespace tribound::certify

@@ -1,0 +1,116 @@
+#include "tribound/io/record/tables.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace tribound::io
+{
+
+namespace
+{
+
+std::optional<double> member(const std::optional<certify::Bound>& bound, double certify::Bound::*value)
+{
+  return bound ? std::optional((*bound).*value) : std::nullopt;
+}
+
+void append(TableRow& row, TableRow columns)
+{
+  std::ranges::move(columns, std::back_inserter(row));
+}
+
+TableRow component_columns(std::span<const certify::Component> components,
+                           const std::optional<certify::Bound>& bound)
+{
+  TableRow row;
+  for (const certify::Component& c : components)
+    row.push_back({c.name, bound ? std::optional(bound->global.*c.value) : std::nullopt});
+  return row;
+}
+
+/// Those that are known of a step.
+TableRow component_columns(const adapt::CertifiedStep& record)
+{
+  TableRow row = component_columns(certify::plain_components, record.bound);
+  if (!record.bound && record.linearisation)
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (const certify::Component& c = certify::plain_components[i];
+          c.cause == certify::BoundCause::linearisation)
+        row[i].value = std::optional((*record.linearisation).*c.value);
+  return row;
+}
+
+TableRow newton_row(int level, const adapt::CertifiedStep& record, bool regularised)
+{
+  TableRow row = {{"level", level},
+                  {"step", record.step.step},
+                  {"residual", record.step.residual},
+                  {"damping", record.step.damping}};
+  append(row, component_columns(record));
+  append(row,
+         {{"total", member(record.bound, &certify::Bound::total)}, {"accepted", record.accepted ? 1 : 0}});
+  if (!regularised) return row;
+  append(row, component_columns(certify::regularisation_components, record.bound));
+  row.push_back({"delta", record.step.delta});
+  return row;
+}
+
+TableRow convergence_row(const LevelRecord& level, bool regularised)
+{
+  TableRow row = level_columns(level);
+  append(row, {{"energy", level.figures.energy},
+               {"contact_normal", level.figures.contact.normal},
+               {"contact_tangential", level.figures.contact.tangential},
+               {"t_solve", level.times.solve},
+               {"t_certify", level.times.certify},
+               {"t_level", level.times.level}});
+  if (regularised) append(row, regularisation_columns(level));
+  return row;
+}
+
+}  // namespace
+
+TableRow level_columns(const LevelRecord& level)
+{
+  TableRow row = {{"level", level.level},
+                  {"cells", level.cells},
+                  {"dofs", level.dofs},
+                  {"newton_steps", newton_steps(level)}};
+  append(row, component_columns(certify::plain_components, level.bound));
+  append(row, {{"total", member(level.bound, &certify::Bound::total)},
+               {"total_sharp", member(level.bound, &certify::Bound::total_sharp)},
+               {"relative", relative_bound(level)}});
+  return row;
+}
+
+TableRow regularisation_columns(const LevelRecord& level)
+{
+  TableRow row = component_columns(certify::regularisation_components, level.bound);
+  append(row, {{"delta", last_delta(level)}, {"delta_updates", level.delta_updates.value_or(0)}});
+  return row;
+}
+
+std::string convergence_csv(std::span<const LevelRecord> levels)
+{
+  const bool regularised = std::ranges::any_of(levels, is_regularised);
+  std::vector<TableRow> rows;
+  for (const LevelRecord& level : levels) rows.push_back(convergence_row(level, regularised));
+  return csv_text(convergence_row({}, regularised), rows);
+}
+
+std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels)
+{
+  const bool regularised = std::ranges::any_of(levels, is_regularised);
+  std::vector<TableRow> rows;
+  for (const LevelRecord& level : levels)
+    for (const adapt::CertifiedStep& record : level.newton)
+      rows.push_back(newton_row(level.level, record, regularised));
+  return rows;
+}
+
+std::string newton_csv(std::span<const LevelRecord> levels)
+{
+  return csv_text(newton_row(0, {}, std::ranges::any_of(levels, is_regularised)), newton_rows(levels));
+}
+
+}  // namespace tribound::io

@@ -1,0 +1,29 @@
+#pragma once
+
+/// @file tables.h
+/// What the tables say of a level and of a Newton step: columns with the names of docs/output.md.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/io/file/csv.h"
+#include "tribound/io/record/report.h"
+
+namespace tribound::io
+{
+
+/// Size, Newton steps and bound: what every table of levels begins with.
+[[nodiscard]] TableRow level_columns(const LevelRecord& level);
+
+/// delta and its components: what the tables of a regularised run have at the end.
+[[nodiscard]] TableRow regularisation_columns(const LevelRecord& level);
+
+/// A row per level.
+[[nodiscard]] std::string convergence_csv(std::span<const LevelRecord> levels);
+
+/// A row per Newton step of every level; of a step without a bound it has the components that are known.
+[[nodiscard]] std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels);
+[[nodiscard]] std::string newton_csv(std::span<const LevelRecord> levels);
+
+}  // namespace tribound::io
