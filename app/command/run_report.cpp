@@ -13,7 +13,6 @@
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/case/resolve.h"
-#include "tribound/certify/bound/balance.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/run_warnings.h"
 #include "tribound/doctor/solution_facts.h"
@@ -160,13 +159,7 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   record_.statements = certify::statements(form, config.method.contact_rule);
   record_.statements.assumptions.emplace_back(
       "linear_solver", describe_solver(algebra::choose_method(config.method.solver, dim, space.n_dofs())));
-  record_.times = {{"setup", seconds_since(begin)},
-                   {"solve", 0},
-                   {"certify", 0},
-                   {"bisect", 0},
-                   {"discretise", 0},
-                   {"transfer", 0},
-                   {"output", 0}};
+  record_.setup = seconds_since(begin);
   if (printed_ == Printed::everything) print_header(record_.facts, record_.mesh);
 }
 
@@ -189,23 +182,6 @@ void RunReport<dim>::write_record() const
 {
   io::write_report(output_.directory, record_);
   page_.write(output_.directory, record_);
-}
-
-template <int dim>
-void RunReport<dim>::add_up_times()
-{
-  for (std::size_t i = 1; i < record_.times.size(); ++i) record_.times[i].second = 0;
-  for (const io::LevelRecord& level : record_.levels)
-  {
-    const io::LevelTimes& times = level.times;
-    const std::array of_level = {times.solve,
-                                 times.certify.value_or(0),
-                                 times.refinement.bisect,
-                                 times.refinement.discretise,
-                                 times.refinement.transfer,
-                                 times.output};
-    for (std::size_t i = 0; i < of_level.size(); ++i) record_.times[i + 1].second += of_level[i];
-  }
 }
 
 template <int dim>
@@ -240,43 +216,21 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   const contact::NitscheForm<dim>& form = view.discrete.form;
   const io::LevelTimes before = take_back(view.number);
   const bool again = before.level > 0;
-  io::LevelRecord& level = record_.levels.emplace_back();
-  level.level = view.number;
-  level.cells = view.discrete.mesh.n_cells();
-  level.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
-  level.newton = view.level.steps;
-  level.finishing_steps = view.level.finishing_steps;
-  level.delta_updates = view.level.delta_updates;
-  level.figures = io::solution_figures(form, view.level);
-  level.times.solve = view.level.solve_seconds;
-  level.times.certify = view.level.certify_seconds;
-  if (view.level.solved() && !is_round_off(view.level.estimate, view.level.norms))
-    level.identities = view.level.identities;  // relative to rounding they say nothing
-
   const Clock::time_point before_output = Clock::now();
+  io::LevelRecord& level = record_.levels.emplace_back(io::level_record<dim>(view, moment_about_));
   std::exception_ptr failure;
-  if (view.verdict.status == certify::RunStatus::certified ||
-      view.verdict.status == certify::RunStatus::budget)
-  {
-    level.bound = view.level.estimate;
-    level.balance = certify::balance<dim>(form, view.level.stress, moment_about_);
+  if (level.bound)
     failure = failure_of(
         [&]
         {
           write_fields(view);
           page_.add(view.number, form, view.level);
         });
-  }
-  else  // what violates an identity is no bound, and is not shown as one
-    for (adapt::CertifiedStep& step : level.newton) step.bound = {}, step.linearisation = {};
-  level.times.output = before.output + seconds_since(before_output);
-  level.times.refinement = view.level.refinement;
-  level.times.solve_cpu = view.level.solve_cpu;
-  level.times.certify_cpu = view.level.certify_cpu;
-  level.times.level = before.level + view.seconds + level.times.output - before.output;
+  const double output = seconds_since(before_output);
+  level.times.stages.output = before.stages.output + output;
+  level.times.level += before.level + output;
   const double cpu_now = cpu_seconds();
   level.times.level_cpu = before.level_cpu + cpu_now - std::exchange(cpu_before_, cpu_now);
-  add_up_times();
   update_statements(view);
   record_.status = view.verdict.status;
   record_.reason = view.verdict.reason;

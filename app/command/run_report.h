@@ -70,7 +70,6 @@ class RunReport
   void write_fields(const adapt::LevelView<dim>& view) const;
   /// Removes the record of the level, if it is the last, and returns its times.
   io::LevelTimes take_back(int number);
-  void add_up_times();  ///< of the levels, into those of the run
   /// What the certificate says about the level: its data, and how its systems were solved.
   void update_statements(const adapt::LevelView<dim>& view);
 

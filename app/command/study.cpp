@@ -259,9 +259,7 @@ void StudyCommand<dim>::solve_reference()
   const Clock::time_point begin = Clock::now();
   FinishedRun<dim> finished = adapt_and_report(config, Keep::last);
   study_.times.emplace_back("reference", seconds_since(begin));
-  const bool holds = finished.verdict.status == certify::RunStatus::certified ||
-                     finished.verdict.status == certify::RunStatus::budget;
-  if (stop_ || !holds) return;
+  if (stop_ || !certify::is_bound(finished.verdict.status)) return;
   StudyReference& reference = study_.reference.emplace();
   reference.degree = config.method.degree;
   reference.level = finished.records.back();
@@ -333,12 +331,7 @@ void StudyCommand<dim>::write_page() const
 template <int dim>
 ExitCode StudyCommand<dim>::exit_code() const
 {
-  const bool failed = std::ranges::any_of(study_.variants,
-                                          [](const StudyVariant& variant)
-                                          {
-                                            return variant.status == certify::RunStatus::failed ||
-                                                   variant.status == certify::RunStatus::not_certified;
-                                          });
+  const bool failed = !std::ranges::all_of(study_.variants, certify::is_bound, &StudyVariant::status);
   if (failed || !violation(study_).empty()) return ExitCode::failed;
   const bool reached = !stop_ && std::ranges::all_of(study_.variants,
                                                      [](const StudyVariant& variant) {

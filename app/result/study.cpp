@@ -59,8 +59,8 @@ io::TableRow columns(const StudyVariant& variant, std::size_t number, bool regul
           {"effectivity_stress", level.stress_effectivity()},
           {"rate_error", rates.error},
           {"rate_bound", rates.bound},
-          {"t_solve", level.record.times.solve},
-          {"t_certify", level.record.times.certify},
+          {"t_solve", level.record.times.stages.solve},
+          {"t_certify", level.record.times.stages.certify},
           {"t_level", level.record.times.level}});
   if (regularised) append(io::regularisation_columns(level.record));
   return row;

@@ -79,5 +79,7 @@
 #include "tribound/io/fields/contact_line.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/record/facts.h"
+#include "tribound/io/record/level_record.h"
 #include "tribound/io/record/report.h"
+#include "tribound/io/record/solution_figures.h"
 #include "tribound/io/record/tables.h"

@@ -29,7 +29,7 @@ app::StudiedLevel level(int number, long dofs, int newton_steps)
   result.record.figures.sigma_norm = 2;
   const double size = 1.0 / static_cast<double>(dofs);
   result.record.bound = certify::Bound{{.str = 2 * size}, 4 * size, 3 * size};
-  result.record.times = {.solve = 0.5, .certify = 0.25, .level = 1.0, .refinement = {}};
+  result.record.times = {.stages = {.solve = 0.5, .certify = 0.25}, .level = 1.0};
   result.error = certify::SolutionError{size, 1.5 * size};
   result.dual_norm = 2 * size;
   return result;

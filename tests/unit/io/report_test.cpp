@@ -39,7 +39,7 @@ io::RunRecord uncertified_run()
   level.figures.max_displacement = 1.0 / 3.0;
   level.figures.contact = {"", {0.25, 2.0}, -2.0, 0.25, 0.375};
   level.figures.boundary_contact = {{"bottom", {0.25, 2.0}, -2.0, 0.25, 0.375}};
-  level.times = {.solve = 1.5, .certify = {}, .level = 2.0, .refinement = {}};
+  level.times = {.stages = {.solve = 1.5}, .level = 2.0};
   run.levels = {level};
   return run;
 }
@@ -53,7 +53,7 @@ io::RunRecord certified_run()
   level.bound = certify::Bound{{1, 2, 3, 4, 5, 6, 7, 8}, 20, 10};
   level.identities = certify::IdentityDefects{1e-14, 2e-14, 3e-14, 4e-14, 5e-14};
   level.newton[1].bound = level.bound;
-  level.times.certify = 0.25;
+  level.times.stages.certify = 0.25;
   return run;
 }
 
@@ -63,7 +63,7 @@ TEST(Report, ConvergenceOfAnUncertifiedRunLeavesTheBoundEmpty)
               ::testing::ElementsAre(
                   "level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,"
                   "relative,energy,contact_normal,contact_tangential,t_solve,t_certify,t_level",
-                  "0,16,24,2,,,,,,,,,,,,,0.1,-2,0.25,1.5,,2"));
+                  "0,16,24,2,,,,,,,,,,,,,0.1,-2,0.25,1.5,0,2"));
 }
 
 TEST(Report, ConvergenceOfACertifiedRun)
@@ -90,8 +90,10 @@ TEST(Report, AStepWithoutABoundShowsItsLinearisationError)
 TEST(Report, TimesOfEveryStage)
 {
   io::RunRecord run = certified_run();
-  run.levels[0].times.refinement = {0.5, 0.25, 0.125};
-  run.levels[0].times.output = 0.0625;
+  run.levels[0].times.stages.bisect = 0.5;
+  run.levels[0].times.stages.discretise = 0.25;
+  run.levels[0].times.stages.transfer = 0.125;
+  run.levels[0].times.stages.output = 0.0625;
   run.levels[0].times.solve_cpu = 1.75;
   run.levels[0].times.certify_cpu = 0.75;
   run.levels[0].times.level_cpu = 3.0;

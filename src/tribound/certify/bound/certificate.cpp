@@ -32,6 +32,11 @@ const char* to_string(RunStatus status)
   return "uncertified";
 }
 
+bool is_bound(RunStatus status)
+{
+  return status == RunStatus::certified || status == RunStatus::budget;
+}
+
 bool is_round_off(const Bound& bound, const contact::StressNorms& norms)
 {
   return bound.total_sharp <= norms.round_off && norms.sigma <= norms.round_off;

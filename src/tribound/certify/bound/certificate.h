@@ -27,6 +27,9 @@ enum class RunStatus
 
 [[nodiscard]] const char* to_string(RunStatus status);
 
+/// Whether the numbers are a bound, be it above the tolerance.
+[[nodiscard]] bool is_bound(RunStatus status);
+
 /// Above this, relative to ||sigma_h||, an identity counts as violated.
 inline constexpr double identity_limit = 1e-8;
 

@@ -1,11 +1,5 @@
 #include "tribound/io/record/report.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "tribound/doctor/support_facts.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/facts_json.h"
 #include "tribound/io/record/tables.h"
@@ -100,6 +94,23 @@ void add_results(Json& object, const LevelRecord& level)
   object["contact"] = contact;
 }
 
+Json json(const StageTimes& times)
+{
+  Json object;
+  for (const auto& [name, seconds] : stages) object[name] = times.*seconds;
+  return object;
+}
+
+/// Before the first level, and the stages of all levels.
+Json times_json(const RunRecord& run)
+{
+  StageTimes sum;
+  for (const LevelRecord& level : run.levels) sum += level.times.stages;
+  Json object{{"setup", run.setup}};
+  object.update(json(sum));
+  return object;
+}
+
 Json json(const LevelRecord& level)
 {
   Json object{{"level", level.level}};
@@ -108,16 +119,11 @@ Json json(const LevelRecord& level)
   object["newton"] = Json::array();
   for (const adapt::CertifiedStep& record : level.newton)
     object["newton"].push_back(json(record, is_regularised(level)));
-  object["times"] = {{"solve", level.times.solve},
-                     {"certify", number_or_null(level.times.certify)},
-                     {"bisect", level.times.refinement.bisect},
-                     {"discretise", level.times.refinement.discretise},
-                     {"transfer", level.times.refinement.transfer},
-                     {"output", level.times.output},
-                     {"level", level.times.level},
-                     {"solve_cpu", level.times.solve_cpu},
-                     {"certify_cpu", level.times.certify_cpu},
-                     {"level_cpu", level.times.level_cpu}};
+  object["times"] = json(level.times.stages);
+  object["times"].update({{"level", level.times.level},
+                          {"solve_cpu", level.times.solve_cpu},
+                          {"certify_cpu", level.times.certify_cpu},
+                          {"level_cpu", level.times.level_cpu}});
   return object;
 }
 
@@ -137,109 +143,7 @@ Json json(const std::vector<std::pair<std::string, Value>>& named)
   return object;
 }
 
-/// The resultants of T(u) and of t^k on the boundary group `tag`, or on all of Gamma_C for tag < 0.
-template <int dim>
-Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
-                      std::span<const Point<dim>> running, int tag = -1)
-{
-  constexpr double round_off = 1e-12;  // of sums over many points
-  const contact::ContactResultants<dim> r = contact::contact_resultants(form, of_u, tag);
-  const contact::ContactResultants<dim> in_equilibrium = contact::contact_resultants(form, running, tag);
-  Resultants result;
-  result.resolution = (r.force - in_equilibrium.force).norm() + std::abs(r.normal - in_equilibrium.normal) +
-                      std::abs(r.tangential - in_equilibrium.tangential) +
-                      round_off * (std::abs(r.normal) + r.abs_tangential);
-  const auto known = [&](double value) { return known_digits(value, result.resolution); };
-  for (const double component : r.force) result.force.push_back(known(component));
-  result.normal = known(r.normal);
-  result.tangential = known(r.tangential);
-  result.abs_tangential = known(r.abs_tangential);
-  return result;
-}
-
 }  // namespace
-
-double known_digits(double value, double resolution)
-{
-  constexpr int all_digits = 16;
-  if (std::abs(value) <= resolution) return 0;
-  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(resolution));
-  if (!(digits < all_digits)) return value;
-  return std::stod(fmt::format("{:.{}e}", value, static_cast<int>(digits)));
-}
-
-std::optional<Sliding> sliding(const Resultants& resultants)
-{
-  const double N = -resultants.normal;
-  const double H = std::abs(resultants.tangential);
-  const double resolution = resultants.resolution;
-  if (!resultants.coefficient || N <= resolution) return std::nullopt;
-  const double mu_F = *resultants.coefficient;
-  const double ratio = H / N;
-  constexpr double round_off = 1e-10;
-  Sliding result{mu_F, known_digits(ratio, (1 + ratio) * resolution / N), {}};
-  if (H > std::max(resolution, round_off * N))
-    result.safety_factor = known_digits(mu_F / ratio, mu_F / ratio * (1 + 1 / ratio) * resolution / N);
-  return result;
-}
-
-int newton_steps(const LevelRecord& level)
-{
-  return static_cast<int>(level.newton.size()) - level.finishing_steps;
-}
-
-bool is_regularised(const LevelRecord& level)
-{
-  return level.delta_updates.has_value();
-}
-
-std::optional<double> last_delta(const LevelRecord& level)
-{
-  return level.newton.empty() ? std::nullopt : std::optional(level.newton.back().step.delta);
-}
-
-std::optional<double> relative_bound(const LevelRecord& level)
-{
-  if (!level.bound || level.figures.sigma_norm == 0.0) return std::nullopt;
-  return level.bound->total_sharp / level.figures.sigma_norm;
-}
-
-bool is_round_off(const LevelRecord& level)
-{
-  const contact::StressNorms norms{.sigma = level.figures.sigma_norm, .round_off = level.figures.round_off};
-  return level.bound && certify::is_round_off(*level.bound, norms);
-}
-
-template <int dim>
-SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
-                                 const adapt::CertifiedLevel<dim>& level)
-{
-  SolutionFigures figures;
-  figures.round_off = level.norms.round_off;
-  if (!level.solved() || !is_round_off(level.estimate, level.norms))
-  {
-    figures.energy = level.norms.energy;
-    figures.sigma_norm = level.norms.sigma;
-  }
-  for (std::size_t node = 0; node < level.u.size(); node += dim)
-    figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
-  const std::vector<Point<dim>> t = form.traction(level.u);
-  figures.contact = resultants<dim>(form, t, level.traction);
-  const auto boundaries = form.problem().boundaries();
-  const std::vector<bool> slides = doctor::slides_as_a_whole(form);
-  for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-  {
-    if (!boundaries[tag].contact) continue;
-    Resultants part = resultants<dim>(form, t, level.traction, tag);
-    part.boundary = boundaries[tag].name;
-    const problem::FrictionCone friction = cone(boundaries[tag].contact->law);
-    const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
-    if (coefficient_alone && slides[tag] && adapt::bound_holds(level, form.space().degree()))
-      part.coefficient = friction.coefficient;
-    figures.boundary_contact.push_back(std::move(part));
-  }
-  return figures;
-}
 
 std::string certificate_json(const RunRecord& run)
 {
@@ -269,7 +173,7 @@ std::string certificate_json(const RunRecord& run)
   object["mesh"] = mesh_json(run.mesh);
   object["levels"] = Json::array();
   for (const LevelRecord& level : run.levels) object["levels"].push_back(json(level));
-  object["times"] = json(run.times);
+  object["times"] = times_json(run);
   // Names from a file need not be UTF-8.
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -281,8 +185,5 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   write_file(directory / "newton.csv", newton_csv(run.levels));
   write_file(directory / "certificate.json", certificate_json(run));
 }
-
-template SolutionFigures solution_figures(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
-template SolutionFigures solution_figures(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
 
 }  // namespace tribound::io

@@ -61,8 +61,8 @@ TableRow convergence_row(const LevelRecord& level, bool regularised)
   append(row, {{"energy", level.figures.energy},
                {"contact_normal", level.figures.contact.normal},
                {"contact_tangential", level.figures.contact.tangential},
-               {"t_solve", level.times.solve},
-               {"t_certify", level.times.certify},
+               {"t_solve", level.times.stages.solve},
+               {"t_certify", level.times.stages.certify},
                {"t_level", level.times.level}});
   if (regularised) append(row, regularisation_columns(level));
   return row;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tribound/io/file/csv.h"
-#include "tribound/io/record/report.h"
+#include "tribound/io/record/level_record.h"
 
 namespace tribound::io
 {

@@ -1,0 +1,75 @@
+#include "tribound/io/record/level_record.h"
+
+namespace tribound::io
+{
+
+StageTimes& StageTimes::operator+=(const StageTimes& other)
+{
+  for (const auto& [name, seconds] : stages) this->*seconds += other.*seconds;
+  return *this;
+}
+
+template <int dim>
+LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about)
+{
+  const contact::NitscheForm<dim>& form = view.discrete.form;
+  const adapt::CertifiedLevel<dim>& level = view.level;
+  LevelRecord record;
+  record.level = view.number;
+  record.cells = view.discrete.mesh.n_cells();
+  record.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
+  record.newton = level.steps;
+  record.finishing_steps = level.finishing_steps;
+  record.delta_updates = level.delta_updates;
+  record.figures = solution_figures(form, level);
+  if (level.solved() && !certify::is_round_off(level.estimate, level.norms))
+    record.identities = level.identities;  // relative to rounding they say nothing
+  if (certify::is_bound(view.verdict.status))
+  {
+    record.bound = level.estimate;
+    record.balance = certify::balance<dim>(form, level.stress, moment_about);
+  }
+  else  // what violates an identity is no bound, and is not shown as one
+    for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};
+  record.times = {.stages = {.solve = level.solve_seconds,
+                             .certify = level.certify_seconds,
+                             .bisect = level.refinement.bisect,
+                             .discretise = level.refinement.discretise,
+                             .transfer = level.refinement.transfer},
+                  .level = view.seconds,
+                  .solve_cpu = level.solve_cpu,
+                  .certify_cpu = level.certify_cpu};
+  return record;
+}
+
+int newton_steps(const LevelRecord& level)
+{
+  return static_cast<int>(level.newton.size()) - level.finishing_steps;
+}
+
+bool is_regularised(const LevelRecord& level)
+{
+  return level.delta_updates.has_value();
+}
+
+std::optional<double> last_delta(const LevelRecord& level)
+{
+  return level.newton.empty() ? std::nullopt : std::optional(level.newton.back().step.delta);
+}
+
+std::optional<double> relative_bound(const LevelRecord& level)
+{
+  if (!level.bound || level.figures.sigma_norm == 0.0) return std::nullopt;
+  return level.bound->total_sharp / level.figures.sigma_norm;
+}
+
+bool is_round_off(const LevelRecord& level)
+{
+  const contact::StressNorms norms{.sigma = level.figures.sigma_norm, .round_off = level.figures.round_off};
+  return level.bound && certify::is_round_off(*level.bound, norms);
+}
+
+template LevelRecord level_record(const adapt::LevelView<2>&, const Point<2>&);
+template LevelRecord level_record(const adapt::LevelView<3>&, const Point<3>&);
+
+}  // namespace tribound::io

@@ -1,0 +1,85 @@
+#pragma once
+
+/// @file level_record.h
+/// What is written of a level, as plain data; what is not known is absent, never zero.
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tribound/adapt/loop.h"
+#include "tribound/certify/bound/balance.h"
+#include "tribound/certify/bound/certificate.h"
+#include "tribound/io/record/solution_figures.h"
+
+namespace tribound::io
+{
+
+/// Wall time of the stages of a level, or of all levels of a run; s.
+struct StageTimes
+{
+  double solve = 0.0;
+  double certify = 0.0;
+  double bisect = 0.0;      ///< this and the next two: of what led to the mesh, 0 for the first
+  double discretise = 0.0;  ///< space, load and contact points
+  double transfer = 0.0;    ///< the solution carried over
+  double output = 0.0;
+
+  StageTimes& operator+=(const StageTimes& other);
+};
+
+/// In the order of all files.
+inline constexpr std::array<std::pair<const char*, double StageTimes::*>, 6> stages = {
+    {{"solve", &StageTimes::solve},
+     {"certify", &StageTimes::certify},
+     {"bisect", &StageTimes::bisect},
+     {"discretise", &StageTimes::discretise},
+     {"transfer", &StageTimes::transfer},
+     {"output", &StageTimes::output}}};
+
+struct LevelTimes
+{
+  StageTimes stages;
+  double level = 0.0;      ///< wall time of everything, output included; s
+  double solve_cpu = 0.0;  ///< CPU time, all threads; s
+  double certify_cpu = 0.0;
+  double level_cpu = 0.0;
+};
+
+struct LevelRecord
+{
+  int level = 0;
+  long cells = 0;
+  long dofs = 0;  ///< free ones
+  std::vector<adapt::CertifiedStep> newton;
+  int finishing_steps = 0;           ///< the last of them, with which Newton's method has converged fully
+  std::optional<int> delta_updates;  ///< of the regularised variant; absent in the plain method
+  SolutionFigures figures;
+  std::optional<certify::Bound> bound;
+  std::optional<certify::IdentityDefects> identities;
+  std::optional<certify::Balance> balance;  ///< where there is a bound
+  LevelTimes times;
+};
+
+/// The record of a level that the loop tells of, moments about the given point. Where the verdict says that
+/// there is no bound, it shows none of any step. Of the times it lacks the output, and level_cpu.
+template <int dim>
+[[nodiscard]] LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about);
+
+/// Whether it is one of the regularised variant, method section 7.
+[[nodiscard]] bool is_regularised(const LevelRecord& level);
+
+/// Newton steps until the stopping criterion held, without those that finish the last level.
+[[nodiscard]] int newton_steps(const LevelRecord& level);
+
+/// delta of T_delta in the last Newton step.
+[[nodiscard]] std::optional<double> last_delta(const LevelRecord& level);
+
+/// bound / ||sigma(u_h)||, if both are there.
+[[nodiscard]] std::optional<double> relative_bound(const LevelRecord& level);
+
+/// Whether the stress is zero as far as rounding lets it be known, and so is the bound.
+[[nodiscard]] bool is_round_off(const LevelRecord& level);
+
+}  // namespace tribound::io
