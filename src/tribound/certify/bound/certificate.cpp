@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "tribound/certify/bound/constants.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
@@ -208,7 +208,6 @@ template <int dim>
 Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                       const std::optional<FriedrichsConstant>& friedrichs)
 {
-  constexpr double pi = std::numbers::pi;
   Statements result;
   result.covered = {
       "the dual norm of the residual of the computed displacement: the largest <R(u_h), v> over all v in "
@@ -218,8 +217,8 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       "the errors of discretisation, of the data, of the contact and friction conditions, and of stopping "
       "Newton's method"};
   result.law = describe_law(form.problem());
-  result.constants = {{"poincare", 1 / pi},
-                      {"trace_squared", 1 / (pi * pi) + 2 / (dim * pi)},
+  result.constants = {{"poincare", poincare_constant(1)},
+                      {"trace_squared", trace_constant_squared<dim>()},
                       {"identity_limit", identity_limit}};
   if (friedrichs) result.constants.emplace_back("friedrichs", friedrichs->value);
 

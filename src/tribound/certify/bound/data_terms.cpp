@@ -1,23 +1,11 @@
 #include "tribound/certify/bound/data_terms.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "tribound/certify/bound/constants.h"
 
 namespace tribound::certify
 {
-
-namespace
-{
-
-/// C_{T,F} = h_T (|F|/|T| (1/pi^2 + 2/(d pi)))^{1/2}.
-template <int dim>
-double trace_constant(double h, double facet_measure, double volume)
-{
-  constexpr double pi = std::numbers::pi;
-  return h * std::sqrt(facet_measure / volume * (1 / (pi * pi) + 2 / (dim * pi)));
-}
-
-}  // namespace
 
 /// A mean value m of the error of g_N on F goes into the cell: with div((x - P) v) = d v + (x - P) . grad v,
 /// P the vertex opposite to F, (m, v)_F = |F|/|T| (m, v + (x - P) . grad v / d)_T, the first term like that
@@ -33,7 +21,7 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form)
   {
     const auto [oscillation, mean] = data.body_remainder(c);
     missed[c] = mean;
-    if (oscillation > 0) terms.osc[c] = mesh::cell_diameter(mesh, c) / std::numbers::pi * oscillation;
+    if (oscillation > 0) terms.osc[c] = poincare_constant(mesh::cell_diameter(mesh, c)) * oscillation;
   }
   for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {

@@ -1,0 +1,35 @@
+#pragma once
+
+/// @file constants.h
+/// The constants of the inequalities on a simplex T of diameter h_T that the bound rests on, method
+/// section 5.
+
+#include <cmath>
+#include <numbers>
+
+namespace tribound::certify
+{
+
+/// h_T / pi: ||v - mean_T(v)||_T <= h_T / pi ||grad v||_T, T being convex.
+[[nodiscard]] inline double poincare_constant(double h)
+{
+  return h / std::numbers::pi;
+}
+
+/// C_{T,F}^2 for h_T = 1 and |F| = |T|: 1/pi^2 + 2/(d pi).
+template <int dim>
+[[nodiscard]] constexpr double trace_constant_squared()
+{
+  constexpr double pi = std::numbers::pi;
+  return 1 / (pi * pi) + 2 / (dim * pi);
+}
+
+/// C_{T,F} = h_T (|F|/|T| (1/pi^2 + 2/(d pi)))^{1/2}: ||v - mean_F(v)||_F <= C_{T,F} ||grad v||_T on a facet
+/// F of T, |F| = `measure` and |T| = `volume`.
+template <int dim>
+[[nodiscard]] double trace_constant(double h, double measure, double volume)
+{
+  return h * std::sqrt(measure / volume * trace_constant_squared<dim>());
+}
+
+}  // namespace tribound::certify
