@@ -28,20 +28,20 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method);
   const std::atomic<bool>& stop = stop_on_signals();
   if (stop) throw SolveError("interrupted before anything was solved; nothing is written");
-  RunReport<dim> report(config, problem, *first, begin,
+  adapt::Levels<dim> levels(problem, config.method, config.adapt.tolerance, std::move(first), &stop);
+  RunReport<dim> report(config, problem, levels.discrete(), begin,
                         progress.quiet() ? Printed::verdict : Printed::everything);
-  const adapt::LoopObserver<dim> observer = {
-      [&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
-      [&](const adapt::LevelView<dim>& view)
-      {
-        report.add(view);
-        const std::string forecast = forecast_text(report.record(), config.adapt.max_dofs);
-        if (!forecast.empty()) progress.stage(forecast);
-      }};
+  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
+  strategy.observer = {[&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
+                       [&](const adapt::LevelView<dim>& view)
+                       {
+                         report.add(view);
+                         const std::string forecast = forecast_text(report.record(), config.adapt.max_dofs);
+                         if (!forecast.empty()) progress.stage(forecast);
+                       }};
   try
   {
-    return report.close(
-        adapt::adapt<dim>(problem, config.method, config.adapt, std::move(first), observer, stop));
+    return report.close(adapt::adapt(levels, strategy));
   }
   catch (const SolveError& error)
   {

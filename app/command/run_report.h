@@ -50,7 +50,7 @@ class RunReport
 {
  public:
   /// On the first mesh; the run began at `begin`. Removes what an earlier run has left in the directory, the
-  /// certificate first. Throws InputError for a body that can move rigidly, and where nothing can be written.
+  /// certificate first. Throws InputError where nothing can be written.
   RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
             const adapt::Discretisation<dim>& first, Clock::time_point begin,
             Printed printed = Printed::everything);

@@ -183,21 +183,20 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
   // Bisected nowhere, the mesh is copied.
   auto first = std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_,
                                                             config.method);
-  RunReport<dim> report(config, problem_, *first, Clock::now(), Printed::levels);
-  const adapt::LoopObserver<dim> observer = {[&](const adapt::CertifiedStep& step)
-                                             { progress_(step.step, step.relative); },
-                                             [&](const adapt::LevelView<dim>& view)
-                                             {
-                                               report.add(view);
-                                               if (keep == Keep::last) finished.levels.clear();
-                                               finished.levels.push_back({view.owner, view.level});
-                                               if (!config.output.vtu)
-                                                 finished.levels.back().level.stress = {};
-                                             }};
+  adapt::Levels<dim> levels(problem_, config.method, config.adapt.tolerance, std::move(first), &stop_);
+  RunReport<dim> report(config, problem_, levels.discrete(), Clock::now(), Printed::levels);
+  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop_);
+  strategy.observer = {[&](const adapt::CertifiedStep& step) { progress_(step.step, step.relative); },
+                       [&](const adapt::LevelView<dim>& view)
+                       {
+                         report.add(view);
+                         if (keep == Keep::last) finished.levels.clear();
+                         finished.levels.push_back({view.owner, view.level});
+                         if (!config.output.vtu) finished.levels.back().level.stress = {};
+                       }};
   try
   {
-    finished.verdict =
-        adapt::adapt<dim>(problem_, config.method, config.adapt, std::move(first), observer, stop_);
+    finished.verdict = adapt::adapt(levels, strategy);
     if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
       finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
     (void)report.close(finished.verdict);

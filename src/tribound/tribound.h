@@ -5,6 +5,7 @@
 /// are the parts of these parts.
 
 // The problem: what the case file says, and what holds where.
+#include "tribound/adapt/levels.h"
 #include "tribound/base/apart.h"
 #include "tribound/base/error.h"
 #include "tribound/base/types.h"

@@ -9,8 +9,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "tribound/adapt/level.h"
+#include "tribound/adapt/levels.h"
 #include "tribound/adapt/mark.h"
 #include "tribound/certify/bound/certificate.h"
 
@@ -29,26 +30,32 @@ struct AdaptOptions
   std::optional<double> max_memory{};  ///< GB (1e9 bytes); nine tenths of the machine's where absent
 };
 
-/// A level that is complete.
-template <int dim>
-struct LevelView
-{
-  int number;  ///< from 0, the given mesh
-  const Discretisation<dim>& discrete;
-  const CertifiedLevel<dim>& level;
-  const certify::Verdict& verdict;                   ///< what holds after it
-  double seconds;                                    ///< wall time of the level, refinement included
-  std::shared_ptr<const Discretisation<dim>> owner;  ///< of `discrete`, for those who keep it
-};
-
-/// What the loop tells while it runs.
+/// What the loop tells while it runs; functions that are empty are not called.
 template <int dim>
 struct LoopObserver
 {
-  StepObserver step;
+  StepObserver step{};
   /// Of the last level a second time, if Newton's method has converged on it after the first.
-  std::function<void(const LevelView<dim>&)> level;
+  std::function<void(const LevelView<dim>&)> level{};
 };
+
+/// What may be exchanged in the loop.
+template <int dim>
+struct Strategy
+{
+  /// The cells to bisect, ascending.
+  std::function<std::vector<Index>(const LevelView<dim>&)> mark;
+  /// Why a level is the last though its bound is above the tolerance; empty: it is not.
+  std::function<std::string(const LevelView<dim>&)> stop;
+  MeshLimit limit;
+  LoopObserver<dim> observer{};
+};
+
+/// Marking and limits as the options say, and no observer. The clock of max_time starts now. `interrupt`
+/// becoming true is a limit, too.
+template <int dim>
+[[nodiscard]] Strategy<dim> make_strategy(const AdaptOptions& options,
+                                          const std::atomic<bool>* interrupt = nullptr);
 
 /// What a run may take of the machine's memory.
 struct MemoryLimit
@@ -63,8 +70,7 @@ struct MemoryLimit
 /// level and `peak` after one with 1 / `growth` of its unknowns.
 [[nodiscard]] double expected_memory(double before, double peak, double growth, int dim);
 
-/// Adapts the mesh from that of `first`, Newton starting from the solution carried to each new mesh, until
-/// bound <= adapt.tolerance * ||sigma(u_h)|| or a limit of [adapt] is reached, or `stop` becomes true.
+/// Advances and refines until a level is certified, or cannot be, or a limit is reached.
 ///
 /// On the last level Newton's method goes on to newton.tolerance (newton.finish), which changes the
 /// displacement by less than its bound, but contact forces visibly; where it fails or the run is interrupted
@@ -75,8 +81,13 @@ struct MemoryLimit
 /// `budget` and says what happened. Throws SolveError when the first level cannot be solved, and InputError
 /// for data that are not valid on a finer mesh.
 template <int dim>
+[[nodiscard]] certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy);
+
+/// The same from the mesh of `first` with the strategy that the options describe. Throws InputError for a
+/// problem that is not well posed, see Levels.
+template <int dim>
 [[nodiscard]] certify::Verdict adapt(const problem::Problem<dim>& problem, const Method& method,
                                      const AdaptOptions& options, std::unique_ptr<Discretisation<dim>> first,
-                                     const LoopObserver<dim>& observer, const std::atomic<bool>& stop);
+                                     const LoopObserver<dim>& observer, const std::atomic<bool>& interrupt);
 
 }  // namespace tribound::adapt

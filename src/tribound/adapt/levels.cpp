@@ -1,0 +1,214 @@
+#include "tribound/adapt/levels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "tribound/base/clock.h"
+#include "tribound/base/error.h"
+#include "tribound/contact/support/rigid_motion.h"
+#include "tribound/fem/nested.h"
+#include "tribound/mesh/bisect.h"
+
+namespace tribound::adapt
+{
+
+namespace
+{
+
+/// Of the bound on the mesh before: what the data may leave out of the next one.
+constexpr double share_of_data = 0.01;
+
+/// Thrown out of Newton's method when the user wants the run to end.
+struct Interrupted
+{
+};
+
+template <int dim>
+long free_dofs(const Discretisation<dim>& discrete)
+{
+  return discrete.space.n_dofs() - discrete.form.constraints().n_fixed();
+}
+
+}  // namespace
+
+template <int dim>
+Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
+                    std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop)
+    : problem_(problem), method_(method), tolerance_(tolerance), stop_(stop), current_(std::move(first))
+{
+  contact::check_rigid_motions<dim>(problem_, current_->space, current_->form.data(), current_->form.load());
+}
+
+bool holds(const certify::Verdict& verdict)
+{
+  return verdict.status == certify::RunStatus::certified || verdict.status == certify::RunStatus::budget;
+}
+
+template <int dim>
+std::string Levels<dim>::advance(const StepObserver& observer)
+{
+  const Clock::time_point begin = Clock::now();
+  std::string why = try_to_advance(observer);
+  if (!why.empty()) current_ = std::move(discrete_before_);
+  seconds_ = (why.empty() ? 0 : seconds_) + std::exchange(seconds_of_next_, 0) + seconds_since(begin);
+  return why;
+}
+
+template <int dim>
+std::string Levels<dim>::try_to_advance(const StepObserver& observer)
+{
+  assert(number_ < 0 || discrete_before_);  // refine() comes first
+  std::string why;
+  std::optional<CertifiedLevel<dim>> level = solve(observer, why);
+  if (!level) return why;
+  certify::Verdict verdict = judge(*level);
+  if (discrete_before_ && !holds(verdict))
+    return fmt::format("this is level {}, level {} failed: {}", number_, number_ + 1, verdict.reason);
+  ++number_;
+  level_ = std::move(*level);
+  verdict_ = std::move(verdict);
+  discrete_before_.reset();
+  return {};
+}
+
+template <int dim>
+std::optional<CertifiedLevel<dim>> Levels<dim>::solve(const StepObserver& observer, std::string& why) const
+{
+  const bool is_first = !discrete_before_;
+  const auto failed = [&](const char* problem)
+  { return fmt::format("this is level {}, level {} failed: {}", number_, number_ + 1, problem); };
+  try
+  {
+    CertifiedLevel<dim> level =
+        solve_and_certify<dim>(current_->form, start_, method_, watch(observer, !is_first), level_.delta,
+                               expected_, level_.friedrichs);
+    level.refinement = refinement_;
+    return level;
+  }
+  catch (const Interrupted&)
+  {
+    why = fmt::format("interrupted, this is level {}", number_);
+  }
+  catch (const SolveError& error)
+  {
+    if (is_first) throw;
+    why = failed(error.what());
+  }
+  catch (const std::bad_alloc&)
+  {
+    if (is_first) throw;
+    why = failed("out of memory");
+  }
+  return std::nullopt;
+}
+
+template <int dim>
+certify::Verdict Levels<dim>::judge(const CertifiedLevel<dim>& level) const
+{
+  if (!level.solved()) return {certify::RunStatus::failed, level.failure};
+  certify::Verdict verdict =
+      certify::judge(level.estimate, level.identities, method_.degree, level.norms, tolerance_);
+  if (level.tightened && !holds(verdict))
+    verdict.reason +=
+        "; solving the systems anew as far as rounding lets them be, with solver.tolerance = 0, did not mend "
+        "it: are materials of very different stiffness, nu near 0.5 or very flat cells involved?";
+  return verdict;
+}
+
+template <int dim>
+StepObserver Levels<dim>::watch(const StepObserver& observer, bool interruptible) const
+{
+  return [this, &observer, interruptible](const CertifiedStep& step)
+  {
+    if (observer) observer(step);
+    if (interrupted() && interruptible) throw Interrupted{};
+  };
+}
+
+template <int dim>
+bool Levels<dim>::finish(const StepObserver& observer)
+{
+  if (!method_.stopping.finish || level_.converged || !holds(verdict_) || interrupted()) return false;
+  const Clock::time_point begin = Clock::now();
+  const auto attempt = [&]() -> std::optional<CertifiedLevel<dim>>
+  {
+    try
+    {
+      return converge<dim>(current_->form, level_, method_, watch(observer, true));
+    }
+    catch (const Interrupted&)
+    {
+    }
+    catch (const SolveError&)
+    {
+    }
+    catch (const std::bad_alloc&)
+    {
+    }
+    return std::nullopt;
+  };
+  std::optional<CertifiedLevel<dim>> converged = attempt();
+  seconds_ += seconds_since(begin);
+  if (!converged) return false;
+  certify::Verdict verdict = judge(*converged);
+  if (verdict_.status == certify::RunStatus::certified && verdict.status != certify::RunStatus::certified)
+    return false;
+  level_ = std::move(*converged);
+  verdict_ = std::move(verdict);
+  return true;
+}
+
+template <int dim>
+std::string Levels<dim>::refine(std::span<const Index> marked, const MeshLimit& limit)
+{
+  const Clock::time_point begin = Clock::now();
+  std::string why;
+  try
+  {
+    why = try_to_refine(marked, limit);
+  }
+  catch (const std::bad_alloc&)
+  {
+    why = "out of memory for the next mesh";
+  }
+  (why.empty() ? seconds_of_next_ : seconds_) += seconds_since(begin);
+  return why;
+}
+
+template <int dim>
+std::string Levels<dim>::try_to_refine(std::span<const Index> marked, const MeshLimit& limit)
+{
+  Clock::time_point begin = Clock::now();
+  const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
+  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, marked);
+  RefinementSeconds seconds{.bisect = lap()};
+  NextMesh is_next{.cells = finer.mesh.n_cells()};
+  if (limit)
+    if (std::string why = limit(is_next); !why.empty()) return why;
+  auto next = std::make_shared<const Discretisation<dim>>(
+      std::move(finer.mesh), problem_, method_,
+      contact::DataAccuracy{.absolute = share_of_data * level_.estimate.total_sharp});
+  seconds.discretise = lap();
+  is_next.dofs = free_dofs(*next);
+  is_next.growth = static_cast<double>(*is_next.dofs) / std::max(1L, free_dofs(*current_));
+  if (limit)
+    if (std::string why = limit(is_next); !why.empty()) return why;
+  start_ = fem::nested_interpolant<dim>(current_->space, level_.u, finer.parent, next->space);
+  seconds.transfer = lap();
+  refinement_ = seconds;
+  expected_ = level_.estimate.global.discretisation() * std::pow(is_next.growth, -1.0 * method_.degree / dim);
+  level_.stress = {};
+  level_.estimate = {};
+  discrete_before_ = std::exchange(current_, std::move(next));
+  return {};
+}
+
+template class Levels<2>;
+template class Levels<3>;
+
+}  // namespace tribound::adapt

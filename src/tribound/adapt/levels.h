@@ -1,0 +1,113 @@
+#pragma once
+
+/// @file levels.h
+/// One mesh after another: what the adaptive algorithm keeps, and the steps it is made of.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/adapt/level.h"
+
+namespace tribound::adapt
+{
+
+/// A level that is complete.
+template <int dim>
+struct LevelView
+{
+  int number;  ///< from 0, the given mesh
+  const Discretisation<dim>& discrete;
+  const CertifiedLevel<dim>& level;
+  const certify::Verdict& verdict;  ///< what holds after it
+  double seconds;                   ///< wall time spent on the level so far, refinement included
+  std::shared_ptr<const Discretisation<dim>> owner;  ///< of `discrete`, for those who keep it
+};
+
+/// The next mesh, before anything is solved on it.
+struct NextMesh
+{
+  Index cells;
+  std::optional<long> dofs{};  ///< free ones; absent while only the mesh is there
+  double growth = 1;           ///< of the free ones against the mesh before, where they are known
+};
+
+/// Whether the bound is one.
+[[nodiscard]] bool holds(const certify::Verdict& verdict);
+
+/// Why a mesh is not to be solved on; empty: it may be.
+using MeshLimit = std::function<std::string(const NextMesh&)>;
+
+/// Solves and certifies on a mesh, refines it, carries the solution over, and goes back to the level before
+/// where a finer one fails. Which cells are refined and when it ends is up to the caller: adapt() or a loop
+/// of one's own.
+///
+///     adapt::Levels<2> levels(problem, method, 0.01, std::move(first));
+///     while (levels.advance().empty() && levels.verdict().status == certify::RunStatus::budget)
+///       if (!levels.refine(my_marking(levels.view())).empty()) break;
+template <int dim>
+class Levels
+{
+ public:
+  /// On the mesh of `first`. A level whose bound is at most tolerance * ||sigma(u_h)|| is certified. Newton's
+  /// method is left when `stop` becomes true, on the first level only after it has been solved. Throws
+  /// InputError where the problem is not well posed: a rigid motion is left free, or contact cannot balance
+  /// the loads (check_rigid_motions).
+  Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
+         std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop = nullptr);
+
+  /// Solves and certifies on the current mesh. Not empty: why this level was given up; the one before is the
+  /// last again, without its stress and estimate. Throws SolveError and bad_alloc for the first level.
+  [[nodiscard]] std::string advance(const StepObserver& observer = {});
+
+  /// Lets Newton's method converge to newton.tolerance on the last level (newton.finish), as far as it does
+  /// so without harm; whether it has changed anything.
+  bool finish(const StepObserver& observer = {});
+
+  /// Bisects the marked cells and carries the solution to the new mesh, which becomes the current one. Not
+  /// empty: why the current one stays: a limit, or there is not the memory.
+  [[nodiscard]] std::string refine(std::span<const Index> marked, const MeshLimit& limit = {});
+
+  /// The last level; not between refine() and advance().
+  [[nodiscard]] LevelView<dim> view() const
+  {
+    return {number_, *current_, level_, verdict_, seconds_, current_};
+  }
+  [[nodiscard]] const Discretisation<dim>& discrete() const { return *current_; }
+  /// What holds on the last level.
+  [[nodiscard]] const certify::Verdict& verdict() const { return verdict_; }
+
+ private:
+  [[nodiscard]] bool interrupted() const { return stop_ && *stop_; }
+  /// Passes the steps on, and leaves Newton's method when the user wants it to end and it may.
+  [[nodiscard]] StepObserver watch(const StepObserver& observer, bool interruptible) const;
+  /// Nothing where the level did not end: `why` says it.
+  [[nodiscard]] std::optional<CertifiedLevel<dim>> solve(const StepObserver& observer,
+                                                         std::string& why) const;
+  [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
+  [[nodiscard]] std::string try_to_advance(const StepObserver& observer);
+  [[nodiscard]] std::string try_to_refine(std::span<const Index> marked, const MeshLimit& limit);
+
+  const problem::Problem<dim>& problem_;
+  const Method& method_;
+  double tolerance_;
+  const std::atomic<bool>* stop_;
+  int number_ = -1;  ///< of the last level
+  std::shared_ptr<const Discretisation<dim>> current_;
+  CertifiedLevel<dim> level_;
+  certify::Verdict verdict_{certify::RunStatus::failed, {}};
+  double seconds_ = 0;  ///< spent on the last level
+
+  // For the next level.
+  std::shared_ptr<const Discretisation<dim>> discrete_before_;  ///< present between refine() and advance()
+  std::vector<double> start_;                                   ///< the solution on the current mesh
+  RefinementSeconds refinement_;
+  double seconds_of_next_ = 0;
+  std::optional<double> expected_;  ///< BoundComponents::discretisation() on the current mesh, guessed
+};
+
+}  // namespace tribound::adapt
