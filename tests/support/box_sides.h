@@ -13,7 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "tribound/base/types.h"
+#include "support/meshes.h"
+#include "support/problem_data.h"
 
 namespace tribound::test
 {
@@ -33,8 +34,6 @@ enum class Side
 template <int dim>
 using Sides = std::array<Side, 2 * static_cast<std::size_t>(dim)>;
 
-inline constexpr std::array<const char*, 6> side_names{"left", "right", "bottom", "top", "back", "front"};
-
 [[nodiscard]] inline bool fixes(Side side, int component)
 {
   return side == Side::dirichlet || static_cast<int>(side) == static_cast<int>(Side::roller_x) + component;
@@ -46,40 +45,33 @@ template <int dim>
 {
   std::string text;
   for (std::size_t s = 0; s < sides.size(); ++s)
-    text += fmt::format("{} {} ", side_names[s], "CNDxyz"[static_cast<int>(sides[s])]);
+    text += fmt::format("{} {} ", side_names<dim>[s], "CNDxyz"[static_cast<int>(sides[s])]);
   return text;
 }
 
-/// The TOML of all sides. The prescribed displacement is one field on all of them; what is free carries a
+/// What holds on all sides. The prescribed displacement is one field on all of them; what is free carries a
 /// traction that is no polynomial.
 template <int dim>
-[[nodiscard]] std::string sides_toml(const Sides<dim>& sides, const std::string& contact)
+[[nodiscard]] std::vector<problem::BoundaryCondition<dim>> side_conditions(const Sides<dim>& sides,
+                                                                           const problem::Contact& contact)
 {
-  constexpr std::array displacement{"0.01*sin(x + 2*y)", "-0.01*cos(2*x)*y", "0.01*x*y"};
-  constexpr std::array traction{"0.03*cos(2*x + y)", "-0.05*exp(0.5*x)", "0.02*sin(x + y)"};
-  std::string toml;
+  const std::array displacement{"0.01*sin(x + 2*y)", "-0.01*cos(2*x)*y", "0.01*x*y"};
+  const std::array traction{"0.03*cos(2*x + y)", "-0.05*exp(0.5*x)", "0.02*sin(x + y)"};
+  std::vector<problem::BoundaryCondition<dim>> conditions;
   for (std::size_t s = 0; s < sides.size(); ++s)
   {
-    const std::string key = fmt::format("boundary.{}.", side_names[s]);
+    problem::BoundaryCondition<dim>& condition = conditions.emplace_back();
+    condition.name = side_names<dim>[s];
     if (sides[s] == Side::contact)
-    {
-      toml += key + "contact = " + contact + "\n";
-      continue;
-    }
-    std::string u;
-    std::string t;
-    bool fixed = false;
-    for (int a = 0; a < dim; ++a)
-    {
-      const bool here = fixes(sides[s], a);
-      fixed = fixed || here;
-      u += fmt::format("\"{}\", ", here ? displacement[a] : "free");
-      t += here ? "0, " : fmt::format("\"{}\", ", traction[a]);
-    }
-    if (fixed) toml += key + "displacement = [" + u + "]\n";
-    toml += key + "traction = [" + t + "]\n";
+      condition.contact = contact;
+    else
+      for (int a = 0; a < dim; ++a)
+        if (fixes(sides[s], a))
+          condition.displacement[a] = formula(displacement[a]);
+        else
+          condition.traction[a] = formula(traction[a]);
   }
-  return toml;
+  return conditions;
 }
 
 /// Whether the fixed components leave no rigid motion of the box (0,2) x (0,1) (x (0,1)) turned by `frame`.

@@ -4,6 +4,7 @@
 /// Meshes for tests: boxes moved, mapped, renumbered and put together.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -18,6 +19,16 @@
 namespace tribound::test
 {
 
+/// The names of the sides of a box.
+template <int dim>
+inline constexpr std::array<const char*, 2 * static_cast<std::size_t>(dim)> side_names = []
+{
+  if constexpr (dim == 2)
+    return std::array{"left", "right", "bottom", "top"};
+  else
+    return std::array{"left", "right", "bottom", "top", "back", "front"};
+}();
+
 /// The structured box between two corners.
 template <int dim>
 mesh::MeshData<dim> box(const Point<dim>& lower, const Point<dim>& upper, const std::array<int, dim>& cells)
@@ -28,12 +39,45 @@ mesh::MeshData<dim> box(const Point<dim>& lower, const Point<dim>& upper, const 
                               .where = {}});
 }
 
+/// The block (0, 2) x (0, 1) [x (0, 1)].
+template <int dim>
+mesh::MeshData<dim> block(const std::array<int, dim>& cells)
+{
+  Point<dim> upper = Point<dim>::Ones();
+  upper[0] = 2;
+  return box<dim>(Point<dim>::Zero(), upper, cells);
+}
+
+/// The block of either dimension.
+template <int dim>
+mesh::MeshData<dim> block(const std::array<int, 2>& cells_2d, const std::array<int, 3>& cells_3d)
+{
+  if constexpr (dim == 2)
+    return block<2>(cells_2d);
+  else
+    return block<3>(cells_3d);
+}
+
 /// The mesh with every vertex x at map(x).
 template <int dim, class Map>
 mesh::MeshData<dim> mapped(mesh::MeshData<dim> data, Map map)
 {
   for (Point<dim>& x : data.vertices) x = map(x);
   return data;
+}
+
+/// A rotation that leaves no side of a box parallel to an axis.
+template <int dim>
+Tensor<dim> rotation()
+{
+  Tensor<2> plane;
+  plane << 0.8, -0.6, 0.6, 0.8;
+  if constexpr (dim == 2) return plane;
+  Tensor<dim> about_z = Tensor<dim>::Identity();
+  Tensor<dim> about_x = Tensor<dim>::Identity();
+  about_z.topLeftCorner(2, 2) = plane;
+  about_x.bottomRightCorner(2, 2) = plane;
+  return about_x * about_z;
 }
 
 /// The same mesh with vertices and cells in random order and the vertices of each cell in a random order of

@@ -5,7 +5,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
+
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 
 namespace tribound::test
 {
@@ -17,17 +19,14 @@ inline nlohmann::json t2d_reference()
   return nlohmann::json::parse(file).at("results");
 }
 
-inline std::string t2d_toml(int p, int nx, int ny)
+inline adapt::Method t2d_method(int p)
 {
-  return "degree = " + std::to_string(p) + "\nmesh.box = { lower = [0, 0], upper = [2, 1], cells = [" +
-         std::to_string(nx) + ", " + std::to_string(ny) + R"(] }
-material = { E = 1.0, nu = 0.3 }
-newton = { tolerance = 1e-12, damping = false }
-boundary.left.displacement = [0, 0]
-boundary.top.traction = [0, -0.1]
-boundary.right.traction = [0.04, 0.06]
-boundary.bottom.contact = { friction = "tresca", threshold = 0.03 }
-)";
+  return {.degree = p, .newton = {.tolerance = 1e-12, .damping = false}};
+}
+
+inline DiscreteProblem<2> t2d(int p, int nx, int ny)
+{
+  return {block<2>({nx, ny}), pressed_block<2>(), t2d_method(p)};
 }
 
 }  // namespace tribound::test

@@ -5,17 +5,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <iostream>
-#include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "support/meshes.h"
-#include "tribound/adapt/loop.h"
-#include "tribound/case/resolve.h"
+#include "verification/run_adaptively.h"
 
 namespace tribound::test
 {
@@ -32,21 +27,10 @@ struct Level
 /// An L-shaped profile 2 x 2, 1 deep: a wall with an arm that is lifted, pressed on the floor.
 std::vector<Level> run(int p, double theta, int max_dofs)
 {
-  const case_file::Config config = case_file::parse_config(fmt::format(R"(degree = {}
-mesh.box = {{ lower = [0, 0, 0], upper = [1, 1, 1], cells = [1, 1, 1] }}
-material = {{ E = 1.0, nu = 0.3 }}
-boundary.left.displacement = [0, "free", "free"]
-boundary.back.displacement = ["free", "free", 0]
-boundary.top.traction = [0, -0.1, 0]
-boundary.right.traction = [0, 0.05, 0]
-boundary.bottom.contact = {{ friction = "tresca", threshold = 0.03 }}
-newton.finish = false
-adapt = {{ theta = {}, tolerance = 1e-9, max_levels = 60, max_dofs = {} }}
-)",
-                                                                       p, theta, max_dofs));
-  mesh::Mesh<3> mesh(without<3>(box<3>({0, 0, 0}, {2, 2, 1}, {2, 2, 1}),
-                                [](const Point<3>& x) { return x[0] > 1 && x[1] > 1; }));
-  const problem::Problem<3> problem(case_file::resolve(config, mesh));
+  const ProblemData<3> data{.boundaries = {fixed<3>("left", 0, free, free), fixed<3>("back", free, free),
+                                           loaded<3>("top", 0, -0.1), loaded<3>("right", 0, 0.05),
+                                           obstacle<3>("bottom", Tresca(0.03))}};
+  const auto cut_out = [](const Point<3>& x) { return x[0] > 1 && x[1] > 1; };
   std::vector<Level> levels;
   const adapt::LoopObserver<3> observer = {
       {},
@@ -58,10 +42,10 @@ adapt = {{ theta = {}, tolerance = 1e-9, max_levels = 60, max_dofs = {} }}
                                  levels.back().bound)
                   << std::endl;
       }};
-  const std::atomic<bool> stop = false;
-  const certify::Verdict verdict = adapt::adapt<3>(
-      problem, config.method, config.adapt,
-      std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config.method), observer, stop);
+  const certify::Verdict verdict = run_adaptively<3>(
+      without<3>(box<3>({0, 0, 0}, {2, 2, 1}, {2, 2, 1}), cut_out), data,
+      {.degree = p, .stopping = {.finish = false}},
+      {.tolerance = 1e-9, .marking = {.theta = theta}, .max_levels = 60, .max_dofs = max_dofs}, observer);
   EXPECT_EQ(verdict.status, certify::RunStatus::budget) << verdict.reason;  // the tolerance is out of reach
   return levels;
 }

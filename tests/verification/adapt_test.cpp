@@ -13,10 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "support/t2d.h"
+#include "support/meshes.h"
 #include "tribound/base/error.h"
-#include "tribound/case/resolve.h"
-#include "tribound/mesh/gmsh.h"
+#include "verification/run_adaptively.h"
 
 namespace tribound::test
 {
@@ -44,18 +43,16 @@ struct History
   certify::Verdict verdict;
 };
 
-/// Runs T2D from the 4 x 2 mesh; `on_step` is called after every Newton step.
-History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop,
-                  const adapt::StepObserver& on_step = {}, int max_steps = 50,
-                  adapt::Stopping stopping = adapt::Stopping::adaptive)
+/// Not converged on the last level: the criterion is what is tested.
+adapt::Method method(int p)
 {
-  case_file::Config config = case_file::parse_config(t2d_toml(p, 4, 2) + keys);
-  config.method.newton.damping = true;
-  config.method.newton.max_steps = max_steps;
-  config.method.stopping.criterion = stopping;
-  config.method.stopping.finish = false;  // the criterion is what is tested
-  auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<2> problem(case_file::resolve(config, mesh));
+  return {.degree = p, .newton = {.tolerance = 1e-12}, .stopping = {.finish = false}};
+}
+
+/// Runs T2D from the 4 x 2 mesh; `on_step` is called after every Newton step.
+History adapt_t2d(const adapt::Method& method, const adapt::AdaptOptions& options,
+                  const adapt::StepObserver& on_step = {}, const std::atomic<bool>& stop = false)
+{
   History history;
   const adapt::LoopObserver<2> observer = {
       on_step, [&](const adapt::LevelView<2>& view)
@@ -67,18 +64,15 @@ History adapt_t2d(int p, const std::string& keys, std::atomic<bool>& stop,
         history.levels.push_back({discrete.mesh.n_cells(), double(discrete.space.n_dofs() - fixed),
                                   level.estimate.total_sharp, level.steps.size(), view.verdict.status,
                                   level.estimate.global, level.delta_updates, level.steps.back().step.delta});
-        EXPECT_LE(level.identities.largest(p), 1e-10);
+        EXPECT_LE(level.identities.largest(method.degree), 1e-10);
       }};
-  history.verdict = adapt::adapt<2>(
-      problem, config.method, config.adapt,
-      std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, config.method), observer, stop);
+  history.verdict = run_adaptively<2>(block<2>({4, 2}), pressed_block<2>(), method, options, observer, stop);
   return history;
 }
 
-History adapt_t2d(int p, const std::string& keys)
+adapt::AdaptOptions until(double tolerance)
 {
-  std::atomic<bool> stop = false;
-  return adapt_t2d(p, keys, stop);
+  return {.tolerance = tolerance, .marking = {.theta = 0.6}, .max_levels = 60};
 }
 
 /// The slope of log(bound) over log(dofs), least squares over the levels from `first` dofs on.
@@ -102,8 +96,7 @@ TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
   const double deviations[] = {0.04, 0.06, 0.12};
   for (int p = 1; p <= 3; ++p)
   {
-    const History history = adapt_t2d(
-        p, "adapt = { theta = 0.6, max_levels = 60, tolerance = " + std::to_string(tolerances[p - 1]) + " }");
+    const History history = adapt_t2d(method(p), until(tolerances[p - 1]));
     EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
     const double rate = slope(history.levels, p == 1 ? 1000 : 500);
     EXPECT_NEAR(rate, -p / 2.0, deviations[p - 1]) << "p = " << p;
@@ -116,21 +109,8 @@ TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
 }
 
 /// The bound of every step of the levels of a block in 3D.
-std::vector<std::vector<adapt::CertifiedStep>> steps_in_3d(const std::string& keys)
+std::vector<std::vector<adapt::CertifiedStep>> steps_in_3d(adapt::Stopping criterion)
 {
-  const case_file::Config config = case_file::parse_config(R"(
-degree = 1
-mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [4, 2, 2] }
-material = { E = 1.0, nu = 0.3 }
-boundary.left.displacement = [0, 0, 0]
-boundary.top.traction = [0, -0.1, 0]
-boundary.right.traction = [0.04, 0.06, 0.02]
-boundary.bottom.contact = { friction = "tresca", threshold = 0.03 }
-adapt = { theta = 0.6, max_levels = 3 }
-newton.finish = false
-)" + keys);
-  auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<3> problem(case_file::resolve(config, mesh));
   std::vector<std::vector<adapt::CertifiedStep>> steps;
   const adapt::LoopObserver<3> observer = {
       {},
@@ -144,10 +124,9 @@ newton.finish = false
         const certify::Estimate eta = certify::estimate<3>(view.discrete.form, level.u, own);
         EXPECT_EQ(level.steps.back().bound->total_sharp, eta.total_sharp);
       }};
-  const std::atomic<bool> stop = false;
-  (void)adapt::adapt<3>(problem, config.method, config.adapt,
-                        std::make_unique<adapt::Discretisation<3>>(std::move(mesh), problem, config.method),
-                        observer, stop);
+  (void)run_adaptively<3>(block<3>({4, 2, 2}), pressed_block<3>(),
+                          {.stopping = {.criterion = criterion, .finish = false}},
+                          {.marking = {.theta = 0.6}, .max_levels = 3}, observer);
   return steps;
 }
 
@@ -156,7 +135,7 @@ newton.finish = false
 TEST(Adapt, In3DOnlyIteratesThatMayBeKeptGetTheCompleteBound)
 {
   int without = 0;
-  for (const auto& level : steps_in_3d(""))
+  for (const auto& level : steps_in_3d(adapt::Stopping::adaptive))
     for (const adapt::CertifiedStep& step : level)
     {
       ASSERT_TRUE(step.linearisation);
@@ -164,7 +143,7 @@ TEST(Adapt, In3DOnlyIteratesThatMayBeKeptGetTheCompleteBound)
       without += step.bound ? 0 : 1;
     }
   EXPECT_GT(without, 2);
-  for (const auto& level : steps_in_3d("newton.stopping = \"tolerance\"\n"))
+  for (const auto& level : steps_in_3d(adapt::Stopping::tolerance))
     for (const adapt::CertifiedStep& step : level) EXPECT_TRUE(step.bound);
 }
 
@@ -188,10 +167,10 @@ TEST(Adapt, TheRegularisedVariantHasTheRateOfThePlainMethod)
   const double deviations[] = {0.04, 0.06, 0.12};
   for (int p = 1; p <= 3; ++p)
   {
-    const std::string keys =
-        "adapt = { theta = 0.6, max_levels = 60, tolerance = " + std::to_string(tolerances[p - 1]) + " }\n";
-    const History plain = adapt_t2d(p, keys);
-    const History history = adapt_t2d(p, keys + "[regularisation]\n");
+    const History plain = adapt_t2d(method(p), until(tolerances[p - 1]));
+    adapt::Method regularised = method(p);
+    regularised.regularisation.emplace();
+    const History history = adapt_t2d(regularised, until(tolerances[p - 1]));
     print_regularised(p, history);
     EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
     const double first = p == 1 ? 1000 : 500;
@@ -207,7 +186,7 @@ TEST(Adapt, TheRegularisedVariantHasTheRateOfThePlainMethod)
 
 TEST(Adapt, OnTheGivenMeshOnlyItCertifiesAndStops)
 {
-  const History history = adapt_t2d(2, "adapt.max_levels = 0\n");
+  const History history = adapt_t2d(method(2), {.max_levels = 0});
   EXPECT_EQ(history.levels.size(), 1u);
   EXPECT_EQ(history.verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(history.verdict.reason, HasSubstr("adapt.max_levels = 0 is reached"));
@@ -215,16 +194,16 @@ TEST(Adapt, OnTheGivenMeshOnlyItCertifiesAndStops)
 
 TEST(Adapt, KeepsToEveryLimit)
 {
-  const History cells = adapt_t2d(1, "adapt.max_cells = 300\n");
+  const History cells = adapt_t2d(method(1), {.max_cells = 300});
   EXPECT_LE(cells.levels.back().cells, 300);
   EXPECT_THAT(cells.verdict.reason, HasSubstr("more than adapt.max_cells = 300"));
-  const History dofs = adapt_t2d(1, "adapt.max_dofs = 300\n");
+  const History dofs = adapt_t2d(method(1), {.max_dofs = 300});
   EXPECT_LE(dofs.levels.back().dofs, 300);
   EXPECT_THAT(dofs.verdict.reason, HasSubstr("more than adapt.max_dofs = 300"));
-  const History time = adapt_t2d(1, "adapt.max_time = 1e-9\n");
+  const History time = adapt_t2d(method(1), {.max_time = 1e-9});
   EXPECT_EQ(time.levels.size(), 1u);
   EXPECT_THAT(time.verdict.reason, HasSubstr("adapt.max_time"));
-  const History memory = adapt_t2d(1, "adapt.max_memory = 1e-6\n");
+  const History memory = adapt_t2d(method(1), {.max_memory = 1e-6});
   EXPECT_EQ(memory.levels.size(), 1u);
   EXPECT_THAT(memory.verdict.reason, HasSubstr("more than adapt.max_memory = 1e-06 GB"));
   for (const History* history : {&cells, &dofs, &time, &memory})
@@ -233,17 +212,21 @@ TEST(Adapt, KeepsToEveryLimit)
 
 TEST(Adapt, MaximumMarkingReachesTheToleranceToo)
 {
-  const History history =
-      adapt_t2d(2, "adapt = { marking = \"maximum\", theta = 0.5, tolerance = 0.02, max_levels = 60 }");
+  const History history = adapt_t2d(
+      method(2), {.tolerance = 0.02, .marking = {.strategy = adapt::Marking::maximum}, .max_levels = 60});
   EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
 }
 
 /// The contact part is a tenth to a half of the bound here: its facets are refined for its own sake.
 TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
 {
-  const std::string keys = "adapt = { tolerance = 0.02, max_levels = 60, separate_contact = ";
-  const History together = adapt_t2d(2, keys + "false }");
-  const History separate = adapt_t2d(2, keys + "true }");
+  const auto run = [](bool separately)
+  {
+    return adapt_t2d(method(2),
+                     {.tolerance = 0.02, .marking = {.separate_contact = separately}, .max_levels = 60});
+  };
+  const History together = run(false);
+  const History separate = run(true);
   EXPECT_EQ(separate.verdict.status, certify::RunStatus::certified) << separate.verdict.reason;
   EXPECT_LE(separate.levels.size(), together.levels.size());
   EXPECT_LE(separate.levels.back().dofs, 1.5 * together.levels.back().dofs);
@@ -254,9 +237,9 @@ TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
 {
   const auto steps = [](adapt::Stopping stopping)
   {
-    std::atomic<bool> stop = false;
-    const History history =
-        adapt_t2d(1, "adapt = { tolerance = 0.05, max_levels = 60 }", stop, {}, 50, stopping);
+    adapt::Method stopped = method(1);
+    stopped.stopping.criterion = stopping;
+    const History history = adapt_t2d(stopped, {.tolerance = 0.05, .max_levels = 60});
     EXPECT_EQ(history.verdict.status, certify::RunStatus::certified);
     std::size_t sum = 0;
     for (const Row& row : history.levels) sum += row.newton;
@@ -282,8 +265,8 @@ TEST(Adapt, InterruptedItKeepsTheLastCompleteLevel)
 {
   std::atomic<bool> stop = false;
   int steps_in_all = 0;
-  const History history =
-      adapt_t2d(1, "", stop, [&](const adapt::CertifiedStep&) { stop = ++steps_in_all > 12; });
+  const History history = adapt_t2d(
+      method(1), {}, [&](const adapt::CertifiedStep&) { stop = ++steps_in_all > 12; }, stop);
   EXPECT_FALSE(history.levels.empty());
   EXPECT_EQ(history.verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(history.verdict.reason, HasSubstr("interrupted"));
@@ -291,9 +274,8 @@ TEST(Adapt, InterruptedItKeepsTheLastCompleteLevel)
 
 TEST(Adapt, ALaterLevelThatFailsLeavesTheCertificateOfTheOneBefore)
 {
-  std::atomic<bool> stop = false;
   int first_steps = 0;
-  const History history = adapt_t2d(1, "", stop,
+  const History history = adapt_t2d(method(1), {},
                                     [&](const adapt::CertifiedStep& step)
                                     {
                                       first_steps += step.step.step == 1 ? 1 : 0;
@@ -306,10 +288,11 @@ TEST(Adapt, ALaterLevelThatFailsLeavesTheCertificateOfTheOneBefore)
 
 TEST(Adapt, WithoutTheFirstLevelThereIsNoCertificate)
 {
-  std::atomic<bool> stop = false;
-  EXPECT_THROW(adapt_t2d(1, "", stop, [](const adapt::CertifiedStep&) { throw SolveError("singular"); }),
+  EXPECT_THROW(adapt_t2d(method(1), {}, [](const adapt::CertifiedStep&) { throw SolveError("singular"); }),
                SolveError);
-  const History history = adapt_t2d(1, "", stop, {}, 1);  // one step leaves a linearisation error
+  adapt::Method one_step = method(1);
+  one_step.newton.max_steps = 1;  // leaves a linearisation error
+  const History history = adapt_t2d(one_step, {});
   EXPECT_EQ(history.levels.size(), 1u);
   EXPECT_EQ(history.verdict.status, certify::RunStatus::failed);
 }

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "support/meshes.h"
+#include "support/problem_data.h"
+#include "tribound/adapt/method.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -23,21 +25,11 @@ struct AffineCase
   std::string name;
   Tensor<dim> gradient;
   Point<dim> offset;
-  std::string contact;  ///< TOML
+  problem::Contact contact;
   problem::ContactStatus status;
 };
 
 inline const problem::Material affine_material = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
-
-inline std::string tresca(double s)
-{
-  return fmt::format("{{ friction = \"tresca\", threshold = {:.17g} }}", s);
-}
-
-inline std::string coulomb(double mu_F)
-{
-  return fmt::format("{{ friction = \"coulomb\", coefficient = {:.17g} }}", mu_F);
-}
 
 /// All states. The displacement is (d (c + k.x + b y), D y) with the tangential direction d, in 3D not along
 /// an axis, and a slip c + k.x that varies along the contact but stays positive; shear mu b |d| at the
@@ -53,29 +45,30 @@ std::vector<AffineCase<dim>> affine_cases()
     k = {0.1, 0, 0.04};
   }
   const Point<dim> y = Point<dim>::Unit(1);
-  const auto field = [&](double slip, double shear, double stretch) -> Tensor<dim>
-  { return slip * d * k.transpose() + shear * d * y.transpose() + stretch * y * y.transpose(); };
+  const auto field = [&](double slide, double shear, double stretch) -> Tensor<dim>
+  { return slide * d * k.transpose() + shear * d * y.transpose() + stretch * y * y.transpose(); };
   const auto pressure = [&](const Tensor<dim>& g) { return -contact::sigma<dim>(affine_material, g)(1, 1); };
-  const Tensor<dim> slip = field(1, 0.2, -0.3);
-  const Tensor<dim> stick = field(0, 0.2, -0.3);
+  const Tensor<dim> slipping = field(1, 0.2, -0.3);
+  const Tensor<dim> sticking = field(0, 0.2, -0.3);
   const Tensor<dim> smooth = field(1, 0, -0.3);
   const double free_stretch =
       -affine_material.lambda * d.dot(k) / (affine_material.lambda + 2 * affine_material.mu);
-  const Tensor<dim> open = field(1, 0, free_stretch);
+  const Tensor<dim> lifted = field(1, 0, free_stretch);
   const Point<dim> offset = 0.05 * d;
   const Point<dim> none = Point<dim>::Zero();
   const double shear = 0.2 * affine_material.mu;
+  const auto near = [](problem::ContactLaw l) { return problem::Contact(std::move(l)); };
+  const auto far = [](problem::ContactLaw l) { return problem::Contact(std::move(l), 1); };
+  using enum problem::ContactStatus;
   return {
-      {"slip, Tresca", slip, offset, tresca(shear), problem::ContactStatus::slip},
-      {"slip, Coulomb", slip, offset, coulomb(shear / pressure(slip)), problem::ContactStatus::slip},
-      {"stick, Tresca", stick, none, tresca(2 * shear), problem::ContactStatus::stick},
-      {"stick, Coulomb", stick, none, coulomb(2 * shear / pressure(stick)), problem::ContactStatus::stick},
-      {"frictionless", smooth, offset, "{ friction = \"none\" }", problem::ContactStatus::slip},
-      {"open, frictionless", open, offset, "{ friction = \"none\", gap = 1 }", problem::ContactStatus::open},
-      {"open, Tresca", open, offset, "{ friction = \"tresca\", threshold = 0, gap = 1 }",
-       problem::ContactStatus::open},
-      {"open, Coulomb", open, offset, "{ friction = \"coulomb\", coefficient = 0.5, gap = 1 }",
-       problem::ContactStatus::open},
+      {"slip, Tresca", slipping, offset, near(Tresca(shear)), slip},
+      {"slip, Coulomb", slipping, offset, near(Coulomb(shear / pressure(slipping))), slip},
+      {"stick, Tresca", sticking, none, near(Tresca(2 * shear)), stick},
+      {"stick, Coulomb", sticking, none, near(Coulomb(2 * shear / pressure(sticking))), stick},
+      {"frictionless", smooth, offset, near(Frictionless()), slip},
+      {"open, frictionless", lifted, offset, far(Frictionless()), open},
+      {"open, Tresca", lifted, offset, far(Tresca(0)), open},
+      {"open, Coulomb", lifted, offset, far(Coulomb(0.5)), open},
   };
 }
 
@@ -88,43 +81,28 @@ AffineCase<dim> turned(AffineCase<dim> c, const Tensor<dim>& q)
   return c;
 }
 
-/// No side of the turned box is parallel to an axis.
-template <int dim>
-Tensor<dim> rotation()
-{
-  Tensor<2> plane;
-  plane << 0.8, -0.6, 0.6, 0.8;
-  if constexpr (dim == 2) return plane;
-  Tensor<dim> about_z = Tensor<dim>::Identity();
-  Tensor<dim> about_x = Tensor<dim>::Identity();
-  about_z.topLeftCorner(2, 2) = plane;
-  about_x.bottomRightCorner(2, 2) = plane;
-  return about_x * about_z;
-}
-
 /// Displacement on all sides but the bottom and the right one, which carries the exact traction.
 template <int dim>
-std::string affine_toml(const AffineCase<dim>& c, int p, const Point<dim>& right_normal)
+ProblemData<dim> affine_data(const AffineCase<dim>& c, const Point<dim>& right_normal)
 {
-  std::string toml = fmt::format(
-      "degree = {}\nmaterial = {{ E = 1, nu = 0.3 }}\nnewton.tolerance = 1e-13\nboundary.bottom.contact = "
-      "{}\n",
-      p, c.contact);
-  std::string displacement;
-  std::string traction;
-  const Point<dim> t = contact::sigma<dim>(affine_material, c.gradient) * right_normal;
+  std::array<problem::Field, 3> u;
   for (int a = 0; a < dim; ++a)
   {
-    displacement += fmt::format("\"{:.17g}", c.offset[a]);
-    for (int b = 0; b < dim; ++b) displacement += fmt::format(" + {:.17g}*{}", c.gradient(a, b), "xyz"[b]);
-    displacement += "\", ";
-    traction += fmt::format("{:.17g}, ", t[a]);
+    std::string text = fmt::format("{:.17g}", c.offset[a]);
+    for (int b = 0; b < dim; ++b) text += fmt::format(" + {:.17g}*{}", c.gradient(a, b), "xyz"[b]);
+    u[a] = formula(text);
   }
-  toml += fmt::format("boundary.right.traction = [{}]\n", traction);
-  for (const char* side : {"left", "top", "back", "front"})
-    if (dim == 3 || (side[0] != 'b' && side[0] != 'f'))
-      toml += fmt::format("boundary.{}.displacement = [{}]\n", side, displacement);
-  return toml;
+  const Point<dim> t = contact::sigma<dim>(affine_material, c.gradient) * right_normal;
+  ProblemData<dim> data{
+      .boundaries = {obstacle<dim>("bottom", c.contact), loaded<dim>("right", t[0], t[1], t[dim - 1])}};
+  for (const std::string side : side_names<dim>)
+    if (side != "right" && side != "bottom") data.boundaries.push_back(fixed<dim>(side, u[0], u[1], u[2]));
+  return data;
+}
+
+inline adapt::Method affine_method(int p)
+{
+  return {.degree = p, .newton = {.tolerance = 1e-13}};
 }
 
 /// Runs `check(case, normal of the right side, normal of the bottom)` for every state.
@@ -141,10 +119,7 @@ void for_all_states(const Tensor<dim>& frame, const Check& check)
 template <int dim>
 mesh::MeshData<dim> structured()
 {
-  if constexpr (dim == 2)
-    return box<2>({0, 0}, {2, 1}, {4, 2});
-  else
-    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 2, 2});
+  return block<dim>({4, 2}, {2, 2, 2});
 }
 
 }  // namespace tribound::test

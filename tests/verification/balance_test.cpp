@@ -11,7 +11,8 @@
 #include <cmath>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 
 namespace tribound::test
@@ -48,7 +49,7 @@ Defect defect(const certify::Balance& balance)
 }
 
 template <int dim>
-certify::Balance balance_of(const DiscreteCase<dim>& c, const Point<dim>& about)
+certify::Balance balance_of(const DiscreteProblem<dim>& c, const Point<dim>& about)
 {
   const solve::NewtonResult<dim> result = c.solve();
   return certify::balance<dim>(c.form, certify::equilibrate<dim>(c.form, result.u, result.traction), about);
@@ -63,37 +64,27 @@ const certify::BalanceRow& find(const certify::Balance& balance, certify::Balanc
   return *row;
 }
 
-struct Law
-{
-  const char* name;
-  const char* contact;
-};
-
-constexpr std::array laws = {
-    Law{"none", "{ gap = \"0.002*(1 + sin(3*x))\" }"},
-    Law{"Tresca", "{ friction = \"tresca\", threshold = \"0.01 + 0.005*sin(x)\" }"},
-    Law{"Coulomb", "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.002*(1 + sin(3*x))\" }"}};
+const problem::Field wavy = formula("0.002*(1 + sin(3*x))");
+const std::array contacts = {problem::Contact(Frictionless(), wavy),
+                             problem::Contact(Tresca(formula("0.01 + 0.005*sin(x)"))),
+                             problem::Contact(Coulomb(0.4), wavy)};
 
 /// Body force, traction, pressure, a clamp that is inclined against the contact boundary by a roller, contact
 /// on one side; nothing vanishes and no datum is a polynomial.
-std::string block(int dim, int p, const char* contact)
+template <int dim>
+ProblemData<dim> data(const problem::Contact& contact)
 {
-  const std::string text = fmt::format(
-      "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nnewton.tolerance = 1e-12\nnewton.damping = false\n"
-      "boundary.bottom.contact = {}\nboundary.top.pressure = \"0.05*exp(x)\"\n",
-      p, contact);
+  ProblemData<dim> all{
+      .boundaries = {obstacle<dim>("bottom", contact), pressed<dim>("top", formula("0.05*exp(x)")),
+                     loaded<dim>("right", 0.02, formula("0.01*sin(y)"), 0.005)},
+      .body_force =
+          components<dim>(formula("0.1*sin(5*x)*exp(y)"), formula("-0.1*exp(x*y)"), formula("0.02*cos(z)"))};
   if (dim == 2)
-    return text +
-           "mesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }\n"
-           "load.body = [\"0.1*sin(5*x)*exp(y)\", \"-0.1*exp(x*y)\"]\n"
-           "boundary.left = { displacement = [0, \"free\"], traction = [0, 0.01] }\n"
-           "boundary.right.traction = [0.02, \"0.01*sin(y)\"]\n";
-  return text +
-         "mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [2, 1, 1] }\n"
-         "load.body = [\"0.1*sin(5*x)*exp(y)\", \"-0.1*exp(x*y)\", \"0.02*cos(z)\"]\n"
-         "boundary.left.displacement = [0, 0, 0]\n"
-         "boundary.back = { displacement = [\"free\", \"free\", 0], traction = [0.01, 0, 0] }\n"
-         "boundary.right.traction = [0.02, \"0.01*sin(y)\", 0.005]\n";
+    all.boundaries.push_back(loaded<dim>(fixed<dim>("left", 0, free), 0, 0.01));
+  else
+    all.boundaries.insert(all.boundaries.end(),
+                          {clamped<dim>("left"), loaded<dim>(fixed<dim>("back", free, free, 0), 0.01, 0)});
+  return all;
 }
 
 template <int dim>
@@ -102,10 +93,11 @@ void every_iterate(int p)
   Defect worst;
   const Point<dim> about = Point<dim>::Constant(0.3);
   int iterates = 0;
-  for (const Law& law : laws)
+  for (const problem::Contact& contact : contacts)
   {
-    SCOPED_TRACE(law.name);
-    const DiscreteCase<dim> c(block(dim, p, law.contact));
+    SCOPED_TRACE(words(contact.law));
+    const DiscreteProblem<dim> c(block<dim>({4, 2}, {2, 1, 1}), data<dim>(contact),
+                                 {.degree = p, .newton = {.tolerance = 1e-12, .damping = false}});
     const auto examine = [&](const solve::NewtonIterate<dim>& iterate)
     {
       const certify::Balance b = certify::balance<dim>(
@@ -118,7 +110,7 @@ void every_iterate(int p)
       worst = {std::max(worst.force, d.force), std::max(worst.moment, d.moment)};
       return solve::NewtonAdvice(false);
     };
-    (void)solve::solve<dim>(c.form, {}, c.config.method.newton, c.config.method.solver, examine);
+    (void)c.solve(0, examine);
   }
   EXPECT_GT(iterates, 5) << "too easy to tell iterates apart";
   fmt::print("{}D, p = {}: the sum is {:.1e} of the largest force, {:.1e} of the largest moment\n", dim, p,
@@ -147,11 +139,12 @@ INSTANTIATE_TEST_SUITE_P(Degrees, Balance3D, ::testing::Range(1, 5));
 /// on top (3 x / 3 per length), a shear on the right. By statics the clamp carries the resultants.
 TEST(Balance, StaticallyDeterminateCantilever)
 {
-  const DiscreteCase<2> c(
-      "degree = 2\nmaterial = { E = 1.0, nu = 0.3 }\n"
-      "mesh.box = { lower = [0, 0], upper = [3, 2], cells = [3, 2] }\n"
-      "load.body = [0, -0.5]\nboundary.left.displacement = [0, 0]\n"
-      "boundary.top = { pressure = \"x\", traction = [0.25, 0] }\nboundary.right.traction = [0, 0.1]\n");
+  const DiscreteProblem<2> c(
+      box<2>({0, 0}, {3, 2}, {3, 2}),
+      {.boundaries = {clamped<2>("left"), loaded<2>(pressed<2>("top", formula("x")), 0.25, 0),
+                      loaded<2>("right", 0, 0.1)},
+       .body_force = {0, -0.5}},
+      {.degree = 2});
   const certify::Balance b = balance_of<2>(c, {0, 1});
   const auto expect = [&](certify::BalanceKind kind, const std::string& name, const std::string& source,
                           std::vector<double> force, double moment)
@@ -174,12 +167,13 @@ TEST(Balance, StaticallyDeterminateCantilever)
 /// How the moments are shared is not a matter of statics.
 TEST(Balance, ContactAndRollersIn3D)
 {
-  const DiscreteCase<3> c(
-      "degree = 2\nmaterial = { E = 1.0, nu = 0.25 }\n"
-      "mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [2, 1, 1] }\n"
-      "load.body = [0, -0.3, 0]\nboundary.left.displacement = [0, \"free\", \"free\"]\n"
-      "boundary.back.displacement = [\"free\", \"free\", 0]\nboundary.right.traction = [-0.1, 0, 0]\n"
-      "boundary.front.pressure = 0.2\nboundary.bottom.contact = {}\n");
+  const DiscreteProblem<3> c(
+      block<3>({2, 1, 1}),
+      {.boundaries = {fixed<3>("left", 0, free, free), fixed<3>("back", free, free),
+                      loaded<3>("right", -0.1, 0), pressed<3>("front", 0.2), obstacle<3>("bottom")},
+       .material = lame(1, 0.25),
+       .body_force = {0, -0.3}},
+      {.degree = 2});
   const certify::Balance b = balance_of<3>(c, certify::centroid<3>(c.mesh));
   EXPECT_EQ(b.about, (std::vector<double>{1, 0.5, 0.5}));
   const auto expect =
@@ -200,11 +194,11 @@ TEST(Balance, ContactAndRollersIn3D)
 /// In 3D the moment is r x f: one force along each axis on a face of its own.
 TEST(Balance, MomentsIn3D)
 {
-  const DiscreteCase<3> c(
-      "degree = 2\nmaterial = { E = 1.0, nu = 0.25 }\n"
-      "mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [2, 1, 1] }\n"
-      "boundary.left.displacement = [0, 0, 0]\nboundary.right.traction = [0, 0.3, -0.2]\n"
-      "boundary.top.traction = [0.1, 0, 0]\n");
+  const DiscreteProblem<3> c(
+      block<3>({2, 1, 1}),
+      {.boundaries = {clamped<3>("left"), loaded<3>("right", 0, 0.3, -0.2), loaded<3>("top", 0.1, 0)},
+       .material = lame(1, 0.25)},
+      {.degree = 2});
   const certify::Balance b = balance_of<3>(c, {0, 0, 0});
   // right: at (2, 1/2, 1/2) the force (0, 0.3, -0.2); top: at (1, 1, 1/2) the force (0.2, 0, 0)
   const std::vector<double> moment = {0.5 * -0.2 - 0.5 * 0.3, 2 * 0.2 + 0.5 * 0.2, 2 * 0.3 - 0.2};

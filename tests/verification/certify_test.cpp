@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/t2d.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -31,8 +31,8 @@ TEST_P(Components, AgreeWithTheReferenceAtEveryIterate)
   const json expected = t2d_reference().at(GetParam());
   for (const int k : {0, 1, 2})
   {
-    DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
-    if (k > 0) c.config.method.newton.max_steps = k;
+    DiscreteProblem<2> c = t2d(expected["p"], expected["nx"], expected["ny"]);
+    if (k > 0) c.method.newton.max_steps = k;
     const solve::NewtonResult<2> result = c.solve();
     const certify::Stress<2> stress = certify::equilibrate<2>(c.form, result.u, result.traction);
     const certify::Estimate eta =
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(T2D, Components, ::testing::Range(0, 8));
 
 TEST(Equilibrate, DoesNotDependOnTheNumberOfThreads)
 {
-  const DiscreteCase<2> c(t2d_toml(2, 8, 4));
+  const DiscreteProblem<2> c = t2d(2, 8, 4);
   const solve::NewtonResult<2> result = c.solve();
   const certify::Stress<2> one = certify::equilibrate<2>(c.form, result.u, result.traction, 1);
   const certify::Stress<2> three = certify::equilibrate<2>(c.form, result.u, result.traction, 3);
@@ -70,14 +70,13 @@ TEST(Equilibrate, DoesNotDependOnTheNumberOfThreads)
 /// Iterates of a block with friction, one after the other through the same Equilibrator: nothing of one gets
 /// into the next, and sigma_lin alone is that of the whole.
 template <int dim>
-void expect_the_same_in_parts(const std::string& toml)
+void expect_the_same_in_parts(DiscreteProblem<dim> c)
 {
-  DiscreteCase<dim> c(toml);
   certify::Equilibrator<dim> equilibrator(c.form, 2);
   const certify::Estimator<dim> estimator(c.form);
   for (const int k : {1, 2, 3})
   {
-    c.config.method.newton.max_steps = k;
+    c.method.newton.max_steps = k;
     const solve::NewtonResult<dim> newton = c.solve();
     const certify::Stress<dim> whole = certify::equilibrate<dim>(c.form, newton.u, newton.traction, 1);
     const certify::Stress<dim> lin = equilibrator.linearisation(newton.u, newton.traction);
@@ -100,15 +99,10 @@ TEST(Equilibrator, KeepsNothingOfAnIterateAndGivesSigmaLinAlone)
 {
   for (int p = 1; p <= 3; ++p)
   {
-    expect_the_same_in_parts<2>(t2d_toml(p, 8, 4) + "load.body = [\"0.01*x\", -0.02]\n");
-    expect_the_same_in_parts<3>("degree = " + std::to_string(p) + R"(
-mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [4, 2, 2] }
-material = { E = 1.0, nu = 0.3 }
-boundary.left.displacement = [0, 0, 0]
-boundary.top.traction = [0, -0.1, 0]
-boundary.right.traction = [0.04, 0.06, 0.02]
-boundary.bottom.contact = { friction = "coulomb", coefficient = 0.3 }
-)");
+    ProblemData<2> plane = pressed_block<2>();
+    plane.body_force = {formula("0.01*x"), -0.02};
+    expect_the_same_in_parts<2>({block<2>({8, 4}), plane, t2d_method(p)});
+    expect_the_same_in_parts<3>({block<3>({4, 2, 2}), pressed_block<3>(Coulomb(0.3)), {.degree = p}});
   }
 }
 
@@ -117,15 +111,14 @@ TEST(Estimate, VanishesForAConstantStress)
   // u = (A x + c + B y, D y) slips on y = 0, see the reference solutions.
   for (int p = 1; p <= 4; ++p)
   {
-    const std::string exact = "[\"0.1*x + 0.05 + 0.2*y\", \"-0.3*y\"]";
-    const std::string toml = "degree = " + std::to_string(p) +
-                             "\nmesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }\n"
-                             "material = { E = 2.5, nu = 0.25 }\nnewton.tolerance = 1e-13\n"
-                             "boundary.left.displacement = " +
-                             exact + "\nboundary.top.displacement = " + exact +
-                             "\nboundary.right.traction = [\"(1+2)*0.1 - 0.3\", 0.2]\n"
-                             "boundary.bottom.contact = { friction = \"tresca\", threshold = 0.2 }\n";
-    const DiscreteCase<2> c(toml);
+    const problem::Field u_x = formula("0.1*x + 0.05 + 0.2*y");
+    const problem::Field u_y = formula("-0.3*y");
+    const DiscreteProblem<2> c(
+        block<2>({4, 2}),
+        {.boundaries = {fixed<2>("left", u_x, u_y), fixed<2>("top", u_x, u_y),
+                        loaded<2>("right", (1 + 2) * 0.1 - 0.3, 0.2), obstacle<2>("bottom", Tresca(0.2))},
+         .material = lame(2.5, 0.25)},
+        {.degree = p, .newton = {.tolerance = 1e-13}});
     const solve::NewtonResult<2> result = c.solve();
     ASSERT_EQ(result.status, solve::NewtonStatus::converged);
     const certify::Estimate eta =

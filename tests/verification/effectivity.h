@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -20,10 +20,11 @@
 namespace tribound::test
 {
 
-struct NamedText
+template <int dim>
+struct NamedProblem
 {
   std::string name;
-  std::string text;
+  ProblemData<dim> data;
 };
 
 template <int dim>
@@ -38,8 +39,9 @@ template <int dim>
 struct EffectivityCase
 {
   int degree;
-  NamedText problem;  ///< TOML of everything but degree and mesh
+  NamedProblem<dim> problem;
   NamedMesh<dim> mesh;
+  double newton_tolerance = 1e-11;
 };
 
 /// Effectivities of the iterates 1, 2 and last.
@@ -55,15 +57,16 @@ struct Effectivities
 template <int dim>
 Effectivities effectivities(const EffectivityCase<dim>& which, double delta = 0)
 {
-  DiscreteCase<dim> c(fmt::format("degree = {}\n", which.degree) + which.problem.text, which.mesh.data);
+  DiscreteProblem<dim> c(which.mesh.data, which.problem.data,
+                         {.degree = which.degree, .newton = {.tolerance = which.newton_tolerance}});
   certify::DualNorm<dim> dual_norm(c.form, {.refinements = 2, .degree = which.degree + 2});
   Effectivities result;
   std::string line =
       fmt::format("{}D p = {}  {:<22} {:<12}", dim, which.degree, which.problem.name, which.mesh.name);
-  const int all_steps = c.config.method.newton.max_steps;
+  const int all_steps = c.method.newton.max_steps;
   for (const int k : {1, 2, all_steps})
   {
-    c.config.method.newton.max_steps = k;
+    c.method.newton.max_steps = k;
     const solve::NewtonResult<dim> newton = c.solve(delta);
     const certify::Estimate eta = certify::estimate<dim>(
         c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction, 0, delta));

@@ -12,14 +12,12 @@ namespace tribound::test
 namespace
 {
 
-NamedText problem(const std::string& name, const std::string& contact)
+NamedProblem<3> pulled(const std::string& name, const problem::ContactLaw& law, const problem::Field& gap = 0)
 {
   return {name,
-          "material = { E = 1.0, nu = 0.3 }\nnewton.tolerance = 1e-11\nload.body = [0.02, -0.05, 0]\n"
-          "boundary.left.displacement = [0, 0, 0]\nboundary.back.displacement = [\"free\", \"free\", 0]\n"
-          "boundary.top.traction = [0, -0.1, 0]\nboundary.right.traction = [0.04, 0.03, 0.01]\n"
-          "boundary.bottom.contact = " +
-              contact + "\n"};
+          {.boundaries = {clamped<3>("left"), fixed<3>("back", free, free), loaded<3>("top", 0, -0.1),
+                          loaded<3>("right", 0.04, 0.03, 0.01), obstacle<3>("bottom", law, gap)},
+           .body_force = {0.02, -0.05}}};
 }
 
 class Effectivity3D : public ::testing::TestWithParam<int>
@@ -28,12 +26,11 @@ class Effectivity3D : public ::testing::TestWithParam<int>
 
 TEST_P(Effectivity3D, IsAtLeastOne)
 {
-  const std::vector<NamedMesh<3>> meshes{{"box 2x1x1", box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1})},
-                                         {"distorted", distorted(box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1}), 1)},
-                                         {"box 3x2x2", box<3>({0, 0, 0}, {2, 1, 1}, {3, 2, 2})}};
-  for (const NamedText& p : {problem("frictionless", "{ gap = \"0.03*x^2\" }"),
-                             problem("Tresca", "{ friction = \"tresca\", threshold = 0.03 }"),
-                             problem("Coulomb", "{ friction = \"coulomb\", coefficient = 0.4 }")})
+  const std::vector<NamedMesh<3>> meshes{{"box 2x1x1", block<3>({2, 1, 1})},
+                                         {"distorted", distorted(block<3>({2, 1, 1}), 1)},
+                                         {"box 3x2x2", block<3>({3, 2, 2})}};
+  for (const NamedProblem<3>& p : {pulled("frictionless", Frictionless(), formula("0.03*x^2")),
+                                   pulled("Tresca", Tresca(0.03)), pulled("Coulomb", Coulomb(0.4))})
     for (const NamedMesh<3>& mesh : meshes)
     {
       const std::string name = fmt::format("p{} {} {}", GetParam(), p.name, mesh.name);

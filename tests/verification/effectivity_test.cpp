@@ -25,29 +25,27 @@ namespace tribound::test
 namespace
 {
 
-NamedText problem(const std::string& name, const std::string& contact)
+NamedProblem<2> pulled(const std::string& name, const problem::ContactLaw& law, const problem::Field& gap = 0)
 {
   return {name,
-          "material = { E = 1.0, nu = 0.3 }\nnewton.tolerance = 1e-11\nload.body = [0.02, -0.05]\n"
-          "boundary.left.displacement = [0, 0]\nboundary.top.traction = [0, -0.1]\n"
-          "boundary.right.traction = [0.04, 0.03]\nboundary.bottom.contact = " +
-              contact + "\n"};
+          {.boundaries = {clamped<2>("left"), loaded<2>("top", 0, -0.1), loaded<2>("right", 0.04, 0.03),
+                          obstacle<2>("bottom", law, gap)},
+           .body_force = {0.02, -0.05}}};
 }
 
-std::vector<NamedText> problems()
+std::vector<NamedProblem<2>> problems()
 {
-  return {problem("frictionless", "{ gap = \"0.03*x^2\" }"),
-          problem("Tresca", "{ friction = \"tresca\", threshold = 0.03 }"),
-          problem("Coulomb", "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.004*x^2\" }")};
+  return {pulled("frictionless", Frictionless(), formula("0.03*x^2")), pulled("Tresca", Tresca(0.03)),
+          pulled("Coulomb", Coulomb(0.4), formula("0.004*x^2"))};
 }
 
 std::vector<NamedMesh<2>> meshes()
 {
   const auto corner = [](const Point<2>& x) { return x[0] > 1 && x[1] > 0.5; };
-  return {{"box 4x2", box<2>({0, 0}, {2, 1}, {4, 2})},
-          {"box 8x4", box<2>({0, 0}, {2, 1}, {8, 4})},
-          {"distorted", distorted(box<2>({0, 0}, {2, 1}, {5, 3}), 1)},
-          {"L-shape", without(box<2>({0, 0}, {2, 1}, {6, 4}), corner)}};
+  return {{"box 4x2", block<2>({4, 2})},
+          {"box 8x4", block<2>({8, 4})},
+          {"distorted", distorted(block<2>({5, 3}), 1)},
+          {"L-shape", without(block<2>({6, 4}), corner)}};
 }
 
 class Effectivity2D : public ::testing::TestWithParam<int>
@@ -56,7 +54,7 @@ class Effectivity2D : public ::testing::TestWithParam<int>
 
 TEST_P(Effectivity2D, IsAtLeastOneAndModerate)
 {
-  for (const NamedText& p : problems())
+  for (const NamedProblem<2>& p : problems())
     for (const NamedMesh<2>& mesh : meshes())
     {
       const std::string name = fmt::format("p{} {} {}", GetParam(), p.name, mesh.name);
@@ -69,10 +67,10 @@ TEST_P(Effectivity2D, IsAtLeastOneAndModerate)
 
 TEST_P(Effectivity2D, IsAtLeastOneOnStretchedCells)
 {
-  for (const NamedText& p : problems())
+  for (const NamedProblem<2>& p : problems())
     for (const auto& [nx, ny] : {std::pair{2, 4}, {8, 2}})
     {
-      const NamedMesh<2> mesh{fmt::format("box {}x{}", nx, ny), box<2>({0, 0}, {2, 1}, {nx, ny})};
+      const NamedMesh<2> mesh{fmt::format("box {}x{}", nx, ny), block<2>({nx, ny})};
       expect_guaranteed(effectivities<2>({GetParam(), p, mesh}), p.name + " " + mesh.name);
     }
 }
@@ -80,18 +78,17 @@ TEST_P(Effectivity2D, IsAtLeastOneOnStretchedCells)
 /// Loads, gap, threshold and displacement vary; none but the displacement is in the spaces of the method.
 TEST_P(Effectivity2D, IsAtLeastOneWithDataThatAreNotPolynomials)
 {
-  const std::string toml =
-      "material = { E = 1.0, nu = 0.3 }\nnewton.tolerance = 1e-11\n"
-      "load.body = [\"0.05*sin(3*y)\", \"-0.05*exp(x-y)\"]\n"
-      "boundary.left.displacement = [\"0.01*y\", \"free\"]\nboundary.top.traction = [0, "
-      "\"-0.1*cos(2*x)^2\"]\n"
-      "boundary.right.pressure = \"0.05*exp(y)\"\nboundary.bottom.contact = ";
-  const std::vector<NamedText> varying{
-      {"Tresca, varying",
-       toml + "{ friction = \"tresca\", threshold = \"0.02*(1+sin(4*x))\", gap = \"0.01*(1-cos(x))\" }\n"},
-      {"Coulomb, varying",
-       toml + "{ friction = \"coulomb\", coefficient = 0.3, gap = \"0.01*(1-cos(x))\" }\n"}};
-  for (const NamedText& p : varying)
+  const auto varying = [](const std::string& name, const problem::ContactLaw& law) -> NamedProblem<2>
+  {
+    return {name,
+            {.boundaries = {fixed<2>("left", formula("0.01*y"), free),
+                            loaded<2>("top", 0, formula("-0.1*cos(2*x)^2")),
+                            pressed<2>("right", formula("0.05*exp(y)")),
+                            obstacle<2>("bottom", law, formula("0.01*(1-cos(x))"))},
+             .body_force = {formula("0.05*sin(3*y)"), formula("-0.05*exp(x-y)")}}};
+  };
+  for (const NamedProblem<2>& p : {varying("Tresca, varying", Tresca(formula("0.02*(1+sin(4*x))"))),
+                                   varying("Coulomb, varying", Coulomb(0.3))})
     for (const NamedMesh<2>& mesh : meshes())
       expect_guaranteed(effectivities<2>({GetParam(), p, mesh}), p.name + " " + mesh.name);
 }

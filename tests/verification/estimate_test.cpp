@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -41,7 +41,7 @@ BoundRates finest_rates(const Manufactured<dim>& solution, int p, int first, int
   BoundRates rates{0, 0};
   for (int level = 0, n = first; level < levels; ++level, n *= 2)
   {
-    const DiscreteCase<dim> c(manufactured_case(solution, p, n));
+    const DiscreteProblem<dim> c = manufactured_problem(solution, p, n);
     const solve::NewtonResult<dim> newton = c.solve();
     EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
     const certify::Estimate eta = certify::estimate<dim>(
@@ -125,8 +125,8 @@ void constant_stress(const Tensor<dim>& frame, int p)
   for_all_states<dim>(frame,
                       [&](const AffineCase<dim>& exact, const Point<dim>& right, const Point<dim>&)
                       {
-                        const DiscreteCase<dim> c(affine_toml<dim>(exact, p, right),
-                                                  irregular_box<dim>(frame));
+                        const DiscreteProblem<dim> c(irregular_box<dim>(frame),
+                                                     affine_data<dim>(exact, right), affine_method(p));
                         const solve::NewtonResult<dim> newton = c.solve();
                         ASSERT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
                         const certify::Estimate eta = certify::estimate<dim>(

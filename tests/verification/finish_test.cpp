@@ -2,17 +2,12 @@
 /// The last level of a run: Newton's method converged there, systems solved anew where an identity asks for
 /// it, and the stress that is zero.
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "tribound/adapt/loop.h"
-#include "tribound/case/resolve.h"
-#include "tribound/mesh/gmsh.h"
+#include "support/meshes.h"
+#include "verification/run_adaptively.h"
 
 namespace tribound::test
 {
@@ -21,65 +16,51 @@ namespace
 {
 
 /// What an observer was told, and how the run ended.
-template <int dim>
 struct Told
 {
   std::vector<int> numbers;
-  std::vector<adapt::CertifiedLevel<dim>> levels;
+  std::vector<adapt::CertifiedLevel<2>> levels;
   double unsettled = 0;  ///< |integral of T(u) - t^k| on the last level
   certify::Verdict verdict;
 };
 
-template <int dim>
-Told<dim> run(const std::string& toml)
+Told run(const mesh::MeshData<2>& mesh, const ProblemData<2>& data, const adapt::Method& method,
+         const adapt::AdaptOptions& options = {})
 {
-  const case_file::Config config = case_file::parse_config(toml);
-  auto mesh = std::get<mesh::Mesh<dim>>(mesh::read_mesh(config.mesh));
-  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
-  Told<dim> told;
-  const adapt::LoopObserver<dim> observer = {
+  Told told;
+  const adapt::LoopObserver<2> observer = {
       {},
-      [&](const adapt::LevelView<dim>& view)
+      [&](const adapt::LevelView<2>& view)
       {
         told.numbers.push_back(view.number);
         told.levels.push_back(view.level);
-        const contact::NitscheForm<dim>& form = view.discrete.form;
-        told.unsettled =
-            (contact::contact_resultants<dim>(form, form.traction(view.level.u)).force -
-             contact::contact_resultants<dim>(form, std::span<const Point<dim>>(view.level.traction)).force)
-                .norm();
+        const contact::NitscheForm<2>& form = view.discrete.form;
+        told.unsettled = (contact::contact_resultants<2>(form, form.traction(view.level.u)).force -
+                          contact::contact_resultants<2>(form, view.level.traction).force)
+                             .norm();
       }};
-  const std::atomic<bool> stop = false;
-  told.verdict = adapt::adapt<dim>(
-      problem, config.method, config.adapt,
-      std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method), observer, stop);
+  told.verdict = run_adaptively<2>(mesh, data, method, options, observer);
   return told;
 }
 
-const std::string coulomb = "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }\n";
-
-std::string block(int p, const std::string& keys)
+/// A block on a rough floor.
+Told run(const adapt::Method& method, const adapt::AdaptOptions& options,
+         const problem::Material& material = lame(1, 0.3))
 {
-  return fmt::format(R"(
-degree = {}
-mesh.box = {{ lower = [0, 0], upper = [2, 1], cells = [8, 4] }}
-boundary.left.displacement = [0, 0]
-boundary.top.traction = [0.03, -0.1]
-output.report = false
-)",
-                     p) +
-         coulomb + keys;
+  return run(
+      block<2>({8, 4}),
+      {.boundaries = {clamped<2>("left"), loaded<2>("top", 0.03, -0.1), obstacle<2>("bottom", Coulomb(0.3))},
+       .material = material},
+      method, options);
 }
-
-const std::string elastic = "material = { E = 1, nu = 0.3 }\n";
 
 /// The criterion stops every level but the last one early; there the forces of contact settle, and the bound
 /// hardly moves.
 TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
 {
-  const std::string adapt = elastic + "adapt = { tolerance = 0.05, max_levels = 40 }\n";
-  const Told<2> early = run<2>(block(1, adapt + "newton.finish = false\n"));
-  const Told<2> late = run<2>(block(1, adapt));
+  const adapt::AdaptOptions options{.tolerance = 0.05, .max_levels = 40};
+  const Told early = run({.stopping = {.finish = false}}, options);
+  const Told late = run({}, options);
   ASSERT_EQ(early.numbers, late.numbers);
   EXPECT_EQ(late.verdict.status, certify::RunStatus::certified);
   EXPECT_FALSE(early.levels.back().converged);
@@ -98,7 +79,7 @@ TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
 /// The limit is found when the next mesh is there: the level is told of again.
 TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
 {
-  const Told<2> told = run<2>(block(2, elastic + "adapt = { tolerance = 1e-6, max_dofs = 1200 }\n"));
+  const Told told = run({.degree = 2}, {.tolerance = 1e-6, .max_dofs = 1200});
   EXPECT_EQ(told.verdict.status, certify::RunStatus::budget);
   ASSERT_GE(told.numbers.size(), 3u);
   EXPECT_EQ(told.numbers.back(), told.numbers[told.numbers.size() - 2]);
@@ -109,11 +90,10 @@ TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
 /// The steps that are allowed are enough for the criterion, not for a residual of 1e-14.
 TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
 {
-  const std::string keys =
-      elastic + "adapt = { tolerance = 0.9, max_levels = 0 }\nnewton.tolerance = 1e-14\n";
-  const Told<2> early = run<2>(block(1, keys + "newton.finish = false\n"));
-  const std::size_t steps = early.levels.back().steps.size();
-  const Told<2> late = run<2>(block(1, keys + "newton.max_steps = " + std::to_string(steps) + "\n"));
+  const adapt::AdaptOptions options{.tolerance = 0.9, .max_levels = 0};
+  const Told early = run({.newton = {.tolerance = 1e-14}, .stopping = {.finish = false}}, options);
+  const int steps = static_cast<int>(early.levels.back().steps.size());
+  const Told late = run({.newton = {.tolerance = 1e-14, .max_steps = steps}}, options);
   EXPECT_EQ(late.verdict.status, certify::RunStatus::certified) << late.verdict.reason;
   EXPECT_EQ(late.levels.back().u == early.levels.back().u, !late.levels.back().converged);
 }
@@ -121,9 +101,9 @@ TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
 /// Systems solved to three digits leave the stress out of equilibrium.
 TEST(Finish, SystemsAreSolvedAnewWhereAnIdentityIsViolated)
 {
-  const Told<2> told = run<2>(
-      block(1, elastic + "solver = { method = \"iterative\", tolerance = 1e-3 }\nnewton.tolerance = 1e-3\n"
-                         "adapt = { tolerance = 0.9, max_levels = 0 }\n"));
+  const Told told = run({.newton = {.tolerance = 1e-3},
+                         .solver = {.method = algebra::LinearMethod::iterative, .tolerance = 1e-3}},
+                        {.tolerance = 0.9, .max_levels = 0});
   EXPECT_EQ(told.verdict.status, certify::RunStatus::certified) << told.verdict.reason;
   EXPECT_TRUE(told.levels.back().tightened);
   EXPECT_LE(told.levels.back().identities.largest(1), certify::identity_limit);
@@ -133,20 +113,17 @@ TEST(Finish, SystemsAreSolvedAnewWhereAnIdentityIsViolated)
 TEST(Finish, ARigidMotionIsCertified)
 {
   for (int p = 1; p <= 4; ++p)
-    for (const char* u : {"[0.001, 0.002]", "[\"-0.01*y\", \"0.01*x\"]"})
-      for (const char* nu : {"0.3", "0.4999"})
+    for (const auto& [u_x, u_y] : {std::pair("0.001", "0.002"), std::pair("-0.01*y", "0.01*x")})
+      for (const double nu : {0.3, 0.4999})
       {
-        const Told<2> told = run<2>(fmt::format(R"(
-degree = {}
-mesh.box = {{ lower = [0, 0], upper = [2, 1], cells = [4, 2] }}
-material = {{ E = 1, nu = {} }}
-boundary.left.displacement = {}
-boundary.right.displacement = {}
-boundary.bottom.contact = {{ friction = "coulomb", coefficient = 0.3, gap = 1 }}
-)",
-                                                p, nu, u, u));
+        const Told told = run(block<2>({4, 2}),
+                              {.boundaries = {fixed<2>("left", formula(u_x), formula(u_y)),
+                                              fixed<2>("right", formula(u_x), formula(u_y)),
+                                              obstacle<2>("bottom", Coulomb(0.3), 1)},
+                               .material = lame(1, nu)},
+                              {.degree = p});
         EXPECT_EQ(told.verdict.status, certify::RunStatus::certified)
-            << "p = " << p << ", u = " << u << ", nu = " << nu << ": " << told.verdict.reason;
+            << "p = " << p << ", u_x = " << u_x << ", nu = " << nu << ": " << told.verdict.reason;
         EXPECT_TRUE(certify::is_round_off(told.levels.back().estimate, told.levels.back().norms));
       }
 }
@@ -154,14 +131,12 @@ boundary.bottom.contact = {{ friction = "coulomb", coefficient = 0.3, gap = 1 }}
 /// Carried into the tip of a wedge: contact on a ten-thousandth of a side, where the point of no rule lies.
 TEST(Finish, ANarrowContactIsNoRigidMotion)
 {
-  const Told<2> told = run<2>(R"toml(
-degree = 2
-mesh.box = { lower = [0, 0], upper = [0.958, 1.98], cells = [2, 4] }
-material = { E = 0.236, nu = 0.49 }
-boundary.left.displacement = [0, -1.948e-06]
-boundary.bottom.contact = { gap = "0.03639*abs(x/0.958-0.178)" }
-adapt = { tolerance = 0.0256, max_levels = 0 }
-)toml");
+  const Told told =
+      run(box<2>({0, 0}, {0.958, 1.98}, {2, 4}),
+          {.boundaries = {fixed<2>("left", 0, -1.948e-06),
+                          obstacle<2>("bottom", Frictionless(), formula("0.03639*abs(x/0.958-0.178)"))},
+           .material = lame(0.236, 0.49)},
+          {.degree = 2}, {.tolerance = 0.0256, .max_levels = 0});
   EXPECT_NE(told.verdict.status, certify::RunStatus::certified);
   EXPECT_GE(told.levels.back().estimate.total_sharp, 1.32859e-9);  // the dual norm, computed elsewhere
 }
@@ -169,16 +144,14 @@ adapt = { tolerance = 0.0256, max_levels = 0 }
 /// Rounding that hides a stress that loads or displacements need makes no certificate.
 TEST(Finish, AStressDrownedInRoundingIsNotZero)
 {
-  const std::string rubber = "material = { E = 1, nu = 0.499999999999 }\n";
-  EXPECT_EQ(run<2>(block(2, rubber)).verdict.status, certify::RunStatus::not_certified);
-  EXPECT_EQ(run<2>(std::string(R"(
-degree = 2
-mesh.box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] }
-boundary.left.displacement = [0, 0]
-boundary.right.displacement = [0.1, 0]
-)") + rubber + coulomb)
-                .verdict.status,
-            certify::RunStatus::not_certified);
+  const problem::Material rubber = lame(1, 0.499999999999);
+  EXPECT_EQ(run({.degree = 2}, {}, rubber).verdict.status, certify::RunStatus::not_certified);
+  const Told squeezed =
+      run(block<2>({8, 4}),
+          {.boundaries = {clamped<2>("left"), fixed<2>("right", 0.1, 0), obstacle<2>("bottom", Coulomb(0.3))},
+           .material = rubber},
+          {.degree = 2});
+  EXPECT_EQ(squeezed.verdict.status, certify::RunStatus::not_certified);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+#include "support/contact_points.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/nitsche.h"
@@ -69,21 +70,19 @@ struct Sample
   double weight;
 };
 
-/// At the quadrature points of the contact boundary, r the distance from the axis x = 0 (2D) or x = z = 0
+/// At the contact points, r the distance from the axis x = 0 (2D) or x = z = 0
 /// (3D).
 template <int dim>
 std::vector<Sample> pressure_samples(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
+  const std::span<const contact::ContactPoint<dim>> points = form.contact_points();
+  const std::vector<contact::ContactState<dim>> states = contact_states(form, u);
   std::vector<Sample> samples;
-  for (std::size_t k = 0; k < form.segments().size(); ++k)
+  for (std::size_t i = 0; i < points.size(); ++i)
   {
-    const auto states = form.contact_states(u, k);
-    for (std::size_t q = 0; q < states.size(); ++q)
-    {
-      const Point<dim>& x = states[q].point;
-      const double r = dim == 2 ? std::abs(x[0]) : std::hypot(x[0], x[dim - 1]);
-      samples.push_back({r, states[q].pressure, form.contact_points(k)[q].weight});
-    }
+    const Point<dim>& x = points[i].x;
+    const double r = dim == 2 ? std::abs(x[0]) : std::hypot(x[0], x[dim - 1]);
+    samples.push_back({r, states[i].pressure, points[i].weight});
   }
   return samples;
 }
@@ -256,9 +255,8 @@ TEST(Hertz, Sphere)
 double base_displacement(const contact::NitscheForm<2>& form, std::span<const double> u, double x)
 {
   std::vector<std::pair<double, double>> points;
-  for (std::size_t k = 0; k < form.segments().size(); ++k)
-    for (const contact::ContactState<2>& state : form.contact_states(u, k))
-      points.emplace_back(state.point[0], state.slip[0]);
+  for (const contact::ContactState<2>& state : contact_states(form, u))
+    points.emplace_back(state.point[0], state.slip[0]);
   std::ranges::sort(points);
   const auto after = std::ranges::upper_bound(points, std::pair(x, 0.0));
   const auto i = std::clamp<std::ptrdiff_t>(after - points.begin(), 1, std::ssize(points) - 1);

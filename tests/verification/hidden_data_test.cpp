@@ -11,7 +11,7 @@
 #include <iostream>
 #include <random>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -28,7 +28,7 @@ using Function = std::function<double(double)>;
 /// A function of one coordinate, as formula and as function, with the places where it jumps or kinks.
 struct Profile
 {
-  std::string formula;
+  std::string text;
   Function value;
   std::vector<double> breaks;
 };
@@ -160,8 +160,8 @@ class BruteForce
 /// A block, held at the left, loaded in its body and from above, on a floor; one of the data is hard to see.
 struct RandomCase
 {
-  std::string toml;
-  int degree;
+  ProblemData<2> data;
+  adapt::Method method;
   Profile body;      ///< f_y
   Profile traction;  ///< g_y on the top
 };
@@ -169,27 +169,25 @@ struct RandomCase
 RandomCase random_case(Random& random)
 {
   const Profile zero{"0", [](double) { return 0.0; }, {}};
-  RandomCase c{{}, 1 + random.of(3), zero, zero};
-  std::string gap = "0";
-  std::string friction;
+  RandomCase c{{}, {.degree = 1 + random.of(3)}, zero, zero};
+  problem::Contact contact((Frictionless()));
   const int hard = random.of(4);
   if (hard == 0) c.body = random_profile(random, 'x', 2, -1, 0.03);
   if (hard == 1 || hard > 2) c.traction = random_profile(random, 'x', 2, -1, 1e-4);
   if (hard == 2)
   {
     c.traction = {"-0.1", [](double) { return -0.1; }, {}};
-    gap = random_profile(random, 'x', 2, 0.1, 0.02).formula;
+    contact.gap = formula(random_profile(random, 'x', 2, 0.1, 0.02).text);
   }
   const int law = random.of(3);
   if (law == 1)
-    friction = fmt::format(", friction = \"tresca\", threshold = \"{}\"",
-                           hard == 3 ? random_profile(random, 'x', 2, 0.3, 0.02).formula : "0.03");
-  if (law == 2) friction = fmt::format(", friction = \"coulomb\", coefficient = {}", random.between(0, 0.6));
-  c.toml = fmt::format(
-      "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = [0, \"{}\"]\n"
-      "boundary.left.displacement = [0, 0]\nboundary.top.traction = [0, \"{}\"]\n"
-      "boundary.bottom.contact = {{ gap = \"{}\"{} }}\nnewton.max_steps = {}\n",
-      c.degree, c.body.formula, c.traction.formula, gap, friction, 1 + random.of(4));
+    contact.law =
+        Tresca(hard == 3 ? formula(random_profile(random, 'x', 2, 0.3, 0.02).text) : problem::Field(0.03));
+  if (law == 2) contact.law = Coulomb(random.between(0, 0.6));
+  c.data = {.boundaries = {clamped<2>("left"), loaded<2>("top", 0, formula(c.traction.text)),
+                           obstacle<2>("bottom", contact)},
+            .body_force = {0, formula(c.body.text)}};
+  c.method.newton.max_steps = 1 + random.of(4);
   return c;
 }
 
@@ -198,24 +196,24 @@ double random_effectivity(Random& random, const std::string& seed)
 {
   const RandomCase c = random_case(random);
   const int nx = 2 + random.of(3);
-  const DiscreteCase<2> problem(c.toml, box<2>({0, 0}, {2, 1}, {nx, 1 + random.of(2)}));
+  const DiscreteProblem<2> problem(block<2>({nx, 1 + random.of(2)}), c.data, c.method);
   const solve::NewtonResult<2> newton = problem.solve();
   const certify::Estimate eta = certify::estimate<2>(
       problem.form, newton.u, certify::equilibrate<2>(problem.form, newton.u, newton.traction));
 
-  certify::DualNorm<2> dual_norm(problem.form, {.refinements = 1, .degree = c.degree + 1});
+  certify::DualNorm<2> dual_norm(problem.form, {.refinements = 1, .degree = c.method.degree + 1});
   const fem::LagrangeSpace<2>& space = dual_norm.space();
   std::vector<double> exact(space.n_dofs(), 0.0);
   const BruteForce brute(space);
-  if (c.body.formula != "0") brute.add_body(c.body.value, exact);
+  if (c.body.text != "0") brute.add_body(c.body.value, exact);
   const auto names = problem.mesh.boundary_names();
   const int top = static_cast<int>(std::ranges::find(names, "top") - names.begin());
-  if (c.traction.formula != "0") brute.add_traction(top, c.traction, exact);
+  if (c.traction.text != "0") brute.add_traction(top, c.traction, exact);
   const double below = dual_norm.of(dual_norm.residual(newton.u, exact));
   const std::optional<double> found = certify::effectivity(
       eta.total_sharp, below, contact::stress_norms(problem.problem, problem.space, newton.u));
   if (!found) return 1;  // no load reaches the body
-  EXPECT_GE(*found, 1) << seed << "\n" << c.toml;
+  EXPECT_GE(*found, 1) << seed;
   return *found;
 }
 
@@ -246,30 +244,32 @@ TEST(HiddenData, TheBoundIsAboveTheDualNormIn3D)
                          random.between(0, 1), random.between(0, 1), random.between(0.3, 1.2));
     };
     const double a = random.between(0, 0.9);
-    const std::string toml = fmt::format(
-        "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = [0, \"{} ? -0.2 : 0\", 0]\n"
-        "boundary.left.displacement = [0, 0, 0]\n"
-        "boundary.top.pressure = \"x > {:.3g} && x < {:.3g} ? 1 : 0\"\n"
-        "boundary.bottom.contact = {{ friction = \"tresca\", threshold = \"{} ? 0.05 : 0.01\" }}\n",
-        1 + seed % 2, plane(), a, a + random.size(1e-3, 0.2), plane());
-    const DiscreteCase<3> c(toml, box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 1}));
+    const std::string threshold = plane() + " ? 0.05 : 0.01";
+    const std::string strip = fmt::format("x > {:.3g} && x < {:.3g} ? 1 : 0", a, a + random.size(1e-3, 0.2));
+    const std::string weight = plane() + " ? -0.2 : 0";
+    SCOPED_TRACE(fmt::format("seed {}: {}, {}, {}", seed, threshold, strip, weight));
+    const DiscreteProblem<3> c(box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 1}),
+                               {.boundaries = {clamped<3>("left"), pressed<3>("top", formula(strip)),
+                                               obstacle<3>("bottom", Tresca(formula(threshold)))},
+                                .body_force = {0, formula(weight), 0}},
+                               {.degree = 1 + static_cast<int>(seed % 2)});
     const solve::NewtonResult<3> newton = c.solve();
     const certify::Estimate eta =
         certify::estimate<3>(c.form, newton.u, certify::equilibrate<3>(c.form, newton.u, newton.traction));
-    EXPECT_LE(eta.global.quad, 1e-12) << toml;  // planes are cut exactly
+    EXPECT_LE(eta.global.quad, 1e-12);  // planes are cut exactly
     certify::DualNorm<3> dual_norm(c.form, {.refinements = 1, .degree = 3});
-    EXPECT_GE(eta.total_sharp, dual_norm(newton.u)) << toml;
+    EXPECT_GE(eta.total_sharp, dual_norm(newton.u));
   }
 }
 
 /// Strips between the points of the rule were not seen at all: stress 0, bound 0.
 TEST(HiddenData, ANarrowStripIsSeen)
 {
-  const DiscreteCase<2> c(
-      "degree = 2\nmaterial = { E = 1.0, nu = 0.3 }\nboundary.left.displacement = [0, 0]\n"
-      "boundary.top.traction = [0, \"x > 0.26 && x < 0.32 ? -1 : 0\"]\n"
-      "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }\n",
-      box<2>({0, 0}, {2, 1}, {4, 2}));
+  const DiscreteProblem<2> c(
+      block<2>({4, 2}),
+      {.boundaries = {clamped<2>("left"), loaded<2>("top", 0, formula("x > 0.26 && x < 0.32 ? -1 : 0")),
+                      obstacle<2>("bottom", Coulomb(0.3))}},
+      {.degree = 2});
   double force = 0;
   for (std::size_t i = 1; i < c.form.load().size(); i += 2) force += c.form.load()[i];
   EXPECT_NEAR(force, -0.06, 1e-15);

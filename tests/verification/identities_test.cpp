@@ -13,11 +13,12 @@
 #include <utility>
 
 #include "support/box_sides.h"
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/mesh/bisect.h"
+#include "verification/data_mesh.h"
 
 namespace tribound::test
 {
@@ -25,8 +26,8 @@ namespace tribound::test
 namespace
 {
 
-constexpr auto tresca = "{ friction = \"tresca\", threshold = \"0.01 + 0.005*sin(x)\" }";
-constexpr auto coulomb = "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.002*(1 + sin(3*x))\" }";
+const problem::Contact tresca(Tresca(formula("0.01 + 0.005*sin(x)")));
+const problem::Contact coulomb(Coulomb(0.4), formula("0.002*(1 + sin(3*x))"));
 
 double identity_bound(int p)
 {
@@ -35,13 +36,13 @@ double identity_bound(int p)
 
 /// Checks iterates 1, 2 and the last; returns the largest defect.
 template <int dim>
-double expect_identities(DiscreteCase<dim>& c)
+double expect_identities(DiscreteProblem<dim>& c)
 {
   double largest = 0;
-  const double bound = identity_bound(c.config.method.degree);
+  const double bound = identity_bound(c.method.degree);
   for (const int k : {1, 2, 30})
   {
-    c.config.method.newton.max_steps = k;
+    c.method.newton.max_steps = k;
     const solve::NewtonResult<dim> result = c.solve();
     const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, result.u, result.traction);
     const certify::IdentityDefects defects = certify::check_identities<dim>(c.form, result.traction, stress);
@@ -49,46 +50,36 @@ double expect_identities(DiscreteCase<dim>& c)
     EXPECT_LE(defects.jump, bound) << "iterate " << k;
     EXPECT_LE(defects.neumann, bound) << "iterate " << k;
     EXPECT_LE(defects.contact, bound) << "iterate " << k;
-    if (c.config.method.degree > 1)
+    if (c.method.degree > 1)
     {
       EXPECT_LE(defects.symmetry, bound) << "iterate " << k;
     }
-    largest = std::max(largest, defects.largest(c.config.method.degree));
+    largest = std::max(largest, defects.largest(c.method.degree));
   }
   return largest;
 }
 
-/// Degree, material and a body force of degree 3.
 template <int dim>
-std::string matter(int p)
+using Conditions = std::vector<problem::BoundaryCondition<dim>>;
+
+/// Under a body force of degree 3.
+template <int dim>
+ProblemData<dim> heavy(const Conditions<dim>& boundaries)
 {
-  return fmt::format(
-      "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = [{}]\nnewton.tolerance = 1e-12\n", p,
-      dim == 2 ? "\"0.1*x*y\", \"-0.1*(1 + x^2*y)\"" : "\"0.1*x*y\", \"-0.1*(1 + x^2*y)\", \"0.05*z*x\"");
+  return {
+      .boundaries = boundaries,
+      .body_force = components<dim>(formula("0.1*x*y"), formula("-0.1*(1 + x^2*y)"), formula("0.05*z*x"))};
+}
+
+adapt::Method method(int p)
+{
+  return {.degree = p, .newton = {.tolerance = 1e-12}};
 }
 
 template <int dim>
-mesh::MeshData<dim> block()
+mesh::MeshData<dim> some_block()
 {
-  if constexpr (dim == 2)
-    return box<2>({0, 0}, {2, 1}, {4, 3});
-  else
-    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1});
-}
-
-/// A rotation that leaves no side parallel to an axis.
-template <int dim>
-Tensor<dim> turn()
-{
-  Tensor<dim> q = Tensor<dim>::Identity();
-  q.topLeftCorner(2, 2) << 0.8, -0.6, 0.6, 0.8;
-  if constexpr (dim == 3)
-  {
-    Tensor<dim> about_x = Tensor<dim>::Identity();
-    about_x.bottomRightCorner(2, 2) << 0.8, -0.6, 0.6, 0.8;
-    q = (about_x * q).eval();
-  }
-  return q;
+  return block<dim>({4, 3}, {2, 1, 1});
 }
 
 /// All combinations on the sides of the block turned by `frame`.
@@ -100,9 +91,9 @@ void every_combination(const Tensor<dim>& frame, int p)
   for (std::size_t i = 0; i < choices.size(); ++i)
   {
     SCOPED_TRACE(describe<dim>(choices[i]));
-    DiscreteCase<dim> c(
-        matter<dim>(p) + sides_toml<dim>(choices[i], i % 2 == 0 ? tresca : coulomb),
-        mapped<dim>(block<dim>(), [&](const Point<dim>& x) -> Point<dim> { return frame * x; }));
+    DiscreteProblem<dim> c(
+        mapped<dim>(some_block<dim>(), [&](const Point<dim>& x) -> Point<dim> { return frame * x; }),
+        heavy<dim>(side_conditions<dim>(choices[i], i % 2 == 0 ? tresca : coulomb)), method(p));
     largest = std::max(largest, expect_identities<dim>(c));
   }
   fmt::print("{}D, p = {}: {} choices of sides, largest defect {:.1e}\n", dim, p, choices.size(), largest);
@@ -119,7 +110,7 @@ TEST_P(Identities2D, EveryCombinationOfNeighbouringSides)
 
 TEST_P(Identities2D, EveryCombinationOnInclinedSides)
 {
-  every_combination<2>(turn<2>(), GetParam());
+  every_combination<2>(rotation<2>(), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Identities2D, ::testing::Range(1, 5));
@@ -135,7 +126,7 @@ TEST_P(Identities3D, EveryCombinationOfNeighbouringSides)
 
 TEST_P(Identities3D, EveryCombinationOnInclinedSides)
 {
-  every_combination<3>(turn<3>(), GetParam());
+  every_combination<3>(rotation<3>(), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Identities3D, ::testing::Range(1, 4));
@@ -154,46 +145,40 @@ TEST(CoveringSides, ContainEveryCombination)
 
 /// Checks one case and prints.
 template <int dim>
-void check_case(const std::string& name, DiscreteCase<dim>& c)
+void check_case(const std::string& name, DiscreteProblem<dim> c)
 {
   SCOPED_TRACE(name);
   const double largest = expect_identities<dim>(c);
-  fmt::print("{}, {}D, p = {}, {} cells: largest defect {:.1e}\n", name, dim, c.config.method.degree,
+  fmt::print("{}, {}D, p = {}, {} cells: largest defect {:.1e}\n", name, dim, c.method.degree,
              c.mesh.n_cells(), largest);
 }
 
 /// Blocks that contact and friction help to hold, undamped.
-std::string held_by_contact(int dimension, int p)
+template <int dim>
+void held_by_contact(const Conditions<dim>& boundaries, int p)
 {
-  return (dimension == 2 ? matter<2>(p) : matter<3>(p)) + "newton.damping = false\n" +
-         (dimension == 2 ? "mesh.box = { lower = [0, 0], upper = [2, 1], cells = [5, 3] }\n"
-                         : "mesh.box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [2, 2, 2] }\n");
+  check_case<dim>("block held by contact", {block<dim>({5, 3}, {2, 2, 2}),
+                                            heavy<dim>(boundaries),
+                                            {.degree = p, .newton = {.tolerance = 1e-12, .damping = false}}});
 }
 
 TEST_P(Identities2D, BlockHeldByContact)
 {
-  for (const std::string contact : {tresca, coulomb})
-    for (const std::string left : {"[0, 0]", "[0, \"free\"]"})
-      for (const std::string right : {"boundary.right.traction = [0.02, \"0.01*sin(y)\"]\n",
-                                      "boundary.right.displacement = [\"free\", 0]\n", ""})
-      {
-        DiscreteCase<2> c(held_by_contact(2, GetParam()) + "boundary.bottom.contact = " + contact +
-                          "\nboundary.left.displacement = " + left + "\n" + right +
-                          "boundary.top.traction = [0, \"-0.1*exp(x)\"]\n");
-        check_case("block held by contact", c);
-      }
+  for (const problem::Contact& contact : {tresca, coulomb})
+    for (const auto& left : {clamped<2>("left"), fixed<2>("left", 0, free)})
+      for (const auto& right : {loaded<2>("right", 0.02, formula("0.01*sin(y)")), fixed<2>("right", free, 0),
+                                loaded<2>("right", 0, 0)})
+        held_by_contact<2>(
+            {obstacle<2>("bottom", contact), left, right, loaded<2>("top", 0, formula("-0.1*exp(x)"))},
+            GetParam());
 }
 
 TEST_P(Identities3D, BlockHeldByContact)
 {
-  for (const std::string contact : {tresca, coulomb})
-  {
-    DiscreteCase<3> c(held_by_contact(3, GetParam()) + "boundary.bottom.contact = " + contact +
-                      "\nboundary.left.displacement = [0, \"free\", 0]\n"
-                      "boundary.back.displacement = [\"free\", \"free\", 0]\n"
-                      "boundary.top.traction = [0, \"-0.1*exp(x)\", 0.01]\n");
-    check_case("block held by contact", c);
-  }
+  for (const problem::Contact& contact : {tresca, coulomb})
+    held_by_contact<3>({obstacle<3>("bottom", contact), fixed<3>("left", 0, free),
+                        fixed<3>("back", free, free), loaded<3>("top", 0, formula("-0.1*exp(x)"), 0.01)},
+                       GetParam());
 }
 
 /// The condition of each side of the block on unstructured meshes: contact below and on the right.
@@ -206,16 +191,11 @@ constexpr Sides<dim> mixed_sides = []
   return sides;
 }();
 
-std::string data_file(const std::string& name, int dim)
-{
-  return fmt::format("mesh.file = \"{}/{}{}.geo\"\n", VERIFICATION_DATA, name, dim);
-}
-
 /// The block bisected towards the corner where two contact boundaries meet.
 template <int dim>
 mesh::Mesh<dim> graded_block()
 {
-  mesh::Mesh<dim> mesh(distorted<dim>(block<dim>(), 3));
+  mesh::Mesh<dim> mesh(distorted<dim>(some_block<dim>(), 3));
   for (int level = 0; level < (dim == 2 ? 6 : 3); ++level)
   {
     const auto vertices = mesh.vertices();
@@ -232,15 +212,12 @@ mesh::Mesh<dim> graded_block()
 template <int dim>
 void unstructured_meshes(int p)
 {
-  for (const auto* contact : {tresca, coulomb})
+  for (const problem::Contact& contact : {tresca, coulomb})
   {
-    const std::string toml = matter<dim>(p) + sides_toml<dim>(mixed_sides<dim>, contact);
-    DiscreteCase<dim> bent(toml, distorted<dim>(block<dim>(), 3));
-    check_case("distorted block", bent);
-    DiscreteCase<dim> gmsh(data_file("box", dim) + toml);
-    check_case("block from Gmsh", gmsh);
-    DiscreteCase<dim> graded(toml, graded_block<dim>());
-    check_case("bisected block", graded);
+    const ProblemData<dim> data = heavy<dim>(side_conditions<dim>(mixed_sides<dim>, contact));
+    check_case<dim>("distorted block", {distorted<dim>(some_block<dim>(), 3), data, method(p)});
+    check_case<dim>("block from Gmsh", {data_mesh<dim>("box"), data, method(p)});
+    check_case<dim>("bisected block", {graded_block<dim>(), data, method(p)});
   }
 }
 
@@ -249,24 +226,17 @@ void unstructured_meshes(int p)
 template <int dim>
 void l_shape(int p)
 {
-  const std::string free = dim == 2 ? "[\"free\", 0]" : "[\"free\", 0, \"free\"]";
-  std::string toml =
-      data_file("lshape", dim) +
-      fmt::format(
-          "degree = {}\n"
-          "material.soft = {{ E = 1.0, nu = 0.3 }}\nmaterial.stiff = {{ E = 20.0, nu = 0.45 }}\n"
-          "load.soft.body = [{}]\nnewton.tolerance = 1e-12\n"
-          "boundary.bottom.contact = {}\nboundary.wall.contact = {}\n"
-          "boundary.top.pressure = \"0.05*exp(x)\"\n",
-          p, dim == 2 ? "0, \"-0.02*x*y\"" : "0, \"-0.02*x*y\", 0", tresca, coulomb);
-  const std::string traction = dim == 2 ? "[0.01, \"-0.05*cos(x)\"]" : "[0.01, \"-0.05*cos(x)\", 0.01]";
-  toml += "boundary.ledge.traction = " + traction + "\nboundary.right.displacement = " + free + "\n";
-  toml += dim == 2
-              ? "boundary.left.displacement = [0, \"free\"]\n"
-              : "boundary.left.displacement = [0, \"free\", \"free\"]\n"
-                "boundary.back.displacement = [\"free\", \"free\", 0]\nboundary.front.traction = [0, 0, 0]\n";
-  DiscreteCase<dim> c(toml);
-  check_case("L-shape of two materials", c);
+  ProblemData<dim> data{
+      .boundaries = {obstacle<dim>("bottom", tresca), obstacle<dim>("wall", coulomb),
+                     pressed<dim>("top", formula("0.05*exp(x)")),
+                     loaded<dim>("ledge", 0.01, formula("-0.05*cos(x)"), 0.01),
+                     fixed<dim>("right", free, 0, free), fixed<dim>("left", 0, free, free)},
+      .regions = {{.name = "soft",
+                   .material = lame(1, 0.3),
+                   .body_force = components<dim, problem::Field>(0, formula("-0.02*x*y"), 0)},
+                  {.name = "stiff", .material = lame(20, 0.45)}}};
+  if (dim == 3) data.boundaries.push_back(fixed<dim>("back", free, free, 0));
+  check_case<dim>("L-shape of two materials", {data_mesh<dim>("lshape"), data, method(p)});
 }
 
 TEST_P(Identities2D, UnstructuredMeshes)
@@ -291,17 +261,13 @@ TEST_P(Identities3D, LShapeOfTwoMaterials)
 template <int dim>
 void no_polynomial(int p)
 {
-  const std::string body = dim == 2 ? "[\"0.1*sin(5*x)*exp(y)\", \"-0.1*exp(2*x*y)\"]"
-                                    : "[\"0.1*sin(5*x)*exp(y)\", \"-0.1*exp(2*x*y)\", \"0.1*cos(3*z)\"]";
-  const std::string toml =
-      fmt::format(
-          "degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = {}\nnewton.tolerance = 1e-12\n", p,
-          body) +
-      sides_toml<dim>(mixed_sides<dim>, tresca);
-  DiscreteCase<dim> structured(toml, block<dim>());
-  check_case("body force no polynomial, structured", structured);
-  DiscreteCase<dim> bent(toml, distorted<dim>(block<dim>(), 3));
-  check_case("body force no polynomial, distorted", bent);
+  const ProblemData<dim> data{
+      .boundaries = side_conditions<dim>(mixed_sides<dim>, tresca),
+      .body_force = components<dim>(formula("0.1*sin(5*x)*exp(y)"), formula("-0.1*exp(2*x*y)"),
+                                    formula("0.1*cos(3*z)"))};
+  check_case<dim>("body force no polynomial, structured", {some_block<dim>(), data, method(p)});
+  check_case<dim>("body force no polynomial, distorted",
+                  {distorted<dim>(some_block<dim>(), 3), data, method(p)});
 }
 
 TEST_P(Identities2D, BodyForceThatIsNoPolynomial)

@@ -4,17 +4,14 @@
 /// Smooth exact solutions, given as formulas, and the error against them. Shares no integration with the
 /// library's own norms but the quadrature rules.
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <array>
 #include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "support/discrete_case.h"
-#include "tribound/fem/evaluation.h"
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 
 namespace tribound::test
 {
@@ -29,7 +26,7 @@ struct Manufactured
   std::array<std::string, dim> u;
   std::array<std::string, dim * dim> gradient;  ///< row by row
   std::array<std::string, dim> body;            ///< f = -div sigma(u)
-  std::string contact;                          ///< TOML
+  problem::ContactLaw law;
 };
 
 /// u and grad u as functions.
@@ -39,8 +36,8 @@ class ExactField
  public:
   explicit ExactField(const Manufactured<dim>& solution)
   {
-    for (const std::string& text : solution.u) u_.emplace_back(text, Where{});
-    for (const std::string& text : solution.gradient) gradient_.emplace_back(text, Where{});
+    for (const std::string& text : solution.u) u_.push_back(formula(text));
+    for (const std::string& text : solution.gradient) gradient_.push_back(formula(text));
   }
 
   [[nodiscard]] Point<dim> value(const Point<dim>& x) const
@@ -63,24 +60,24 @@ class ExactField
   std::vector<problem::Field> gradient_;
 };
 
-/// The case with degree p on a uniform mesh, n cells along y.
+/// The problem with degree p on a uniform mesh, n cells along y.
 template <int dim>
-std::string manufactured_case(const Manufactured<dim>& solution, int p, int n)
+DiscreteProblem<dim> manufactured_problem(const Manufactured<dim>& solution, int p, int n)
 {
-  const auto& [lambda, mu, plane] = solution.material;
+  Point<dim> upper;
   std::array<int, dim> cells;
+  ProblemData<dim> data{.boundaries = {obstacle<dim>("bottom", solution.law)}, .material = solution.material};
+  std::array<std::optional<problem::Field>, dim> u;
   for (int a = 0; a < dim; ++a)
+  {
+    upper[a] = solution.upper[a];
     cells[a] = static_cast<int>(std::lround(n * solution.upper[a] / solution.upper[1]));
-  std::string toml = fmt::format("degree = {}\n", p);
-  toml += fmt::format("mesh.box = {{ lower = {}, upper = {}, cells = {} }}\n", std::array<double, dim>{},
-                      solution.upper, cells);
-  toml += fmt::format("material = {{ E = {:.17g}, nu = {:.17g} }}\n",
-                      mu * (3 * lambda + 2 * mu) / (lambda + mu), lambda / (2 * (lambda + mu)));
-  toml += fmt::format("load.body = {}\nnewton.tolerance = 1e-11\n", solution.body);
-  for (const char* side : {"left", "right", "top", "back", "front"})
-    if (dim == 3 || (side[0] != 'b' && side[0] != 'f'))
-      toml += fmt::format("boundary.{}.displacement = {}\n", side, solution.u);
-  return toml + "boundary.bottom.contact = " + solution.contact + "\n";
+    data.body_force[a] = formula(solution.body[a]);
+    u[a] = formula(solution.u[a]);
+  }
+  for (const std::string side : side_names<dim>)
+    if (side != "bottom") data.boundaries.push_back(problem::with_displacement<dim>(side, u));
+  return {box<dim>(Point<dim>::Zero(), upper, cells), data, {.degree = p, .newton = {.tolerance = 1e-11}}};
 }
 
 /// ||u - u_h||_en = (sigma(e), eps(e))^(1/2) and the same of u.
@@ -91,7 +88,8 @@ struct EnergyError
 };
 
 template <int dim>
-EnergyError energy_error(const DiscreteCase<dim>& c, std::span<const double> u, const ExactField<dim>& exact)
+EnergyError energy_error(const DiscreteProblem<dim>& c, std::span<const double> u,
+                         const ExactField<dim>& exact)
 {
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * c.space.degree() + 6);
   const fem::Tabulation<dim> table = c.space.basis().tabulate(rule.points);

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "support/dense_patch.h"
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "support/t2d.h"
 #include "tribound/certify/bound/checks.h"
@@ -43,37 +43,31 @@ mesh::MeshData<dim> skewed(mesh::MeshData<dim> data)
 
 /// T2D with a body force, a roller on the left and a tangential one on the right; in 3D rollers behind too.
 template <int dim>
-std::string toml(int p, const std::string& contact)
+ProblemData<dim> rolling_block(const problem::Contact& contact)
 {
-  const bool plane = dim == 2;
-  return fmt::format("degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nnewton.damping = false\n", p) +
-         "newton.tolerance = 1e-12\nload.body = " +
-         (plane ? "[\"0.1*x*y\", \"-0.1*(1 + x^2)\"]" : "[\"0.1*x*y\", \"-0.1*(1 + x^2)\", \"0.05*x*z\"]") +
-         "\nboundary.left.displacement = " + (plane ? "[0, \"free\"]" : "[0, \"free\", \"free\"]") +
-         "\nboundary.right.displacement = " + (plane ? "[\"free\", 0]" : "[\"free\", 0, \"free\"]") +
-         "\nboundary.right.traction = " + (plane ? "[0.04, 0]" : "[0.04, 0, 0.01]") +
-         "\nboundary.top.traction = " +
-         (plane ? "[0.01, \"-0.1*exp(x)\"]" : "[0.01, \"-0.1*exp(x)\", 0.02]") +
-         (plane ? "" : "\nboundary.back.displacement = [\"free\", \"free\", 0]") +
-         "\nboundary.bottom.contact = " + contact + "\n";
+  ProblemData<dim> data{
+      .boundaries = {fixed<dim>("left", 0, free, free),
+                     loaded<dim>(fixed<dim>("right", free, 0, free), 0.04, 0, 0.01),
+                     loaded<dim>("top", 0.01, formula("-0.1*exp(x)"), 0.02),
+                     obstacle<dim>("bottom", contact)},
+      .body_force = components<dim>(formula("0.1*x*y"), formula("-0.1*(1 + x^2)"), formula("0.05*x*z"))};
+  if (dim == 3) data.boundaries.push_back(fixed<dim>("back", free, free, 0));
+  return data;
 }
 
-constexpr auto tresca = "{ friction = \"tresca\", threshold = 0.03 }";
-constexpr auto coulomb = "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.01*x\" }";
+const problem::Contact tresca(Tresca(0.03));
+const problem::Contact coulomb(Coulomb(0.4), formula("0.01*x"));
 
 template <int dim>
-mesh::MeshData<dim> block()
+mesh::MeshData<dim> some_block()
 {
-  if constexpr (dim == 2)
-    return box<2>({0, 0}, {2, 1}, {4, 2});
-  else
-    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1});
+  return block<dim>({4, 2}, {2, 1, 1});
 }
 
 template <int dim>
-solve::NewtonResult<dim> iterate(DiscreteCase<dim>& c, int k)
+solve::NewtonResult<dim> iterate(DiscreteProblem<dim>& c, int k)
 {
-  c.config.method.newton.max_steps = k;
+  c.method.newton.max_steps = k;
   return c.solve();
 }
 
@@ -108,10 +102,11 @@ double difference(const certify::Stress<dim>& a, const certify::Stress<dim>& b)
 }
 
 template <int dim>
-void expect_agreement(const std::string& name, const std::string& contact, int p, mesh::MeshData<dim> mesh)
+void expect_agreement(const std::string& name, const problem::Contact& contact, int p,
+                      mesh::MeshData<dim> mesh)
 {
   SCOPED_TRACE(name);
-  DiscreteCase<dim> c(toml<dim>(p, contact), std::move(mesh));
+  DiscreteProblem<dim> c(std::move(mesh), rolling_block<dim>(contact), t2d_method(p));
   for (const int k : {1, 2, 30})
   {
     const solve::NewtonResult<dim> result = iterate(c, k);
@@ -125,8 +120,8 @@ void expect_agreement(const std::string& name, const std::string& contact, int p
 template <int dim>
 void expect_agreement(int p)
 {
-  expect_agreement<dim>("Tresca", tresca, p, block<dim>());
-  expect_agreement<dim>("Coulomb, skewed", coulomb, p, skewed<dim>(block<dim>()));
+  expect_agreement<dim>("Tresca", tresca, p, some_block<dim>());
+  expect_agreement<dim>("Coulomb, skewed", coulomb, p, skewed<dim>(some_block<dim>()));
 }
 
 class DenseKernel : public ::testing::TestWithParam<int>
@@ -154,7 +149,7 @@ double distance_from_reference(int p, int k, Mutation mutation)
   for (const nlohmann::json& expected : t2d_reference())
   {
     if (expected["p"] != p || expected["nx"] != 4) continue;
-    DiscreteCase<2> c(t2d_toml(p, expected["nx"], expected["ny"]));
+    DiscreteProblem<2> c = t2d(p, expected["nx"], expected["ny"]);
     const solve::NewtonResult<2> result = iterate(c, k);
     const certify::Estimate eta = certify::estimate<2>(
         c.form, result.u, dense_equilibrate<2>(c.form, result.u, result.traction, mutation),
@@ -218,7 +213,7 @@ class Mutations : public ::testing::TestWithParam<int>
 template <int dim>
 void expect_noticed(int p)
 {
-  DiscreteCase<dim> c(toml<dim>(p, tresca), block<dim>());
+  DiscreteProblem<dim> c(some_block<dim>(), rolling_block<dim>(tresca), t2d_method(p));
   const solve::NewtonResult<dim> result = iterate(c, 2);
   ASSERT_NE(result.status, solve::NewtonStatus::converged) << "sigma_lin would vanish";
   const auto defects = [&](Mutation mutation)

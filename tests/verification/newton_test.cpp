@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 
 namespace tribound::test
 {
@@ -18,28 +19,15 @@ namespace
 
 constexpr std::size_t most_steps = 20;
 
-std::string block(int p, int ny, const std::string& contact)
-{
-  return fmt::format(R"(degree = {}
-mesh.box = {{ lower = [0, 0], upper = [2, 1], cells = [{}, {}] }}
-material = {{ E = 1.0, nu = 0.3 }}
-boundary.left.displacement = [0, 0]
-boundary.top.traction = [0, -0.1]
-boundary.right.traction = [0.04, 0.06]
-boundary.bottom.contact = {}
-)",
-                     p, 2 * ny, ny, contact);
-}
-
 /// Steps and damped steps on the three meshes with p = 1 and 2.
-void check_steps(const std::string& name, const std::string& contact)
+void check_steps(const std::string& name, const problem::ContactLaw& law)
 {
   fmt::print("{:<22}", name);
   for (const int p : {1, 2})
     for (const int ny : {4, 8, 16})
     {
       SCOPED_TRACE(fmt::format("{}, p = {}, {} x {}", name, p, 2 * ny, ny));
-      const DiscreteCase<2> c(block(p, ny, contact));
+      const DiscreteProblem<2> c(block<2>({2 * ny, ny}), pressed_block<2>(law), {.degree = p});
       const solve::NewtonResult<2> newton = c.solve();
       EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
       EXPECT_LE(newton.steps.size(), most_steps);
@@ -61,17 +49,14 @@ void print_header()
 TEST(NewtonSteps, Tresca)
 {
   print_header();
-  for (int i = 1; i <= 10; ++i)
-    check_steps(fmt::format("Tresca s = {:.2f}", 0.01 * i),
-                fmt::format("{{ friction = \"tresca\", threshold = {} }}", 0.01 * i));
+  for (int i = 1; i <= 10; ++i) check_steps(fmt::format("Tresca s = {:.2f}", 0.01 * i), Tresca(0.01 * i));
 }
 
 TEST(NewtonSteps, Coulomb)
 {
   print_header();
   for (const double mu_F : {0.2, 0.5, 1.0})
-    check_steps(fmt::format("Coulomb mu_F = {}", mu_F),
-                fmt::format("{{ friction = \"coulomb\", coefficient = {} }}", mu_F));
+    check_steps(fmt::format("Coulomb mu_F = {}", mu_F), Coulomb(mu_F));
 }
 
 }  // namespace

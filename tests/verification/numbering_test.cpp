@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -23,46 +23,44 @@ namespace tribound::test
 namespace
 {
 
-/// Data that rules integrate as they are, and such that cells and facets are cut and halved.
+/// Clamped on the left, loaded from above and pressed on the bottom.
+template <int dim>
+ProblemData<dim> held_block(const std::array<const char*, 3>& body,
+                            const std::array<const char*, 3>& traction, const problem::ContactLaw& law,
+                            const char* gap)
+{
+  const auto [t_x, t_y, t_z] = traction;
+  return {.boundaries = {clamped<dim>("left"), loaded<dim>("top", formula(t_x), formula(t_y), formula(t_z)),
+                         obstacle<dim>("bottom", law, formula(gap))},
+          .body_force = components<dim>(formula(body[0]), formula(body[1]), formula(body[2]))};
+}
+
+template <int dim>
 struct NamedData
 {
   const char* name;
-  std::array<const char*, 3> body;
-  std::array<const char*, 3> traction;
-  const char* contact;
+  ProblemData<dim> data;
 };
 
-constexpr std::array all_data = {
-    NamedData{"smooth, Tresca",
-              {"0.02*exp(x - y)", "-0.05*cos(2*x + y)", "0.03*sin(x*y)"},
-              {"0.03*cos(x)", "-0.1*exp(0.5*x)", "0.01*y"},
-              "{ friction = \"tresca\", threshold = \"0.02 + 0.01*sin(3*x)\", gap = \"0.003*exp(x)\" }"},
-    NamedData{"smooth, Coulomb",
-              {"0.02*exp(x - y)", "-0.05*cos(2*x + y)", "0.03*sin(x*y)"},
-              {"0.03*cos(x)", "-0.1*exp(0.5*x)", "0.01*y"},
-              "{ friction = \"coulomb\", coefficient = 0.3, gap = \"0.003*exp(x)\" }"},
-    NamedData{
-        "kinks and jumps, Coulomb",
-        {"0.1*max(0, x - 0.6*y)^2*exp(x)", "x < 0.43 ? -0.05*exp(y) : 0.02*cos(x)", "0.03*abs(x - y)*exp(x)"},
-        {"0.03*abs(x - 0.37)*exp(x)", "-0.1*max(0, sin(9*x))", "0.01*y"},
-        "{ friction = \"coulomb\", coefficient = 0.3, gap = \"0.004*abs(x - 0.52)*exp(x)\" }"},
-};
-
-/// Clamped on the left, loaded from above and pressed on the bottom.
+/// Data that rules integrate as they are, and such that cells and facets are cut and halved.
 template <int dim>
-std::string toml(int p, const NamedData& data)
+std::vector<NamedData<dim>> all_data()
 {
-  const auto vector = [](const std::array<const char*, 3>& v)
-  {
-    std::string text = fmt::format("[\"{}\", \"{}\"", v[0], v[1]);
-    return text + (dim == 3 ? fmt::format(", \"{}\"]", v[2]) : "]");
-  };
-  return fmt::format("degree = {}\nmaterial = {{ E = 1.0, nu = 0.3 }}\nload.body = {}\n", p,
-                     vector(data.body)) +
-         fmt::format("boundary.left.displacement = [0, 0{}]\n", dim == 3 ? ", 0" : "") +
-         fmt::format("boundary.top.traction = {}\nboundary.bottom.contact = {}\n", vector(data.traction),
-                     data.contact) +
-         "newton = { stopping = \"tolerance\", tolerance = 1e-13 }\nsolver.method = \"direct\"\n";
+  constexpr std::array smooth_body = {"0.02*exp(x - y)", "-0.05*cos(2*x + y)", "0.03*sin(x*y)"};
+  constexpr std::array smooth_traction = {"0.03*cos(x)", "-0.1*exp(0.5*x)", "0.01*y"};
+  return {{"smooth, Tresca", held_block<dim>(smooth_body, smooth_traction,
+                                             Tresca(formula("0.02 + 0.01*sin(3*x)")), "0.003*exp(x)")},
+          {"smooth, Coulomb", held_block<dim>(smooth_body, smooth_traction, Coulomb(0.3), "0.003*exp(x)")},
+          {"kinks and jumps, Coulomb",
+           held_block<dim>({"0.1*max(0, x - 0.6*y)^2*exp(x)", "x < 0.43 ? -0.05*exp(y) : 0.02*cos(x)",
+                            "0.03*abs(x - y)*exp(x)"},
+                           {"0.03*abs(x - 0.37)*exp(x)", "-0.1*max(0, sin(9*x))", "0.01*y"}, Coulomb(0.3),
+                           "0.004*abs(x - 0.52)*exp(x)")}};
+}
+
+adapt::Method method(int p)
+{
+  return {.degree = p, .newton = {.tolerance = 1e-13}, .solver = {.method = algebra::LinearMethod::direct}};
 }
 
 template <int dim>
@@ -74,9 +72,9 @@ struct Solved
 };
 
 template <int dim>
-Solved<dim> solved(const std::string& text, const mesh::MeshData<dim>& data)
+Solved<dim> solved(const mesh::MeshData<dim>& mesh, const ProblemData<dim>& data, int p)
 {
-  const DiscreteCase<dim> c(text, data);
+  const DiscreteProblem<dim> c(mesh, data, method(p));
   const solve::NewtonResult<dim> newton = c.solve();
   EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
   Solved<dim> result;
@@ -117,12 +115,12 @@ void expect_same(const Solved<dim>& a, const Solved<dim>& b)
 template <int dim>
 void expect_same_for_every_numbering(const mesh::MeshData<dim>& mesh, int p)
 {
-  for (const NamedData& data : all_data)
+  for (const auto& [name, data] : all_data<dim>())
   {
-    SCOPED_TRACE(fmt::format("{}D, p = {}, {}", dim, p, data.name));
-    const std::string text = toml<dim>(p, data);
-    const Solved<dim> first = solved<dim>(text, mesh);
-    for (const unsigned seed : {1U, 2U}) expect_same<dim>(first, solved<dim>(text, renumbered(mesh, seed)));
+    SCOPED_TRACE(fmt::format("{}D, p = {}, {}", dim, p, name));
+    const Solved<dim> first = solved<dim>(mesh, data, p);
+    for (const unsigned seed : {1U, 2U})
+      expect_same<dim>(first, solved<dim>(renumbered(mesh, seed), data, p));
   }
 }
 

@@ -10,9 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "support/discrete_case.h"
+#include "support/contact_points.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "verification/affine.h"
+#include "verification/data_mesh.h"
 
 namespace tribound::test
 {
@@ -22,7 +24,8 @@ namespace
 
 /// max |u_h - u| / max |u| over the nodes.
 template <int dim>
-double displacement_error(const DiscreteCase<dim>& d, std::span<const double> u, const AffineCase<dim>& exact)
+double displacement_error(const DiscreteProblem<dim>& d, std::span<const double> u,
+                          const AffineCase<dim>& exact)
 {
   double error = 0;
   double largest = 0;
@@ -38,7 +41,7 @@ double displacement_error(const DiscreteCase<dim>& d, std::span<const double> u,
 }
 
 template <int dim>
-void expect_exact(const DiscreteCase<dim>& d, const AffineCase<dim>& exact, const Point<dim>& normal)
+void expect_exact(const DiscreteProblem<dim>& d, const AffineCase<dim>& exact, const Point<dim>& normal)
 {
   constexpr double volume = 2;
   constexpr double contact_measure = 2;
@@ -62,20 +65,27 @@ void expect_exact(const DiscreteCase<dim>& d, const AffineCase<dim>& exact, cons
   EXPECT_NEAR(contact.normal, force.dot(normal), tolerance * stress.norm());
   EXPECT_NEAR(contact.abs_tangential, (force - force.dot(normal) * normal).norm(), tolerance * stress.norm());
 
-  for (std::size_t k = 0; k < d.form.segments().size(); ++k)
-    for (const contact::ContactState<dim>& state : d.form.contact_states(newton.u, k))
-      EXPECT_EQ(state.status, exact.status) << "at " << state.point.transpose();
+  for (const contact::ContactState<dim>& state : contact_states(d.form, newton.u))
+    EXPECT_EQ(state.status, exact.status) << "at " << state.point.transpose();
+}
+
+/// In every state, on the meshes of the box turned by `frame` that `make_mesh` makes.
+template <int dim, class MakeMesh>
+void expect_exact_on(const MakeMesh& make_mesh, const Tensor<dim>& frame, int p)
+{
+  for_all_states<dim>(frame,
+                      [&](const AffineCase<dim>& c, const Point<dim>& right, const Point<dim>& bottom)
+                      {
+                        const DiscreteProblem<dim> d(make_mesh(), affine_data<dim>(c, right),
+                                                     affine_method(p));
+                        expect_exact<dim>(d, c, bottom);
+                      });
 }
 
 template <int dim>
 void structured_patch(int p)
 {
-  for_all_states<dim>(Tensor<dim>::Identity(),
-                      [&](const AffineCase<dim>& c, const Point<dim>& right, const Point<dim>& bottom)
-                      {
-                        const DiscreteCase<dim> d(affine_toml<dim>(c, p, right), structured<dim>());
-                        expect_exact<dim>(d, c, bottom);
-                      });
+  expect_exact_on<dim>(structured<dim>, Tensor<dim>::Identity(), p);
 }
 
 /// Vertices and cells in random order, no side along an axis.
@@ -84,25 +94,13 @@ void turned_patch(int p)
 {
   const Tensor<dim> frame = rotation<dim>();
   const auto turn = [&](const Point<dim>& x) -> Point<dim> { return frame * x; };
-  for_all_states<dim>(frame,
-                      [&](const AffineCase<dim>& c, const Point<dim>& right, const Point<dim>& bottom)
-                      {
-                        mesh::MeshData<dim> mesh = renumbered<dim>(mapped<dim>(structured<dim>(), turn), 7);
-                        const DiscreteCase<dim> d(affine_toml<dim>(c, p, right), std::move(mesh));
-                        expect_exact<dim>(d, c, bottom);
-                      });
+  expect_exact_on<dim>([&] { return renumbered<dim>(mapped<dim>(structured<dim>(), turn), 7); }, frame, p);
 }
 
 template <int dim>
 void unstructured_patch(int p)
 {
-  const std::string mesh = fmt::format("mesh.file = \"{}/box{}.geo\"\n", VERIFICATION_DATA, dim);
-  for_all_states<dim>(Tensor<dim>::Identity(),
-                      [&](const AffineCase<dim>& c, const Point<dim>& right, const Point<dim>& bottom)
-                      {
-                        const DiscreteCase<dim> d(mesh + affine_toml<dim>(c, p, right));
-                        expect_exact<dim>(d, c, bottom);
-                      });
+  expect_exact_on<dim>([] { return data_mesh<dim>("box"); }, Tensor<dim>::Identity(), p);
 }
 
 class Patch : public ::testing::TestWithParam<int>

@@ -5,7 +5,8 @@
 
 #include <random>
 
-#include "support/discrete_case.h"
+#include "support/contact_points.h"
+#include "support/discrete_problem.h"
 #include "verification/manufactured.h"
 #include "verification/solutions.h"
 
@@ -34,7 +35,7 @@ auto difference(const Function& f, const Point<dim>& x, int b)
 
 /// grad u is the gradient of u, and f = -div sigma(u).
 template <int dim>
-void check_formulas(const DiscreteCase<dim>& c, const Manufactured<dim>& solution)
+void check_formulas(const DiscreteProblem<dim>& c, const Manufactured<dim>& solution)
 {
   const ExactField<dim> exact(solution);
   const problem::Material& material = c.problem.material(0);
@@ -56,11 +57,11 @@ void check_formulas(const DiscreteCase<dim>& c, const Manufactured<dim>& solutio
 
 /// The conditions of contact and friction hold at the bottom, with gap 0.
 template <int dim>
-void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution)
+void check_contact(const DiscreteProblem<dim>& c, const Manufactured<dim>& solution)
 {
   const ExactField<dim> exact(solution);
-  const contact::ContactSegment<dim>& segment = c.form.segments().front();
-  const Point<dim> n = segment.normal;
+  const contact::ContactSegment<dim>& first = c.form.segments().front();
+  const Point<dim> n = first.normal;
   std::mt19937 random(2);
   for (int i = 0; i < 20; ++i)
   {
@@ -71,7 +72,7 @@ void check_contact(const DiscreteCase<dim>& c, const Manufactured<dim>& solution
     const double sigma_n = traction.dot(n);
     const Point<dim> sigma_t = traction - sigma_n * n;
     const double limit =
-        cone(segment.contact->law).closed_limit(problem::strength_at<dim>(segment.contact->law, x), sigma_n);
+        cone(first.contact->law).closed_limit(problem::strength_at<dim>(first.contact->law, x), sigma_n);
     EXPECT_LT(sigma_n, 0);
     EXPECT_EQ(u.dot(n), 0);
     EXPECT_LE(sigma_t.norm(), limit * (1 + 1e-10));
@@ -90,7 +91,7 @@ double finest_rate(const Manufactured<dim>& solution, int p, int first, int leve
   double rate = 0;
   for (int level = 0, n = first; level < levels; ++level, n *= 2)
   {
-    const DiscreteCase<dim> c(manufactured_case(solution, p, n));
+    const DiscreteProblem<dim> c = manufactured_problem(solution, p, n);
     const solve::NewtonResult<dim> newton = c.solve();
     EXPECT_EQ(newton.status, solve::NewtonStatus::converged) << newton.message;
     const EnergyError energy = energy_error<dim>(c, newton.u, exact);
@@ -110,11 +111,11 @@ TEST(ManufacturedSolutions, FormulasAndContactConditionsHold)
        {smooth_stick(), full_slip(2, 2), full_slip(lambda_nearly_incompressible, 2), coulomb_slip()})
   {
     SCOPED_TRACE(solution.name);
-    const DiscreteCase<2> c(manufactured_case(solution, 1, 1));
+    const DiscreteProblem<2> c = manufactured_problem(solution, 1, 1);
     check_formulas(c, solution);
     check_contact(c, solution);
   }
-  const DiscreteCase<3> c(manufactured_case(turning_slip(), 1, 1));
+  const DiscreteProblem<3> c = manufactured_problem(turning_slip(), 1, 1);
   check_formulas(c, turning_slip());
   check_contact(c, turning_slip());
 }

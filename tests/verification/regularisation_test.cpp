@@ -21,49 +21,44 @@ namespace
 
 /// A block on rollers that is pressed down and pulled aside; its contact tractions are about 0.1.
 template <int dim>
-NamedText problem(const std::string& name, const std::string& contact)
+NamedProblem<dim> pulled(const std::string& name, const problem::ContactLaw& law,
+                         const problem::Field& gap = 0)
 {
-  const bool plane = dim == 2;
-  return {name, "material = { E = 1.0, nu = 0.3 }\nnewton.tolerance = 1e-12\nload.body = " +
-                    std::string(plane ? "[0.02, \"-0.05*y\"]" : "[0.02, \"-0.05*y\", 0.01]") +
-                    "\nboundary.left.displacement = " + (plane ? "[0, 0]" : "[0, 0, \"free\"]") +
-                    (plane ? "" : "\nboundary.back.displacement = [\"free\", \"free\", 0]") +
-                    "\nboundary.top.traction = " + (plane ? "[0, -0.1]" : "[0, -0.1, 0.02]") +
-                    "\nboundary.right.traction = " + (plane ? "[0.04, 0.06]" : "[0.04, 0.06, 0]") +
-                    "\nboundary.bottom.contact = " + contact + "\n"};
+  ProblemData<dim> data{.boundaries = {fixed<dim>("left", 0, 0, free), loaded<dim>("top", 0, -0.1, 0.02),
+                                       loaded<dim>("right", 0.04, 0.06), obstacle<dim>("bottom", law, gap)},
+                        .body_force = components<dim, problem::Field>(0.02, formula("-0.05*y"), 0.01)};
+  if (dim == 3) data.boundaries.push_back(fixed<dim>("back", free, free, 0));
+  return {name, data};
 }
 
 template <int dim>
-std::vector<NamedText> problems()
+std::vector<NamedProblem<dim>> problems()
 {
-  return {problem<dim>("frictionless", "{ gap = \"0.01*x^2\" }"),
-          problem<dim>("Tresca", "{ friction = \"tresca\", threshold = 0.03 }"),
-          problem<dim>("Coulomb", "{ friction = \"coulomb\", coefficient = 0.4, gap = \"0.004*x^2\" }")};
+  return {pulled<dim>("frictionless", Frictionless(), formula("0.01*x^2")),
+          pulled<dim>("Tresca", Tresca(0.03)), pulled<dim>("Coulomb", Coulomb(0.4), formula("0.004*x^2"))};
 }
+
+const ProblemData<2> tresca_problem = problems<2>()[1].data;
 
 template <int dim>
 mesh::MeshData<dim> bent_block()
 {
-  if constexpr (dim == 2)
-    return distorted(box<2>({0, 0}, {2, 1}, {4, 2}), 1);
-  else
-    return distorted(box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1}), 1);
+  return distorted(block<dim>({4, 2}, {2, 1, 1}), 1);
 }
 
 constexpr double large_delta = 0.1;
 
-template <int dim>
-std::string toml(int p, const NamedText& problem)
+adapt::Method method(int p)
 {
-  return fmt::format("degree = {}\n", p) + problem.text;
+  return {.degree = p, .newton = {.tolerance = 1e-12}};
 }
 
 /// The largest defect of all iterates, Newton's method going on with a quarter of delta when it has
 /// converged.
 template <int dim>
-double largest_defect(int p, const NamedText& problem)
+double largest_defect(int p, const ProblemData<dim>& problem)
 {
-  const DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
+  const DiscreteProblem<dim> c(bent_block<dim>(), problem, method(p));
   double largest = 0;
   int n_converged = 0;
   const auto observer = [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
@@ -77,8 +72,7 @@ double largest_defect(int p, const NamedText& problem)
     if (iterate.converged && ++n_converged < 3) advice.delta = delta / 4;
     return advice;
   };
-  const solve::NewtonResult<dim> result =
-      solve::solve<dim>(c.form, {}, c.config.method.newton, c.config.method.solver, observer, large_delta);
+  const solve::NewtonResult<dim> result = c.solve(large_delta, observer);
   EXPECT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
   EXPECT_EQ(result.steps.front().delta, large_delta);
   EXPECT_EQ(result.steps.back().delta, large_delta / 16);
@@ -92,9 +86,9 @@ class Regularisation : public ::testing::TestWithParam<int>
 template <int dim>
 void expect_identities(int p)
 {
-  for (const NamedText& problem : problems<dim>())
+  for (const NamedProblem<dim>& problem : problems<dim>())
   {
-    const double defect = largest_defect<dim>(p, problem);
+    const double defect = largest_defect<dim>(p, problem.data);
     fmt::print("{}D, p = {}, {}: largest defect {:.1e}\n", dim, p, problem.name, defect);
     EXPECT_LE(defect, p <= 2 ? 1e-11 : 1e-10) << problem.name;
   }
@@ -125,11 +119,11 @@ double distance(const std::vector<double>& a, const std::vector<double>& b, cons
 template <int dim>
 void expect_parts_to_add_up(int p)
 {
-  for (const NamedText& problem : problems<dim>())
+  for (const NamedProblem<dim>& problem : problems<dim>())
   {
     SCOPED_TRACE(problem.name);
-    DiscreteCase<dim> c(toml<dim>(p, problem), bent_block<dim>());
-    c.config.method.newton.max_steps = 2;
+    DiscreteProblem<dim> c(bent_block<dim>(), problem.data, method(p));
+    c.method.newton.max_steps = 2;
     const solve::NewtonResult<dim> result = c.solve(large_delta);
     const certify::Stress<dim> plain = certify::equilibrate<dim>(c.form, result.u, result.traction);
     certify::Stress<dim> stress =
@@ -151,22 +145,23 @@ TEST_P(Regularisation, PartsOfTheStressAddUp)
 
 TEST_P(Regularisation, TheBoundHoldsForLargeDelta)
 {
-  for (const NamedText& problem : problems<2>())
-    for (const NamedMesh<2>& mesh : {NamedMesh<2>{"box 4x2", box<2>({0, 0}, {2, 1}, {4, 2})},
-                                     NamedMesh<2>{"distorted", bent_block<2>()}})
+  for (const NamedProblem<2>& problem : problems<2>())
+    for (const NamedMesh<2>& mesh :
+         {NamedMesh<2>{"box 4x2", block<2>({4, 2})}, NamedMesh<2>{"distorted", bent_block<2>()}})
       for (const double delta : {0.5, 0.05})
       {
         const std::string name = fmt::format("{}, delta = {}", problem.name, delta);
-        expect_guaranteed(effectivities<2>({GetParam(), {name, problem.text}, mesh}, delta), name);
+        expect_guaranteed(effectivities<2>({GetParam(), {name, problem.data}, mesh, 1e-12}, delta), name);
       }
 }
 
 TEST(Regularisation3D, TheBoundHoldsForLargeDelta)
 {
-  for (const NamedText& problem : problems<3>())
+  for (const NamedProblem<3>& problem : problems<3>())
   {
     const std::string name = problem.name + ", delta = 0.2";
-    expect_guaranteed(effectivities<3>({1, {name, problem.text}, {"distorted", bent_block<3>()}}, 0.2), name);
+    expect_guaranteed(effectivities<3>({1, {name, problem.data}, {"distorted", bent_block<3>()}, 1e-12}, 0.2),
+                      name);
   }
 }
 
@@ -177,7 +172,7 @@ struct Converged
   certify::Estimate eta;
 };
 
-Converged converged(const DiscreteCase<2>& c, double delta)
+Converged converged(const DiscreteProblem<2>& c, double delta)
 {
   solve::NewtonResult<2> result = c.solve(delta);
   EXPECT_EQ(result.status, solve::NewtonStatus::converged) << "delta = " << delta;
@@ -190,10 +185,10 @@ Converged converged(const DiscreteCase<2>& c, double delta)
 /// elsewhere: everything tends to the plain method at least as fast as delta.
 TEST_P(Regularisation, TendsToThePlainMethod)
 {
-  for (const NamedText& problem : problems<2>())
+  for (const NamedProblem<2>& problem : problems<2>())
   {
     SCOPED_TRACE(problem.name);
-    const DiscreteCase<2> c(toml<2>(GetParam(), problem), bent_block<2>());
+    const DiscreteProblem<2> c(bent_block<2>(), problem.data, method(GetParam()));
     const Converged plain = converged(c, 0);
     EXPECT_EQ(plain.eta.global.regularisation(), 0);
     for (const double delta : {0.1, 1e-2, 1e-3, 1e-4, 1e-6})
@@ -217,13 +212,15 @@ INSTANTIATE_TEST_SUITE_P(Degrees, Regularisation, ::testing::Range(1, 4));
 /// The outer loop on one mesh: both criteria hold in the end, delta having shrunk by the factor each time.
 TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
 {
-  for (const std::string stopping : {"adaptive", "tolerance"})
+  for (const adapt::Stopping stopping : {adapt::Stopping::adaptive, adapt::Stopping::tolerance})
   {
-    SCOPED_TRACE(stopping);
-    const DiscreteCase<2> c(toml<2>(2, problems<2>()[1]) + "newton.stopping = \"" + stopping +
-                                "\"\nregularisation = { delta = 2, factor = 0.5, gamma_reg = 0.01 }\n",
-                            bent_block<2>());
-    const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config.method);
+    SCOPED_TRACE(static_cast<int>(stopping));
+    const DiscreteProblem<2> c(bent_block<2>(), tresca_problem,
+                               {.degree = 2,
+                                .newton = {.tolerance = 1e-12},
+                                .stopping = {.criterion = stopping},
+                                .regularisation = {{.delta = 2, .factor = 0.5, .gamma_reg = 0.01}}});
+    const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.method);
     ASSERT_TRUE(level.solved()) << level.failure;
     EXPECT_TRUE(adapt::regularisation_is_negligible(level.estimate.global, 0.01));
     EXPECT_TRUE(adapt::linearisation_is_negligible(level.estimate.global, 0.1));
@@ -242,7 +239,7 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
     EXPECT_EQ(n_updates, *level.delta_updates);
     EXPECT_EQ(level.delta, delta) << "carried to the next mesh";
     const adapt::CertifiedLevel<2> again =
-        adapt::solve_and_certify<2>(c.form, level.u, c.config.method, {}, level.delta);
+        adapt::solve_and_certify<2>(c.form, level.u, c.method, {}, level.delta);
     EXPECT_EQ(again.steps[0].step.delta, delta);
     EXPECT_EQ(again.delta_updates, 0);
   }
@@ -250,10 +247,10 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
 
 TEST(RegularisedLevel, KeepsToTheLimitOfUpdates)
 {
-  const DiscreteCase<2> c(
-      toml<2>(1, problems<2>()[1]) + "regularisation = { delta = 5, gamma_reg = 1e-9, max_updates = 2 }\n",
-      bent_block<2>());
-  const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.config.method);
+  const DiscreteProblem<2> c(bent_block<2>(), tresca_problem,
+                             {.newton = {.tolerance = 1e-12},
+                              .regularisation = {{.delta = 5, .gamma_reg = 1e-9, .max_updates = 2}}});
+  const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.method);
   ASSERT_TRUE(level.solved()) << level.failure;
   EXPECT_EQ(level.delta_updates, 2);
   EXPECT_GT(level.estimate.global.regularisation(), 0) << "which the bound contains";
@@ -261,14 +258,11 @@ TEST(RegularisedLevel, KeepsToTheLimitOfUpdates)
 
 TEST(MeanContactTraction, IsTheRootMeanSquare)
 {
-  const DiscreteCase<2> c(toml<2>(1, problems<2>()[1]), box<2>({0, 0}, {2, 1}, {4, 2}));
+  const DiscreteProblem<2> c(block<2>({4, 2}), tresca_problem);
   const std::vector<Point<2>> t(c.form.n_contact_points(), Point<2>(0.3, -0.4));
   EXPECT_NEAR(adapt::mean_contact_traction<2>(c.form, t), 0.5, 1e-14);
-  const DiscreteCase<2> free(toml<2>(1, {"",
-                                         "material = { E = 1.0, nu = 0.3 }\n"
-                                         "boundary.left.displacement = [0, 0]\n"}),
-                             box<2>({0, 0}, {2, 1}, {4, 2}));
-  EXPECT_EQ(adapt::mean_contact_traction<2>(free.form, {}), 0);
+  const DiscreteProblem<2> without(block<2>({4, 2}), {.boundaries = {clamped<2>("left")}});
+  EXPECT_EQ(adapt::mean_contact_traction<2>(without.form, {}), 0);
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/equilibrate/repeated_shapes.h"
-#include "tribound/mesh/box.h"
 
 namespace tribound::test
 {
@@ -20,31 +20,30 @@ namespace tribound::test
 namespace
 {
 
-std::string sides(int dimension, int degree)
+template <int dim>
+DiscreteProblem<dim> on_floor(mesh::MeshData<dim> mesh, int degree)
 {
-  const std::string third = dimension == 2 ? "" : ", 0.01";
-  return "degree = " + std::to_string(degree) +
-         "\nmaterial = { E = 1.0, nu = 0.3 }\n"
-         "boundary.left.displacement = [0, 0" +
-         std::string(dimension == 2 ? "" : ", 0") + "]\nboundary.top.traction = [0, \"-0.1*exp(x)\"" + third +
-         "]\nboundary.bottom.contact = { friction = \"tresca\", threshold = 0.02 }\n";
+  return {std::move(mesh),
+          {.boundaries = {clamped<dim>("left"), loaded<dim>("top", 0, formula("-0.1*exp(x)"), 0.01),
+                          obstacle<dim>("bottom", Tresca(0.02))}},
+          {.degree = degree}};
 }
 
 /// Every shape comes more often than RepeatedShapes asks for.
 template <int dim>
-mesh::MeshData<dim> box()
+mesh::MeshData<dim> regular_box()
 {
   if constexpr (dim == 2)
-    return mesh::box_mesh<2>({{0, 0}, {1.4, 0.7}, {24, 12}, {}});
+    return box<2>({0, 0}, {1.4, 0.7}, {24, 12});
   else
-    return mesh::box_mesh<3>({{0, 0, 0}, {1.4, 0.7, 0.7}, {6, 5, 5}, {}});
+    return box<3>({0, 0, 0}, {1.4, 0.7, 0.7}, {6, 5, 5});
 }
 
 /// Moves the interior by `amplitude`.
 template <int dim>
 mesh::MeshData<dim> distorted_box(double amplitude)
 {
-  mesh::MeshData<dim> data = box<dim>();
+  mesh::MeshData<dim> data = regular_box<dim>();
   for (Point<dim>& x : data.vertices)
   {
     double bubble = std::sin(std::numbers::pi * x[0] / 1.4);
@@ -57,8 +56,8 @@ mesh::MeshData<dim> distorted_box(double amplitude)
 template <int dim, int p>
 void expect_same_stress()
 {
-  const DiscreteCase<dim> straight(sides(dim, p), box<dim>());
-  const DiscreteCase<dim> distorted(sides(dim, p), distorted_box<dim>(1e-8));
+  const DiscreteProblem<dim> straight = on_floor(regular_box<dim>(), p);
+  const DiscreteProblem<dim> distorted = on_floor(distorted_box<dim>(1e-8), p);
   const certify::RepeatedShapes<dim, p> shared(straight.mesh);
   const certify::RepeatedShapes<dim, p> own(distorted.mesh);
   int n_shared = 0;

@@ -24,7 +24,7 @@ inline Manufactured<2> smooth_stick()
           .gradient = {"0.05*pi*y*cos(pi*x/2)", "0.1*sin(pi*x/2)", "-0.075*x*y", "-0.3*(1 + x^2/8) + 0.1*y"},
           .body = {fmt::format("{:.17g}*0.025*pi^2*y*sin(pi*x/2) + {:.17g}*0.075*x", a, b),
                    fmt::format("-0.1*{:.17g} + {:.17g}*0.075*y - {:.17g}*0.05*pi*cos(pi*x/2)", a, m.mu, b)},
-          .contact = "{ friction = \"tresca\", threshold = 1 }"};
+          .law = Tresca(1)};
 }
 
 /// Slips all over with a threshold that varies; incompressible in the limit of large lambda.
@@ -41,8 +41,7 @@ inline Manufactured<2> full_slip(double lambda, double mu)
           .gradient = {"(1 + x*y)*" + plus, "x^2*" + plus, "y^2*" + minus, "(1 + x*y)*" + minus},
           .body = {fmt::format("y*({}) - {:.17g}*(2*y + x*y^2 + x^3)*{}", gradient_of_div, mu, plus),
                    fmt::format("x*({}) - {:.17g}*(2*x + x^2*y + y^3)*{}", gradient_of_div, mu, minus)},
-          .contact = fmt::format("{{ friction = \"tresca\", threshold = \"{:.17g}*x^2\" }}",
-                                 mu * (lambda + 2) / (6 * (lambda + 1)))};
+          .law = Tresca(formula(fmt::format("{:.17g}*x^2", mu * (lambda + 2) / (6 * (lambda + 1)))))};
 }
 
 /// Slips all over under Coulomb's law: u = (w + y q, -y b + 0.05 y^2 cos x) with w = 0.1 + 0.05 sin x,
@@ -69,7 +68,7 @@ inline Manufactured<2> coulomb_slip()
           .body = {fmt::format("-{:.17g}*{} - {:.17g}*{}", a, u1_xx, m.lambda + m.mu, u2_xy),
                    fmt::format("-{:.17g}*0.1*cos(x) - {:.17g}*{} - {:.17g}*{}", a, m.mu, u2_xx,
                                m.lambda + m.mu, dq)},
-          .contact = fmt::format("{{ friction = \"coulomb\", coefficient = {} }}", mu_F)};
+          .law = Coulomb(mu_F)};
 }
 
 /// Slips all over, in a direction that turns from point to point: u = (w_1 e^y, -y b, w_3 e^y) with
@@ -97,8 +96,7 @@ inline Manufactured<3> turning_slip()
                        "-0.03*sin(x - z)*exp(y)", w3 + "*exp(y)", "0.03*sin(x - z)*exp(y)"},
           .body = {force(div_x, "(0.1 - 0.04*sin(x + z))*exp(y)"), force(div_y, "0.1*y*sin(z)"),
                    force(div_z, "(0.06 - 0.03*cos(x - z))*exp(y)")},
-          .contact = fmt::format("{{ friction = \"tresca\", threshold = \"{:.17g}*sqrt({}^2 + {}^2)\" }}",
-                                 m.mu, w1, w3)};
+          .law = Tresca(formula(fmt::format("{:.17g}*sqrt({}^2 + {}^2)", m.mu, w1, w3)))};
 }
 
 }  // namespace tribound::test

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/t2d.h"
 
 namespace tribound::test
@@ -26,7 +26,7 @@ void expect_digits(double value, const json& expected, const std::string& what)
   EXPECT_NEAR(value, e, 5e-9 * std::abs(e)) << what;
 }
 
-double max_displacement(const DiscreteCase<2>& c, std::span<const double> u)
+double max_displacement(const DiscreteProblem<2>& c, std::span<const double> u)
 {
   double largest = 0;
   for (Index i = 0; i < c.space.n_nodes(); ++i)
@@ -41,7 +41,7 @@ class T2D : public ::testing::TestWithParam<int>
 TEST_P(T2D, ConvergedSolution)
 {
   const json expected = t2d_reference().at(GetParam());
-  const DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
+  const DiscreteProblem<2> c = t2d(expected["p"], expected["nx"], expected["ny"]);
   EXPECT_EQ(c.space.n_dofs() - c.form.constraints().n_fixed(), expected["dofs"].get<int>());
   const solve::NewtonResult<2> result = c.solve();
   ASSERT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
@@ -64,8 +64,8 @@ TEST_P(T2D, FirstAndSecondIterate)
   const json expected = t2d_reference().at(GetParam());
   for (const int k : {1, 2})
   {
-    DiscreteCase<2> c(t2d_toml(expected["p"], expected["nx"], expected["ny"]));
-    c.config.method.newton.max_steps = k;
+    DiscreteProblem<2> c = t2d(expected["p"], expected["nx"], expected["ny"]);
+    c.method.newton.max_steps = k;
     const solve::NewtonResult<2> result = c.solve();
     const std::string iterate = "iterate" + std::to_string(k);
     expect_digits(contact::stress_norms<2>(c.problem, c.space, result.u).sigma,

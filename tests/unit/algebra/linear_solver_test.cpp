@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
 #include "tribound/base/error.h"
@@ -23,22 +23,12 @@ template <int dim>
 struct System
 {
   System()
-      : c("degree = 2\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = " +
-              std::string(dim == 2 ? "[0, 0]" : "[0, 0, 0]"),
-          mesh()),
+      : c(block<dim>({8, 4}, {4, 2, 2}), {.boundaries = {clamped<dim>("left")}}, {.degree = 2}),
         entries(contact::stiffness(c.problem, c.space, c.form.constraints())),
         nodes(c.space.node_points()),
         x(random_free_vector(c.form.constraints(), 1.0, 1)),
         b(multiply(entries, x))
   {
-  }
-
-  static mesh::MeshData<dim> mesh()
-  {
-    if constexpr (dim == 2)
-      return box<2>({0, 0}, {2, 1}, {8, 4});
-    else
-      return box<3>({0, 0, 0}, {2, 1, 1}, {4, 2, 2});
   }
 
   [[nodiscard]] algebra::SparseMatrix matrix() const { return {c.space.n_dofs(), dim, entries}; }
@@ -47,7 +37,7 @@ struct System
     return algebra::LinearSolver(config, std::span<const Point<dim>>(nodes));
   }
 
-  DiscreteCase<dim> c;
+  DiscreteProblem<dim> c;
   algebra::Triplets entries;
   std::vector<Point<dim>> nodes;
   std::vector<double> x;
@@ -149,8 +139,7 @@ TEST(LinearSolver, FactorsAnewWhereOldFactorsDoNotHelp)
 
 TEST(LinearSolver, ASingularMatrixIsAnError)
 {
-  const DiscreteCase<2> floating("degree = 1\nmaterial = { E = 1, nu = 0.3 }",
-                                 box<2>({0, 0}, {1, 1}, {4, 4}));
+  const DiscreteProblem<2> floating(box<2>({0, 0}, {1, 1}, {4, 4}), {});
   const algebra::SparseMatrix a(
       floating.space.n_dofs(), 2,
       contact::stiffness(floating.problem, floating.space, floating.form.constraints()));

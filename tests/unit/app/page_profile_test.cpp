@@ -11,8 +11,8 @@ namespace
 
 TEST(PageProfile, ValuesAlongTheFloor)
 {
-  const BoxCase<2> box(constant_stress_case<2>(2, 4));
-  const std::vector<double> u = box.interpolate(constant_stress_displacement<2>);
+  const DiscreteProblem<2> box = constant_stress_problem<2>(2, 4);
+  const std::vector<double> u = interpolate(box.space, constant_stress_displacement<2>);
   const std::vector<app::ContactProfile> profiles = app::contact_profiles(box.form, u, 40);
   ASSERT_EQ(profiles.size(), 1u);
   const app::ContactProfile& profile = profiles[0];
@@ -38,8 +38,8 @@ TEST(PageProfile, ValuesAlongTheFloor)
 
 TEST(PageProfile, FewPointsPerFacetOnLongBoundaries)
 {
-  const BoxCase<2> box(constant_stress_case<2>(2, 4));
-  const std::vector<double> u = box.interpolate(constant_stress_displacement<2>);
+  const DiscreteProblem<2> box = constant_stress_problem<2>(2, 4);
+  const std::vector<double> u = interpolate(box.space, constant_stress_displacement<2>);
   EXPECT_EQ(app::contact_profiles(box.form, u, 1)[0].arc.size(), 4u * 3);
 }
 

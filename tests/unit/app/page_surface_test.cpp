@@ -56,7 +56,7 @@ TEST(PageSurface, CellsIn2D)
 {
   for (const int degree : {1, 2, 3})
   {
-    const BoxCase<2> box(constant_stress_case<2>(degree, 3));
+    const DiscreteProblem<2> box = constant_stress_problem<2>(degree, 3);
     const adapt::CertifiedLevel<2> level = constant_stress_level(box);
     const app::Surface surface = app::sample_surface<2>(box.form, level.u, level.stress);
     EXPECT_EQ(surface.subdivision, degree);
@@ -79,7 +79,7 @@ TEST(PageSurface, BoundaryFacetsIn3DLookOutwards)
 {
   for (const int degree : {1, 2})
   {
-    const BoxCase<3> box(constant_stress_case<3>(degree, 2));
+    const DiscreteProblem<3> box = constant_stress_problem<3>(degree, 2);
     const adapt::CertifiedLevel<3> level = constant_stress_level(box);
     const app::Surface surface = app::sample_surface<3>(box.form, level.u, level.stress);
     EXPECT_EQ(surface.n_faces(), 48u);
@@ -99,7 +99,7 @@ TEST(PageSurface, BoundaryFacetsIn3DLookOutwards)
 
 TEST(PageSurface, ContactFacesComeFirst)
 {
-  const BoxCase<3> box(constant_stress_case<3>(2, 2));
+  const DiscreteProblem<3> box = constant_stress_problem<3>(2, 2);
   const adapt::CertifiedLevel<3> level = constant_stress_level(box);
   const app::Surface surface = app::sample_surface<3>(box.form, level.u, level.stress);
   const app::SurfaceContact& contact = surface.contact;
@@ -122,7 +122,7 @@ TEST(PageSurface, ContactFacesComeFirst)
 
 TEST(PageSurface, LargeMeshesAreNotSubdivided)
 {
-  const BoxCase<2> box(constant_stress_case<2>(3, 3));
+  const DiscreteProblem<2> box = constant_stress_problem<2>(3, 3);
   const adapt::CertifiedLevel<2> level = constant_stress_level(box);
   EXPECT_EQ(app::sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4}).subdivision, 2);
   EXPECT_EQ(app::sample_surface<2>(box.form, level.u, level.stress, {.subdivided = 18 * 4 - 1}).subdivision,
@@ -131,7 +131,7 @@ TEST(PageSurface, LargeMeshesAreNotSubdivided)
 
 TEST(PageSurface, LargeMeshesHaveOneStressPerFace)
 {
-  const BoxCase<2> box(constant_stress_case<2>(1, 40));
+  const DiscreteProblem<2> box = constant_stress_problem<2>(1, 40);
   const adapt::CertifiedLevel<2> level = constant_stress_level(box);
   for (const std::size_t limit : {100'000u, 1000u})
   {
@@ -144,7 +144,7 @@ TEST(PageSurface, LargeMeshesHaveOneStressPerFace)
 
 TEST(PageSurface, DetailsOfVeryLargeMeshesAreMerged)
 {
-  const BoxCase<2> box(constant_stress_case<2>(1, 40));
+  const DiscreteProblem<2> box = constant_stress_problem<2>(1, 40);
   const adapt::CertifiedLevel<2> level = constant_stress_level(box);
   const std::size_t limit = 1000;
   const app::Surface surface =
@@ -164,7 +164,7 @@ TEST(PageSurface, DetailsOfVeryLargeMeshesAreMerged)
 
 TEST(PageSurface, MergingIn3DKeepsContactBesideItsFaces)
 {
-  const BoxCase<3> box(constant_stress_case<3>(1, 6));
+  const DiscreteProblem<3> box = constant_stress_problem<3>(1, 6);
   const adapt::CertifiedLevel<3> level = constant_stress_level(box);
   const app::Surface surface =
       app::sample_surface<3>(box.form, level.u, level.stress, {.subdivided = 0, .triangles = 200});

@@ -87,7 +87,7 @@ TEST_F(ReportPageFile, StringsThatAreNotUtf8AreReplaced)
 
 TEST_F(ReportPageFile, FieldsOfALevel)
 {
-  const BoxCase<2> box(constant_stress_case<2>(2, 3));
+  const DiscreteProblem<2> box = constant_stress_problem<2>(2, 3);
   app::ReportPage page(template_);
   page.add(0, box.form, constant_stress_level(box));
   std::ofstream(directory_ / "newton.csv") << "";
@@ -117,7 +117,7 @@ TEST_F(ReportPageFile, FieldsOfALevel)
 
 TEST_F(ReportPageFile, ContactIn3D)
 {
-  const BoxCase<3> box(constant_stress_case<3>(1, 2));
+  const DiscreteProblem<3> box = constant_stress_problem<3>(1, 2);
   const json level = json::parse(app::page_level(3, box.form, constant_stress_level(box)).json);
   EXPECT_EQ(level["level"], 3);
   EXPECT_EQ(unpack(level["contact"]["pressure"]).size(), 8u * 3);
@@ -126,7 +126,7 @@ TEST_F(ReportPageFile, ContactIn3D)
 
 TEST_F(ReportPageFile, TablesThatAreTooLargeAreLeftOut)
 {
-  const BoxCase<2> box(constant_stress_case<2>(1, 2));
+  const DiscreteProblem<2> box = constant_stress_problem<2>(1, 2);
   app::ReportPage page(template_);
   page.add(0, box.form, constant_stress_level(box));
   std::string text;
@@ -139,7 +139,7 @@ TEST_F(ReportPageFile, TablesThatAreTooLargeAreLeftOut)
 
 TEST_F(ReportPageFile, TheInsideOfABodyIn3D)
 {
-  const BoxCase<3> box(constant_stress_case<3>(2, 2));
+  const DiscreteProblem<3> box = constant_stress_problem<3>(2, 2);
   const json volume = json::parse(app::page_volume(box.form, constant_stress_level(box)));
   EXPECT_EQ(unpack(volume["points"]).size(), 3u * 27);
   EXPECT_EQ(unpack(volume["cells"]).size(), 4u * 48);
@@ -180,7 +180,7 @@ TEST_F(ReportPageFile, TrueErrorsOfAStudyAreAddedOnce)
 /// What 200 000 cells may take: the page is then below 10 MB.
 TEST_F(ReportPageFile, SizeOfALevel)
 {
-  const BoxCase<2> box(constant_stress_case<2>(1, 100));
+  const DiscreteProblem<2> box = constant_stress_problem<2>(1, 100);
   const app::PageLevel level = app::page_level(0, box.form, constant_stress_level(box), {.subdivided = 0});
   EXPECT_EQ(level.n_triangles, 20'000u);
   EXPECT_LT(level.json.size() / static_cast<double>(level.n_triangles), 35.0);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,17 @@ std::string message(const std::string& text, const Names& region_names = regions
     return error.what();
   }
   return "accepted";
+}
+
+TEST(CaseFacts, AreThoseOfTheCase)
+{
+  const case_file::Config config = case_file::parse_config(
+      file_head + "[boundary.bottom]\ncontact = { friction = 'tresca', threshold = 0.03 }\n", "case.toml",
+      std::array<std::string, 2>{"title=Block", "degree=2"});
+  const io::CaseFacts facts = case_file::case_facts(config, 2);
+  EXPECT_EQ(facts.title, "Block");
+  EXPECT_EQ(facts.friction, "tresca");
+  EXPECT_EQ(facts.gamma0, 10.0);
 }
 
 TEST(Lame, FollowsTheFormulas)

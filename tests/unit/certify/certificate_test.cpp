@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -99,24 +99,25 @@ TEST(Judge, WhatIsNothingButRoundingIsComparedWithRounding)
             certify::RunStatus::not_certified);
 }
 
-std::string block(const std::string& left, const std::string& contact)
+/// Moved by u_x on its left side.
+DiscreteProblem<2> moved_block(const problem::Field& u_x, const problem::ContactLaw& law = Frictionless())
 {
-  return "degree = 2\nmesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }\n"
-         "material = { E = 1, nu = 0.3 }\nboundary.left.displacement = " +
-         left + "\nboundary.bottom.contact = " + contact + "\n";
+  return {block<2>({4, 2}),
+          {.boundaries = {fixed<2>("left", u_x, 0), obstacle<2>("bottom", law)}},
+          {.degree = 2}};
 }
 
 TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
 {
   // (y^3): the interpolant of degree 2 on [0, 1/2] has the error max |s (s - 1/4) (s - 1/2)| near 0.006.
-  const DiscreteCase<2> cubic(block("[\"y^3\", 0]", "{ friction = \"none\" }"));
+  const DiscreteProblem<2> cubic = moved_block(formula("y^3"));
   const double error = certify::dirichlet_interpolation_error(cubic.form);
   EXPECT_GT(error, 0.005);
   EXPECT_LT(error, std::pow(0.25, 3) * 2 / (3 * std::sqrt(3.0)) * (1 + 1e-12));
   EXPECT_THAT(certify::statements(cubic.form, certify::ContactRule::resolved).not_covered,
               ::testing::Contains(HasSubstr("interpolation")));
 
-  const DiscreteCase<2> square(block("[\"y^2\", 0]", "{ friction = \"none\" }"));
+  const DiscreteProblem<2> square = moved_block(formula("y^2"));
   EXPECT_LE(certify::dirichlet_interpolation_error(square.form), 1e-15);
   EXPECT_THAT(certify::statements(square.form, certify::ContactRule::resolved).not_covered,
               ::testing::Not(::testing::Contains(HasSubstr("interpolation"))));
@@ -124,7 +125,7 @@ TEST(Statements, TheInterpolationOfTheDisplacementIsReported)
 
 TEST(Statements, ThePlainContactRuleIsNoBoundAtKinks)
 {
-  const DiscreteCase<2> c(block("[0, 0]", "{ friction = \"none\" }"));
+  const DiscreteProblem<2> c = moved_block(0);
   const auto kink = ::testing::Contains(HasSubstr("kink"));
   EXPECT_THAT(certify::statements(c.form, certify::ContactRule::reference).not_covered, kink);
   EXPECT_THAT(certify::statements(c.form, certify::ContactRule::resolved).not_covered, ::testing::Not(kink));
@@ -134,16 +135,14 @@ TEST(Statements, ThePlainContactRuleIsNoBoundAtKinks)
 TEST(Statements, AJumpOfTheDisplacementAtANodeIsReported)
 {
   for (const int degree : {1, 2, 3})
-    for (const std::string formula : {"y > 0.5 ? 0.1 : 0", "y > 0.5 ? 0.1*sin(9*y) : 0"})
+    for (const char* jump : {"y > 0.5 ? 0.1 : 0", "y > 0.5 ? 0.1*sin(9*y) : 0"})
     {
-      const DiscreteCase<2> plane("degree = " + std::to_string(degree) +
-                                      "\nmaterial = { E = 1, nu = 0.3 }\n" +
-                                      "boundary.left.displacement = [\"" + formula + "\", 0]\n",
-                                  box<2>({0, 0}, {1, 1}, {2, 2}));
-      const DiscreteCase<3> space("degree = " + std::to_string(degree) +
-                                      "\nmaterial = { E = 1, nu = 0.3 }\n" +
-                                      "boundary.left.displacement = [\"" + formula + "\", 0, 0]\n",
-                                  box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1}));
+      const DiscreteProblem<2> plane(box<2>({0, 0}, {1, 1}, {2, 2}),
+                                     {.boundaries = {fixed<2>("left", formula(jump), 0)}},
+                                     {.degree = degree});
+      const DiscreteProblem<3> space(box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1}),
+                                     {.boundaries = {fixed<3>("left", formula(jump), 0)}},
+                                     {.degree = degree});
       EXPECT_GE(certify::dirichlet_interpolation_bound(plane.form), 0.0977);
       EXPECT_GE(certify::dirichlet_interpolation_bound(space.form), 0.0977);
       EXPECT_GE(certify::dirichlet_interpolation_bound(plane.form),
@@ -158,21 +157,20 @@ TEST(Statements, AJumpOfTheDisplacementAtANodeIsReported)
 /// Kinks at nodes, and a side in the plane of a jump: in the space all the same.
 TEST(Statements, DisplacementsInTheSpaceAreSaidToBe)
 {
-  for (const std::string formula : {"max(0, y - 0.5)", "x <= 0 ? 0.1*y : 3", "y > 0.5 ? y - 0.5 : 0"})
+  for (const char* u_x : {"max(0, y - 0.5)", "x <= 0 ? 0.1*y : 3", "y > 0.5 ? y - 0.5 : 0"})
   {
-    const DiscreteCase<2> c(
-        "degree = 1\nmaterial = { E = 1, nu = 0.3 }\nboundary.left.displacement = [\"" + formula + "\", 0]\n",
-        box<2>({0, 0}, {1, 1}, {2, 2}));
-    EXPECT_LE(certify::dirichlet_interpolation_bound(c.form), 1e-13) << formula;
+    const DiscreteProblem<2> c(box<2>({0, 0}, {1, 1}, {2, 2}),
+                               {.boundaries = {fixed<2>("left", formula(u_x), 0)}});
+    EXPECT_LE(certify::dirichlet_interpolation_bound(c.form), 1e-13) << u_x;
   }
 }
 
 TEST(Statements, SayForWhichLaw)
 {
-  const DiscreteCase<2> tresca(block("[0, 0]", "{ friction = \"tresca\", threshold = 0.1 }"));
+  const DiscreteProblem<2> tresca = moved_block(0, Tresca(0.1));
   EXPECT_THAT(certify::statements(tresca.form, certify::ContactRule::resolved).law,
               HasSubstr("exists and is unique"));
-  const DiscreteCase<2> coulomb(block("[0, 0]", "{ friction = \"coulomb\", coefficient = 0.1 }"));
+  const DiscreteProblem<2> coulomb = moved_block(0, Coulomb(0.1));
   EXPECT_THAT(certify::statements(coulomb.form, certify::ContactRule::resolved).law,
               HasSubstr("small friction"));
 }
@@ -185,16 +183,12 @@ struct Loaded
   std::vector<std::string> not_covered;
 };
 
-Loaded loaded(const problem::Field& pull)
+Loaded pulled(const problem::Field& pull)
 {
-  const mesh::Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 2}));
-  const problem::Problem<2> problem(
-      mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
-      {problem::with_displacement<2>("bottom", {0.0, 0.0}), problem::with_traction<2>("top", {0.0, pull})});
-  const fem::LagrangeSpace<2> space(mesh, 1);
-  const contact::NitscheForm<2> form(problem, space, 10);
-  return {{form.load().begin(), form.load().end()},
-          certify::statements(form, certify::ContactRule::resolved).not_covered};
+  const DiscreteProblem<2> c(box<2>({0, 0}, {1, 1}, {3, 2}),
+                             {.boundaries = {clamped<2>("bottom"), loaded<2>("top", 0, pull)}});
+  return {{c.form.load().begin(), c.form.load().end()},
+          certify::statements(c.form, certify::ContactRule::resolved).not_covered};
 }
 
 TEST(Statements, AFunctionOfWhichOnlyValuesAreKnownIsNotCovered)
@@ -206,15 +200,15 @@ TEST(Statements, AFunctionOfWhichOnlyValuesAreKnownIsNotCovered)
   {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 - 2 * x[dim * i];
   };
-  const Loaded formula = loaded(problem::Field("1 - 2*x", {}));
-  const Loaded unknown = loaded(problem::Field(function));
+  const Loaded known = pulled(formula("1 - 2*x"));
+  const Loaded unknown = pulled(problem::Field(function));
   function.degree = 1;
-  const Loaded polynomial = loaded(problem::Field(function));
-  EXPECT_EQ(unknown.load, formula.load);
-  EXPECT_EQ(polynomial.load, formula.load);
+  const Loaded polynomial = pulled(problem::Field(function));
+  EXPECT_EQ(unknown.load, known.load);
+  EXPECT_EQ(polynomial.load, known.load);
   EXPECT_THAT(unknown.not_covered, Contains(HasSubstr("functions without enclosure")));
   EXPECT_THAT(polynomial.not_covered, Not(Contains(HasSubstr("functions without enclosure"))));
-  EXPECT_EQ(polynomial.not_covered, formula.not_covered);
+  EXPECT_EQ(polynomial.not_covered, known.not_covered);
 }
 
 }  // namespace

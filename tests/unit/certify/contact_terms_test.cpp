@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/polynomials.h"
@@ -26,22 +27,22 @@ namespace
 
 /// A unit block on a floor with one contact facet per cell side, E and nu such that lambda = 0, mu = 1/2.
 template <int dim>
-std::string block(int p, const std::string& contact)
+DiscreteProblem<dim> unit_block(int p, const problem::Field& gap,
+                                const problem::ContactLaw& law = Frictionless())
 {
-  const std::string box = dim == 2 ? "{ lower = [0, 0], upper = [1, 1], cells = [1, 1] }"
-                                   : "{ lower = [0, 0, 0], upper = [1, 1, 1], cells = [1, 1, 1] }";
-  const std::string zeros = dim == 2 ? "[0, 0]" : "[0, 0, 0]";
-  return "degree = " + std::to_string(p) + "\nmesh.box = " + box +
-         "\nmaterial = { E = 1, nu = 0 }\nboundary.top.displacement = " + zeros +
-         "\nboundary.bottom.contact = " + contact + "\nnitsche.gamma0 = 1\n";
+  std::array<int, dim> one_cell;
+  one_cell.fill(1);
+  return {box<dim>(Point<dim>::Zero(), Point<dim>::Ones(), one_cell),
+          {.boundaries = {clamped<dim>("top"), obstacle<dim>("bottom", law, gap)}, .material = lame(1, 0)},
+          {.degree = p, .gamma0 = 1}};
 }
 
 /// No stress at all: what is left of cnt and frc is the norm of T(u).
 template <int dim>
-certify::Stress<dim> no_stress(const DiscreteCase<dim>& c)
+certify::Stress<dim> no_stress(const DiscreteProblem<dim>& c)
 {
   certify::Stress<dim> stress;
-  stress.degree = c.config.method.degree;
+  stress.degree = c.method.degree;
   stress.n = fem::polynomial_dimension(dim, stress.degree);
   stress.dis.assign(c.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin_place.assign(c.mesh.n_cells(), -1);
@@ -49,7 +50,7 @@ certify::Stress<dim> no_stress(const DiscreteCase<dim>& c)
 }
 
 template <int dim>
-certify::ContactSquares sum_over_facets(const DiscreteCase<dim>& c, const std::vector<double>& u,
+certify::ContactSquares sum_over_facets(const DiscreteProblem<dim>& c, const std::vector<double>& u,
                                         certify::ContactRule rule)
 {
   const certify::Stress<dim> stress = no_stress(c);
@@ -72,7 +73,7 @@ TEST(ContactTerms, AKinkOfTheNormalTractionIsResolvedIn2D)
   // gamma = gamma_0 (lambda + 2 mu)/h = 1. With g = x and b = 0.3: P^n = x - 0.3, negative part on [0, 0.3].
   for (int p = 1; p <= 4; ++p)
   {
-    const DiscreteCase<2> c(block<2>(p, "{ friction = \"none\", gap = \"x\" }"));
+    const DiscreteProblem<2> c = unit_block<2>(p, formula("x"));
     std::vector<double> u(c.space.n_dofs(), 0.0);
     for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.3;
     const double exact = std::pow(0.3, 3) / 3;
@@ -86,7 +87,7 @@ TEST(ContactTerms, AKinkOfTheNormalTractionIsResolvedIn2D)
 TEST(ContactTerms, AKinkOfTheFrictionLimitIsResolvedIn2D)
 {
   // u = (0.7, 0): P^t = -0.7; threshold s = x: [P^t]_s = -min(x, 0.7).
-  const DiscreteCase<2> c(block<2>(2, "{ friction = \"tresca\", threshold = \"x\", gap = 1 }"));
+  const DiscreteProblem<2> c = unit_block<2>(2, 1, Tresca(formula("x")));
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 0; i < u.size(); i += 2) u[i] = 0.7;
   const double exact = std::pow(0.7, 3) / 3 + 0.3 * 0.49;
@@ -98,7 +99,7 @@ TEST(ContactTerms, KinksAreResolvedIn3D)
 {
   // Facets have the diameter sqrt 2, so gamma = 1/sqrt 2: P^n = gamma (x + z - 0.9), negative in a triangle
   // of legs 0.9: integral of (0.9 - r)^2 with r = x + z over it is int_0^0.9 (0.9 - r)^2 r dr = 0.9^4 / 12.
-  const DiscreteCase<3> c(block<3>(1, "{ friction = \"none\", gap = \"x + z\" }"));
+  const DiscreteProblem<3> c = unit_block<3>(1, formula("x + z"));
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -0.9;
   const double exact = 0.5 * std::pow(0.9, 4) / 12;
@@ -108,7 +109,7 @@ TEST(ContactTerms, KinksAreResolvedIn3D)
 
 TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
 {
-  const DiscreteCase<2> c(block<2>(2, "{ friction = \"none\", gap = \"0.1*x\" }"));
+  const DiscreteProblem<2> c = unit_block<2>(2, formula("0.1*x"));
   std::vector<double> u(c.space.n_dofs(), 0.0);
   for (std::size_t i = 1; i < u.size(); i += 2) u[i] = -0.9;
   EXPECT_EQ(sum_over_facets(c, u, certify::ContactRule::resolved).cnt,
@@ -123,15 +124,15 @@ TEST(ContactTerms, AKinkBetweenThePointsAndTheEndsIsSeen)
   for (const Point<1>& point : rule.points) x.push_back(point[0]);
   std::ranges::sort(x);
   constexpr double u_n = 0.4;  // so that the gap is none that is negative
-  std::string formula = fmt::format("{}", u_n);
+  std::string text = fmt::format("{}", u_n);
   for (int i = 0; i < 4; ++i)
   {
-    formula += i % 2 == 0 ? " + 0.6" : " + 1.6";
+    text += i % 2 == 0 ? " + 0.6" : " + 1.6";
     for (int j = 0; j < 4; ++j)
-      if (j != i) formula += fmt::format("*(x - {:.17g})/({:.17g})", x[j], x[i] - x[j]);
+      if (j != i) text += fmt::format("*(x - {:.17g})/({:.17g})", x[j], x[i] - x[j]);
   }
-  const DiscreteCase<2> c(block<2>(1, "{ gap = \"" + formula + "\" }"));
-  const problem::Field gap(formula, Where{.key = "gap"});
+  const problem::Field gap = formula(text);
+  const DiscreteProblem<2> c = unit_block<2>(1, gap);
   double expected = 0;
   constexpr int n = 100000;
   for (int i = 0; i < n; ++i)
@@ -147,7 +148,7 @@ TEST(ContactTerms, TheKinksOfRoundingEnd)
 {
   for (int p = 1; p <= 4; ++p)
   {
-    const DiscreteCase<2> c(block<2>(p, "{ gap = \"0.1*x + 0.2*x\" }"));
+    const DiscreteProblem<2> c = unit_block<2>(p, formula("0.1*x + 0.2*x"));
     std::vector<double> u(c.space.n_dofs(), 0.0);
     const std::vector<Point<2>> nodes = c.space.node_points();
     for (std::size_t i = 0; i < nodes.size(); ++i) u[2 * i + 1] = -0.3 * nodes[i][0];
@@ -161,8 +162,8 @@ TEST(ContactTerms, ASmallDiscOfContactBetweenThePointsIsSeenIn3D)
   for (const double radius : {0.05, 0.02})
     for (const Point<2>& centre : {Point<2>(0.61, 0.29), Point<2>(0.23, 0.7)})
     {
-      const std::string gap = fmt::format("(x - {})^2 + (z - {})^2", centre[0], centre[1]);
-      const DiscreteCase<3> c(block<3>(1, "{ gap = \"" + gap + "\" }"));
+      const DiscreteProblem<3> c =
+          unit_block<3>(1, formula(fmt::format("(x - {})^2 + (z - {})^2", centre[0], centre[1])));
       std::vector<double> u(c.space.n_dofs(), 0.0);
       for (std::size_t i = 1; i < u.size(); i += 3) u[i] = -radius * radius;
       // gamma^2 times the integral of (r^2 - radius^2)^2 over the disc.
@@ -175,7 +176,7 @@ TEST(ContactTerms, ASmallDiscOfContactBetweenThePointsIsSeenIn3D)
 /// There are kernels up to fem::max_degree; a space of a higher one, as for richer solutions, gets no bound.
 TEST(ContactTerms, ADegreeBeyondTheKernelsIsAnError)
 {
-  const DiscreteCase<2> c(block<2>(1, "{}"));
+  const DiscreteProblem<2> c = unit_block<2>(1, 0);
   const fem::LagrangeSpace<2> space(c.mesh, fem::max_degree + 1);
   const contact::NitscheForm<2> form(c.problem, space, 10);
   EXPECT_THROW(certify::ContactTerms<2>(form, certify::ContactRule::resolved), InputError);

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "support/dimensions.h"
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
 #include "tribound/fem/nested.h"
@@ -27,16 +27,16 @@ class SolutionErrorOf : public ::testing::Test
 };
 TYPED_TEST_SUITE(SolutionErrorOf, Dimensions);
 
-/// Two regions in one box would need a mesh file; the material is the same everywhere here.
-const std::string material_toml = "material = { E = 1.3, nu = 0.3 }\n";
-
+/// No loads and no supports.
 template <int dim>
-mesh::MeshData<dim> some_box()
+DiscreteProblem<dim> distorted_box(int degree)
 {
+  mesh::MeshData<dim> data;
   if constexpr (dim == 2)
-    return distorted(box<2>({0, 0}, {2, 1}, {3, 2}), 4);
+    data = block<2>({3, 2});
   else
-    return distorted(box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1}), 4);
+    data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1});
+  return {distorted(std::move(data), 4), {.material = lame(1.3, 0.3)}, {.degree = degree}};
 }
 
 template <int dim>
@@ -70,7 +70,7 @@ double squares(const std::vector<double>& values)
 TYPED_TEST(SolutionErrorOf, PolynomialsOnMeshesOfWhichNeitherContainsTheOther)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteCase<dim> c(material_toml + "degree = 3\n", some_box<dim>());
+  const DiscreteProblem<dim> c = distorted_box<dim>(3);
   const auto quadratic = [](const Point<dim>& x) -> Point<dim>
   { return Point<dim>::Constant(x[0] * x[1] - 0.3 * x[dim - 1] * x[dim - 1]); };
   const auto cubic = [](const Point<dim>& x) -> Point<dim>
@@ -101,7 +101,7 @@ TYPED_TEST(SolutionErrorOf, PolynomialsOnMeshesOfWhichNeitherContainsTheOther)
 TYPED_TEST(SolutionErrorOf, RandomFunctionsOnNestedMeshes)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteCase<dim> c(material_toml + "degree = 2\n", some_box<dim>());
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   const mesh::Bisected<dim> finer = mesh::bisect<dim>(c.mesh, {{1, 4, 7}});
   for (const int degree : {2, 3})
   {
@@ -129,7 +129,7 @@ TYPED_TEST(SolutionErrorOf, RandomFunctionsOnNestedMeshes)
 TYPED_TEST(SolutionErrorOf, SymmetricOnMeshesOfWhichNeitherContainsTheOther)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteCase<dim> c(material_toml + "degree = 1\n", some_box<dim>());
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
   const mesh::Mesh<dim> a = bisected_at_random(c.mesh, 5, 1);
   const mesh::Mesh<dim> b = bisected_at_random(c.mesh, 5, 2);
   const fem::LagrangeSpace<dim> space_a(a, 1);
@@ -145,7 +145,7 @@ TYPED_TEST(SolutionErrorOf, SymmetricOnMeshesOfWhichNeitherContainsTheOther)
 TYPED_TEST(SolutionErrorOf, ItselfIsZero)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteCase<dim> c(material_toml + "degree = 2\n", some_box<dim>());
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   const std::vector<double> u = random_function(c.space, 3);
   EXPECT_EQ(certify::solution_error<dim>(c.problem, c.space, u, c.space, u).global.stress, 0);
 }
@@ -154,28 +154,23 @@ TYPED_TEST(SolutionErrorOf, ItselfIsZero)
 /// degree is exact whichever way the mesh is refined.
 TEST(SolutionError, AgreesWithCompareWithRicher)
 {
-  const DiscreteCase<2> c(R"(
-degree = 1
-mesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }
-material = { E = 1, nu = 0 }
-load.body = [0, -0.2]
-boundary.left.displacement = [0, "0.1*y^2"]
-boundary.right.displacement = [0, "0.1*y^2"]
-boundary.top.displacement = [0, "0.1*y^2"]
-boundary.bottom.contact = { gap = 1 }
-)");
+  ProblemData<2> data{.boundaries = {obstacle<2>("bottom", Frictionless(), 1)},
+                      .material = lame(1, 0),
+                      .body_force = {0, -0.2}};
+  for (const char* side : {"left", "right", "top"})
+    data.boundaries.push_back(fixed<2>(side, 0, formula("0.1*y^2")));
+  const DiscreteProblem<2> c(block<2>({4, 2}), data);
   const solve::NewtonResult<2> coarse = c.solve();
   ASSERT_EQ(coarse.status, solve::NewtonStatus::converged);
-  const certify::RicherSolution richer = certify::compare_with_richer<2>(
-      c.form, coarse.u, {.refinements = 1, .degree = 2}, c.config.method.gamma_0(), c.config.method.newton,
-      c.config.method.solver);
+  const certify::RicherSolution richer =
+      certify::compare_with_richer<2>(c.form, coarse.u, {.refinements = 1, .degree = 2}, c.method.gamma_0(),
+                                      c.method.newton, c.method.solver);
   ASSERT_TRUE(richer.error);
 
   const mesh::Mesh<2> finer = bisected_at_random(c.mesh, 4, 9);
   const fem::LagrangeSpace<2> space(finer, 2);
-  const contact::NitscheForm<2> form(c.problem, space, c.config.method.gamma_0());
-  const solve::NewtonResult<2> fine =
-      solve::solve<2>(form, {}, c.config.method.newton, c.config.method.solver);
+  const contact::NitscheForm<2> form(c.problem, space, c.method.gamma_0());
+  const solve::NewtonResult<2> fine = solve::solve<2>(form, {}, c.method.newton, c.method.solver);
   ASSERT_EQ(fine.status, solve::NewtonStatus::converged);
   const certify::LocalError error = certify::solution_error<2>(c.problem, c.space, coarse.u, space, fine.u);
   EXPECT_GT(error.global.energy, 1e-3);

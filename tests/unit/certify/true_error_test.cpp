@@ -12,10 +12,9 @@
 #include <string>
 
 #include "support/dimensions.h"
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
-#include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 
 namespace tribound::test
@@ -54,20 +53,19 @@ struct KnownRepresentative
   const double h = dim == 2 ? 0.5 : std::sqrt(2.0);
   const double gamma = 10 * 1.75 / h;  // lambda + 2 mu = E (1 - nu) / ((1 + nu) (1 - 2 nu)) = 1.75
 
-  [[nodiscard]] std::string toml() const
+  [[nodiscard]] DiscreteProblem<dim> discrete(int p) const
   {
-    const std::string z = dim == 3 ? ", 0" : "";
-    const std::string free = dim == 3 ? ", \"free\"" : "";
-    return fmt::format(
-        "mesh.box = {{ lower = [0, 0{0}], upper = [2, 1{1}], cells = {2} }}\n"
-        "material = {{ E = 1.3, nu = 0.3 }}\nnitsche.gamma0 = 10\n"
-        "load.body = [\"-2*{3}*x\", 0{0}]\n"
-        "boundary.left = {{ displacement = [0, \"free\"{7}], traction = [0, \"-({4})*({5}+y)\"{0}] }}\n"
-        "boundary.right.traction = [\"{5}+y+{3}*y^2\", \"{4}*({5}+y)\"{0}]\n"
-        "boundary.top.traction = [\"{6}*x\", \"{4}*x\"{0}]\n"
-        "boundary.bottom.contact = {{ friction = \"tresca\", threshold = 1 }}\n",
-        z, dim == 3 ? ", 1" : "", dim == 3 ? "[2, 1, 1]" : "[4, 2]", c, d, fmt::format("{:.17g}", h),
-        1 + 2 * c, free);
+    return {block<dim>({4, 2}, {2, 1, 1}),
+            {.boundaries = {loaded<dim>(fixed<dim>("left", 0, free, free), 0,
+                                        formula(fmt::format("-({})*({:.17g} + y)", d, h))),
+                            loaded<dim>("right", formula(fmt::format("{:.17g} + y + {}*y^2", h, c)),
+                                        formula(fmt::format("{}*({:.17g} + y)", d, h))),
+                            loaded<dim>("top", formula(fmt::format("{}*x", 1 + 2 * c)),
+                                        formula(fmt::format("{}*x", d))),
+                            obstacle<dim>("bottom", Tresca(1))},
+             .material = lame(1.3, 0.3),
+             .body_force = {formula(fmt::format("-2*{}*x", c))}},
+            {.degree = p, .gamma0 = 10}};
   }
 
   [[nodiscard]] double norm() const
@@ -91,7 +89,7 @@ TYPED_TEST(TrueError, DualNormOfAResidualWithKnownRepresentative)
   const KnownRepresentative<dim> known;
   for (int p = 1; p <= 2; ++p)
   {
-    const DiscreteCase<dim> c(fmt::format("degree = {}\n", p) + known.toml());
+    const DiscreteProblem<dim> c = known.discrete(p);
     ASSERT_NEAR(c.form.segments()[0].gamma, known.gamma, 1e-12 * known.gamma);
     Point<dim> down = Point<dim>::Zero();
     down[1] = -known.delta;
@@ -108,9 +106,8 @@ TYPED_TEST(TrueError, DualNormOfAResidualWithKnownRepresentative)
 /// points of a rule, a distance d apart, it cannot see a kink better than to about (change of slope) d^2 / 8.
 TEST(DualNorm, IntegratesAKinkedTraction)
 {
-  const DiscreteCase<2> c(
-      "degree = 1\nmesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }\n"
-      "material = { E = 1, nu = 0.25 }\nboundary.bottom.contact = {}\n");
+  const DiscreteProblem<2> c(block<2>({4, 2}),
+                             {.boundaries = {obstacle<2>("bottom")}, .material = lame(1, 0.25)});
   constexpr double a = 0.02;
   constexpr double d = 0.5 / 16 * 0.24;  // a contact facet in 16 parts, each with 6 Gauss points
   const double slope = c.form.segments()[0].gamma * a;
@@ -127,29 +124,31 @@ TEST(DualNorm, IntegratesAKinkedTraction)
   }
 }
 
-/// Boundary data of three kinds and friction, not converged.
+/// Boundary data of three kinds and friction.
 template <int dim>
-std::string block(int p)
+ProblemData<dim> mixed_data()
 {
-  const std::string z = dim == 3 ? ", 0" : "";
-  return fmt::format(
-      "degree = {}\nmaterial = {{ E = 1, nu = 0.3 }}\nload.body = [\"0.1*x\", \"-0.1*exp(x)\"{}]\n"
-      "boundary.left.displacement = [0, 0{}]\nboundary.right.displacement = [0, \"free\"{}]\n"
-      "boundary.bottom.contact = {{ friction = \"coulomb\", coefficient = 0.3, gap = \"0.01*x^2\" }}\n"
-      "newton.max_steps = 2\n",
-      p, z, z, dim == 3 ? ", \"free\"" : "");
+  return {.boundaries = {clamped<dim>("left"), fixed<dim>("right", 0, free, free),
+                         obstacle<dim>("bottom", Coulomb(0.3), formula("0.01*x^2"))},
+          .body_force = {formula("0.1*x"), formula("-0.1*exp(x)")}};
 }
+
+template <int dim>
+mesh::MeshData<dim> few_cells()
+{
+  if constexpr (dim == 2)
+    return block<2>({3, 2});
+  else
+    return box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
+}
+
+const adapt::Method two_steps{.newton = {.max_steps = 2}};
 
 /// W grows, and so does the supremum over it, towards a limit.
 TYPED_TEST(TrueError, DualNormGrowsWithTheSpace)
 {
   constexpr int dim = TypeParam::value;
-  mesh::MeshData<dim> data;
-  if constexpr (dim == 2)
-    data = box<2>({0, 0}, {2, 1}, {3, 2});
-  else
-    data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
-  const DiscreteCase<dim> c(block<dim>(1), distorted(std::move(data), 2));
+  const DiscreteProblem<dim> c(distorted(few_cells<dim>(), 2), mixed_data<dim>(), two_steps);
   const solve::NewtonResult<dim> result = c.solve();
   const auto norm = [&](int refinements, int degree)
   { return certify::DualNorm<dim>(c.form, {.refinements = refinements, .degree = degree})(result.u); };
@@ -162,7 +161,7 @@ TYPED_TEST(TrueError, DualNormGrowsWithTheSpace)
 TYPED_TEST(TrueError, DofsAreCountedWithoutRefining)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteCase<dim> c(KnownRepresentative<dim>().toml());
+  const DiscreteProblem<dim> c = KnownRepresentative<dim>().discrete(1);
   for (const int degree : {3, 6})
   {
     const mesh::Refined<dim> refined = mesh::refine_uniformly(c.mesh, 2);
@@ -191,12 +190,10 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
     return g;
   };
   // sigma with lambda = mu = 1: tr = 0.1 y; sigma_xx = 0.7 y, sigma_yy = -0.3 y, sigma_xy = 0.7 x; f = -div
-  const std::string data = "[\"0.3*x*y\", \"0.2*x^2-0.1*y^2\"]\n";
-  const DiscreteCase<2> c(
-      "degree = 1\nmesh.box = { lower = [0, 0], upper = [2, 1], cells = [3, 2] }\n"
-      "material = { E = 2.5, nu = 0.25 }\nload.body = [0, -0.4]\nboundary.left.displacement = " +
-      data + "boundary.right.displacement = " + data + "boundary.top.displacement = " + data +
-      "boundary.bottom.displacement = " + data);
+  ProblemData<2> data{.material = lame(2.5, 0.25), .body_force = {0, -0.4}};
+  for (const char* side : {"left", "right", "top", "bottom"})
+    data.boundaries.push_back(fixed<2>(side, formula("0.3*x*y"), formula("0.2*x^2-0.1*y^2")));
+  const DiscreteProblem<2> c(block<2>({3, 2}), data);
   const solve::NewtonResult<2> result = c.solve();
   double energy = 0;
   double stress = 0;
@@ -217,7 +214,7 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
     }
   }
   const certify::RicherSolution richer = certify::compare_with_richer<2>(
-      c.form, result.u, {.refinements = 1, .degree = 2}, 10, c.config.method.newton, c.config.method.solver);
+      c.form, result.u, {.refinements = 1, .degree = 2}, 10, c.method.newton, c.method.solver);
   ASSERT_TRUE(richer.error.has_value()) << richer.failure;
   EXPECT_EQ(richer.cells, 48);
   EXPECT_NEAR(richer.error->energy, std::sqrt(energy), 1e-9);
@@ -227,11 +224,11 @@ TEST(RicherSolution, OfAKnownSolutionGivesTheError)
 
 TEST(RicherSolution, ThatIsNotReachedSaysWhy)
 {
-  const DiscreteCase<2> c(block<2>(1), box<2>({0, 0}, {2, 1}, {3, 2}));
-  solve::NewtonOptions newton = c.config.method.newton;
+  const DiscreteProblem<2> c(few_cells<2>(), mixed_data<2>(), two_steps);
+  solve::NewtonOptions newton = c.method.newton;
   newton.max_steps = 1;
   const certify::RicherSolution richer = certify::compare_with_richer<2>(
-      c.form, c.solve().u, {.refinements = 1, .degree = 2}, 10, newton, c.config.method.solver);
+      c.form, c.solve().u, {.refinements = 1, .degree = 2}, 10, newton, c.method.solver);
   EXPECT_FALSE(richer.error.has_value());
   EXPECT_NE(richer.failure.find("max_steps"), std::string::npos) << richer.failure;
 }
@@ -239,12 +236,7 @@ TEST(RicherSolution, ThatIsNotReachedSaysWhy)
 TYPED_TEST(TrueError, NestedInterpolationIsExact)
 {
   constexpr int dim = TypeParam::value;
-  mesh::MeshData<dim> data;
-  if constexpr (dim == 2)
-    data = box<2>({0, 0}, {2, 1}, {3, 2});
-  else
-    data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
-  const DiscreteCase<dim> c(block<dim>(2), distorted(std::move(data), 4));
+  const DiscreteProblem<dim> c(distorted(few_cells<dim>(), 4), mixed_data<dim>(), {.degree = 2});
   const fem::Constraints none{std::vector<char>(c.space.n_dofs(), 0), {}};
   const std::vector<double> u = random_free_vector(none, 1.0, 3);
   const contact::StressNorms norms = contact::stress_norms<dim>(c.problem, c.space, u);

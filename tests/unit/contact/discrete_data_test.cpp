@@ -6,9 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -26,8 +27,6 @@ double vertical_load(const contact::NitscheForm<dim>& form)
   return sum;
 }
 
-const std::string material = "degree = 1\nmaterial = { E = 1.0, nu = 0.3 }\n";
-
 /// One formula for the whole boundary chooses the side y = 0.1: its facets are loaded fully, whatever the
 /// vertex opposite is.
 TEST(DiscreteData, ASideInThePlaneOfASwitchIsLoadedFully)
@@ -35,16 +34,13 @@ TEST(DiscreteData, ASideInThePlaneOfASwitchIsLoadedFully)
   for (unsigned seed = 0; seed < 20; ++seed)
   {
     const double top = 0.1 + 2.1 * (seed + 1) / 20;
-    const DiscreteCase<2> plane(material +
-                                    "boundary.left.displacement = [0, \"free\"]\n"
-                                    "boundary.top.displacement = [0, 0]\n"
-                                    "boundary.bottom.traction = [0, \"y - 0.1 <= 0 ? 1 : 0\"]\n",
-                                renumbered(box<2>({0, 0.1}, {1, top}, {4, 1}), seed));
+    const DiscreteProblem<2> plane(renumbered(box<2>({0, 0.1}, {1, top}, {4, 1}), seed),
+                                   {.boundaries = {fixed<2>("left", 0, free), clamped<2>("top"),
+                                                   loaded<2>("bottom", 0, formula("y - 0.1 <= 0 ? 1 : 0"))}});
     EXPECT_NEAR(vertical_load(plane.form), 1, 1e-14) << top;
-    const DiscreteCase<3> space(material +
-                                    "boundary.top.displacement = [0, 0, 0]\n"
-                                    "boundary.bottom.traction = [0, \"y == 0.1 ? 1 : 0\", 0]\n",
-                                renumbered(box<3>({0, 0.1, 0}, {1, top, 1}, {2, 1, 2}), seed));
+    const DiscreteProblem<3> space(
+        renumbered(box<3>({0, 0.1, 0}, {1, top, 1}, {2, 1, 2}), seed),
+        {.boundaries = {clamped<3>("top"), loaded<3>("bottom", 0, formula("y == 0.1 ? 1 : 0"))}});
     EXPECT_NEAR(vertical_load(space.form), 1, 1e-14) << top;
     for (std::size_t k = 0; k < space.mesh.boundary().size(); ++k)
       EXPECT_EQ(space.form.data().traction_remainder(k).mean, 0);
@@ -55,12 +51,10 @@ TEST(DiscreteData, ASideInThePlaneOfASwitchIsLoadedFully)
 TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
 {
   const auto inclined = [](const Point<2>& x) { return Point<2>(x[0], x[1] + 0.1 + 0.5 * x[0]); };
-  const DiscreteCase<2> c(material +
-                              "boundary.left.displacement = [0, 0]\n"
-                              "boundary.top.traction = [0, \"y >= 1.1 + 0.5*x ? 1 : 0\"]\n"
-                              "boundary.bottom.contact = { friction = \"tresca\", "
-                              "threshold = \"y > 0.1 + 0.5*x ? 0.3 : 0\" }\n",
-                          mapped(box<2>({0, 0}, {1, 1}, {3, 1}), inclined));
+  const DiscreteProblem<2> c(
+      mapped(box<2>({0, 0}, {1, 1}, {3, 1}), inclined),
+      {.boundaries = {clamped<2>("left"), loaded<2>("top", 0, formula("y >= 1.1 + 0.5*x ? 1 : 0")),
+                      obstacle<2>("bottom", Tresca(formula("y > 0.1 + 0.5*x ? 0.3 : 0")))}});
   const double length = std::sqrt(1.25) / 3;
   for (std::size_t k = 0; k < c.mesh.boundary().size(); ++k)
   {
@@ -79,18 +73,18 @@ TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
 /// incompressible, where gamma is limited, nor less for a large gamma_0.
 TEST(DiscreteData, GapsAreResolvedForThePenaltyInUse)
 {
-  const auto parts = [](double nu, const std::string& gamma0)
+  const auto parts = [](double nu, std::optional<double> gamma0)
   {
-    const DiscreteCase<2> c("degree = 1\nmaterial = { E = 1.0, nu = " + std::to_string(nu) +
-                                " }\n"
-                                "boundary.top.displacement = [0, -0.1]\n"
-                                "boundary.bottom.contact = { gap = \"0.01*(1 + sin(40*x))\" }\n" +
-                                gamma0,
-                            box<2>({0, 0}, {1, 1}, {2, 2}));
+    const DiscreteProblem<2> c(
+        box<2>({0, 0}, {1, 1}, {2, 2}),
+        {.boundaries = {fixed<2>("top", 0, -0.1),
+                        obstacle<2>("bottom", Frictionless(), formula("0.01*(1 + sin(40*x))"))},
+         .material = lame(1, nu)},
+        {.gamma0 = gamma0});
     return c.form.data().effort().parts;
   };
-  EXPECT_GT(parts(0.3, "nitsche.gamma0 = 1e5"), 2 * parts(0.3, ""));
-  EXPECT_LE(parts(0.4999, ""), parts(0.485, ""));
+  EXPECT_GT(parts(0.3, 1e5), 2 * parts(0.3, {}));
+  EXPECT_LE(parts(0.4999, {}), parts(0.485, {}));
 }
 
 }  // namespace

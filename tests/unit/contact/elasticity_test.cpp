@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/dimensions.h"
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
 
@@ -25,19 +25,11 @@ constexpr double nu = 0.3;
 template <int dim>
 mesh::MeshData<dim> grid()
 {
-  if constexpr (dim == 2)
-    return box<2>({0, 0}, {2, 1}, {3, 2});
-  else
-    return box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1});
+  return block<dim>({3, 2}, {2, 1, 1});
 }
 
-std::string toml(int p, const std::string& rest)
-{
-  return "degree = " + std::to_string(p) + "\n" + rest;
-}
-
-const std::string plane_strain = "material = { E = 2.5, nu = 0.3 }\n";
-const std::string plane_stress = "material = { E = 2.5, nu = 0.3, plane = \"stress\" }\n";
+const problem::Material plane_strain = lame(E, nu);
+const problem::Material plane_stress = lame(E, nu, problem::PlaneModel::stress);
 
 /// eps from sigma: in 3D and for plane stress (1+nu)/E sigma - nu/E tr(sigma) I, for plane strain with
 /// sigma_zz = nu tr(sigma) added to the trace.
@@ -49,9 +41,9 @@ Tensor<dim> strain(const Tensor<dim>& stress, bool is_plane_strain)
 }
 
 template <int dim>
-void expect_linear_fields_exact(int p, const std::string& material, bool is_plane_strain)
+void expect_linear_fields_exact(int p, const problem::Material& material, bool is_plane_strain)
 {
-  const DiscreteCase<dim> c(toml(p, material), distorted(grid<dim>(), p));
+  const DiscreteProblem<dim> c(distorted(grid<dim>(), p), {.material = material}, {.degree = p});
   Tensor<dim> stress = Tensor<dim>::Identity() * 0.4;
   stress(0, 1) = stress(1, 0) = 0.7;
   stress(dim - 1, dim - 1) = -1.1;
@@ -84,6 +76,13 @@ TEST(Elasticity, LinearFieldsHaveTheExactEnergy)
   }
 }
 
+/// Held on the left in all components but y.
+template <int dim>
+ProblemData<dim> held()
+{
+  return {.boundaries = {fixed<dim>("left", 0, free)}, .material = plane_strain};
+}
+
 template <class T>
 class Stiffness : public ::testing::Test
 {
@@ -93,11 +92,9 @@ TYPED_TEST_SUITE(Stiffness, Dimensions);
 TYPED_TEST(Stiffness, MatrixAndCellwiseProductAgree)
 {
   constexpr int dim = TypeParam::value;
-  const std::string clamp = dim == 2 ? "boundary.left.displacement = [0, \"free\"]"
-                                     : "boundary.left.displacement = [0, \"free\", 0]";
   for (int p = 1; p <= 4; ++p)
   {
-    const DiscreteCase<dim> c(toml(p, plane_strain + clamp), distorted(grid<dim>(), p));
+    const DiscreteProblem<dim> c(distorted(grid<dim>(), p), held<dim>(), {.degree = p});
     const fem::Constraints& constraints = c.form.constraints();
     ASSERT_GT(constraints.n_fixed(), 0);
     const std::vector<double> u = random_free_vector(constraints, 1.0, p);
@@ -111,9 +108,7 @@ TYPED_TEST(Stiffness, MatrixAndCellwiseProductAgree)
 TYPED_TEST(Stiffness, FixedDegreesOfFreedomHaveAPositiveDiagonalOnly)
 {
   constexpr int dim = TypeParam::value;
-  const std::string clamp = dim == 2 ? "boundary.left.displacement = [0, \"free\"]"
-                                     : "boundary.left.displacement = [0, \"free\", 0]";
-  const DiscreteCase<dim> c(toml(2, plane_strain + clamp), grid<dim>());
+  const DiscreteProblem<dim> c(grid<dim>(), held<dim>(), {.degree = 2});
   const fem::Constraints& constraints = c.form.constraints();
   const algebra::Triplets matrix = contact::stiffness(c.problem, c.space, constraints);
   Index n_diagonal = 0;
@@ -134,10 +129,11 @@ TEST(Load, AgreesWithIntegralsInClosedForm)
 {
   for (int p = 2; p <= 4; ++p)
   {
-    const DiscreteCase<2> c(toml(p, plane_strain) +
-                                "load.body = [1, \"y\"]\nboundary.right.traction = [0, 3]\n"
-                                "boundary.top.pressure = \"2*x\"",
-                            renumbered(grid<2>(), p));
+    const DiscreteProblem<2> c(renumbered(grid<2>(), p),
+                               {.boundaries = {loaded<2>("right", 0, 3), pressed<2>("top", formula("2*x"))},
+                                .material = plane_strain,
+                                .body_force = {1, formula("y")}},
+                               {.degree = p});
     const std::vector<double> v =
         interpolate<2>(c.space, [](const Point<2>& x) { return Point<2>(x[0] * x[1], x[0]); });
     const double body = 1.0 + 1.0;    // xy + xy over [0, 2] x [0, 1]

@@ -12,7 +12,8 @@
 #include <tuple>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/contact_points.h"
+#include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
 
@@ -26,46 +27,43 @@ namespace
 struct Law
 {
   std::string name;
-  std::string sticking;
-  std::string slipping;
+  problem::ContactLaw sticking;
+  problem::ContactLaw slipping;
+
+  [[nodiscard]] const problem::ContactLaw& making(problem::ContactStatus status) const
+  {
+    return status == problem::ContactStatus::slip ? slipping : sticking;
+  }
 };
 
-const Law frictionless{"none", "friction = \"none\"", "friction = \"none\""};
-const Law tresca{"tresca", "friction = \"tresca\", threshold = \"100 + x\"",
-                 "friction = \"tresca\", threshold = \"0.02 + 0.01*x\""};
-const Law coulomb{"coulomb", "friction = \"coulomb\", coefficient = 2",
-                  "friction = \"coulomb\", coefficient = 0.2"};
+const Law frictionless{"none", Frictionless(), Frictionless()};
+const Law tresca{"tresca", Tresca(formula("100 + x")), Tresca(formula("0.02 + 0.01*x"))};
+const Law coulomb{"coulomb", Coulomb(2), Coulomb(0.2)};
 
 void PrintTo(const Law& law, std::ostream* out)
 {
   *out << law.name;
 }
 
+/// A bent block held from above.
 template <int dim>
-std::string contact_case(int p, const std::string& law)
+DiscreteProblem<dim> held_block(int p, const problem::ContactLaw& law, unsigned seed)
 {
-  const std::string clamped = dim == 2 ? "[0, 0]" : "[0, 0, 0]";
-  const std::string roller = dim == 2 ? "[0, \"free\"]" : "[0, \"free\", \"free\"]";
-  return "degree = " + std::to_string(p) +
-         "\nmaterial = { E = 1, nu = 0.3 }\n"
-         "boundary.top.displacement = " +
-         clamped + "\nboundary.left.displacement = " + roller +
-         "\nboundary.bottom.contact = { gap = \"0.01 + 0.005*x\", " + law + " }\n";
-}
-
-template <int dim>
-mesh::MeshData<dim> bent_block(unsigned seed)
-{
+  mesh::MeshData<dim> data;
   if constexpr (dim == 2)
-    return distorted(box<2>({0, 0}, {2, 1}, {4, 2}), seed);
+    data = block<2>({4, 2});
   else
-    return distorted(box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 2}), seed);
+    data = box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 2});
+  return {distorted(std::move(data), seed),
+          {.boundaries = {clamped<dim>("top"), fixed<dim>("left", 0, free, free),
+                          obstacle<dim>("bottom", law, formula("0.01 + 0.005*x"))}},
+          {.degree = p}};
 }
 
 /// Everything in `status` with a margin: pushed into the obstacle below (or pulled off it) and aside, in 3D
 /// across the coordinate axes, and shaken a little.
 template <int dim>
-std::vector<double> displaced(const DiscreteCase<dim>& c, problem::ContactStatus status, unsigned seed)
+std::vector<double> displaced(const DiscreteProblem<dim>& c, problem::ContactStatus status, unsigned seed)
 {
   const double down = status == problem::ContactStatus::open ? -0.1 : 0.1;
   Point<dim> background = Point<dim>::Zero();
@@ -84,8 +82,7 @@ template <int dim>
 std::vector<problem::ContactStatus> statuses(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   std::vector<problem::ContactStatus> result;
-  for (std::size_t k = 0; k < form.segments().size(); ++k)
-    for (const contact::ContactState<dim>& state : form.contact_states(u, k)) result.push_back(state.status);
+  for (const contact::ContactState<dim>& state : contact_states(form, u)) result.push_back(state.status);
   return result;
 }
 
@@ -100,7 +97,7 @@ std::vector<double> contact_forces(const contact::NitscheForm<dim>& form, std::s
 
 /// a(u, phi_i) - (T(u), phi_i)_C for free i.
 template <int dim>
-std::vector<double> residual(const DiscreteCase<dim>& c, std::span<const double> u)
+std::vector<double> residual(const DiscreteProblem<dim>& c, std::span<const double> u)
 {
   const std::vector<double> ku =
       free_part(c.form.constraints(), contact::apply_stiffness<dim>(c.problem, c.space, u));
@@ -110,8 +107,7 @@ std::vector<double> residual(const DiscreteCase<dim>& c, std::span<const double>
 template <int dim>
 void expect_tangent_agrees_with_differences(int p, const Law& law, problem::ContactStatus status)
 {
-  const std::string parameters = status == problem::ContactStatus::slip ? law.slipping : law.sticking;
-  const DiscreteCase<dim> c(contact_case<dim>(p, parameters), bent_block<dim>(p));
+  const DiscreteProblem<dim> c = held_block<dim>(p, law.making(status), p);
   const fem::Constraints& constraints = c.form.constraints();
   const std::vector<double> u = displaced(c, status, 1);
   const problem::ContactStatus expected =
@@ -179,8 +175,7 @@ INSTANTIATE_TEST_SUITE_P(AllLaws, Tangent,
 template <int dim>
 void expect_linearised_traction_agrees(const Law& law, problem::ContactStatus status)
 {
-  const std::string parameters = status == problem::ContactStatus::slip ? law.slipping : law.sticking;
-  const DiscreteCase<dim> c(contact_case<dim>(2, parameters), bent_block<dim>(7));
+  const DiscreteProblem<dim> c = held_block<dim>(2, law.making(status), 7);
   const contact::NitscheForm<dim>& form = c.form;
   const std::vector<double> u = displaced(c, status, 1);
   const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
@@ -217,7 +212,7 @@ TEST(LinearisedTraction, AgreesWithDifferences)
 template <int dim>
 void expect_regularised_tangent_agrees(const Law& law, double delta)
 {
-  const DiscreteCase<dim> c(contact_case<dim>(2, law.slipping), bent_block<dim>(7));
+  const DiscreteProblem<dim> c = held_block<dim>(2, law.slipping, 7);
   const contact::NitscheForm<dim>& form = c.form;
   const std::vector<double> u = random_free_vector(form.constraints(), 0.02, 3);
   const std::vector<double> step = random_free_vector(form.constraints(), 1.0, 2);
@@ -259,11 +254,10 @@ TEST(RegularisedTangent, AgreesWithDifferencesEverywhere)
 /// length 0.5, gamma = gamma_0 1.2 / 0.5.
 struct FlatBlock
 {
-  explicit FlatBlock(const std::string& law)
-      : c("degree = 2\nnitsche.gamma0 = 20\nmaterial = { E = 1, nu = 0.25 }\n"
-          "boundary.top.displacement = [0, 0]\nboundary.bottom.contact = { gap = 0.04, " +
-              law + " }",
-          renumbered(box<2>({0, 0}, {2, 1}, {4, 2}), 3)),
+  explicit FlatBlock(const problem::ContactLaw& law)
+      : c(renumbered(block<2>({4, 2}), 3),
+          {.boundaries = {clamped<2>("top"), obstacle<2>("bottom", law, 0.04)}, .material = lame(1, 0.25)},
+          {.degree = 2, .gamma0 = 20}),
         u(interpolate<2>(c.space, [](const Point<2>& x) { return Point<2>(0.02, -0.1 + 0.01 * x[1]); }))
   {
   }
@@ -272,7 +266,7 @@ struct FlatBlock
   static constexpr double normal = 0.012 - gamma * (0.1 - 0.04);  ///< P^n
   static constexpr double tangential = -gamma * 0.02;             ///< P^t along x
 
-  DiscreteCase<2> c;
+  DiscreteProblem<2> c;
   std::vector<double> u;
 };
 
@@ -285,30 +279,30 @@ void expect_constant(std::span<const Point<2>> traction, const Point<2>& expecte
 TEST(Traction, ClosedFormOnAFlatBottom)
 {
   using F = FlatBlock;
-  const auto traction = [](const std::string& law)
+  const auto traction = [](const problem::ContactLaw& law)
   {
     const FlatBlock block(law);
     return block.c.form.traction(block.u);
   };
-  expect_constant(traction("friction = \"none\""), {0, -F::normal});
-  expect_constant(traction("friction = \"tresca\", threshold = 5"), {F::tangential, -F::normal});
-  expect_constant(traction("friction = \"tresca\", threshold = 0.3"), {-0.3, -F::normal});
-  expect_constant(traction("friction = \"coulomb\", coefficient = 0.5"), {F::tangential, -F::normal});
-  expect_constant(traction("friction = \"coulomb\", coefficient = 0.1"), {0.1 * F::normal, -F::normal});
+  expect_constant(traction(Frictionless()), {0, -F::normal});
+  expect_constant(traction(Tresca(5)), {F::tangential, -F::normal});
+  expect_constant(traction(Tresca(0.3)), {-0.3, -F::normal});
+  expect_constant(traction(Coulomb(0.5)), {F::tangential, -F::normal});
+  expect_constant(traction(Coulomb(0.1)), {0.1 * F::normal, -F::normal});
 }
 
 TEST(Traction, ClosedAndStickingInTheFirstStep)
 {
   using F = FlatBlock;
-  const auto traction = [](const std::string& law, double scale)
+  const auto traction = [](const problem::ContactLaw& law, double scale)
   {
     const FlatBlock block(law);
     const std::vector<double> zero(block.u.size(), 0.0);
     return block.c.form.linearised_traction(contact::Linearisation::closed_sticking, zero,
                                             sum(zero, scale, block.u));
   };
-  const std::string slippery = "friction = \"coulomb\", coefficient = 0.001";
-  expect_constant(traction("friction = \"none\"", 1), {0, -F::normal});
+  const Coulomb slippery(0.001);
+  expect_constant(traction(Frictionless(), 1), {0, -F::normal});
   expect_constant(traction(slippery, 1), {F::tangential, -F::normal});
   // also where contact would open
   expect_constant(traction(slippery, 0), {0, -F::gamma * 0.04});
@@ -316,7 +310,7 @@ TEST(Traction, ClosedAndStickingInTheFirstStep)
 
 TEST(ContactStates, ClosedFormOnAFlatBottom)
 {
-  const FlatBlock block("friction = \"coulomb\", coefficient = 0.1");
+  const FlatBlock block(Coulomb(0.1));
   const std::vector<Point<1>> middle{Point<1>(0.5)};
   const contact::SegmentTables<2> tables(block.c.space.basis(), block.c.form.segments(), middle);
   for (int k = 0; k < 4; ++k)
@@ -335,7 +329,7 @@ TEST(ContactStates, ClosedFormOnAFlatBottom)
 
 TEST(ContactResultants, OfAConstantTraction)
 {
-  const FlatBlock block("friction = \"none\"");
+  const FlatBlock block((Frictionless()));
   const std::vector<Point<2>> t(block.c.form.n_contact_points(), Point<2>(0.3, 0.5));
   const contact::ContactResultants<2> sum = contact::contact_resultants<2>(block.c.form, t);
   EXPECT_LE((sum.force - Point<2>(0.6, 1.0)).norm(), 1e-13);
@@ -347,7 +341,7 @@ TEST(ContactResultants, OfAConstantTraction)
 
 TEST(ContactTangent, PatternDoesNotDependOnTheState)
 {
-  const DiscreteCase<3> c(contact_case<3>(2, coulomb.slipping), bent_block<3>(4));
+  const DiscreteProblem<3> c = held_block<3>(2, coulomb.slipping, 4);
   const algebra::Triplets open =
       c.form.contact_tangent(contact::Linearisation::newton, displaced(c, problem::ContactStatus::open, 1));
   const algebra::Triplets slip =
@@ -363,7 +357,7 @@ TEST(ContactTangent, PatternDoesNotDependOnTheState)
 
 TEST(ContactTangent, FixedDegreesOfFreedomHaveNoEntries)
 {
-  const DiscreteCase<2> c(contact_case<2>(3, tresca.slipping), bent_block<2>(4));
+  const DiscreteProblem<2> c = held_block<2>(3, tresca.slipping, 4);
   const algebra::Triplets tangent =
       c.form.contact_tangent(contact::Linearisation::newton, displaced(c, problem::ContactStatus::slip, 1));
   int n_dropped = 0;

@@ -21,57 +21,45 @@ using ::testing::HasSubstr;
 
 TEST(RigidMotion, FrictionlessFloorLeavesTheMotionAlongIt)
 {
-  const std::string down = "boundary.top.traction = [0, -1]\n";
-  const std::string said = verdict<2>(block(), down + "boundary.bottom.contact = { friction = \"none\" }");
+  const auto on_floor = [](const mesh::MeshData<2>& mesh, const problem::ContactLaw& law) {
+    return verdict<2>(mesh, {loaded<2>("top", 0, -1), obstacle<2>("bottom", law)});
+  };
+  const std::string said = on_floor(block(), Frictionless());
   EXPECT_THAT(said, AllOf(HasSubstr("from: translation along x\n"), HasSubstr("or give its contact")));
-  for (const std::string zero : {"\"coulomb\", coefficient = 0", "\"tresca\", threshold = 0"})
-    EXPECT_EQ(verdict<2>(block(), down + "boundary.bottom.contact = { friction = " + zero + " }"), said);
-  EXPECT_THAT(verdict<2>(on_slope(0.5), down + "boundary.bottom.contact = { friction = \"none\" }"),
+  EXPECT_EQ(on_floor(block(), Coulomb(0)), said);
+  EXPECT_EQ(on_floor(block(), Tresca(0)), said);
+  EXPECT_THAT(on_floor(on_slope(0.5), Frictionless()),
               HasSubstr("from: translation along (0.8776, 0.4794)\n"));
 }
 
 TEST(RigidMotion, BlockOnFloorWithFrictionIsHeld)
 {
-  EXPECT_EQ(verdict<2>(block(),
-                       "boundary.top.traction = [0, -1]\n"
-                       "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }"),
-            "held");
-  EXPECT_EQ(verdict<3>(brick(),
-                       "boundary.top.traction = [0.1, -1, 0.1]\n"
-                       "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }"),
+  EXPECT_EQ(verdict<2>(block(), {loaded<2>("top", 0, -1), obstacle<2>("bottom", Coulomb(0.2))}), "held");
+  EXPECT_EQ(verdict<3>(brick(), {loaded<3>("top", 0.1, -1, 0.1), obstacle<3>("bottom", Coulomb(0.2))}),
             "held");
 }
 
 TEST(RigidMotion, BalancedOrAbsentLoadsNeedNoContactForce)
 {
-  const std::string floor = "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }\n";
-  EXPECT_EQ(verdict<2>(block(), floor), "held");
-  EXPECT_EQ(verdict<2>(block(), floor + "boundary.left.traction = [-0.3, 0]\nboundary.right.traction = [0.3, "
-                                        "0]"),
-            "held");
+  const auto floor = obstacle<2>("bottom", Coulomb(0.2));
+  EXPECT_EQ(verdict<2>(block(), {floor}), "held");
+  EXPECT_EQ(verdict<2>(block(), {floor, loaded<2>("left", -0.3, 0), loaded<2>("right", 0.3, 0)}), "held");
 }
 
 TEST(RigidMotion, BlockPulledOffTheFloor)
 {
-  const std::string said =
-      verdict<2>(block(),
-                 "boundary.top.traction = [0, 1]\n"
-                 "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.2 }");
+  const std::string said = verdict<2>(block(), {loaded<2>("top", 0, 1), obstacle<2>("bottom", Coulomb(0.2))});
   EXPECT_THAT(said, HasSubstr("boundary.bottom: contact cannot hold the body (region \"box\"): the loads "
                               "drive it into translation along y; contact only pushes"));
-  EXPECT_THAT(verdict<3>(brick(),
-                         "boundary.top.traction = [0, 1, 0]\n"
-                         "boundary.bottom.contact = { friction = \"tresca\", threshold = 9 }"),
+  EXPECT_THAT(verdict<3>(brick(), {loaded<3>("top", 0, 1), obstacle<3>("bottom", Tresca(9))}),
               HasSubstr("drive it into translation along y"));
 }
 
 TEST(RigidMotion, BlockTippedOverItsEdge)
 {
   // down 2 in the middle of [0, 2], up at the right end: the resultant acts left of the block
-  const std::string said =
-      verdict<2>(block(),
-                 "boundary.top.traction = [0, -1]\nboundary.right.traction = [0, 1.5]\n"
-                 "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 5 }");
+  const std::string said = verdict<2>(
+      block(), {loaded<2>("top", 0, -1), loaded<2>("right", 0, 1.5), obstacle<2>("bottom", Coulomb(5))});
   EXPECT_THAT(said, HasSubstr("drive it into rotation about (0, 0)"));
 }
 
@@ -79,38 +67,28 @@ TEST(RigidMotion, BlockPushedHighTipsBeforeItSlides)
 {
   // A side load on top of a block of weight 2, 2 wide and 1 high, tips it from 2 on, and makes it slide from
   // 4 on.
-  const auto pushed = [](const std::string& load)
-  {
-    return verdict<2>(block(), "load.body = [0, -1]\nboundary.top.traction = [" + load +
-                                   ", 0]\n"
-                                   "boundary.bottom.contact = { friction = \"coulomb\", coefficient = 2 }");
+  const auto pushed = [](double load) {
+    return verdict<2>(block(), {loaded<2>("top", load, 0), obstacle<2>("bottom", Coulomb(2))}, {0, -1});
   };
-  EXPECT_EQ(pushed("0.999"), "held");
-  EXPECT_THAT(pushed("1.001"), HasSubstr("drive it into rotation about (2, 0); contact only pushes"));
-}
-
-std::string on_floor(double coefficient)
-{
-  return "load.body = [0, -1]\nboundary.bottom.contact = { friction = \"coulomb\", coefficient = " +
-         std::to_string(coefficient) + " }";
+  EXPECT_EQ(pushed(0.999), "held");
+  EXPECT_THAT(pushed(1.001), HasSubstr("drive it into rotation about (2, 0); contact only pushes"));
 }
 
 TEST(RigidMotion, CoulombHoldsUpToTheFrictionAngle)
 {
   const double angle = 0.3;
-  EXPECT_EQ(verdict<2>(on_slope(angle), on_floor(std::tan(angle) * 1.001)), "held");
-  EXPECT_THAT(verdict<2>(on_slope(angle), on_floor(std::tan(angle) * 0.999)),
+  const auto slope = [&](double coefficient) {
+    return verdict<2>(on_slope(angle), {obstacle<2>("bottom", Coulomb(coefficient))}, {0, -1});
+  };
+  EXPECT_EQ(slope(std::tan(angle) * 1.001), "held");
+  EXPECT_THAT(slope(std::tan(angle) * 0.999),
               HasSubstr("drive it into translation along (-0.9553, -0.2955); friction is too weak"));
 }
 
 TEST(RigidMotion, CoulombConeIn3DIsCircumscribed)
 {
-  const auto slope = [](double angle, double coefficient)
-  {
-    return verdict<3>(brick_on_slope(angle),
-                      "load.body = [0, 0, -1]\nboundary.back.contact = { friction = \"coulomb\", coefficient "
-                      "= " +
-                          std::to_string(coefficient) + " }");
+  const auto slope = [](double angle, double coefficient) {
+    return verdict<3>(brick_on_slope(angle), {obstacle<3>("back", Coulomb(coefficient))}, {0, 0, -1});
   };
   const double angle = 0.3;
   EXPECT_EQ(slope(angle, std::tan(angle) * 1.001), "held");
@@ -124,11 +102,9 @@ TEST(RigidMotion, CoulombIn3DRefusesNothingThatTheRoundConeHolds)
   {
     const double side = 0.999 * coefficient;
     const double angle = i * std::numbers::pi / 8;
-    EXPECT_EQ(
-        verdict<3>(brick(), "load.body = [" + std::to_string(side * std::cos(angle)) + ", -1, " +
-                                std::to_string(side * std::sin(angle)) +
-                                "]\nboundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.5 }"),
-        "held")
+    EXPECT_EQ(verdict<3>(brick(), {obstacle<3>("bottom", Coulomb(coefficient))},
+                         {side * std::cos(angle), -1, side * std::sin(angle)}),
+              "held")
         << "direction " << i;
   }
 }
@@ -136,19 +112,17 @@ TEST(RigidMotion, CoulombIn3DRefusesNothingThatTheRoundConeHolds)
 TEST(RigidMotion, TrescaThresholdTooSmallForTheSideLoad)
 {
   // 0.1 on the right side of length 1 against s on the bottom of length 2
-  const auto pushed = [](const std::string& threshold)
+  const auto pushed = [](const problem::Field& threshold)
   {
-    return verdict<2>(block(),
-                      "boundary.top.traction = [0, -1]\nboundary.right.traction = [-0.1, 0]\n"
-                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
-                          threshold + " }");
+    return verdict<2>(block(), {loaded<2>("top", 0, -1), loaded<2>("right", -0.1, 0),
+                                obstacle<2>("bottom", Tresca(threshold))});
   };
-  EXPECT_EQ(pushed("0.0501"), "held");
-  EXPECT_EQ(pushed("\"0.0502*x\""), "held");
-  EXPECT_THAT(pushed("0.0499"),
+  EXPECT_EQ(pushed(0.0501), "held");
+  EXPECT_EQ(pushed(formula("0.0502*x")), "held");
+  EXPECT_THAT(pushed(0.0499),
               HasSubstr("translation along -x; the friction threshold takes up only 99.8 % of"));
-  EXPECT_THAT(pushed("0.025"), HasSubstr("translation along -x; the friction threshold takes up "
-                                         "only 50 % of their work in it"));
+  EXPECT_THAT(pushed(0.025), HasSubstr("translation along -x; the friction threshold takes up "
+                                       "only 50 % of their work in it"));
 }
 
 /// Strips of friction between the points of the rule hold as much as their width makes of them.
@@ -156,10 +130,10 @@ TEST(RigidMotion, TrescaOnANarrowStripCounts)
 {
   const auto pulled = [](const std::string& from, double threshold)
   {
-    return verdict<2>(box<2>({0, 0}, {1, 1}, {1, 1}),
-                      "boundary.top.traction = [0, -1]\nboundary.right.traction = [1, 0]\n"
-                      "boundary.bottom.contact = { friction = \"tresca\", threshold = \"x > " +
-                          from + " && x < " + from + " + 0.07 ? " + std::to_string(threshold) + " : 0\" }");
+    const problem::Field strip =
+        formula("x > " + from + " && x < " + from + " + 0.07 ? " + std::to_string(threshold) + " : 0");
+    return verdict<2>(box<2>({0, 0}, {1, 1}, {1, 1}), {loaded<2>("top", 0, -1), loaded<2>("right", 1, 0),
+                                                       obstacle<2>("bottom", Tresca(strip))});
   };
   for (const std::string from : {"0.34", "0.08", "0.6"})
   {
@@ -171,29 +145,23 @@ TEST(RigidMotion, TrescaOnANarrowStripCounts)
 
 TEST(RigidMotion, TrescaBelowARollerThatTakesTheNormalForces)
 {
-  const auto pushed = [](const std::string& threshold)
+  const auto pushed = [](double threshold)
   {
-    return verdict<2>(block(),
-                      "boundary.top.displacement = [\"free\", 0]\nboundary.right.traction = [-0.1, 0]\n"
-                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
-                          threshold + " }");
+    return verdict<2>(block(), {fixed<2>("top", free, 0), loaded<2>("right", -0.1, 0),
+                                obstacle<2>("bottom", Tresca(threshold))});
   };
-  EXPECT_EQ(pushed("0.0501"), "held");
-  EXPECT_THAT(pushed("0.0499"), HasSubstr("drive it into translation along -x"));
+  EXPECT_EQ(pushed(0.0501), "held");
+  EXPECT_THAT(pushed(0.0499), HasSubstr("drive it into translation along -x"));
 }
 
 TEST(RigidMotion, TrescaIn3DAgainstTheDirectionOfTheLoad)
 {
   // resultant 0.1 (1, 0, 1) and its moments against s on an area of 2
-  const auto pushed = [](const std::string& threshold)
-  {
-    return verdict<3>(brick(),
-                      "load.body = [0.05, -1, 0.05]\n"
-                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
-                          threshold + " }");
+  const auto pushed = [](double threshold) {
+    return verdict<3>(brick(), {obstacle<3>("bottom", Tresca(threshold))}, {0.05, -1, 0.05});
   };
-  EXPECT_EQ(pushed("0.0708"), "held");
-  EXPECT_THAT(pushed("0.0706"), HasSubstr("translation along (0.7071, 0, 0.7071)"));
+  EXPECT_EQ(pushed(0.0708), "held");
+  EXPECT_THAT(pushed(0.0706), HasSubstr("translation along (0.7071, 0, 0.7071)"));
 }
 
 /// The body can only move along x, off its inclined floor, and only Tresca friction resists that.
@@ -202,10 +170,8 @@ TEST(RigidMotion, TrescaTooWeakAgainstAPullOffTheFloor)
   const double angle = 0.3;
   const auto pulled = [&](double threshold)
   {
-    return verdict<2>(on_slope(angle),
-                      "load.body = [-0.1, 0]\nboundary.top.displacement = [\"free\", 0]\n"
-                      "boundary.bottom.contact = { friction = \"tresca\", threshold = " +
-                          std::to_string(threshold) + " }");
+    return verdict<2>(on_slope(angle), {fixed<2>("top", free, 0), obstacle<2>("bottom", Tresca(threshold))},
+                      {-0.1, 0});
   };
   EXPECT_EQ(pulled(0.1001 / std::cos(angle)), "held");
   EXPECT_THAT(pulled(0.0999 / std::cos(angle)),
@@ -236,18 +202,17 @@ mesh::MeshData<2> hook()
 
 TEST(RigidMotion, HookIsHeldByGeometryAlone)
 {
-  const std::string smooth = ".contact = { friction = \"none\" }\n";
-  const std::string inside = "boundary.step" + smooth + "boundary.notch" + smooth;
-  EXPECT_EQ(verdict<2>(hook(), inside + "boundary.bottom.traction = [0, 1]"
-                                        "\nboundary.left.traction = [1, 0]"),
-            "held");
-  EXPECT_THAT(
-      verdict<2>(hook(), inside + "boundary.bottom.traction = [0, 1]\nboundary.left.traction = [-1, 0]"),
-      HasSubstr("contact cannot hold the body"));
+  const auto pushed_from_the_left = [](double traction)
+  {
+    return verdict<2>(hook(), {obstacle<2>("step"), obstacle<2>("notch"), loaded<2>("bottom", 0, 1),
+                               loaded<2>("left", traction, 0)});
+  };
+  EXPECT_EQ(pushed_from_the_left(1), "held");
+  EXPECT_THAT(pushed_from_the_left(-1), HasSubstr("contact cannot hold the body"));
   // A foot on the floor and its upper side under a ledge: two-sided, holds up and down and against turning.
-  EXPECT_EQ(verdict<2>(hook(), "boundary.bottom" + smooth + "boundary.step" + smooth +
-                                   "boundary.left.displacement = [0, \"free\"]\nload.body = [0, 1]"),
-            "held");
+  EXPECT_EQ(
+      verdict<2>(hook(), {obstacle<2>("bottom"), obstacle<2>("step"), fixed<2>("left", 0, free)}, {0, 1}),
+      "held");
 }
 
 }  // namespace

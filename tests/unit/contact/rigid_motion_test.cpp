@@ -21,10 +21,10 @@ using ::testing::Not;
 
 TEST(RigidMotion, FreeBodyHasAllMotions)
 {
-  EXPECT_THAT(verdict<2>(block(), "boundary.top.traction = [0, 1]"),
+  EXPECT_THAT(verdict<2>(block(), {loaded<2>("top", 0, 1)}),
               HasSubstr("boundary: nothing stops the body (region \"box\") from: translation along x; "
                         "translation along y; rotation about (1, 0.5)"));
-  EXPECT_THAT(verdict<3>(brick(), ""),
+  EXPECT_THAT(verdict<3>(brick(), {}),
               HasSubstr("translation along x; translation along y; translation along z; rotation about the "
                         "axis through (1, 0.5, 0.5) along (1, 0, 0); rotation about "
                         "the axis through (1, 0.5, 0.5) along (0, 1, 0); rotation about the axis through "
@@ -33,40 +33,35 @@ TEST(RigidMotion, FreeBodyHasAllMotions)
 
 TEST(RigidMotion, ClampedBodyIsHeldWhateverTheLoad)
 {
-  EXPECT_EQ(verdict<2>(block(), "boundary.left.displacement = [0, 0]\nboundary.top.traction = [3, 1]"),
-            "held");
-  EXPECT_EQ(verdict<3>(brick(), "boundary.left.displacement = [0, 0, 0]\nload.body = [1, 1, 1]"), "held");
+  EXPECT_EQ(verdict<2>(block(), {clamped<2>("left"), loaded<2>("top", 3, 1)}), "held");
+  EXPECT_EQ(verdict<3>(brick(), {clamped<3>("left")}, {1, 1, 1}), "held");
 }
 
 TEST(RigidMotion, RollerLeavesTheMotionAlongIt)
 {
-  const std::string said = verdict<2>(block(), "boundary.bottom.displacement = [\"free\", 0]");
+  const std::string said = verdict<2>(block(), {fixed<2>("bottom", free, 0)});
   EXPECT_THAT(said, AllOf(HasSubstr("from: translation along x\n"), HasSubstr("hint: fix")));
   EXPECT_THAT(said, Not(HasSubstr("friction")));
-  EXPECT_THAT(verdict<3>(brick(), "boundary.bottom.displacement = [\"free\", 0, \"free\"]"),
+  EXPECT_THAT(verdict<3>(brick(), {fixed<3>("bottom", free, 0, free)}),
               HasSubstr("from: translation along x; translation along z; rotation about the "
                         "axis through (1, 0.5, 0.5) along (0, 1, 0)\n"));
 }
 
 TEST(RigidMotion, SlidersThroughAPointLeaveTheRotationAboutIt)
 {
-  EXPECT_THAT(verdict<2>(block(),
-                         "boundary.bottom.displacement = [0, \"free\"]\n"
-                         "boundary.left.displacement = [\"free\", 0]"),
+  EXPECT_THAT(verdict<2>(block(), {fixed<2>("bottom", 0, free), fixed<2>("left", free, 0)}),
               HasSubstr("from: rotation about (0, 0)\n"));
-  EXPECT_THAT(verdict<3>(brick(),
-                         "boundary.bottom.displacement = [0, \"free\", \"free\"]\n"
-                         "boundary.left.displacement = [\"free\", 0, \"free\"]\n"
-                         "boundary.front.displacement = [\"free\", \"free\", 0]"),
+  EXPECT_THAT(verdict<3>(brick(), {fixed<3>("bottom", 0, free, free), fixed<3>("left", free, 0, free),
+                                   fixed<3>("front", free, free)}),
               HasSubstr("from: rotation about the axis through (0, 0, 0.5) along (0, 0, 1)\n"));
 }
 
 /// A component normal to a side without load, each named once.
 TEST(RigidMotion, NamesAComponentThatWouldStopTheMotion)
 {
-  EXPECT_THAT(verdict<2>(block(), "boundary.left.traction = [1, 0]\nboundary.top.traction = [0, 1]"),
+  EXPECT_THAT(verdict<2>(block(), {loaded<2>("left", 1, 0), loaded<2>("top", 0, 1)}),
               HasSubstr("change, for example x on boundary \"right\", y on boundary \"bottom\" (symmetry:"));
-  EXPECT_THAT(verdict<3>(brick(), "boundary.bottom.displacement = [0, 0, \"free\"]"),
+  EXPECT_THAT(verdict<3>(brick(), {fixed<3>("bottom", 0, 0, free)}),
               HasSubstr("for example z on boundary \"back\" (symmetry:"));
 }
 
@@ -80,22 +75,16 @@ TEST(RigidMotion, WordsForAScrew)
 
 TEST(RigidMotion, RollersOnTwoPlanesLeaveTheirCommonDirection)
 {
-  EXPECT_EQ(verdict<2>(block(),
-                       "boundary.bottom.displacement = [\"free\", 0]\n"
-                       "boundary.left.displacement = [0, \"free\"]"),
-            "held");
-  EXPECT_THAT(verdict<3>(brick(),
-                         "boundary.left.displacement = [0, \"free\", \"free\"]\n"
-                         "boundary.bottom.displacement = [\"free\", 0, \"free\"]"),
+  EXPECT_EQ(verdict<2>(block(), {fixed<2>("bottom", free, 0), fixed<2>("left", 0, free)}), "held");
+  EXPECT_THAT(verdict<3>(brick(), {fixed<3>("left", 0, free, free), fixed<3>("bottom", free, 0, free)}),
               HasSubstr("from: translation along z\n"));
 }
 
 TEST(RigidMotion, BodiesAreLookedAtOneByOne)
 {
   const mesh::MeshData<2> two = side_by_side(block(), box<2>({5, 0}, {6, 2}, {1, 2}), "2");
-  const std::string said = verdict<2>(two,
-                                      "boundary.left.displacement = [0, 0]\nboundary.bottom2.displacement = "
-                                      "[\"free\", 0]\nboundary.right2.displacement = [\"free\", 0]");
+  const std::string said =
+      verdict<2>(two, {clamped<2>("left"), fixed<2>("bottom2", free, 0), fixed<2>("right2", free, 0)});
   EXPECT_THAT(said, HasSubstr("nothing stops the body around (5.5, 1) (region \"box2\") from: translation "
                               "along x\n"));
 }
@@ -105,7 +94,7 @@ TEST(RigidMotion, TwoRegionsOfOneBodyAreNamedTogether)
   mesh::MeshData<2> data = block();
   data.region_names = {"steel", "rubber"};
   data.regions.back() = 1;
-  EXPECT_THAT(verdict<2>(data, ""), HasSubstr("the body (regions \"steel\", \"rubber\")"));
+  EXPECT_THAT(verdict<2>(data, {}), HasSubstr("the body (regions \"steel\", \"rubber\")"));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <string>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/base/error.h"
 #include "tribound/contact/support/rigid_motion.h"
@@ -14,16 +14,13 @@
 namespace tribound::test
 {
 
-inline const std::string material = "degree = 1\nmaterial = { E = 1, nu = 0.3 }\n";
-
-/// What check_rigid_motions says about the case, or "held".
+/// What check_rigid_motions says about the problem with this load, or "held".
 template <int dim>
-std::string verdict(const mesh::MeshData<dim>& mesh, const std::string& toml)
+std::string verdict(const DiscreteProblem<dim>& c, std::span<const double> load)
 {
-  const DiscreteCase<dim> c(material + toml, mesh);
   try
   {
-    contact::check_rigid_motions<dim>(c.problem, c.space, c.form.data(), c.form.load());
+    contact::check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load);
   }
   catch (const InputError& error)
   {
@@ -32,14 +29,24 @@ std::string verdict(const mesh::MeshData<dim>& mesh, const std::string& toml)
   return "held";
 }
 
+/// The same with the load of the problem.
+template <int dim>
+std::string verdict(const mesh::MeshData<dim>& mesh,
+                    const std::vector<problem::BoundaryCondition<dim>>& boundaries,
+                    const std::array<problem::Field, dim>& body_force = {})
+{
+  const DiscreteProblem<dim> c(mesh, {.boundaries = boundaries, .body_force = body_force});
+  return verdict<dim>(c, c.form.load());
+}
+
 inline mesh::MeshData<2> block()
 {
-  return box<2>({0, 0}, {2, 1}, {4, 2});
+  return block<2>({4, 2});
 }
 
 inline mesh::MeshData<3> brick()
 {
-  return box<3>({0, 0, 0}, {2, 1, 1}, {2, 1, 1});
+  return block<3>({2, 1, 1});
 }
 
 /// A block on a slope of the given angle: its bottom is inclined, gravity points down.

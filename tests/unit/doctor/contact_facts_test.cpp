@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -25,10 +25,9 @@ constexpr double degree = std::numbers::pi / 180;
 
 TEST(ContactFacts, FlatBoundaryWithAGap)
 {
-  const DiscreteCase<2> c(
-      "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\n"
-      "boundary.bottom.contact = { gap = \"0.1*x^2\" }",
-      box<2>({-1, 0}, {2, 1}, {6, 1}));
+  const DiscreteProblem<2> c(
+      box<2>({-1, 0}, {2, 1}, {6, 1}),
+      {.boundaries = {clamped<2>("top"), obstacle<2>("bottom", Frictionless(), formula("0.1*x^2"))}});
   const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_EQ(facts[0].name, "bottom");
@@ -50,9 +49,8 @@ TEST(ContactFacts, PolygonHasEqualKinks)
   const auto bend = [](const Point<2>& x) -> Point<2> {
     return {(10 - x[1]) * std::sin(x[0] * degree), 10 - (10 - x[1]) * std::cos(x[0] * degree)};
   };
-  const DiscreteCase<2> c(
-      "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\nboundary.bottom.contact = {}",
-      mapped<2>(box<2>({-3, 0}, {3, 1}, {6, 1}), bend));
+  const DiscreteProblem<2> c(mapped<2>(box<2>({-3, 0}, {3, 1}, {6, 1}), bend),
+                             {.boundaries = {clamped<2>("top"), obstacle<2>("bottom")}});
   const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_NEAR(facts[0].kink, 1, 1e-10);
@@ -68,9 +66,7 @@ TEST(ContactFacts, CornersOfTheBodyAreNoKinks)
     if (mesh.boundary_names[facet.tag] == "left")
       facet.tag =
           static_cast<int>(std::ranges::find(mesh.boundary_names, "bottom") - mesh.boundary_names.begin());
-  const DiscreteCase<2> c(
-      "material = { E = 1, nu = 0.3 }\nboundary.top.displacement = [0, 0]\nboundary.bottom.contact = {}",
-      mesh);
+  const DiscreteProblem<2> c(mesh, {.boundaries = {clamped<2>("top"), obstacle<2>("bottom")}});
   const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_EQ(facts[0].kink, 0);
@@ -82,10 +78,8 @@ TEST(ContactFacts, RoofIn3D)
   const auto fold = [](const Point<3>& x) -> Point<3> {
     return {x[0], x[1], x[2] + std::tan(5 * degree) * std::abs(x[0])};
   };
-  const DiscreteCase<3> c(
-      "material = { E = 1, nu = 0.3 }\nboundary.front.displacement = [0, 0, 0]\nboundary.back.contact = { "
-      "gap = 0.5 }",
-      mapped<3>(box<3>({-1, 0, 0}, {1, 1, 1}, {2, 1, 1}), fold));
+  const DiscreteProblem<3> c(mapped<3>(box<3>({-1, 0, 0}, {1, 1, 1}, {2, 1, 1}), fold),
+                             {.boundaries = {clamped<3>("front"), obstacle<3>("back", Frictionless(), 0.5)}});
   const auto facts = doctor::contact_boundary_facts(c.form);
   ASSERT_THAT(facts, SizeIs(1));
   EXPECT_EQ(facts[0].facets, 4);

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 #include "tribound/doctor/units.h"
 
@@ -19,16 +19,19 @@ namespace
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-doctor::LoadFacts facts(const std::string& toml, double size = 1)
+doctor::LoadFacts facts(const std::vector<problem::BoundaryCondition<2>>& boundaries,
+                        const std::array<problem::Field, 2>& body_force = {},
+                        const problem::Material& material = lame(100, 0.3))
 {
-  return doctor::load_facts(DiscreteCase<2>(toml, box<2>({0, 0}, {2 * size, size}, {4, 2})).form);
+  return doctor::load_facts(
+      DiscreteProblem<2>(block<2>({4, 2}),
+                         {.boundaries = boundaries, .material = material, .body_force = body_force})
+          .form);
 }
 
 TEST(LoadFacts, TractionAndWhatHoldsIt)
 {
-  const doctor::LoadFacts loads = facts(
-      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.traction = [0.3, "
-      "-0.4]");
+  const doctor::LoadFacts loads = facts({clamped<2>("left"), loaded<2>("top", 0.3, -0.4)});
   EXPECT_THAT(loads.extent, ElementsAre(2, 1));
   EXPECT_EQ(loads.size, 2);
   EXPECT_NEAR(loads.traction_stress, 0.5, 1e-14);
@@ -39,18 +42,15 @@ TEST(LoadFacts, TractionAndWhatHoldsIt)
 
 TEST(LoadFacts, LoadsInEquilibriumDoNotReachTheSupports)
 {
-  const doctor::LoadFacts loads = facts(
-      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.pressure = 2\n"
-      "boundary.bottom.pressure = 2");
+  const doctor::LoadFacts loads = facts({clamped<2>("left"), pressed<2>("top", 2), pressed<2>("bottom", 2)});
   EXPECT_NEAR(loads.traction_stress, 2, 1e-14);
   EXPECT_NEAR(loads.support_stress, 0, 1e-14);
 }
 
 TEST(LoadFacts, ANegativePressurePulls)
 {
-  const doctor::LoadFacts loads = facts(
-      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0, 0]\nboundary.top.pressure = 2\n"
-      "boundary.right.pressure = \"0.75-y\"");
+  const doctor::LoadFacts loads =
+      facts({clamped<2>("left"), pressed<2>("top", 2), pressed<2>("right", formula("0.75-y"))});
   ASSERT_EQ(loads.suction.size(), 1u);
   EXPECT_EQ(loads.suction[0].boundary, "right");
   EXPECT_NEAR(loads.suction[0].lowest, -0.25, 0.05);
@@ -59,8 +59,7 @@ TEST(LoadFacts, ANegativePressurePulls)
 
 TEST(LoadFacts, BodyForceOverTheLengthOfTheBody)
 {
-  const doctor::LoadFacts loads =
-      facts("material = { E = 100, nu = 0.3 }\nload.body = [0, -0.25]\nboundary.left.displacement = [0, 0]");
+  const doctor::LoadFacts loads = facts({clamped<2>("left")}, {0, -0.25});
   EXPECT_NEAR(loads.largest_body_force, 0.25, 1e-15);
   EXPECT_NEAR(loads.body_stress, 0.5, 1e-14);
   EXPECT_NEAR(loads.support_stress, 0.5, 1e-14);  // weight 0.25 * 2 on a side of length 1
@@ -68,22 +67,18 @@ TEST(LoadFacts, BodyForceOverTheLengthOfTheBody)
 
 TEST(LoadFacts, PrescribedDisplacements)
 {
-  const std::string both =
-      "material = { E = 100, nu = 0.3 }\nboundary.left.displacement = [0.5, \"free\"]\n"
-      "boundary.right.displacement = [0.7, \"free\"]\nboundary.bottom.displacement = [\"free\", 0]\n";
-  EXPECT_NEAR(facts(both).displacement_strain, 0.1, 1e-14);
-  const std::string pushed =
-      "material = { E = 100, nu = 0.3 }\nboundary.top.displacement = [0, -0.3]\nboundary.bottom.contact = "
-      "{}\n";
-  EXPECT_NEAR(facts(pushed).displacement_strain, 0.15, 1e-14);  // the obstacle stays
-  const std::string moved = "material = { E = 100, nu = 0.3 }\nboundary.top.displacement = [5, -3]\n";
-  EXPECT_NEAR(facts(moved).displacement_strain, 0, 1e-14);  // as a whole
+  const auto both =
+      facts({fixed<2>("left", 0.5, free), fixed<2>("right", 0.7, free), fixed<2>("bottom", free, 0)});
+  EXPECT_NEAR(both.displacement_strain, 0.1, 1e-14);
+  const auto pushed = facts({fixed<2>("top", 0, -0.3), obstacle<2>("bottom")});
+  EXPECT_NEAR(pushed.displacement_strain, 0.15, 1e-14);  // the obstacle stays
+  const auto moved = facts({fixed<2>("top", 5, -3)});
+  EXPECT_NEAR(moved.displacement_strain, 0, 1e-14);  // as a whole
 }
 
 TEST(LoadFacts, MaterialsAsGiven)
 {
-  const doctor::LoadFacts loads =
-      facts("material = { E = 7, nu = 0.25, plane = \"stress\" }\nboundary.left.displacement = [0, 0]");
+  const doctor::LoadFacts loads = facts({clamped<2>("left")}, {}, lame(7, 0.25, problem::PlaneModel::stress));
   EXPECT_NEAR(loads.smallest_E, 7, 1e-13);
   EXPECT_NEAR(loads.materials[0].nu, 0.25, 1e-14);
   EXPECT_TRUE(loads.materials[0].plane_stress);

@@ -12,7 +12,8 @@
 #include <numbers>
 #include <vector>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
+#include "support/fields.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -23,25 +24,18 @@ namespace
 
 using ::testing::SizeIs;
 
-const std::string material = "degree = 1\nmaterial = { E = 1, nu = 0 }\nnitsche.gamma0 = 1\n";
-
+/// gamma = 1/h.
 template <int dim>
-std::vector<double> interpolate(const fem::LagrangeSpace<dim>& space,
-                                const std::function<Point<dim>(const Point<dim>&)>& f)
+DiscreteProblem<dim> on_obstacle(mesh::MeshData<dim> mesh, const problem::BoundaryCondition<dim>& contact)
 {
-  std::vector<double> u;
-  for (const Point<dim>& x : space.node_points())
-  {
-    const Point<dim> value = f(x);
-    u.insert(u.end(), value.begin(), value.end());
-  }
-  return u;
+  return {std::move(mesh), {.boundaries = {contact}, .material = lame(1, 0)}, {.gamma0 = 1}};
 }
 
 /// Eight facets of length 1/4 at the bottom: gamma = 4.
-doctor::ContactOutcome outcome(const std::string& contact, const std::function<Point<2>(const Point<2>&)>& u)
+doctor::ContactOutcome outcome(const problem::Contact& contact,
+                               const std::function<Point<2>(const Point<2>&)>& u)
 {
-  const DiscreteCase<2> c(material + "boundary.bottom.contact = " + contact, box<2>({0, 0}, {2, 1}, {8, 4}));
+  const DiscreteProblem<2> c = on_obstacle<2>(block<2>({8, 4}), obstacle<2>("bottom", contact));
   const auto outcomes = doctor::contact_outcomes<2>(c.form, interpolate<2>(c.space, u));
   EXPECT_THAT(outcomes, SizeIs(1));
   return outcomes.front();
@@ -49,7 +43,7 @@ doctor::ContactOutcome outcome(const std::string& contact, const std::function<P
 
 TEST(SolutionFacts, Penetration)
 {
-  const doctor::ContactOutcome found = outcome("{ gap = 0.25 }",
+  const doctor::ContactOutcome found = outcome(problem::Contact(Frictionless(), 0.25),
                                                [](const Point<2>& x) -> Point<2> {
                                                  return {0, -0.25 * x[0]};
                                                });
@@ -66,7 +60,7 @@ TEST(SolutionFacts, Penetration)
 
 TEST(SolutionFacts, OpenContact)
 {
-  const doctor::ContactOutcome found = outcome("{}",
+  const doctor::ContactOutcome found = outcome(problem::Contact(Frictionless()),
                                                [](const Point<2>&) -> Point<2> {
                                                  return {0, 1};
                                                });
@@ -78,7 +72,7 @@ TEST(SolutionFacts, OpenContact)
 
 TEST(SolutionFacts, SlidingAndSticking)
 {
-  const std::string coulomb = "{ friction = \"coulomb\", coefficient = 0.5 }";
+  const problem::Contact coulomb(Coulomb(0.5));
   const doctor::ContactOutcome slides = outcome(coulomb,
                                                 [](const Point<2>&) -> Point<2> {
                                                   return {0.25, -0.25};
@@ -96,7 +90,7 @@ TEST(SolutionFacts, SlidingAndSticking)
 
 TEST(SolutionFacts, ForceAndMeanPressure)
 {
-  const doctor::ContactOutcome found = outcome("{ gap = 0.25 }",
+  const doctor::ContactOutcome found = outcome(problem::Contact(Frictionless(), 0.25),
                                                [](const Point<2>& x) -> Point<2> {
                                                  return {0, -0.25 * x[0]};
                                                });
@@ -112,7 +106,7 @@ TEST(SolutionFacts, PressuresWithoutZigzag)
       [](double x) { return std::exp(-5 * x); }, [](double x) { return 1 + 3 * std::abs(x - 1); },
       [](double x) { return std::sqrt(2.01 - x); }};
   for (const auto& p : pressures)
-    EXPECT_NEAR(outcome("{}",
+    EXPECT_NEAR(outcome(problem::Contact(Frictionless()),
                         [&](const Point<2>& x) -> Point<2> {
                           return {0, -p(x[0])};
                         })
@@ -124,7 +118,8 @@ TEST(SolutionFacts, PressuresWithoutZigzag)
 /// the four facets whose neighbours have two neighbours.
 TEST(SolutionFacts, ZigzagOfTheGap)
 {
-  const doctor::ContactOutcome found = outcome("{ gap = \"0.01 + 0.01*(sin(4*pi*x) > 0 ? 1 : -1)\" }",
+  const problem::Contact jumping(Frictionless(), formula("0.01 + 0.01*(sin(4*pi*x) > 0 ? 1 : -1)"));
+  const doctor::ContactOutcome found = outcome(jumping,
                                                [](const Point<2>&) -> Point<2> {
                                                  return {0, -1};
                                                });
@@ -138,8 +133,8 @@ TEST(SolutionFacts, PressureAtKinks)
   const auto bend = [](const Point<2>& x) -> Point<2> {
     return {x[0], x[1] + 0.01 * x[0] * x[0]};
   };
-  const DiscreteCase<2> c(material + "boundary.bottom.contact = {}",
-                          mapped<2>(box<2>({0, 0}, {3, 1}, {3, 1}), bend));
+  const DiscreteProblem<2> c =
+      on_obstacle<2>(mapped<2>(box<2>({0, 0}, {3, 1}, {3, 1}), bend), obstacle<2>("bottom"));
   const auto press = [&](const std::function<double(double)>& w)
   {
     return doctor::contact_outcomes<2>(c.form, interpolate<2>(c.space,
@@ -159,7 +154,7 @@ TEST(SolutionFacts, PressureAtKinks)
 
 TEST(SolutionFacts, ZigzagIn3D)
 {
-  const DiscreteCase<3> c(material + "boundary.back.contact = {}", box<3>({0, 0, 0}, {1, 1, 1}, {4, 4, 1}));
+  const DiscreteProblem<3> c = on_obstacle<3>(box<3>({0, 0, 0}, {1, 1, 1}, {4, 4, 1}), obstacle<3>("back"));
   const auto zigzag = [&](const std::function<double(const Point<3>&)>& w)
   {
     return doctor::contact_outcomes<3>(c.form, interpolate<3>(c.space,

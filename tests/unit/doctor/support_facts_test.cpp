@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/discrete_case.h"
+#include "support/discrete_problem.h"
 #include "support/meshes.h"
 
 namespace tribound::test
@@ -19,23 +19,20 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-const std::string material = "material = { E = 1, nu = 0.3 }\n";
-
-DiscreteCase<2> block(const std::string& toml)
+DiscreteProblem<2> block_with(const std::vector<problem::BoundaryCondition<2>>& boundaries)
 {
-  return {material + toml, box<2>({0, 0}, {2, 1}, {4, 2})};
+  return {block<2>({4, 2}), {.boundaries = boundaries}};
 }
 
 TEST(SupportFacts, ClampedBodyNeedsNoContact)
 {
-  const auto c = block("boundary.left.displacement = [0, 0]\nboundary.bottom.contact = {}");
+  const auto c = block_with({clamped<2>("left"), obstacle<2>("bottom")});
   EXPECT_THAT(doctor::motions_held_by_contact(c.form), IsEmpty());
 }
 
 TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
 {
-  const auto c = block(
-      "boundary.left.displacement = [0, \"free\"]\nboundary.bottom.contact = {}\nboundary.top.pressure = 1");
+  const auto c = block_with({fixed<2>("left", 0, free), obstacle<2>("bottom"), pressed<2>("top", 1)});
   const auto motions = doctor::motions_held_by_contact(c.form);
   ASSERT_THAT(motions, SizeIs(1));
   EXPECT_EQ(motions[0].body, "the body (region \"box\")");
@@ -49,7 +46,7 @@ TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
 
 /// Numbers of the boundaries along which a body would slide as a whole.
 template <int dim>
-std::vector<std::string> sliding_boundaries(const DiscreteCase<dim>& c)
+std::vector<std::string> sliding_boundaries(const DiscreteProblem<dim>& c)
 {
   const std::vector<bool> slides = doctor::slides_as_a_whole(c.form);
   std::vector<std::string> names;
@@ -58,39 +55,35 @@ std::vector<std::string> sliding_boundaries(const DiscreteCase<dim>& c)
   return names;
 }
 
-const std::string friction = "contact = { friction = \"coulomb\", coefficient = 0.3 }\n";
+const auto rough_floor = obstacle<2>("bottom", Coulomb(0.3));
 
 TEST(SupportFacts, SlidingIsJudgedWhereFrictionAloneHoldsTheBody)
 {
-  EXPECT_THAT(sliding_boundaries(block("boundary.bottom." + friction)), ElementsAre("bottom"));
-  EXPECT_THAT(
-      sliding_boundaries(block("boundary.bottom." + friction + "boundary.left.displacement = [\"free\", 0]")),
-      ElementsAre("bottom"));
+  EXPECT_THAT(sliding_boundaries(block_with({rough_floor})), ElementsAre("bottom"));
+  EXPECT_THAT(sliding_boundaries(block_with({rough_floor, fixed<2>("left", free, 0)})),
+              ElementsAre("bottom"));
   // A plane of symmetry, or a frictionless wall, takes the force that would make it slide.
-  EXPECT_THAT(
-      sliding_boundaries(block("boundary.bottom." + friction + "boundary.left.displacement = [0, \"free\"]")),
-      IsEmpty());
-  EXPECT_THAT(sliding_boundaries(block("boundary.bottom." + friction + "boundary.left.contact = {}")),
-              IsEmpty());
+  EXPECT_THAT(sliding_boundaries(block_with({rough_floor, fixed<2>("left", 0, free)})), IsEmpty());
+  EXPECT_THAT(sliding_boundaries(block_with({rough_floor, obstacle<2>("left")})), IsEmpty());
 }
 
 TEST(SupportFacts, SlidingIsJudgedOnPlaneBoundariesOnly)
 {
   const auto arch = [](double height)
   {
-    return mapped<2>(box<2>({0, 0}, {2, 1}, {4, 2}),
-                     [=](const Point<2>& x) -> Point<2> {
-                       return {x[0], x[1] + height * x[0] * (2 - x[0])};
-                     });
+    const auto bend = [=](const Point<2>& x) -> Point<2> {
+      return {x[0], x[1] + height * x[0] * (2 - x[0])};
+    };
+    return sliding_boundaries(
+        DiscreteProblem<2>(mapped<2>(block<2>({4, 2}), bend), {.boundaries = {rough_floor}}));
   };
-  const std::string toml = material + "boundary.bottom." + friction;
-  EXPECT_THAT(sliding_boundaries(DiscreteCase<2>(toml, arch(0.05))), ElementsAre("bottom"));
-  EXPECT_THAT(sliding_boundaries(DiscreteCase<2>(toml, arch(0.3))), IsEmpty());
+  EXPECT_THAT(arch(0.05), ElementsAre("bottom"));
+  EXPECT_THAT(arch(0.3), IsEmpty());
 }
 
 TEST(SupportFacts, LooseBlockIsHeldByPressureAndFriction)
 {
-  const auto c = block("boundary.bottom.contact = { friction = \"coulomb\", coefficient = 0.3 }");
+  const auto c = block_with({obstacle<2>("bottom", Coulomb(0.3))});
   const auto motions = doctor::motions_held_by_contact(c.form);
   ASSERT_THAT(motions, SizeIs(3));
   EXPECT_EQ(motions[0].motion, "translation along y");
@@ -105,18 +98,15 @@ TEST(SupportFacts, LooseBlockIsHeldByPressureAndFriction)
 
 TEST(SupportFacts, NoRemedyWhereAllIsContact)
 {
-  const auto c = block(
-      "boundary.left.contact = {}\nboundary.right.contact = {}\nboundary.top.contact = {}\n"
-      "boundary.bottom.contact = {}");
+  const auto c =
+      block_with({obstacle<2>("left"), obstacle<2>("right"), obstacle<2>("top"), obstacle<2>("bottom")});
   for (const doctor::ContactHeldMotion& motion : doctor::motions_held_by_contact(c.form))
     EXPECT_FALSE(motion.remedy);
 }
 
 TEST(SupportFacts, ClampedCorner)
 {
-  const auto c = block(
-      "boundary.left.displacement = [0, 0]\nboundary.bottom.contact = { friction = \"tresca\", threshold = 1 "
-      "}");
+  const auto c = block_with({clamped<2>("left"), obstacle<2>("bottom", Tresca(1))});
   const auto corners = doctor::overconstrained_corners(c.form);
   ASSERT_THAT(corners, SizeIs(1));
   EXPECT_EQ(corners[0].contact, "bottom");
@@ -129,15 +119,14 @@ TEST(SupportFacts, ClampedCorner)
 
 TEST(SupportFacts, SymmetryDoesNotConstrainTheNormal)
 {
-  const auto c = block("boundary.left.displacement = [0, \"free\"]\nboundary.bottom.contact = {}");
+  const auto c = block_with({fixed<2>("left", 0, free), obstacle<2>("bottom")});
   EXPECT_THAT(doctor::overconstrained_corners(c.form), IsEmpty());
 }
 
 TEST(SupportFacts, DisplacementBeyondTheGap)
 {
-  const auto c = block(
-      "boundary.left.displacement = [\"free\", -0.25]\nboundary.right.displacement = [0, \"-0.1*y\"]\n"
-      "boundary.bottom.contact = { gap = 0.125 }");
+  const auto c = block_with({fixed<2>("left", free, -0.25), fixed<2>("right", 0, formula("-0.1*y")),
+                             obstacle<2>("bottom", Frictionless(), 0.125)});
   const auto corners = doctor::overconstrained_corners(c.form);
   ASSERT_THAT(corners, SizeIs(2));
   EXPECT_EQ(corners[0].displacement, "left");
@@ -151,9 +140,9 @@ TEST(SupportFacts, DisplacementBeyondTheGap)
 
 TEST(SupportFacts, EdgeIn3DCountsItsVertices)
 {
-  const DiscreteCase<3> c(
-      material + "boundary.left.displacement = [0, \"free\", \"0.01*y\"]\nboundary.back.contact = {}",
-      box<3>({0, 0, 0}, {1, 1, 1}, {1, 3, 1}));
+  const DiscreteProblem<3> c(
+      box<3>({0, 0, 0}, {1, 1, 1}, {1, 3, 1}),
+      {.boundaries = {fixed<3>("left", 0, free, formula("0.01*y")), obstacle<3>("back")}});
   const auto corners = doctor::overconstrained_corners(c.form);
   ASSERT_THAT(corners, SizeIs(1));
   EXPECT_EQ(corners[0].vertices, 4);

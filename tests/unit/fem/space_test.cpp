@@ -13,8 +13,8 @@
 
 #include "support/dimensions.h"
 #include "support/meshes.h"
+#include "support/problem_data.h"
 #include "tribound/base/error.h"
-#include "tribound/case/resolve.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
 
@@ -29,10 +29,7 @@ using ::testing::HasSubstr;
 template <int dim>
 mesh::MeshData<dim> grid()
 {
-  if constexpr (dim == 2)
-    return box<2>({0, 0}, {2, 1}, {4, 3});
-  else
-    return box<3>({0, 0, 0}, {2, 1, 1}, {3, 2, 2});
+  return block<dim>({4, 3}, {3, 2, 2});
 }
 
 /// The function with the given nodal values at a point x of a cell.
@@ -136,17 +133,13 @@ TYPED_TEST(Space, NodesOfABoxAreAGrid)
               dim == 2 ? (4 * p + 1) * (3 * p + 1) : (3 * p + 1) * (2 * p + 1) * (2 * p + 1));
 }
 
-/// The constraints of a case on the box of grid().
+/// The constraints of these conditions on the box of grid().
 template <int dim>
-fem::Constraints constraints_of(const std::string& boundaries, int p)
+fem::Constraints constraints_of(const std::vector<problem::BoundaryCondition<dim>>& boundaries, int p)
 {
   const mesh::Mesh<dim> mesh(grid<dim>());
-  const case_file::Config config = case_file::parse_config(
-      "degree = 1\nmaterial = { E = 1, nu = 0.3 }\n"
-      "mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\n" +
-      boundaries);
-  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
-  return fem::dirichlet(problem, fem::LagrangeSpace<dim>(mesh, p));
+  const ProblemData<dim> data{.boundaries = boundaries};
+  return fem::dirichlet(data.on(mesh), fem::LagrangeSpace<dim>(mesh, p));
 }
 
 TEST(Dirichlet, FixesExactlyTheNodesOnTheBoundary)
@@ -155,8 +148,7 @@ TEST(Dirichlet, FixesExactlyTheNodesOnTheBoundary)
   for (int p = 1; p <= 4; ++p)
   {
     const fem::Constraints constraints = constraints_of<2>(
-        "boundary.left.displacement = [\"1 + y^2\", \"free\"]\nboundary.top.displacement = [\"free\", \"x\"]",
-        p);
+        {fixed<2>("left", formula("1 + y^2"), free), fixed<2>("top", free, formula("x"))}, p);
     const std::vector<Point<2>> points = fem::LagrangeSpace<2>(mesh, p).node_points();
     for (std::size_t i = 0; i < points.size(); ++i)
     {
@@ -176,17 +168,20 @@ TEST(Dirichlet, FixesExactlyTheNodesOnTheBoundary)
 TEST(Dirichlet, FixesOneComponentOfAFaceIn3D)
 {
   for (int p = 1; p <= 3; ++p)
-    EXPECT_EQ(constraints_of<3>("boundary.left.displacement = [\"free\", 2, \"free\"]", p).n_fixed(),
-              (2 * p + 1) * (2 * p + 1));
+    EXPECT_EQ(constraints_of<3>({fixed<3>("left", free, 2, free)}, p).n_fixed(), (2 * p + 1) * (2 * p + 1));
 }
 
 TEST(Dirichlet, ValuesMayMeetButNotDiffer)
 {
-  const std::string left = "boundary.left.displacement = [\"y\", 0]\n";
-  EXPECT_NO_THROW((void)constraints_of<2>(left + "boundary.top.displacement = [\"1 + x\", \"free\"]", 2));
+  const auto conditions = [](const std::string& top) -> std::vector<problem::BoundaryCondition<2>>
+  {
+    return {fixed<2>("left", problem::Field("y", {.key = "boundary.left.displacement"}), 0),
+            fixed<2>("top", problem::Field(top, {.key = "boundary.top.displacement"}), free)};
+  };
+  EXPECT_NO_THROW((void)constraints_of<2>(conditions("1 + x"), 2));
   try
   {
-    (void)constraints_of<2>(left + "boundary.top.displacement = [\"1.5 + x\", \"free\"]", 2);
+    (void)constraints_of<2>(conditions("1.5 + x"), 2);
     FAIL() << "accepted";
   }
   catch (const InputError& error)

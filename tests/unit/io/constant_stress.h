@@ -3,11 +3,14 @@
 /// @file constant_stress.h
 /// Boxes pressed on a floor without friction, in constant stress: every degree has the solution exactly.
 
+#include <array>
 #include <string>
 
+#include "support/discrete_problem.h"
+#include "support/fields.h"
+#include "support/meshes.h"
 #include "tribound/adapt/level.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
-#include "unit/io/box_case.h"
 
 namespace tribound::test
 {
@@ -15,22 +18,15 @@ namespace tribound::test
 /// On (0, 2) x (0, 1) [x (0, 1)]: u = (0.1 x, -0.3 y) or (0.1 x, 0.1 y, -0.3 z); the floor is the side
 /// "bottom" or "back".
 template <int dim>
-std::string constant_stress_case(int degree, int n)
+DiscreteProblem<dim> constant_stress_problem(int degree, int n)
 {
-  const std::string cells = std::to_string(n);
-  std::string text = "degree = " + std::to_string(degree) + "\nmaterial = { E = 1.0, nu = 0.25 }\n";
-  if (dim == 2)
-  {
-    text += "mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [" + cells + ", " + cells + "] } }\n";
-    for (const char* side : {"left", "right", "top"})
-      text += std::string("[boundary.") + side + "]\ndisplacement = ['0.1*x', '-0.3*y']\n";
-    return text + "[boundary.bottom]\ncontact = {}\n";
-  }
-  text += "mesh = { box = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [" + cells + ", " + cells + ", " +
-          cells + "] } }\n";
-  for (const char* side : {"left", "right", "top", "bottom", "front"})
-    text += std::string("[boundary.") + side + "]\ndisplacement = ['0.1*x', '0.1*y', '-0.3*z']\n";
-  return text + "[boundary.back]\ncontact = {}\n";
+  const std::string floor = dim == 2 ? "bottom" : "back";
+  ProblemData<dim> data{.boundaries = {obstacle<dim>(floor)}, .material = lame(1, 0.25)};
+  for (const char* side : side_names<dim>)
+    if (side != floor)
+      data.boundaries.push_back(
+          fixed<dim>(side, formula("0.1*x"), formula(dim == 2 ? "-0.3*y" : "0.1*y"), formula("-0.3*z")));
+  return {block<dim>({n, n}, {n, n, n}), data, {.degree = degree}};
 }
 
 template <int dim>
@@ -55,10 +51,10 @@ std::array<double, 3> constant_stress()
 
 /// What the adaptive loop would hand over.
 template <int dim>
-adapt::CertifiedLevel<dim> constant_stress_level(const BoxCase<dim>& box)
+adapt::CertifiedLevel<dim> constant_stress_level(const DiscreteProblem<dim>& box)
 {
   adapt::CertifiedLevel<dim> level;
-  level.u = box.interpolate(constant_stress_displacement<dim>);
+  level.u = interpolate(box.space, constant_stress_displacement<dim>);
   level.stress = certify::equilibrate<dim>(box.form, level.u, box.form.traction(level.u));
   level.estimate = certify::estimate<dim>(box.form, level.u, level.stress);
   return level;

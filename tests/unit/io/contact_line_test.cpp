@@ -8,24 +8,43 @@
 #include <map>
 #include <sstream>
 
-#include "unit/io/box_case.h"
+#include "support/contact_points.h"
+#include "support/discrete_problem.h"
+#include "support/fields.h"
+#include "support/meshes.h"
 
 namespace tribound::test
 {
 namespace
 {
 
-constexpr const char* two_contacts = R"(
-degree = 2
-mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
-material = { E = 1.0, nu = 0.3 }
-[boundary.left]
-displacement = [0, 0]
-[boundary.bottom]
-contact = { friction = "tresca", threshold = 0.03, gap = 0.25 }
-[boundary.top]
-contact = { friction = "none", gap = 0.5 }
-)";
+DiscreteProblem<2> two_contacts(const mesh::MeshData<2>& mesh = block<2>({4, 2}))
+{
+  return {mesh,
+          {.boundaries = {clamped<2>("left"), obstacle<2>("bottom", Tresca(0.03), 0.25),
+                          obstacle<2>("top", Frictionless(), 0.5)}},
+          {.degree = 2}};
+}
+
+/// A cube on a rough floor z = 0.
+DiscreteProblem<3> cube()
+{
+  return {box<3>({0, 0, 0}, {1, 1, 1}, {2, 2, 2}),
+          {.boundaries = {clamped<3>("top"), obstacle<3>("back", Coulomb(0.5))}}};
+}
+
+int number_of(const mesh::MeshData<2>& mesh, const std::string& boundary)
+{
+  return static_cast<int>(std::ranges::find(mesh.boundary_names, boundary) - mesh.boundary_names.begin());
+}
+
+template <int dim>
+int tag_of(const DiscreteProblem<dim>& c, const std::string& boundary)
+{
+  int tag = 0;
+  while (c.problem.boundary(tag).name != boundary) ++tag;
+  return tag;
+}
 
 /// Columns by name, numbers only.
 class Table
@@ -65,11 +84,10 @@ class Table
 
 TEST(ContactCsv, RunsAlongEachBoundary)
 {
-  const BoxCase<2> box(two_contacts);
-  const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], 0.01); });
+  const DiscreteProblem<2> box = two_contacts();
+  const auto u = interpolate<2>(box.space, [](const Point<2>& x) { return Point<2>(0.1 * x[0], 0.01); });
   const Table table(io::contact_csv(box.form, u, 0));
-  const std::size_t n = 4 * box.form.n_segment_points();
-  ASSERT_EQ(table.size(), 2 * n);
+  ASSERT_EQ(table.size(), box.form.n_contact_points());
 
   std::map<std::string, double> previous;
   for (std::size_t row = 0; row < table.size(); ++row)
@@ -92,8 +110,9 @@ TEST(ContactCsv, RunsAlongEachBoundary)
 
 TEST(ContactCsv, StatesAreThoseOfTheForm)
 {
-  const BoxCase<2> box(two_contacts);
-  const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); });
+  const DiscreteProblem<2> box = two_contacts();
+  const auto u =
+      interpolate<2>(box.space, [](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); });
   const Table table(io::contact_csv(box.form, u, 0));
   const auto traction = box.form.traction(u);
   // Sorted along the boundary, the points of a facet need not be in the order of the rule.
@@ -112,8 +131,9 @@ TEST(ContactCsv, StatesAreThoseOfTheForm)
 
 TEST(ContactCsv, NumbersReadBackExactly)
 {
-  const BoxCase<2> box(two_contacts);
-  const auto u = box.interpolate([](const Point<2>& x) { return Point<2>(x[0] / 3.0, -x[0] / 7.0); });
+  const DiscreteProblem<2> box = two_contacts();
+  const auto u =
+      interpolate<2>(box.space, [](const Point<2>& x) { return Point<2>(x[0] / 3.0, -x[0] / 7.0); });
   const Table table(io::contact_csv(box.form, u, 0));
   std::vector<double> written;
   for (std::size_t row = 0; row < table.size(); ++row) written.push_back(table(row, "traction_x"));
@@ -126,10 +146,9 @@ TEST(ContactCsv, NumbersReadBackExactly)
 
 /// Sums over the rows are the integrals of the program.
 template <int dim>
-void expect_integrals(const BoxCase<dim>& box, const std::vector<double>& u, const std::string& boundary)
+void expect_integrals(const DiscreteProblem<dim>& box, const std::vector<double>& u,
+                      const std::string& boundary)
 {
-  int tag = 0;
-  while (box.problem.boundary(tag).name != boundary) ++tag;
   const Table table(io::contact_csv(box.form, u, 3));
   double measure = 0;
   double normal = 0;
@@ -142,7 +161,8 @@ void expect_integrals(const BoxCase<dim>& box, const std::vector<double>& u, con
     normal -= table(row, "weight") * table(row, "pressure");
     force += table(row, "weight") * table(row, "traction_x");
   }
-  const auto resultants = contact::contact_resultants<dim>(box.form, box.form.traction(u), tag);
+  const auto resultants =
+      contact::contact_resultants<dim>(box.form, box.form.traction(u), tag_of(box, boundary));
   EXPECT_NEAR(measure, dim == 2 ? 2 : 1, 1e-14);
   EXPECT_NEAR(normal, resultants.normal, 1e-14 * std::abs(resultants.normal));
   EXPECT_NEAR(force, resultants.force[0], 1e-13 * resultants.force.norm());
@@ -150,25 +170,22 @@ void expect_integrals(const BoxCase<dim>& box, const std::vector<double>& u, con
 
 TEST(ContactCsv, WeightsIntegrate)
 {
-  const BoxCase<2> plane(two_contacts);
-  expect_integrals<2>(plane,
-                      plane.interpolate([](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); }),
-                      "bottom");
-  const BoxCase<3> space(R"(
-degree = 1
-mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [2, 2, 2] } }
-material = { E = 1.0, nu = 0.3 }
-boundary.top.displacement = [0, 0, 0]
-boundary.back.contact = { friction = "coulomb", coefficient = 0.5 }
-)");
+  const DiscreteProblem<2> plane = two_contacts();
+  expect_integrals<2>(
+      plane, interpolate<2>(plane.space, [](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); }),
+      "bottom");
+  const DiscreteProblem<3> space = cube();
   expect_integrals<3>(
-      space, space.interpolate([](const Point<3>& x) { return Point<3>(0.1 * x[1], 0, -0.1 * x[0]); }),
+      space,
+      interpolate<3>(space.space, [](const Point<3>& x) { return Point<3>(0.1 * x[1], 0, -0.1 * x[0]); }),
       "back");
 }
 
 TEST(ContactCsv, RoundingOfCoordinatesIsZero)
 {
-  const BoxCase<2> box(two_contacts, [](mesh::MeshData<2>& data) { data.vertices[1][1] = 5.55e-17; });
+  mesh::MeshData<2> data = block<2>({4, 2});
+  data.vertices[1][1] = 5.55e-17;
+  const DiscreteProblem<2> box = two_contacts(data);
   const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
   for (std::size_t row = 0; row < table.size(); ++row)
     if (table.text(row, "boundary") == "bottom")
@@ -181,19 +198,11 @@ TEST(ContactCsv, RoundingOfCoordinatesIsZero)
 TEST(ContactChains, OnePieceAroundACorner)
 {
   // The top is joined to the right side: the chain starts at the upper left corner and ends below.
-  const BoxCase<2> box(
-      two_contacts,
-      [](mesh::MeshData<2>& data)
-      {
-        const auto number = [&data](const std::string& name) {
-          return static_cast<int>(std::ranges::find(data.boundary_names, name) - data.boundary_names.begin());
-        };
-        for (auto& facet : data.facets)
-          if (facet.tag == number("right")) facet.tag = number("top");
-      });
-  int tag = 0;
-  while (box.problem.boundary(tag).name != "top") ++tag;
-  const auto links = io::contact_chains(box.form, tag);
+  mesh::MeshData<2> data = block<2>({4, 2});
+  for (auto& facet : data.facets)
+    if (facet.tag == number_of(data, "right")) facet.tag = number_of(data, "top");
+  const DiscreteProblem<2> box = two_contacts(data);
+  const auto links = io::contact_chains(box.form, tag_of(box, "top"));
   ASSERT_EQ(links.size(), 6u);
   EXPECT_EQ(links[0].arc, 0.0);
   EXPECT_NEAR(links[5].arc, 2.5, 1e-15);
@@ -210,28 +219,13 @@ TEST(ContactChains, ClosedAndInTwoPieces)
 {
   // A square hole is cut out of a square; its four sides are given to the bottom group, which is a closed
   // chain then, beside the open one of the bottom itself.
-  const BoxCase<2> box(
-      R"(
-degree = 1
-mesh = { box = { lower = [0, 0], upper = [3, 3], cells = [3, 3] } }
-material = { E = 1.0, nu = 0.3 }
-[boundary.left]
-displacement = [0, 0]
-[boundary.bottom]
-contact = { friction = "none", gap = 0 }
-)",
-      [](mesh::MeshData<2>& data)
-      {
-        const int bottom =
-            static_cast<int>(std::ranges::find(data.boundary_names, "bottom") - data.boundary_names.begin());
-        data.cells.erase(data.cells.begin() + 8, data.cells.begin() + 10);
-        data.regions.resize(data.cells.size());
-        for (const auto& [a, b] : {std::array{5, 6}, std::array{6, 10}, std::array{10, 9}, std::array{9, 5}})
-          data.facets.push_back({{a, b}, bottom});
-      });
-  int tag = 0;
-  while (box.problem.boundary(tag).name != "bottom") ++tag;
-  const auto links = io::contact_chains(box.form, tag);
+  mesh::MeshData<2> data = test::box<2>({0, 0}, {3, 3}, {3, 3});
+  data.cells.erase(data.cells.begin() + 8, data.cells.begin() + 10);
+  data.regions.resize(data.cells.size());
+  for (const auto& [a, b] : {std::array{5, 6}, std::array{6, 10}, std::array{10, 9}, std::array{9, 5}})
+    data.facets.push_back({{a, b}, number_of(data, "bottom")});
+  const DiscreteProblem<2> box(data, {.boundaries = {clamped<2>("left"), obstacle<2>("bottom")}});
+  const auto links = io::contact_chains(box.form, tag_of(box, "bottom"));
   ASSERT_EQ(links.size(), 7u);
   std::vector<double> arcs;
   for (const io::ChainLink& link : links) arcs.push_back(link.arc);
@@ -253,22 +247,14 @@ contact = { friction = "none", gap = 0 }
 
 TEST(ContactCsv, InThreeDimensions)
 {
-  const BoxCase<3> box(R"(
-degree = 1
-mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [2, 2, 2] } }
-material = { E = 1.0, nu = 0.3 }
-[boundary.top]
-displacement = [0, 0, 0]
-[boundary.back]
-contact = { friction = "coulomb", coefficient = 0.5, gap = 0 }
-)");
-  const auto u = box.interpolate([](const Point<3>&) { return Point<3>(0.0, 0.0, -0.1); });
+  const DiscreteProblem<3> box = cube();
+  const auto u = interpolate<3>(box.space, [](const Point<3>&) { return Point<3>(0.0, 0.0, -0.1); });
   const std::string csv = io::contact_csv(box.form, u, 0);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
             "slip_y,slip_z,weight,level");
   const Table table(csv);
-  ASSERT_EQ(table.size(), 8u * box.form.n_segment_points());
+  ASSERT_EQ(table.size(), box.form.n_contact_points());
   for (std::size_t row = 0; row < table.size(); ++row)
   {
     EXPECT_EQ(table(row, "z"), 0.0);

@@ -1,9 +1,9 @@
 #include "tribound/io/record/facts.h"
-#include "tribound/case/resolve.h"
 
 #include <gtest/gtest.h>
 
-#include "unit/io/box_case.h"
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
 
 namespace tribound::test
 {
@@ -21,24 +21,11 @@ TEST(Facts, MaterialInEngineersConstants)
 
 TEST(Facts, MeshAndBoundary)
 {
-  const BoxCase<2> box(R"(
-title = "Block"
-degree = 2
-mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
-material = { E = 1.0, nu = 0.3 }
-[boundary.left]
-displacement = [0, "free"]
-traction = [0, 0.5]
-[boundary.right]
-traction = [0, "x*y"]
-[boundary.bottom]
-contact = { friction = "tresca", threshold = 0.03, gap = 0 }
-)");
-  const io::CaseFacts facts = case_file::case_facts(box.config, 2);
-  EXPECT_EQ(facts.title, "Block");
-  EXPECT_EQ(facts.friction, "tresca");
-  EXPECT_EQ(facts.gamma0, 10.0);
-
+  const DiscreteProblem<2> box(
+      block<2>({4, 2}),
+      {.boundaries = {loaded<2>(fixed<2>("left", 0, free), 0, 0.5), loaded<2>("right", 0, formula("x*y")),
+                      obstacle<2>("bottom", Tresca(0.03))}},
+      {.degree = 2});
   const io::MeshFacts mesh = io::mesh_facts(box.problem, box.space, box.form.constraints());
   EXPECT_EQ(mesh.vertices, 15);
   EXPECT_EQ(mesh.cells, 16);

@@ -8,36 +8,24 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "support/discrete_problem.h"
+#include "support/fields.h"
+#include "support/meshes.h"
 #include "tribound/io/fields/vtu.h"
-#include "unit/io/box_case.h"
 
 namespace tribound::test
 {
 namespace
 {
 
+/// A vertex inside, moved such that no two cells are alike.
 template <int dim>
-std::string case_text(int degree)
+Point<dim> moved(Point<dim> x)
 {
-  const std::string box = dim == 2 ? "{ lower = [0, 0], upper = [2, 1], cells = [3, 2] }"
-                                   : "{ lower = [0, 0, 0], upper = [2, 1, 1], cells = [2, 2, 2] }";
-  const std::string obstacle = dim == 2 ? "bottom" : "back";
-  return "degree = " + std::to_string(degree) + "\nmesh = { box = " + box +
-         " }\nmaterial = { E = 1.0, nu = 0.3 }\n[boundary.right]\ndisplacement = [0, 0" +
-         (dim == 3 ? ", 0" : "") + "]\n[boundary." + obstacle +
-         "]\ncontact = { friction = \"tresca\", threshold = 0.03, gap = 0.25 }\n";
-}
-
-/// Moves inner vertices, so that no two cells are alike.
-template <int dim>
-void distort(mesh::MeshData<dim>& data)
-{
-  for (Point<dim>& x : data.vertices)
-  {
-    double bubble = x[0] * (2.0 - x[0]);
-    for (int i = 1; i < dim; ++i) bubble *= 4.0 * x[i] * (1.0 - x[i]);
-    for (int i = 0; i < dim; ++i) x[i] += 0.1 * bubble * std::sin(5.0 * x[0] + 3.0 * i);
-  }
+  double bubble = x[0] * (2.0 - x[0]);
+  for (int i = 1; i < dim; ++i) bubble *= 4.0 * x[i] * (1.0 - x[i]);
+  for (int i = 0; i < dim; ++i) x[i] += 0.1 * bubble * std::sin(5.0 * x[0] + 3.0 * i);
+  return x;
 }
 
 /// u_a = 0.1 sum_{j <= p} (c_a . x - 0.1 a)^j with c_a = (1 + a, 0.5 a - 2, 0.5 + a).
@@ -58,8 +46,13 @@ Point<dim> displacement(int degree, const Point<dim>& x)
 template <int dim>
 void write(const std::filesystem::path& directory, int degree, nlohmann::json& manifest)
 {
-  const BoxCase<dim> box(case_text<dim>(degree), distort<dim>);
-  const auto u = box.interpolate([degree](const Point<dim>& x) { return displacement<dim>(degree, x); });
+  const DiscreteProblem<dim> box(
+      mapped(block<dim>({3, 2}, {2, 2, 2}), moved<dim>),
+      {.boundaries = {clamped<dim>("right"),
+                      obstacle<dim>(dim == 2 ? "bottom" : "back", Tresca(0.03), 0.25)}},
+      {.degree = degree});
+  const auto u =
+      interpolate(box.space, [degree](const Point<dim>& x) { return displacement<dim>(degree, x); });
   std::vector<double> eta;
   for (Index c = 0; c < box.mesh.n_cells(); ++c) eta.push_back(0.5 * c);
   const io::TensorField<dim> stress = io::stress_field(box.problem, box.space, u);
@@ -80,15 +73,14 @@ void write(const std::filesystem::path& directory, int degree, nlohmann::json& m
                                {"dimension", dim},
                                {"degree", degree},
                                {"cells", box.mesh.n_cells()},
-                               {"contact_facets", box.form.contact_facets().size()}});
+                               {"contact_facets", box.form.segments().size()}});
 }
 
 /// An empty contact file is a file all the same.
 void write_without_contact(const std::filesystem::path& directory)
 {
-  const BoxCase<2> box(
-      "degree = 2\nmesh = { box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] } }\n"
-      "material = { E = 1.0, nu = 0.3 }\n[boundary.left]\ndisplacement = [0, 0]\n");
+  const DiscreteProblem<2> box(test::box<2>({0, 0}, {1, 1}, {1, 1}), {.boundaries = {clamped<2>("left")}},
+                               {.degree = 2});
   const std::vector<double> u(box.space.n_dofs(), 0.0);
   io::write_contact_vtu<2>(directory / "no_contact.vtu", 0, box.form, u);
 }
