@@ -24,7 +24,7 @@ foreach(module result_files study_bodies study_charts study_fields)
 endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/tribound
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.templates.h" EXCLUDE)
 
 install(EXPORT tribound NAMESPACE tribound:: FILE tribound-targets.cmake DESTINATION ${package_dir})
 get_target_property(library_type tribound TYPE)

@@ -4,10 +4,8 @@
 /// A cell seen with its vertices in ascending global order. Two cells that share a facet then run through its
 /// vertices in the same order, so that polynomials on the facet need no reorientation.
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "tribound/base/types.h"
 #include "tribound/mesh/mesh.h"
@@ -65,6 +63,7 @@ template <int dim>
   return sorted;
 }
 
+/// The vertices of a cell in ascending order.
 template <int dim>
 [[nodiscard]] mesh::Cell<dim> sorted_vertices(mesh::Cell<dim> cell)
 {
@@ -74,34 +73,10 @@ template <int dim>
 
 /// J with x = x_0 + J xhat for the cell with these vertices.
 template <int dim>
-[[nodiscard]] Tensor<dim> jacobian_of(const mesh::Mesh<dim>& mesh, const mesh::Cell<dim>& vertices)
-{
-  Tensor<dim> jacobian;
-  for (int j = 0; j < dim; ++j) jacobian.col(j) = mesh.vertex(vertices[j + 1]) - mesh.vertex(vertices[0]);
-  return jacobian;
-}
+[[nodiscard]] Tensor<dim> jacobian_of(const mesh::Mesh<dim>& mesh, const mesh::Cell<dim>& vertices);
 
+/// Cell c of the mesh.
 template <int dim>
-[[nodiscard]] Frame<dim> make_frame(const mesh::Mesh<dim>& mesh, Index c)
-{
-  Frame<dim> frame;
-  const mesh::Cell<dim>& cell = mesh.cell(c);
-  for (int i = 0; i <= dim; ++i) frame.local[i] = i;
-  std::ranges::sort(frame.local, {}, [&](int i) { return cell[i]; });
-  for (int i = 0; i <= dim; ++i) frame.vertices[i] = cell[frame.local[i]];
-
-  frame.origin = mesh.vertex(frame.vertices[0]);
-  frame.jacobian = jacobian_of(mesh, frame.vertices);
-  frame.inverse = frame.jacobian.inverse();
-  frame.det = std::abs(frame.jacobian.determinant());
-  frame.grad[0].setZero();
-  for (int j = 0; j < dim; ++j)
-  {
-    frame.grad[j + 1] = frame.inverse.row(j).transpose();
-    frame.grad[0] -= frame.grad[j + 1];
-  }
-  for (int i = 0; i <= dim; ++i) frame.grad_norm[i] = frame.grad[i].norm();
-  return frame;
-}
+[[nodiscard]] Frame<dim> make_frame(const mesh::Mesh<dim>& mesh, Index c);
 
 }  // namespace tribound::certify

@@ -72,7 +72,7 @@ class Patch
   /// What to throw where the patch has no solution.
   [[nodiscard]] SolveError failure() const;
   void order_facets();
-  /// In patch_compatibility.cpp, as what it calls: Z_a, y_a and w_a.
+  /// In patch_compatibility.templates.h, as what it calls: Z_a, y_a and w_a.
   void make_compatible();
   void find_rigid_motions();
   [[nodiscard]] Moments integrate() const;

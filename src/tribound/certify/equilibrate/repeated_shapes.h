@@ -4,10 +4,8 @@
 /// What cells that are translates of each other share: most of a structured mesh, and of one refined from it.
 
 #include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "tribound/certify/equilibrate/cell_operator.h"
@@ -77,23 +75,35 @@ struct RepeatedShape
   std::array<std::array<std::array<Dense<S::block, S::block>, dim + 1>, dim + 1>, dim + 1> reduced;
 };
 
+/// The cells of a mesh sorted by shape.
+struct ShapeClasses
+{
+  std::vector<int> number;   ///< per cell: its shape; -1 for one whose shape was not followed
+  std::vector<Index> first;  ///< per shape: its first cell
+  std::vector<int> count;    ///< per shape: how many cells have it
+};
+
+/// Numbers the shapes by their first cell; the same on every run. Shapes are equal if the rounding of the
+/// coordinates explains the difference, and if the identities of the stress cannot feel it.
+template <int dim>
+[[nodiscard]] ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh);
+
 /// The shapes that come often in a mesh.
 template <int dim, int p>
 class RepeatedShapes
 {
  public:
-  explicit RepeatedShapes(const mesh::Mesh<dim>& mesh) : number_(mesh.n_cells(), -1)
+  explicit RepeatedShapes(const mesh::Mesh<dim>& mesh)
   {
-    std::vector<Index> first;  // cell of each shape
-    std::vector<int> count;
-    classify(mesh, first, count);
-    std::vector<int> kept(first.size(), -1);
-    for (std::size_t i = 0; i < first.size(); ++i)
+    ShapeClasses classes = classify_shapes(mesh);
+    std::vector<int> kept(classes.first.size(), -1);
+    for (std::size_t i = 0; i < classes.first.size(); ++i)
     {
-      if (count[i] < often) continue;
+      if (classes.count[i] < often) continue;
       kept[i] = static_cast<int>(shapes_.size());
-      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(make_frame(mesh, first[i])));
+      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(make_frame(mesh, classes.first[i])));
     }
+    number_ = std::move(classes.number);
     for (int& number : number_)
       if (number >= 0) number = kept[number];
   }
@@ -105,48 +115,7 @@ class RepeatedShapes
   }
 
  private:
-  static constexpr double exact = 1e-12;
   static constexpr int often = 64;  ///< cells over which the memory of a shape is spread
-  static constexpr int table_size =
-      1 << 12;  ///< of the hash table: a shape that finds its place taken is given up
-
-  /// Numbers the shapes by their first cell; the same on every run. Shapes are equal if the rounding of the
-  /// coordinates explains the difference, and if the identities of the stress cannot feel it.
-  void classify(const mesh::Mesh<dim>& mesh, std::vector<Index>& first, std::vector<int>& count)
-  {
-    double largest = 0;
-    for (const Point<dim>& x : mesh.vertices()) largest = std::max(largest, x.cwiseAbs().maxCoeff());
-    const double rounding =
-        8 * std::numeric_limits<double>::epsilon() * largest;  // of differences of coordinates
-    std::vector<int> table(table_size, -1);
-    for (Index c = 0; c < mesh.n_cells(); ++c)
-    {
-      const Tensor<dim> jacobian = jacobian_of(mesh, sorted_vertices<dim>(mesh.cell(c)));
-      int& place = table[hash(jacobian, 1e3 * rounding)];
-      if (place < 0)
-      {
-        place = static_cast<int>(first.size());
-        first.push_back(c);
-        count.push_back(0);
-      }
-      const Tensor<dim> known = jacobian_of(mesh, sorted_vertices<dim>(mesh.cell(first[place])));
-      const double tolerance = std::min(rounding, exact * known.cwiseAbs().maxCoeff());
-      if (!((jacobian - known).cwiseAbs().maxCoeff() <= tolerance)) continue;
-      number_[c] = place;
-      ++count[place];
-    }
-  }
-
-  /// Equal for most pairs of matrices that differ by much less than the quantum.
-  [[nodiscard]] static std::size_t hash(const Tensor<dim>& jacobian, double quantum)
-  {
-    std::uint64_t key = 0;
-    for (int r = 0; r < dim; ++r)
-      for (int c = 0; c < dim; ++c)
-        key =
-            (key ^ static_cast<std::uint64_t>(std::llround(jacobian(r, c) / quantum))) * 0x9e3779b97f4a7c15U;
-    return (key >> 40) % table_size;
-  }
 
   std::vector<int> number_;  ///< per cell: place in shapes_, or -1
   std::vector<std::unique_ptr<RepeatedShape<dim, p>>> shapes_;

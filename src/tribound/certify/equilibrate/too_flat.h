@@ -3,42 +3,18 @@
 /// @file too_flat.h
 /// The message where rounding leaves no equilibrated stress.
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "tribound/base/error.h"
 #include "tribound/certify/equilibrate/frame.h"
-#include "tribound/mesh/describe.h"
 
 namespace tribound::certify
 {
 
 /// The longest edge over the smallest height.
 template <int dim>
-[[nodiscard]] double slenderness(const Frame<dim>& frame)
-{
-  double longest = 0;
-  for (int j = 0; j < dim; ++j)
-  {
-    longest = std::max(longest, frame.jacobian.col(j).norm());
-    for (int i = 0; i < j; ++i)
-      longest = std::max(longest, (frame.jacobian.col(j) - frame.jacobian.col(i)).norm());
-  }
-  return longest * *std::ranges::max_element(frame.grad_norm);  // 1 / |grad lambda_i|: height over facet i
-}
+[[nodiscard]] double slenderness(const Frame<dim>& frame);
 
 /// What to throw where a matrix that should be positive definite is not: the place, and why.
 template <int dim>
-[[nodiscard]] SolveError no_equilibrated_stress(const Point<dim>& place, double slenderness)
-{
-  constexpr double slender = 1000;  // patches of degree 4 still factor
-  const std::string why =
-      slenderness > slender
-          ? fmt::format("a cell there is {:.2g} times as long as high: mesh again, with rounder cells",
-                        slenderness)
-          : std::string("numbers there differ by too many powers of ten: check units, sizes and materials");
-  return SolveError(fmt::format("there is no equilibrated stress at {}: {}", mesh::describe(place), why));
-}
+[[nodiscard]] SolveError no_equilibrated_stress(const Point<dim>& place, double slenderness);
 
 }  // namespace tribound::certify

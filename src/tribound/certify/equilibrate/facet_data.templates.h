@@ -1,3 +1,8 @@
+#pragma once
+
+/// @file facet_data.templates.h
+/// The definitions of facet_data.h, for the kernels alone (certify/equilibrate/kernel.cpp.in).
+
 #include "tribound/certify/equilibrate/facet_data.h"
 
 #include <algorithm>
@@ -11,7 +16,7 @@
 namespace tribound::certify
 {
 
-namespace
+namespace detail
 {
 
 /// Adds moments of tractions on one boundary facet of a cell.
@@ -58,7 +63,7 @@ class FacetMoments
   std::array<double, n> theta_;
 };
 
-}  // namespace
+}  // namespace detail
 
 template <int dim, int p>
 FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u,
@@ -105,7 +110,7 @@ void FacetData<dim, p>::add_load(const contact::NitscheForm<dim>& form, std::siz
   std::vector<Point<dim>> load(rule.size());
   form.data().traction(number, load);
   Moments& moments = discretisation_of(conditions_[number]);
-  FacetMoments<dim, p> on_facet(mesh, facet);
+  detail::FacetMoments<dim, p> on_facet(mesh, facet);
   for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
   {
     on_facet.at(rule.points[q]);
@@ -128,7 +133,7 @@ void FacetData<dim, p>::add_contact(const contact::NitscheForm<dim>& form, std::
       on_contact_[v] = 1;
   }
   Moments& discretisation = discretisation_of(condition);
-  FacetMoments<dim, p> on_facet(mesh, side.facet);
+  detail::FacetMoments<dim, p> on_facet(mesh, side.facet);
   for (int q = 0; q < form.n_segment_points(); ++q)
   {
     const std::size_t i = k * form.n_segment_points() + q;
@@ -146,14 +151,5 @@ bool FacetData<dim, p>::fixes_any(Index facet) const
   const auto& fixed = conditions_[number_[facet]].fixed;
   return std::ranges::find(fixed, true) != fixed.end();
 }
-
-template class FacetData<2, 1>;
-template class FacetData<2, 2>;
-template class FacetData<2, 3>;
-template class FacetData<2, 4>;
-template class FacetData<3, 1>;
-template class FacetData<3, 2>;
-template class FacetData<3, 3>;
-template class FacetData<3, 4>;
 
 }  // namespace tribound::certify

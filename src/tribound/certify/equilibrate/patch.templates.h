@@ -1,3 +1,8 @@
+#pragma once
+
+/// @file patch.templates.h
+/// The definitions of patch.h, for the kernels alone (certify/equilibrate/kernel.cpp.in).
+
 #include "tribound/certify/equilibrate/patch.h"
 
 #include <algorithm>
@@ -257,14 +262,5 @@ void Patch<dim, p>::recover(CellPart& part, int problem)
   share.y = y_[problem];
   share.w = w_[problem];
 }
-
-template class Patch<2, 1>;
-template class Patch<2, 2>;
-template class Patch<2, 3>;
-template class Patch<2, 4>;
-template class Patch<3, 1>;
-template class Patch<3, 2>;
-template class Patch<3, 3>;
-template class Patch<3, 4>;
 
 }  // namespace tribound::certify

@@ -1,4 +1,6 @@
-/// @file patch_compatibility.cpp
+#pragma once
+
+/// @file patch_compatibility.templates.h
 /// What makes the data of a patch compatible: its rigid motions Z_a, y_a and w_a.
 
 #include "tribound/certify/equilibrate/patch.h"
@@ -12,7 +14,8 @@ void Patch<dim, p>::make_compatible()
   find_rigid_motions();
   const Moments moments = integrate();
   find_divergence_part(moments);
-  find_skew_part(moments);
+  w_.fill(Tensor<dim>::Zero());
+  if constexpr (p == 1) find_skew_part(moments);
 }
 
 template <int dim, int p>
@@ -134,9 +137,8 @@ void Patch<dim, p>::find_divergence_part(const Moments& moments)
 template <int dim, int p>
 void Patch<dim, p>::find_skew_part(const Moments& moments)
 {
-  w_.fill(Tensor<dim>::Zero());
   const int n = motions_.n_rotations();
-  if (p > 1 || n == 0) return;
+  if (n == 0) return;
   const int first = motions_.n_translations();
   using Gram = Eigen::Matrix<double, S::pairs, S::pairs>;
   Gram gram = Gram::Identity();
@@ -156,14 +158,5 @@ void Patch<dim, p>::find_skew_part(const Moments& moments)
     for (int i = 0; i < n; ++i) w_[problem] += inverse.row(i).dot(rhs) * motions_[first + i].gradient;
   }
 }
-
-template void Patch<2, 1>::make_compatible();
-template void Patch<2, 2>::make_compatible();
-template void Patch<2, 3>::make_compatible();
-template void Patch<2, 4>::make_compatible();
-template void Patch<3, 1>::make_compatible();
-template void Patch<3, 2>::make_compatible();
-template void Patch<3, 3>::make_compatible();
-template void Patch<3, 4>::make_compatible();
 
 }  // namespace tribound::certify

@@ -1,3 +1,8 @@
+#pragma once
+
+/// @file cell_operator.templates.h
+/// The definitions of cell_operator.h, for the kernels alone (certify/equilibrate/kernel.cpp.in).
+
 #include "tribound/certify/equilibrate/cell_operator.h"
 
 #include "tribound/certify/equilibrate/too_flat.h"
@@ -233,31 +238,5 @@ DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const problem::M
   }
   return result;
 }
-
-template class CellOperator<2, 1>;
-template class CellOperator<2, 2>;
-template class CellOperator<2, 3>;
-template class CellOperator<2, 4>;
-template class CellOperator<3, 1>;
-template class CellOperator<3, 2>;
-template class CellOperator<3, 3>;
-template class CellOperator<3, 4>;
-
-template DiscreteStress<2, 1> discrete_stress<2, 1>(const Frame<2>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<2, 2> discrete_stress<2, 2>(const Frame<2>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<2, 3> discrete_stress<2, 3>(const Frame<2>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<2, 4> discrete_stress<2, 4>(const Frame<2>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<3, 1> discrete_stress<3, 1>(const Frame<3>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<3, 2> discrete_stress<3, 2>(const Frame<3>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<3, 3> discrete_stress<3, 3>(const Frame<3>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
-template DiscreteStress<3, 4> discrete_stress<3, 4>(const Frame<3>&, const problem::Material&,
-                                                    std::span<const Index>, std::span<const double>);
 
 }  // namespace tribound::certify

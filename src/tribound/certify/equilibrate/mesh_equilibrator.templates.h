@@ -1,0 +1,214 @@
+#pragma once
+
+/// @file mesh_equilibrator.templates.h
+/// The definition of mesh_equilibrator.h, for the kernels alone (certify/equilibrate/kernel.cpp.in).
+
+#include "tribound/certify/equilibrate/mesh_equilibrator.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tribound/base/parallel.h"
+#include "tribound/certify/equilibrate/cell_window.h"
+#include "tribound/certify/equilibrate/patch.h"
+#include "tribound/certify/equilibrate/vertex_stretches.h"
+
+namespace tribound::certify
+{
+
+namespace detail
+{
+
+/// The stress of one iterate. The patches write their shares into the cells, and a cell with all of them
+/// gives its stress. Every thread has a stretch of the vertices; cells with vertices in several of them come
+/// last. `with_dis`: the stretches has all vertices; otherwise those on Gamma_C, which give sigma_lin.
+template <int dim, int p>
+class Equilibration
+{
+ public:
+  Equilibration(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<dim, p>& source,
+                const VertexStretches& stretches, bool with_dis)
+      : mesh_(mesh),
+        data_(data),
+        source_(source),
+        stretches_(stretches),
+        with_dis_(with_dis),
+        shares_(stretches.shared_cells.size(), Shares(data.n_parts()))
+  {
+  }
+
+  Stress<dim> run()
+  {
+    prepare_stress();
+    in_threads(stretches_.size(), [&](int stretch) { solve_patches(stretch); });
+    in_threads(stretches_.size(), [&](int stretch) { recover_shared_cells(stretch); });
+    return std::move(stress_);
+  }
+
+ private:
+  using S = Sizes<dim, p>;
+  using Window = CellWindow<dim, p>;
+  using Shares = CellShares<dim, p>;
+
+  void prepare_stress();
+  void solve_patches(int stretch);
+  void recover_shared_cells(int stretch);
+  void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
+
+  const mesh::Mesh<dim>& mesh_;
+  const FacetData<dim, p>& data_;
+  const CellSource<dim, p>& source_;
+  const VertexStretches& stretches_;
+  const bool with_dis_;
+  Stress<dim> stress_;
+  std::vector<Shares> shares_;  ///< of the shared cells
+};
+
+template <int dim, int p>
+void Equilibration<dim, p>::prepare_stress()
+{
+  stress_.degree = p;
+  stress_.n = S::stress;
+  if (with_dis_) stress_.dis.resize(mesh_.n_cells() * stress_.block_size());
+  stress_.lin_place.assign(mesh_.n_cells(), -1);
+  int n_lin = 0;
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+    if (std::ranges::any_of(mesh_.cell(c), [&](Index v) { return data_.on_contact(v); }))
+      stress_.lin_place[c] = n_lin++;
+  stress_.lin.resize(n_lin * stress_.block_size());
+  if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
+}
+
+template <int dim, int p>
+void Equilibration<dim, p>::solve_patches(int stretch)
+{
+  const mesh::Topology<dim>& topology = mesh_.topology();
+  const auto in_stretch = [&](Index v) { return stretches_.stretch[v] == stretch; };
+  Window window(source_, data_.n_parts());
+  Patch<dim, p> patch(mesh_, data_);
+  for (std::size_t i = stretches_.begin[stretch]; i < stretches_.begin[stretch + 1]; ++i)
+  {
+    const Index v = stretches_.order[i];
+    const auto begin = topology.vertex_cells_begin[v];
+    const auto cells =
+        std::span(topology.vertex_cells).subspan(begin, topology.vertex_cells_begin[v + 1] - begin);
+    patch.begin(v);
+    for (const Index c : cells)
+    {
+      auto& slot = window.get(c);
+      if (slot.waiting == 0)
+        slot.waiting = static_cast<int>(std::ranges::count_if(mesh_.cell(c), in_stretch));
+      const int shared = stretches_.shared_place[c];
+      Shares& shares = shared < 0 ? slot.shares : shares_[shared];
+      patch.add_cell(c, slot.cell, shares[slot.cell.frame.find(v)]);
+    }
+    patch.solve();
+    for (const Index c : cells)
+    {
+      auto& slot = window.get(c);
+      if (--slot.waiting > 0) continue;
+      if (stretches_.shared_place[c] < 0) recover(c, slot.cell, slot.shares);
+      window.forget(c);
+    }
+  }
+}
+
+template <int dim, int p>
+void Equilibration<dim, p>::recover_shared_cells(int stretch)
+{
+  const std::vector<Index>& cells = stretches_.shared_cells;
+  const auto prepared = std::make_unique<PreparedCell<dim, p>>();
+  for (std::size_t i = stretch; i < cells.size(); i += stretches_.size())
+  {
+    source_.prepare(cells[i], *prepared, false);
+    recover(cells[i], *prepared, shares_[i]);
+  }
+}
+
+/// sigma = sum of the patch stresses of the cell's vertices: the data of the cell problem add up, psi_a to 1.
+template <int dim, int p>
+void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares)
+{
+  constexpr int m = S::multiplier;
+  const Frame<dim>& frame = prepared.frame;
+  const std::size_t size = stress_.block_size();
+  for (int problem = with_dis_ ? 0 : 1; problem < (with_dis_ ? data_.n_parts() : 2); ++problem)
+  {
+    if (problem > 0 && stress_.lin_place[cell] < 0) return;
+    DenseVector<S::u> r_u;
+    if (problem == 0) r_u = prepared.divergence;
+    Tensor<dim> w = Tensor<dim>::Zero();
+    typename CellOperator<dim, p>::FacetVectors mu;
+    for (int a = 0; a <= dim; ++a)
+    {
+      if (problem == 0) add_multiple(r_u, 1, prepared.body[a]);
+      if (problem > 0 && !data_.on_contact(frame.vertices[a])) continue;
+      const CellShare<dim, p>& share = shares[a][problem];
+      add_moments(r_u, prepared, a, share.y, problem == 0 ? 1 : -1);
+      w += share.w;
+      add_multiple(mu, 1, share.mu);
+    }
+    StressCoefficients<dim, p> sigma = prepared.op->correction(frame, r_u, w, mu);
+    if (problem == 0)
+      for (int entry = 0; entry < dim * dim; ++entry)
+        for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
+    std::vector<double>& part = problem == 0 ? stress_.dis : problem == 1 ? stress_.lin : stress_.reg;
+    std::ranges::copy(sigma, &part[(problem == 0 ? cell : stress_.lin_place[cell]) * size]);
+  }
+}
+
+/// What the iterates on a mesh share.
+template <int dim, int p>
+class MeshEquilibrator : public Equilibrator<dim>::Implementation
+{
+ public:
+  MeshEquilibrator(const contact::NitscheForm<dim>& form, int n_threads)
+      : form_(form),
+        mesh_(form.space().mesh()),
+        n_threads_(n_threads > 0 ? n_threads : omp_get_max_threads()),
+        body_(form),
+        shapes_(mesh_)
+  {
+  }
+
+  Stress<dim> run(std::span<const double> u, std::span<const Point<dim>> t, double delta,
+                  bool with_dis) override
+  {
+    const FacetData<dim, p> data(form_, u, t, delta);
+    std::optional<VertexStretches>& stretches = with_dis ? all_ : on_contact_;
+    if (!stretches)
+    {
+      std::vector<Index> vertices;
+      for (Index v = 0; v < mesh_.n_vertices(); ++v)
+        if (with_dis || data.on_contact(v)) vertices.push_back(v);
+      stretches = stretches_of(mesh_, std::span<const Index>(vertices), n_threads_);
+    }
+    const CellSource<dim, p> source{form_, u, body_, shapes_};
+    return Equilibration<dim, p>(mesh_, data, source, *stretches, with_dis).run();
+  }
+
+ private:
+  const contact::NitscheForm<dim>& form_;
+  const mesh::Mesh<dim>& mesh_;
+  int n_threads_;
+  BodyMoments<dim, p> body_;
+  RepeatedShapes<dim, p> shapes_;
+  std::optional<VertexStretches> all_;         ///< of all vertices
+  std::optional<VertexStretches> on_contact_;  ///< of those on Gamma_C
+};
+
+}  // namespace detail
+
+template <int dim, int p>
+std::unique_ptr<typename Equilibrator<dim>::Implementation> make_mesh_equilibrator(
+    const contact::NitscheForm<dim>& form, int n_threads)
+{
+  return std::make_unique<detail::MeshEquilibrator<dim, p>>(form, n_threads);
+}
+
+}  // namespace tribound::certify
