@@ -162,7 +162,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   };
   solve::NewtonResult<dim> newton;
   {
-    const Charge charge(result.solve_seconds, result.solve_cpu);
+    const ScopedTimer timer(result.solve_seconds, result.solve_cpu);
     newton = solve::solve<dim>(form, level.u, method.newton, method.solver, record, level.delta);
   }
   if (newton.status != solve::NewtonStatus::converged) return std::nullopt;
@@ -172,7 +172,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   result.u = std::move(newton.u);
   result.traction = std::move(newton.traction);
   {
-    const Charge charge(result.certify_seconds, result.certify_cpu);
+    const ScopedTimer timer(result.certify_seconds, result.certify_cpu);
     Certifier<dim> certifier(form, method, {}, level.friedrichs);
     keep_last(form, certifier, result);
   }
@@ -205,7 +205,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     solve::NewtonAdvice advice = false;
     if (std::isfinite(iterate.step.residual))
     {
-      const Charge charge(level.certify_seconds, level.certify_cpu);
+      const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
       if (!certifier) certifier.emplace(form, method, expected, friedrichs);
       advice = certifier->examine(iterate.u, iterate.traction, step, level);
       if (regularisation)
@@ -218,7 +218,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   };
   solve::NewtonResult<dim> newton;
   {
-    const Charge charge(wall, cpu);
+    const ScopedTimer timer(wall, cpu);
     newton = solve_persistently<dim>(form, start, method, certify, delta,
                                      [&](const solve::NewtonStep& step)
                                      {
@@ -243,7 +243,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     return level;
   }
   {
-    const Charge charge(level.certify_seconds, level.certify_cpu);
+    const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
     keep_last(form, *certifier, level);
   }
   if (!bound_holds(level, method.degree)) tighten(form, method, observer, level);

@@ -22,18 +22,18 @@ using Clock = std::chrono::steady_clock;
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Adds the wall time and the CPU time of its life to two accounts.
-class Charge
+/// Adds the wall time and the CPU time of its life to two totals.
+class ScopedTimer
 {
  public:
-  Charge(double& wall, double& cpu) : wall_(wall), cpu_(cpu) {}
-  ~Charge()
+  ScopedTimer(double& wall, double& cpu) : wall_(wall), cpu_(cpu) {}
+  ~ScopedTimer()
   {
     wall_ += seconds_since(begin_);
     cpu_ += cpu_seconds() - cpu_begin_;
   }
-  Charge(const Charge&) = delete;
-  Charge& operator=(const Charge&) = delete;
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
 
  private:
   double& wall_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tribound/certify/equilibrate/frame_table.h"
+#include "tribound/certify/equilibrate/stress_tabulation.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
@@ -91,7 +91,7 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(stress.degree + 1);  // sigma_h times x
-  const FrameTable<dim> table(stress.degree, points_on_facets<dim>(rule));
+  const StressTabulation<dim> table(stress.degree, points_on_facets<dim>(rule));
   const int n = table.n_points();
   std::vector<Resultant<dim>> result(form.problem().boundaries().size());
   std::vector<double> block(stress.block_size());
@@ -103,7 +103,7 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
     std::ranges::copy(stress.dis_in(facet.cell), block.begin());
     for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
       for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
-    table.evaluate(make_frame(mesh, facet.cell), block, sigma);
+    table.evaluate(make_sorted_cell(mesh, facet.cell), block, sigma);
     const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
     {

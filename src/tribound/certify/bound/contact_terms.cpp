@@ -98,7 +98,7 @@ std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const d
   const contact::SegmentSide<dim>& slave = form_.segments()[k].slave;
   const int n_points = form_.n_segment_points();
   std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
-  stress_table_[slave.facet.local].evaluate(make_frame(form_.space().mesh(), slave.facet.cell), block,
+  stress_table_[slave.facet.local].evaluate(make_sorted_cell(form_.space().mesh(), slave.facet.cell), block,
                                             entries);
   std::vector<Point<dim>> values(n_points, Point<dim>::Zero());
   for (int q = 0; q < n_points; ++q)

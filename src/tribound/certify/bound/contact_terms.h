@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tribound/certify/bound/kinks.h"
-#include "tribound/certify/equilibrate/frame_table.h"
+#include "tribound/certify/equilibrate/stress_tabulation.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
@@ -95,7 +95,7 @@ class ContactTerms
 
   const contact::NitscheForm<dim>& form_;
   ContactRule rule_;
-  std::vector<FrameTable<dim>>
+  std::vector<StressTabulation<dim>>
       stress_table_;           ///< of the stress at the points of the facet rule, per local facet
   std::vector<double> theta_;  ///< basis on the facet there, [q * n + i]
   int n_;                      ///< dim P^p(F)

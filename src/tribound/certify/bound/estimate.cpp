@@ -104,7 +104,7 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
     { return static_cast<Index>(std::int64_t{mesh.n_cells()} * i / n_threads); };
     for (Index c = first(thread); c < first(thread + 1); ++c)
     {
-      stress_table_.evaluate(make_frame(mesh, c), stress.dis_in(c), dis);
+      stress_table_.evaluate(make_sorted_cell(mesh, c), stress.dis_in(c), dis);
       const std::span<const Index> nodes = space.cell_nodes(c);
       std::ranges::fill(derivative, 0);
       for (int a = 0; a < dim; ++a)

@@ -58,8 +58,8 @@ class Estimator
   DataTerms data_;
   std::optional<FriedrichsConstant> friedrichs_;
   ContactTerms<dim> contact_;
-  fem::Quadrature<dim> rule_;     ///< exact to degree 2p
-  FrameTable<dim> stress_table_;  ///< basis of the stress at its points
+  fem::Quadrature<dim> rule_;           ///< exact to degree 2p
+  StressTabulation<dim> stress_table_;  ///< basis of the stress at its points
   std::vector<double>
       gradient_;  ///< reference derivatives of the space's basis, [(k n_nodes + i) n_points + q]
 };

@@ -17,8 +17,8 @@
 #include <array>
 #include <span>
 
-#include "tribound/certify/equilibrate/frame.h"
 #include "tribound/certify/equilibrate/reference.h"
+#include "tribound/certify/equilibrate/sorted_cell.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::certify
@@ -56,27 +56,27 @@ class CellOperator
   static constexpr int all_facets = (dim + 1) * facet_stride;
 
   /// Factors A and forms the couplings C of all facets. Throws SolveError for a cell without volume.
-  void build(const Frame<dim>& frame);
+  void build(const SortedCell<dim>& cell);
   /// Forms S; build() has been called.
-  void condense(const Frame<dim>& frame);
+  void condense(const SortedCell<dim>& cell);
 
   /// The rows of S that belong to facet f, distance all_facets.
   [[nodiscard]] const double* schur(int f) const { return schur_.row(f * S::block); }
 
   /// load -= C^T (B B^T)^{-1} r with r = (r_u, -2 w), w the skew tensor of p = 1.
-  void subtract_load(FacetVectors& load, const Frame<dim>& frame, const UVector& r_u,
+  void subtract_load(FacetVectors& load, const SortedCell<dim>& cell, const UVector& r_u,
                      const Tensor<dim>& w) const;
 
   /// The moments of the divergence of a discrete stress on U.
-  [[nodiscard]] UVector divergence(const Frame<dim>& frame, const DiscreteStress<dim, p>& sigma) const;
+  [[nodiscard]] UVector divergence(const SortedCell<dim>& cell, const DiscreteStress<dim, p>& sigma) const;
 
   /// sigma - G = -B^T eta - N^T mu for the data r = (r_u, -2 w) and the multipliers mu, G being symmetric.
-  [[nodiscard]] StressCoefficients<dim, p> correction(const Frame<dim>& frame, const UVector& r_u,
+  [[nodiscard]] StressCoefficients<dim, p> correction(const SortedCell<dim>& cell, const UVector& r_u,
                                                       const Tensor<dim>& w, const FacetVectors& mu) const;
 
  private:
-  void factor(const Frame<dim>& frame);
-  void couple(const Frame<dim>& frame);
+  void factor(const SortedCell<dim>& cell);
+  void couple(const SortedCell<dim>& cell);
   /// L^{-1} r_u with A = L L^T.
   [[nodiscard]] UVector reduce(const UVector& r_u) const;
 
@@ -88,16 +88,16 @@ class CellOperator
 
 /// The moment of 1 on the cell: its coefficient on the constant of the orthonormal basis.
 template <int dim, int p>
-[[nodiscard]] double moment_of_one(const Frame<dim>& frame)
+[[nodiscard]] double moment_of_one(const SortedCell<dim>& cell)
 {
   double sum = 0;
   for (int v = 0; v <= dim; ++v) sum += reference<dim, p>().hat_moment(0, v);
-  return std::sqrt(frame.det) * sum;
+  return std::sqrt(cell.det) * sum;
 }
 
 /// sigma(u) in a cell in the orthonormal basis of P^{p-1}; nodes in the order of the space's basis.
 template <int dim, int p>
-[[nodiscard]] DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame,
+[[nodiscard]] DiscreteStress<dim, p> discrete_stress(const SortedCell<dim>& cell,
                                                      const problem::Material& material,
                                                      std::span<const Index> nodes, std::span<const double> u);
 

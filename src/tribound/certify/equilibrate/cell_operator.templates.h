@@ -12,20 +12,20 @@ namespace tribound::certify
 {
 
 template <int dim, int p>
-void CellOperator<dim, p>::build(const Frame<dim>& frame)
+void CellOperator<dim, p>::build(const SortedCell<dim>& cell)
 {
-  factor(frame);
-  couple(frame);
+  factor(cell);
+  couple(cell);
 }
 
 /// A(r, s) = delta_rs (B_U B_U^T - D_c D_c^T / 2) + D_s D_r^T / 2 with D_c = sum_k J^{-1}(k, c) D_k: row r of
 /// a stress sees entry (r, c) of a skew tensor through d_c and row c through -d_r.
 template <int dim, int p>
-void CellOperator<dim, p>::factor(const Frame<dim>& frame)
+void CellOperator<dim, p>::factor(const SortedCell<dim>& cell)
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int m = S::multiplier;
-  const Tensor<dim> metric = frame.inverse * frame.inverse.transpose();
+  const Tensor<dim> metric = cell.inverse * cell.inverse.transpose();
   Dense<m, m> diagonal;
   for (int k = 0; k < dim; ++k)
     for (int l = 0; l < dim; ++l) add_multiple(diagonal, metric(k, l), ref.divergence[k][l]);
@@ -37,24 +37,24 @@ void CellOperator<dim, p>::factor(const Frame<dim>& frame)
       if constexpr (p > 1)
         for (int k = 0; k < dim; ++k)
           for (int l = 0; l < dim; ++l)
-            add_multiple(block, frame.inverse(k, s) * frame.inverse(l, r), ref.truncated_divergence[k][l]);
+            add_multiple(block, cell.inverse(k, s) * cell.inverse(l, r), ref.truncated_divergence[k][l]);
       for (int i = 0; i < m; ++i) std::copy_n(block.row(i), m, factor_.row(r * m + i) + s * m);
     }
   if (!cholesky<S::u>(factor_.data(), factor_.stride, reciprocal_.data()))
-    throw no_equilibrated_stress<dim>(frame.origin, slenderness(frame));
+    throw no_equilibrated_stress<dim>(cell.origin, slenderness(cell));
 }
 
 /// C(a, b) = delta_ab (B_U N^T - ...) + grad_a lambda D_b E'^T / 2, times -|grad lambda|^{-1/2}.
 template <int dim, int p>
-void CellOperator<dim, p>::couple(const Frame<dim>& frame)
+void CellOperator<dim, p>::couple(const SortedCell<dim>& cell)
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int m = S::multiplier;
   constexpr int n = S::facet;
   for (int f = 0; f <= dim; ++f)
   {
-    const double scale = -1 / std::sqrt(frame.grad_norm[f]);
-    const Point<dim> direction = scale * (frame.inverse * frame.grad[f]);
+    const double scale = -1 / std::sqrt(cell.grad_norm[f]);
+    const Point<dim> direction = scale * (cell.inverse * cell.grad[f]);
     Dense<m, n> diagonal;
     std::array<Dense<m, n>, dim> skew;
     for (int k = 0; k < dim; ++k)
@@ -62,7 +62,7 @@ void CellOperator<dim, p>::couple(const Frame<dim>& frame)
       add_multiple(diagonal, direction[k], ref.coupling[k][f]);
       if constexpr (p > 1)
         for (int b = 0; b < dim; ++b)
-          add_multiple(skew[b], scale * frame.inverse(k, b), ref.truncated_coupling[k][f]);
+          add_multiple(skew[b], scale * cell.inverse(k, b), ref.truncated_coupling[k][f]);
     }
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
@@ -70,7 +70,7 @@ void CellOperator<dim, p>::couple(const Frame<dim>& frame)
         {
           double* const target = coupling_.row(a * m + i) + f * facet_stride + b * n;
           for (int j = 0; j < n; ++j)
-            target[j] = frame.grad[f][a] * skew[b](i, j) + (a == b ? diagonal(i, j) : 0);
+            target[j] = cell.grad[f][a] * skew[b](i, j) + (a == b ? diagonal(i, j) : 0);
         }
   }
   solve_transposed<S::u, all_facets>(factor_.data(), factor_.stride, reciprocal_.data(), coupling_.data(),
@@ -80,19 +80,19 @@ void CellOperator<dim, p>::couple(const Frame<dim>& frame)
 /// N N^T - C_L^T C_L / 2 has the blocks (delta_st grad_f.grad_g (E_f E_g^T - E'_f E'_g^T / 2)
 /// + grad_f[t] grad_g[s] E'_f E'_g^T / 2) / (|grad_f| |grad_g|)^{1/2}.
 template <int dim, int p>
-void CellOperator<dim, p>::condense(const Frame<dim>& frame)
+void CellOperator<dim, p>::condense(const SortedCell<dim>& cell)
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int n = S::facet;
   for (int f = 0; f <= dim; ++f)
     for (int g = 0; g <= dim; ++g)
     {
-      const double scale = 1 / std::sqrt(frame.grad_norm[f] * frame.grad_norm[g]);
-      const double product = scale * frame.grad[f].dot(frame.grad[g]);
+      const double scale = 1 / std::sqrt(cell.grad_norm[f] * cell.grad_norm[g]);
+      const double product = scale * cell.grad[f].dot(cell.grad[g]);
       for (int s = 0; s < dim; ++s)
         for (int t = 0; t < dim; ++t)
         {
-          const double skew = scale * frame.grad[f][t] * frame.grad[g][s];
+          const double skew = scale * cell.grad[f][t] * cell.grad[g][s];
           for (int i = 0; i < n; ++i)
           {
             double* const target = schur_.row(f * S::block + s * n + i) + g * facet_stride + t * n;
@@ -117,7 +117,7 @@ auto CellOperator<dim, p>::reduce(const UVector& r_u) const -> UVector
 }
 
 template <int dim, int p>
-void CellOperator<dim, p>::subtract_load(FacetVectors& load, const Frame<dim>& frame, const UVector& r_u,
+void CellOperator<dim, p>::subtract_load(FacetVectors& load, const SortedCell<dim>& cell, const UVector& r_u,
                                          const Tensor<dim>& w) const
 {
   const UVector reduced = reduce(r_u);
@@ -126,7 +126,7 @@ void CellOperator<dim, p>::subtract_load(FacetVectors& load, const Frame<dim>& f
     for (int f = 0; f <= dim; ++f)
     {
       const Point<dim> direction =
-          moment_of_one<dim, p>(frame) / std::sqrt(frame.grad_norm[f]) * (w * frame.grad[f]);
+          moment_of_one<dim, p>(cell) / std::sqrt(cell.grad_norm[f]) * (w * cell.grad[f]);
       for (int s = 0; s < dim; ++s)
         for (int j = 0; j < S::facet; ++j)
           load(f, s * S::facet + j) -= direction[s] * reference<dim, p>().trace[f](j, 0);
@@ -134,7 +134,7 @@ void CellOperator<dim, p>::subtract_load(FacetVectors& load, const Frame<dim>& f
 }
 
 template <int dim, int p>
-auto CellOperator<dim, p>::divergence(const Frame<dim>& frame, const DiscreteStress<dim, p>& sigma) const
+auto CellOperator<dim, p>::divergence(const SortedCell<dim>& cell, const DiscreteStress<dim, p>& sigma) const
     -> UVector
 {
   UVector result;
@@ -146,7 +146,7 @@ auto CellOperator<dim, p>::divergence(const Frame<dim>& frame, const DiscreteStr
       {
         std::array<double, m> row{};  // component k of row r on the reference cell
         for (int c = 0; c < dim; ++c)
-          for (int j = 0; j < m; ++j) row[j] += frame.inverse(k, c) * sigma[(dim * r + c) * m + j];
+          for (int j = 0; j < m; ++j) row[j] += cell.inverse(k, c) * sigma[(dim * r + c) * m + j];
         const auto& derivative = reference<dim, p>().derivative[k];
         for (int i = 0; i < m; ++i)
           for (int j = 0; j < m; ++j) result[r * m + i] += derivative(i, j) * row[j];
@@ -156,7 +156,7 @@ auto CellOperator<dim, p>::divergence(const Frame<dim>& frame, const DiscreteStr
 }
 
 template <int dim, int p>
-StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& frame, const UVector& r_u,
+StressCoefficients<dim, p> CellOperator<dim, p>::correction(const SortedCell<dim>& cell, const UVector& r_u,
                                                             const Tensor<dim>& w,
                                                             const FacetVectors& mu) const
 {
@@ -180,15 +180,15 @@ StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& fr
       Column column;
       subtract_transposed_times<m, Column::stride>(column.data(), ref.derivative[k].data(), Column::stride,
                                                    eta.data() + r * m);
-      for (int c = 0; c < dim; ++c) add(r, c, frame.inverse(k, c), column);
+      for (int c = 0; c < dim; ++c) add(r, c, cell.inverse(k, c), column);
     }
     for (int f = 0; f <= dim; ++f)  // N^T: entry (r, c) gets n_c |grad lambda|^{1/2} E^T mu_r
     {
       Column column;
       subtract_transposed_times<n, Column::stride>(column.data(), ref.trace[f].data(), Column::stride,
                                                    mu.row(f) + r * n);
-      const double scale = -1 / std::sqrt(frame.grad_norm[f]);
-      for (int c = 0; c < dim; ++c) add(r, c, scale * frame.grad[f][c], column);
+      const double scale = -1 / std::sqrt(cell.grad_norm[f]);
+      for (int c = 0; c < dim; ++c) add(r, c, scale * cell.grad[f][c], column);
     }
   }
   for (const auto& [r, c] : skew_pairs<dim>)
@@ -201,7 +201,7 @@ StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& fr
     }
     if constexpr (p == 1)
     {
-      const double moment = w(r, c) * moment_of_one<dim, p>(frame);
+      const double moment = w(r, c) * moment_of_one<dim, p>(cell);
       result[(dim * r + c) * S::stress] += moment;
       result[(dim * c + r) * S::stress] -= moment;
     }
@@ -210,12 +210,12 @@ StressCoefficients<dim, p> CellOperator<dim, p>::correction(const Frame<dim>& fr
 }
 
 template <int dim, int p>
-DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const problem::Material& material,
+DiscreteStress<dim, p> discrete_stress(const SortedCell<dim>& cell, const problem::Material& material,
                                        std::span<const Index> nodes, std::span<const double> u)
 {
   using S = Sizes<dim, p>;
   const Reference<dim, p>& ref = reference<dim, p>();
-  const auto& nodal = ref.nodal_derivative[permutation_number(frame.local)];
+  const auto& nodal = ref.nodal_derivative[permutation_number(cell.local)];
   std::array<std::array<DenseVector<S::multiplier>, dim>, dim> gradient;  // minus d_k u_a: [k][a]
   for (int a = 0; a < dim; ++a)
   {
@@ -226,13 +226,13 @@ DiscreteStress<dim, p> discrete_stress(const Frame<dim>& frame, const problem::M
                                                                   nodal[k].stride, values.data());
   }
   DiscreteStress<dim, p> result;
-  const double scale = -std::sqrt(frame.det);  // basis functions on the cell are chi / sqrt(det)
+  const double scale = -std::sqrt(cell.det);  // basis functions on the cell are chi / sqrt(det)
   for (int j = 0; j < S::multiplier; ++j)
   {
     Tensor<dim> hat;
     for (int k = 0; k < dim; ++k)
       for (int a = 0; a < dim; ++a) hat(a, k) = scale * gradient[k][a][j];
-    const Tensor<dim> stress = contact::sigma<dim>(material, hat * frame.inverse);
+    const Tensor<dim> stress = contact::sigma<dim>(material, hat * cell.inverse);
     for (int r = 0; r < dim; ++r)
       for (int c = 0; c < dim; ++c) result[(dim * r + c) * S::multiplier + j] = stress(r, c);
   }

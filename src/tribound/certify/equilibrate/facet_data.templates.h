@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tribound/certify/equilibrate/frame.h"
+#include "tribound/certify/equilibrate/sorted_cell.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
@@ -28,9 +28,9 @@ class FacetMoments
 
   FacetMoments(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
   {
-    const Frame<dim> frame = make_frame(mesh, facet.cell);
+    const SortedCell<dim> sorted = make_sorted_cell(mesh, facet.cell);
     for (int i = 0, n = 0; i <= dim; ++i)
-      if (frame.local[i] != facet.local) order_[n++] = frame.local[i] - (frame.local[i] > facet.local);
+      if (sorted.local[i] != facet.local) order_[n++] = sorted.local[i] - (sorted.local[i] > facet.local);
     scale_ = 1 / std::sqrt(mesh::facet_geometry(mesh, facet.cell, facet.local).det());
   }
 

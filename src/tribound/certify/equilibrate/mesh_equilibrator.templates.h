@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "tribound/base/parallel.h"
-#include "tribound/certify/equilibrate/cell_window.h"
+#include "tribound/certify/equilibrate/cell_cache.h"
 #include "tribound/certify/equilibrate/patch.h"
-#include "tribound/certify/equilibrate/vertex_stretches.h"
+#include "tribound/certify/equilibrate/vertex_partition.h"
 
 namespace tribound::certify
 {
@@ -25,45 +25,45 @@ namespace detail
 {
 
 /// The stress of one iterate. The patches write their shares into the cells, and a cell with all of them
-/// gives its stress. Every thread has a stretch of the vertices; cells with vertices in several of them come
-/// last. `with_dis`: the stretches has all vertices; otherwise those on Gamma_C, which give sigma_lin.
+/// gives its stress. Every thread has a part of the vertices; cells with vertices in several of them come
+/// last. `with_dis`: the partition has all vertices; otherwise those on Gamma_C, which give sigma_lin.
 template <int dim, int p>
 class Equilibration
 {
  public:
   Equilibration(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<dim, p>& source,
-                const VertexStretches& stretches, bool with_dis)
+                const VertexPartition& partition, bool with_dis)
       : mesh_(mesh),
         data_(data),
         source_(source),
-        stretches_(stretches),
+        partition_(partition),
         with_dis_(with_dis),
-        shares_(stretches.shared_cells.size(), Shares(data.n_parts()))
+        shares_(partition.shared_cells.size(), Shares(data.n_parts()))
   {
   }
 
   Stress<dim> run()
   {
     prepare_stress();
-    in_threads(stretches_.size(), [&](int stretch) { solve_patches(stretch); });
-    in_threads(stretches_.size(), [&](int stretch) { recover_shared_cells(stretch); });
+    in_threads(partition_.size(), [&](int part) { solve_patches(part); });
+    in_threads(partition_.size(), [&](int part) { recover_shared_cells(part); });
     return std::move(stress_);
   }
 
  private:
   using S = Sizes<dim, p>;
-  using Window = CellWindow<dim, p>;
+  using Cache = CellCache<dim, p>;
   using Shares = CellShares<dim, p>;
 
   void prepare_stress();
-  void solve_patches(int stretch);
-  void recover_shared_cells(int stretch);
+  void solve_patches(int part);
+  void recover_shared_cells(int part);
   void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
 
   const mesh::Mesh<dim>& mesh_;
   const FacetData<dim, p>& data_;
   const CellSource<dim, p>& source_;
-  const VertexStretches& stretches_;
+  const VertexPartition& partition_;
   const bool with_dis_;
   Stress<dim> stress_;
   std::vector<Shares> shares_;  ///< of the shared cells
@@ -85,45 +85,44 @@ void Equilibration<dim, p>::prepare_stress()
 }
 
 template <int dim, int p>
-void Equilibration<dim, p>::solve_patches(int stretch)
+void Equilibration<dim, p>::solve_patches(int part)
 {
   const mesh::Topology<dim>& topology = mesh_.topology();
-  const auto in_stretch = [&](Index v) { return stretches_.stretch[v] == stretch; };
-  Window window(source_, data_.n_parts());
+  const auto in_part = [&](Index v) { return partition_.part[v] == part; };
+  Cache cache(source_, data_.n_parts());
   Patch<dim, p> patch(mesh_, data_);
-  for (std::size_t i = stretches_.begin[stretch]; i < stretches_.begin[stretch + 1]; ++i)
+  for (std::size_t i = partition_.begin[part]; i < partition_.begin[part + 1]; ++i)
   {
-    const Index v = stretches_.order[i];
+    const Index v = partition_.order[i];
     const auto begin = topology.vertex_cells_begin[v];
     const auto cells =
         std::span(topology.vertex_cells).subspan(begin, topology.vertex_cells_begin[v + 1] - begin);
     patch.begin(v);
     for (const Index c : cells)
     {
-      auto& slot = window.get(c);
-      if (slot.waiting == 0)
-        slot.waiting = static_cast<int>(std::ranges::count_if(mesh_.cell(c), in_stretch));
-      const int shared = stretches_.shared_place[c];
+      auto& slot = cache.get(c);
+      if (slot.waiting == 0) slot.waiting = static_cast<int>(std::ranges::count_if(mesh_.cell(c), in_part));
+      const int shared = partition_.shared_index[c];
       Shares& shares = shared < 0 ? slot.shares : shares_[shared];
-      patch.add_cell(c, slot.cell, shares[slot.cell.frame.find(v)]);
+      patch.add_cell(c, slot.cell, shares[slot.cell.sorted.find(v)]);
     }
     patch.solve();
     for (const Index c : cells)
     {
-      auto& slot = window.get(c);
+      auto& slot = cache.get(c);
       if (--slot.waiting > 0) continue;
-      if (stretches_.shared_place[c] < 0) recover(c, slot.cell, slot.shares);
-      window.forget(c);
+      if (partition_.shared_index[c] < 0) recover(c, slot.cell, slot.shares);
+      cache.forget(c);
     }
   }
 }
 
 template <int dim, int p>
-void Equilibration<dim, p>::recover_shared_cells(int stretch)
+void Equilibration<dim, p>::recover_shared_cells(int part)
 {
-  const std::vector<Index>& cells = stretches_.shared_cells;
+  const std::vector<Index>& cells = partition_.shared_cells;
   const auto prepared = std::make_unique<PreparedCell<dim, p>>();
-  for (std::size_t i = stretch; i < cells.size(); i += stretches_.size())
+  for (std::size_t i = part; i < cells.size(); i += partition_.size())
   {
     source_.prepare(cells[i], *prepared, false);
     recover(cells[i], *prepared, shares_[i]);
@@ -135,7 +134,7 @@ template <int dim, int p>
 void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares)
 {
   constexpr int m = S::multiplier;
-  const Frame<dim>& frame = prepared.frame;
+  const SortedCell<dim>& sorted = prepared.sorted;
   const std::size_t size = stress_.block_size();
   for (int problem = with_dis_ ? 0 : 1; problem < (with_dis_ ? data_.n_parts() : 2); ++problem)
   {
@@ -147,18 +146,18 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
     for (int a = 0; a <= dim; ++a)
     {
       if (problem == 0) add_multiple(r_u, 1, prepared.body[a]);
-      if (problem > 0 && !data_.on_contact(frame.vertices[a])) continue;
+      if (problem > 0 && !data_.on_contact(sorted.vertices[a])) continue;
       const CellShare<dim, p>& share = shares[a][problem];
       add_moments(r_u, prepared, a, share.y, problem == 0 ? 1 : -1);
       w += share.w;
       add_multiple(mu, 1, share.mu);
     }
-    StressCoefficients<dim, p> sigma = prepared.op->correction(frame, r_u, w, mu);
+    StressCoefficients<dim, p> sigma = prepared.op->correction(sorted, r_u, w, mu);
     if (problem == 0)
       for (int entry = 0; entry < dim * dim; ++entry)
         for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
-    std::vector<double>& part = problem == 0 ? stress_.dis : problem == 1 ? stress_.lin : stress_.reg;
-    std::ranges::copy(sigma, &part[(problem == 0 ? cell : stress_.lin_place[cell]) * size]);
+    std::vector<double>& values = problem == 0 ? stress_.dis : problem == 1 ? stress_.lin : stress_.reg;
+    std::ranges::copy(sigma, &values[(problem == 0 ? cell : stress_.lin_place[cell]) * size]);
   }
 }
 
@@ -180,16 +179,16 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
                   bool with_dis) override
   {
     const FacetData<dim, p> data(form_, u, t, delta);
-    std::optional<VertexStretches>& stretches = with_dis ? all_ : on_contact_;
-    if (!stretches)
+    std::optional<VertexPartition>& partition = with_dis ? all_ : on_contact_;
+    if (!partition)
     {
       std::vector<Index> vertices;
       for (Index v = 0; v < mesh_.n_vertices(); ++v)
         if (with_dis || data.on_contact(v)) vertices.push_back(v);
-      stretches = stretches_of(mesh_, std::span<const Index>(vertices), n_threads_);
+      partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
     const CellSource<dim, p> source{form_, u, body_, shapes_};
-    return Equilibration<dim, p>(mesh_, data, source, *stretches, with_dis).run();
+    return Equilibration<dim, p>(mesh_, data, source, *partition, with_dis).run();
   }
 
  private:
@@ -198,8 +197,8 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
   int n_threads_;
   BodyMoments<dim, p> body_;
   RepeatedShapes<dim, p> shapes_;
-  std::optional<VertexStretches> all_;         ///< of all vertices
-  std::optional<VertexStretches> on_contact_;  ///< of those on Gamma_C
+  std::optional<VertexPartition> all_;         ///< of all vertices
+  std::optional<VertexPartition> on_contact_;  ///< of those on Gamma_C
 };
 
 }  // namespace detail

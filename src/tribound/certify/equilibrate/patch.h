@@ -44,7 +44,7 @@ class Patch
 
   struct CellPart
   {
-    int vertex;                       ///< the patch's vertex in the frame of the cell: also its outer facet
+    int vertex;                       ///< the patch's vertex in the sorted cell: also its outer facet
     std::array<int, dim + 1> facets;  ///< place in `facets_`, -1 for the outer one
     const PreparedCell<dim, p>* prepared;
     std::span<CellShare<dim, p>> shares;

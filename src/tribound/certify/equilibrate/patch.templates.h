@@ -28,11 +28,11 @@ template <int dim, int p>
 void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
                              std::span<CellShare<dim, p>> shares)
 {
-  const Frame<dim>& frame = prepared.frame;
+  const SortedCell<dim>& sorted = prepared.sorted;
   if (n_cells_ == static_cast<int>(cells_.size()))
     cells_.push_back({0, {}, nullptr, shares, nullptr, {}, {}});
   CellPart& part = cells_[n_cells_++];
-  part.vertex = frame.find(vertex_);
+  part.vertex = sorted.find(vertex_);
   part.prepared = &prepared;
   part.shares = shares;
   const auto& numbers = mesh_.topology().cell_facets[cell];
@@ -40,12 +40,12 @@ void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
   {
     part.facets[f] = -1;
     if (f == part.vertex) continue;
-    const Index facet = numbers[frame.local[f]];
+    const Index facet = numbers[sorted.local[f]];
     const auto known = std::ranges::find(found_, facet, &PatchFacet::number);
     part.facets[f] = static_cast<int>(known - found_.begin());
-    if (known == found_.end()) found_.push_back({facet, frame.facet_scale(f)});
+    if (known == found_.end()) found_.push_back({facet, sorted.facet_scale(f)});
   }
-  size_ = std::max(size_, 1 / frame.grad_norm[part.vertex]);  // the height of the cell above the vertex
+  size_ = std::max(size_, 1 / sorted.grad_norm[part.vertex]);  // the height of the cell above the vertex
 }
 
 template <int dim, int p>
@@ -67,7 +67,7 @@ template <int dim, int p>
 SolveError Patch<dim, p>::failure() const
 {
   double flattest = 0;
-  for (int k = 0; k < n_cells_; ++k) flattest = std::max(flattest, slenderness(cells_[k].prepared->frame));
+  for (int k = 0; k < n_cells_; ++k) flattest = std::max(flattest, slenderness(cells_[k].prepared->sorted));
   return no_equilibrated_stress<dim>(mesh_.vertex(vertex_), flattest);
 }
 
@@ -149,7 +149,7 @@ void Patch<dim, p>::condense(CellPart& part)
   const PreparedCell<dim, p>& cell = *part.prepared;
   const int o = part.vertex;
   part.outer = cell.shape ? &cell.shape->outer[o] : &part.own_outer;
-  if (!cell.shape) part.own_outer.factor(*cell.op, cell.frame, o);
+  if (!cell.shape) part.own_outer.factor(*cell.op, cell.sorted, o);
   for (int f = 0; f <= dim; ++f)
     for (int g = 0; g <= dim; ++g)
     {
@@ -171,7 +171,7 @@ void Patch<dim, p>::assemble_load(CellPart& part, int problem)
   constexpr int m = S::multiplier;
   constexpr int n = S::facet;
   const PreparedCell<dim, p>& cell = *part.prepared;
-  const Frame<dim>& frame = cell.frame;
+  const SortedCell<dim>& sorted = cell.sorted;
   const Reference<dim, p>& ref = reference<dim, p>();
   const int o = part.vertex;
   UVector r_u;
@@ -187,14 +187,14 @@ void Patch<dim, p>::assemble_load(CellPart& part, int problem)
       {
         std::array<double, m> normal{};
         for (int c = 0; c < dim; ++c)
-          for (int j = 0; j < m; ++j) normal[j] -= frame.grad[f][c] * cell.sigma[(dim * r + c) * m + j];
-        const double scale = 1 / std::sqrt(frame.grad_norm[f]);
+          for (int j = 0; j < m; ++j) normal[j] -= sorted.grad[f][c] * cell.sigma[(dim * r + c) * m + j];
+        const double scale = 1 / std::sqrt(sorted.grad_norm[f]);
         for (int i = 0; i < n; ++i)
           for (int j = 0; j < m; ++j) load(f, r * n + i) += scale * ref.hat_trace[f][o](i, j) * normal[j];
       }
   }
   add_moments(r_u, cell, o, y_[problem], problem == 0 ? 1 : -1);
-  cell.op->subtract_load(load, frame, r_u, w_[problem]);
+  cell.op->subtract_load(load, sorted, r_u, w_[problem]);
 
   FacetVector& outer = part.outer_load[problem];
   std::copy_n(load.row(o), FacetVector::stride, outer.data());

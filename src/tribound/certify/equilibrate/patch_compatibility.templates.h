@@ -37,7 +37,7 @@ auto Patch<dim, p>::raw_load(const CellPart& part) const -> UVector
 {
   constexpr int m = S::multiplier;
   const PreparedCell<dim, p>& cell = *part.prepared;
-  const Point<dim>& gradient = cell.frame.grad[part.vertex];
+  const Point<dim>& gradient = cell.sorted.grad[part.vertex];
   UVector load;
   for (int r = 0; r < dim; ++r)
     for (int j = 0; j < m; ++j)
@@ -57,7 +57,7 @@ auto Patch<dim, p>::integrate() const -> Moments
   {
     const PreparedCell<dim, p>& cell = *cells_[k].prepared;
     const UVector load = raw_load(cells_[k]);
-    const Point<dim> edge = edge_to(cell.frame, cells_[k].vertex);
+    const Point<dim> edge = edge_to(cell.sorted, cells_[k].vertex);
     auto x = cell.coordinates;
     for (int d = 0; d < dim; ++d) x[d][0] -= edge[d] * cell.one;
     sum.volume += cell.one * cell.one;

@@ -20,7 +20,7 @@ struct PreparedCell
   using S = Sizes<dim, p>;
   using UVector = DenseVector<S::u>;
 
-  Frame<dim> frame;
+  SortedCell<dim> sorted;
   const RepeatedShape<dim, p>* shape;  ///< null if the cell's shape does not come often
   const CellOperator<dim, p>* op;      ///< of the shape, or `own`
   std::unique_ptr<CellOperator<dim, p>> own;
@@ -65,27 +65,27 @@ class CellShares
   std::vector<CellShare<dim, p>> shares_;
 };
 
-/// Fills in `one` and `coordinates`; the frame is known.
+/// Fills in `one` and `coordinates`; `sorted` is known.
 template <int dim, int p>
 void find_moments(PreparedCell<dim, p>& cell)
 {
   const auto& hat = reference<dim, p>().hat_moment;
-  cell.one = moment_of_one<dim, p>(cell.frame);
-  const double scale = std::sqrt(cell.frame.det);
+  cell.one = moment_of_one<dim, p>(cell.sorted);
+  const double scale = std::sqrt(cell.sorted.det);
   for (int d = 0; d < dim; ++d)
     for (int j = 0; j < Sizes<dim, p>::affine; ++j)
     {
       cell.coordinates[d][j] = 0;
       for (int v = 1; v <= dim; ++v)
-        cell.coordinates[d][j] += scale * cell.frame.jacobian(d, v - 1) * hat(j, v);
+        cell.coordinates[d][j] += scale * cell.sorted.jacobian(d, v - 1) * hat(j, v);
     }
 }
 
 /// Position of vertex a relative to vertex 0.
 template <int dim>
-[[nodiscard]] Point<dim> edge_to(const Frame<dim>& frame, int a)
+[[nodiscard]] Point<dim> edge_to(const SortedCell<dim>& sorted, int a)
 {
-  return a == 0 ? Point<dim>(Point<dim>::Zero()) : Point<dim>(frame.jacobian.col(a - 1));
+  return a == 0 ? Point<dim>(Point<dim>::Zero()) : Point<dim>(sorted.jacobian.col(a - 1));
 }
 
 /// moments += factor * those of the field about vertex a (for p = 1 of its mean).
@@ -94,7 +94,7 @@ void add_moments(DenseVector<Sizes<dim, p>::u>& moments, const PreparedCell<dim,
                  const RigidField<dim>& field, double factor)
 {
   constexpr int m = Sizes<dim, p>::multiplier;
-  const Point<dim> at_origin = field.translation - field.gradient * edge_to(cell.frame, a);
+  const Point<dim> at_origin = field.translation - field.gradient * edge_to(cell.sorted, a);
   for (int c = 0; c < dim; ++c)
   {
     moments[c * m] += factor * at_origin[c] * cell.one;

@@ -59,8 +59,8 @@ struct Reference
   Dense<S::multiplier, dim + 1> hat_moment;   ///< (lambda_a, chi_i); chi_i beyond P^1: 0
   Dense<S::facet, dim> facet_hat_moment;      ///< (lambda_v, theta_i)_F, v-th vertex of F
   /// Coefficients of d_k of the Lagrange basis function of node j in chi, the cell's vertices being permuted:
-  /// nodal_derivative[permutation_number(frame.local)][k], rows in the order of LagrangeBasis of the unsorted
-  /// cell.
+  /// nodal_derivative[permutation_number(SortedCell::local)][k], rows in the order of LagrangeBasis of the
+  /// unsorted cell.
   std::vector<std::array<Dense<S::stress, S::multiplier>, dim>> nodal_derivative;
 
   Reference();

@@ -28,12 +28,12 @@ struct OuterElimination
   std::array<double, S::block> reciprocal;  ///< of the diagonal of U(o, o)
 
   /// Throws SolveError for a cell that is too flat.
-  void factor(const Operator& op, const Frame<dim>& frame, int o)
+  void factor(const Operator& op, const SortedCell<dim>& cell, int o)
   {
     std::copy_n(op.schur(o), S::block * row, rows.data());
     double* const pivot = rows.data() + o * stride;
     if (!cholesky<S::block>(pivot, row, reciprocal.data()))
-      throw no_equilibrated_stress<dim>(frame.origin, slenderness(frame));
+      throw no_equilibrated_stress<dim>(cell.origin, slenderness(cell));
     for (int f = 0; f <= dim; ++f)
       if (f != o)
         solve_transposed<S::block, stride>(pivot, row, reciprocal.data(), rows.data() + f * stride, row);
@@ -56,13 +56,13 @@ struct RepeatedShape
 {
   using S = Sizes<dim, p>;
 
-  explicit RepeatedShape(const Frame<dim>& frame)
+  explicit RepeatedShape(const SortedCell<dim>& cell)
   {
-    op.build(frame);
-    op.condense(frame);
+    op.build(cell);
+    op.condense(cell);
     for (int o = 0; o <= dim; ++o)
     {
-      outer[o].factor(op, frame, o);
+      outer[o].factor(op, cell, o);
       for (int f = 0; f <= dim; ++f)
         for (int g = 0; g <= dim; ++g)
           if (f != o && g != o) outer[o].add_block(op, f, g, reduced[o][f][g]);
@@ -101,7 +101,7 @@ class RepeatedShapes
     {
       if (classes.count[i] < often) continue;
       kept[i] = static_cast<int>(shapes_.size());
-      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(make_frame(mesh, classes.first[i])));
+      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(make_sorted_cell(mesh, classes.first[i])));
     }
     number_ = std::move(classes.number);
     for (int& number : number_)

@@ -13,8 +13,8 @@ namespace tribound::certify
 
 /// sigma_h = sigma_dis + sigma_lin (+ sigma_reg, method section 7). On each cell, entry (r, c) has
 /// coefficients in the orthonormal basis of P^p(T), phi_j(xhat) / sqrt(det J) with the cell's vertices in
-/// ascending order (certify/equilibrate/frame.h); they are stored entry by entry: place (dim * r + c) * n +
-/// j. Norms are sums of squares, projections truncations.
+/// ascending order (certify/equilibrate/sorted_cell.h); they are stored entry by entry: place (dim * r + c) *
+/// n + j. Norms are sums of squares, projections truncations.
 template <int dim>
 struct Stress
 {

@@ -10,16 +10,16 @@ namespace tribound::certify
 {
 
 template <int dim>
-double slenderness(const Frame<dim>& frame)
+double slenderness(const SortedCell<dim>& cell)
 {
   double longest = 0;
   for (int j = 0; j < dim; ++j)
   {
-    longest = std::max(longest, frame.jacobian.col(j).norm());
+    longest = std::max(longest, cell.jacobian.col(j).norm());
     for (int i = 0; i < j; ++i)
-      longest = std::max(longest, (frame.jacobian.col(j) - frame.jacobian.col(i)).norm());
+      longest = std::max(longest, (cell.jacobian.col(j) - cell.jacobian.col(i)).norm());
   }
-  return longest * *std::ranges::max_element(frame.grad_norm);  // 1 / |grad lambda_i|: height over facet i
+  return longest * *std::ranges::max_element(cell.grad_norm);  // 1 / |grad lambda_i|: height over facet i
 }
 
 template <int dim>
@@ -34,8 +34,8 @@ SolveError no_equilibrated_stress(const Point<dim>& place, double slenderness)
   return SolveError(fmt::format("there is no equilibrated stress at {}: {}", mesh::describe(place), why));
 }
 
-template double slenderness<2>(const Frame<2>&);
-template double slenderness<3>(const Frame<3>&);
+template double slenderness<2>(const SortedCell<2>&);
+template double slenderness<3>(const SortedCell<3>&);
 template SolveError no_equilibrated_stress<2>(const Point<2>&, double);
 template SolveError no_equilibrated_stress<3>(const Point<3>&, double);
 

@@ -4,14 +4,14 @@
 /// The message where rounding leaves no equilibrated stress.
 
 #include "tribound/base/error.h"
-#include "tribound/certify/equilibrate/frame.h"
+#include "tribound/certify/equilibrate/sorted_cell.h"
 
 namespace tribound::certify
 {
 
 /// The longest edge over the smallest height.
 template <int dim>
-[[nodiscard]] double slenderness(const Frame<dim>& frame);
+[[nodiscard]] double slenderness(const SortedCell<dim>& cell);
 
 /// What to throw where a matrix that should be positive definite is not: the place, and why.
 template <int dim>

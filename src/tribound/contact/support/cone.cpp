@@ -57,7 +57,7 @@ void solve_on_active_set(const Eigen::MatrixXd& columns, const Eigen::VectorXd& 
 
 }  // namespace
 
-Eigen::VectorXd remainder_outside_cone(const Eigen::MatrixXd& columns, const Eigen::VectorXd& b)
+Eigen::VectorXd project_on_polar_cone(const Eigen::MatrixXd& columns, const Eigen::VectorXd& b)
 {
   assert(columns.rows() == b.size());
   constexpr int max_exchanges = 300;       // some 10 are the rule

@@ -271,7 +271,7 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
   target << loads, one;
   for (int i = 0; i < max_points; ++i)
   {
-    const Eigen::VectorXd r = remainder_outside_cone(columns, target).head(m);
+    const Eigen::VectorXd r = project_on_polar_cone(columns, target).head(m);
     if (r.norm() <= tolerance) return {};
     const FrictionWork friction = strength_work(motions, r, data_.facet_rule());
     const double driving = r.dot(loads) - missed_work(motions * r);
@@ -309,13 +309,13 @@ void BodyCheck<dim>::check_balanced(const Coefficients<dim>& work, double round_
   if (motions.cols() == 0 || c.norm() <= round_off) return;
 
   const double tolerance = relative * c.norm() + round_off;
-  const Eigen::VectorXd lifted = remainder_outside_cone(contact_cone(motions, ConeFriction::unlimited), c);
-  // The work of the loads in a remainder r is |r|^2.
+  const Eigen::VectorXd lifted = project_on_polar_cone(contact_cone(motions, ConeFriction::unlimited), c);
+  // The work of the loads in a projection r on the polar cone is |r|^2.
   const auto is_free = [&](const Eigen::VectorXd& r)
   { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
   if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
 
-  const Eigen::VectorXd slipped = remainder_outside_cone(contact_cone(motions, ConeFriction::strong), c);
+  const Eigen::VectorXd slipped = project_on_polar_cone(contact_cone(motions, ConeFriction::strong), c);
   if (is_free(slipped))
   {
     // Motions that slide along all of the contact boundary, and the one in which the loads do most work.

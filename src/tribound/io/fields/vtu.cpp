@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "tribound/base/error.h"
-#include "tribound/certify/equilibrate/frame_table.h"
+#include "tribound/certify/equilibrate/stress_tabulation.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/io/fields/vtk_nodes.h"
 #include "tribound/io/file/atomic_file.h"
@@ -195,7 +195,7 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
                                            const certify::Stress<dim>& stress)
 {
   const auto table =
-      std::make_shared<const certify::FrameTable<dim>>(stress.degree, space.basis().node_points());
+      std::make_shared<const certify::StressTabulation<dim>>(stress.degree, space.basis().node_points());
   const auto block = std::make_shared<std::vector<double>>(stress.block_size());
   const auto entries =
       std::make_shared<std::vector<double>>(static_cast<std::size_t>(dim) * dim * table->n_points());
@@ -205,7 +205,7 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
             std::ranges::copy(stress.dis_in(cell), block->begin());
             for (const std::span<const double> part : {stress.lin_in(cell), stress.reg_in(cell)})
               for (std::size_t i = 0; i < part.size(); ++i) (*block)[i] += part[i];
-            table->evaluate(certify::make_frame(space.mesh(), cell), *block, *entries);
+            table->evaluate(certify::make_sorted_cell(space.mesh(), cell), *block, *entries);
             for (int i = 0; i < table->n_points(); ++i)
               for (int r = 0; r < dim; ++r)
                 for (int c = 0; c < dim; ++c)

@@ -1,4 +1,4 @@
-#include "tribound/certify/equilibrate/frame_table.h"
+#include "tribound/certify/equilibrate/stress_tabulation.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@ namespace tribound::certify
 {
 
 template <int dim>
-FrameTable<dim>::FrameTable(int degree, std::span<const Point<dim>> points)
+StressTabulation<dim>::StressTabulation(int degree, std::span<const Point<dim>> points)
     : n_points_(static_cast<int>(points.size())), n_(fem::polynomial_dimension(dim, degree))
 {
   std::array<int, dim + 1> local;
@@ -21,20 +21,20 @@ FrameTable<dim>::FrameTable(int degree, std::span<const Point<dim>> points)
     std::vector<double>& values = basis_.emplace_back(static_cast<std::size_t>(n_) * n_points_);
     for (int q = 0; q < n_points_; ++q)
     {
-      fem::orthonormal_values<dim>(degree, in_frame<dim>(local, points[q]), at_point);
+      fem::orthonormal_values<dim>(degree, to_sorted_cell<dim>(local, points[q]), at_point);
       for (int j = 0; j < n_; ++j) values[j * n_points_ + q] = at_point[j];
     }
   } while (std::next_permutation(local.begin(), local.end()));
 }
 
 template <int dim>
-void FrameTable<dim>::evaluate(const Frame<dim>& frame, std::span<const double> block,
-                               std::span<double> values) const
+void StressTabulation<dim>::evaluate(const SortedCell<dim>& cell, std::span<const double> block,
+                                     std::span<double> values) const
 {
   std::ranges::fill(values, 0);
   if (block.empty()) return;
-  const std::vector<double>& basis = basis_[permutation_number(frame.local)];
-  const double scale = 1 / std::sqrt(frame.det);
+  const std::vector<double>& basis = basis_[permutation_number(cell.local)];
+  const double scale = 1 / std::sqrt(cell.det);
   for (int e = 0; e < dim * dim; ++e)
   {
     double* const entry = &values[e * n_points_];
@@ -47,7 +47,7 @@ void FrameTable<dim>::evaluate(const Frame<dim>& frame, std::span<const double> 
   }
 }
 
-template class FrameTable<2>;
-template class FrameTable<3>;
+template class StressTabulation<2>;
+template class StressTabulation<3>;
 
 }  // namespace tribound::certify

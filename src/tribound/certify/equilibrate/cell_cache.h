@@ -1,7 +1,7 @@
 #pragma once
 
-/// @file cell_window.h
-/// The cells that a stretch of vertices needs, with their data.
+/// @file cell_cache.h
+/// The cells that a part of the vertices needs, with their data.
 
 #include <array>
 #include <memory>
@@ -28,20 +28,20 @@ class BodyMoments
     const mesh::Mesh<dim>& mesh = form.space().mesh();
     const fem::Quadrature<dim>& rule = form.data().cell_rule();
     std::vector<Point<dim>> f(rule.size());
-    std::vector<Table> tables;  // by permutation_number(frame.local), filled when first needed
+    std::vector<Table> tables;  // by permutation_number(sorted.local), filled when first needed
     for (Index c = 0; c < mesh.n_cells(); ++c)
     {
       if (!form.data().has_body_force(c)) continue;
       if (moments_.empty()) moments_.resize(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1));
-      const Frame<dim> frame = make_frame(mesh, c);
-      const auto number = static_cast<std::size_t>(permutation_number(frame.local));
+      const SortedCell<dim> sorted = make_sorted_cell(mesh, c);
+      const auto number = static_cast<std::size_t>(permutation_number(sorted.local));
       if (number >= tables.size()) tables.resize(number + 1);
-      if (tables[number].points.empty()) tables[number] = Table(rule, frame.local);
+      if (tables[number].points.empty()) tables[number] = Table(rule, sorted.local);
       const auto& [points, chi] = tables[number];
       form.data().body_force(c, f);
       for (int q = 0; q < rule.size(); ++q)
         add(&moments_[static_cast<std::size_t>(c) * (dim + 1)], points[q],
-            rule.weights[q] * std::sqrt(frame.det) * f[q], &chi[m * q]);
+            rule.weights[q] * std::sqrt(sorted.det) * f[q], &chi[m * q]);
     }
   }
 
@@ -53,7 +53,7 @@ class BodyMoments
  private:
   static constexpr int m = Sizes<dim, p>::multiplier;
 
-  /// The points in the order of the cell's own numbering, in which f is given, in the coordinates of a frame,
+  /// The points in the order of the cell's own numbering, in which f is given, in those of the sorted cell,
   /// and the basis of P^{p-1} there.
   struct Table
   {
@@ -62,7 +62,7 @@ class BodyMoments
     {
       for (int q = 0; q < rule.size(); ++q)
       {
-        points.push_back(in_frame<dim>(local, rule.points[q]));
+        points.push_back(to_sorted_cell<dim>(local, rule.points[q]));
         fem::orthonormal_values<dim>(p - 1, points[q], std::span(chi).subspan(m * q, m));
       }
     }
@@ -97,11 +97,11 @@ struct CellSource
   void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
   {
     const fem::LagrangeSpace<dim>& space = form.space();
-    cell.frame = make_frame(space.mesh(), c);
+    cell.sorted = make_sorted_cell(space.mesh(), c);
     find_operator(c, cell, for_patches);
-    cell.sigma = discrete_stress<dim, p>(cell.frame, form.problem().material(space.mesh().region(c)),
+    cell.sigma = discrete_stress<dim, p>(cell.sorted, form.problem().material(space.mesh().region(c)),
                                          space.cell_nodes(c), u);
-    cell.divergence = cell.op->divergence(cell.frame, cell.sigma);
+    cell.divergence = cell.op->divergence(cell.sorted, cell.sigma);
     for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
     find_moments(cell);
   }
@@ -112,16 +112,16 @@ struct CellSource
     cell.op = cell.shape ? &cell.shape->op : nullptr;
     if (cell.shape) return;
     if (!cell.own) cell.own = std::make_unique<CellOperator<dim, p>>();
-    cell.own->build(cell.frame);
-    if (for_patches) cell.own->condense(cell.frame);
+    cell.own->build(cell.sorted);
+    if (for_patches) cell.own->condense(cell.sorted);
     cell.op = cell.own.get();
   }
 };
 
-/// The cells that a stretch of vertices needs: prepared when first asked for, forgotten when the caller has
+/// The cells that a part of the vertices needs: prepared when first asked for, forgotten when the caller has
 /// done with them.
 template <int dim, int p>
-class CellWindow
+class CellCache
 {
  public:
   struct Slot
@@ -130,26 +130,26 @@ class CellWindow
 
     PreparedCell<dim, p> cell;
     CellShares<dim, p> shares;
-    int waiting = 0;  ///< vertices of the stretch that still need the cell; 0 when it is new
+    int waiting = 0;  ///< vertices of the part that still need the cell; 0 when it is new
   };
 
   /// For stresses of n_parts parts.
-  CellWindow(const CellSource<dim, p>& source, int n_parts)
-      : source_(source), n_parts_(n_parts), place_(source.form.space().mesh().n_cells(), -1)
+  CellCache(const CellSource<dim, p>& source, int n_parts)
+      : source_(source), n_parts_(n_parts), slot_(source.form.space().mesh().n_cells(), -1)
   {
   }
 
   Slot& get(Index cell)
   {
-    if (place_[cell] >= 0) return *pool_[place_[cell]];
+    if (slot_[cell] >= 0) return *pool_[slot_[cell]];
     if (free_.empty())
     {
       free_.push_back(static_cast<int>(pool_.size()));
       pool_.push_back(std::make_unique<Slot>(n_parts_));
     }
-    place_[cell] = free_.back();
+    slot_[cell] = free_.back();
     free_.pop_back();
-    Slot& slot = *pool_[place_[cell]];
+    Slot& slot = *pool_[slot_[cell]];
     source_.prepare(cell, slot.cell, true);
     slot.waiting = 0;
     return slot;
@@ -157,14 +157,14 @@ class CellWindow
 
   void forget(Index cell)
   {
-    free_.push_back(place_[cell]);
-    place_[cell] = -1;
+    free_.push_back(slot_[cell]);
+    slot_[cell] = -1;
   }
 
  private:
   const CellSource<dim, p>& source_;
   int n_parts_;
-  std::vector<int> place_;  ///< per cell: place in pool_, or -1
+  std::vector<int> slot_;  ///< per cell: index in pool_, or -1
   std::vector<std::unique_ptr<Slot>> pool_;
   std::vector<int> free_;
 };

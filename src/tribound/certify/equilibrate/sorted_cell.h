@@ -1,6 +1,6 @@
 #pragma once
 
-/// @file frame.h
+/// @file sorted_cell.h
 /// A cell seen with its vertices in ascending global order. Two cells that share a facet then run through its
 /// vertices in the same order, so that polynomials on the facet need no reorientation.
 
@@ -14,7 +14,7 @@ namespace tribound::certify
 {
 
 template <int dim>
-struct Frame
+struct SortedCell
 {
   mesh::Cell<dim> vertices;               ///< ascending
   std::array<int, dim + 1> local;         ///< local[i]: position of vertices[i] in Mesh::cell
@@ -36,7 +36,7 @@ struct Frame
   [[nodiscard]] double facet_scale(int i) const { return det * grad_norm[i]; }
 };
 
-/// Lexicographic rank of a permutation, such as Frame::local.
+/// Lexicographic rank of a permutation, such as SortedCell::local.
 template <std::size_t n>
 [[nodiscard]] int permutation_number(const std::array<int, n>& permutation)
 {
@@ -50,10 +50,10 @@ template <std::size_t n>
   return number;
 }
 
-/// A point given in the reference coordinates of Mesh::cell, in those of the frame whose vertices are
+/// A point given in the reference coordinates of Mesh::cell, in those of the sorted cell, whose vertices are
 /// local[0], local[1], ... of the cell.
 template <int dim>
-[[nodiscard]] Point<dim> in_frame(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
+[[nodiscard]] Point<dim> to_sorted_cell(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
 {
   std::array<double, dim + 1> lambda;  // of the cell's own vertices
   lambda[0] = 1 - in_cell.sum();
@@ -77,6 +77,6 @@ template <int dim>
 
 /// Cell c of the mesh.
 template <int dim>
-[[nodiscard]] Frame<dim> make_frame(const mesh::Mesh<dim>& mesh, Index c);
+[[nodiscard]] SortedCell<dim> make_sorted_cell(const mesh::Mesh<dim>& mesh, Index c);
 
 }  // namespace tribound::certify

@@ -1,4 +1,4 @@
-#include "tribound/certify/equilibrate/vertex_stretches.h"
+#include "tribound/certify/equilibrate/vertex_partition.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace tribound::certify
 namespace
 {
 
-/// The vertices along a space-filling curve (Morton order): the cells that a stretch of it needs at a time
-/// are few.
+/// The vertices along a space-filling curve (Morton order): the cells that a part of it needs at a time are
+/// few.
 template <int dim>
 std::vector<Index> by_locality(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices, int n_threads)
 {
@@ -44,33 +44,33 @@ std::vector<Index> by_locality(const mesh::Mesh<dim>& mesh, std::span<const Inde
 }  // namespace
 
 template <int dim>
-VertexStretches stretches_of(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices, int n)
+VertexPartition partition_vertices(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices, int n)
 {
-  VertexStretches result;
+  VertexPartition result;
   result.order = by_locality(mesh, vertices, n);
-  result.stretch.assign(mesh.n_vertices(), -1);
+  result.part.assign(mesh.n_vertices(), -1);
   for (int s = 0; s <= n; ++s) result.begin.push_back(result.order.size() * s / n);
   for (int s = 0; s < n; ++s)
-    for (std::size_t i = result.begin[s]; i < result.begin[s + 1]; ++i) result.stretch[result.order[i]] = s;
-  result.shared_place.assign(mesh.n_cells(), -1);
+    for (std::size_t i = result.begin[s]; i < result.begin[s + 1]; ++i) result.part[result.order[i]] = s;
+  result.shared_index.assign(mesh.n_cells(), -1);
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     int only = -1;
     bool shared = false;
     for (const Index v : mesh.cell(c))
     {
-      const int s = result.stretch[v];
+      const int s = result.part[v];
       shared = shared || (s >= 0 && only >= 0 && s != only);
       only = std::max(only, s);
     }
     if (!shared) continue;
-    result.shared_place[c] = static_cast<int>(result.shared_cells.size());
+    result.shared_index[c] = static_cast<int>(result.shared_cells.size());
     result.shared_cells.push_back(c);
   }
   return result;
 }
 
-template VertexStretches stretches_of(const mesh::Mesh<2>&, std::span<const Index>, int);
-template VertexStretches stretches_of(const mesh::Mesh<3>&, std::span<const Index>, int);
+template VertexPartition partition_vertices(const mesh::Mesh<2>&, std::span<const Index>, int);
+template VertexPartition partition_vertices(const mesh::Mesh<3>&, std::span<const Index>, int);
 
 }  // namespace tribound::certify
