@@ -1,0 +1,277 @@
+#include "tribound/contact/support/body_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tribound/base/error.h"
+#include "tribound/contact/support/cone.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound::contact
+{
+
+namespace
+{
+
+/// Unit vectors perpendicular to n: both in 2D, eight at equal angles in 3D.
+template <int dim>
+std::vector<Point<dim>> tangents(const Point<dim>& n)
+{
+  std::vector<Point<dim>> directions;
+  if constexpr (dim == 2)
+    directions = {Point<2>(-n[1], n[0]), Point<2>(n[1], -n[0])};
+  else
+  {
+    Eigen::Index smallest = 0;
+    n.cwiseAbs().minCoeff(&smallest);
+    const Point<3> first = mesh::cross(n, Point<3>::Unit(smallest)).normalized();
+    const Point<3> second = mesh::cross(n, first);
+    for (int i = 0; i < 8; ++i)
+      directions.push_back(std::cos(i * std::numbers::pi / 4) * first +
+                           std::sin(i * std::numbers::pi / 4) * second);
+  }
+  return directions;
+}
+
+/// The rule on the halves (2D) or quarters (3D) of the facet.
+template <int k>
+fem::Quadrature<k> on_halves(const fem::Quadrature<k>& rule)
+{
+  fem::Quadrature<k> result;
+  const auto add = [&](const Point<k>& origin, double scale)
+  {
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      result.points.push_back(origin + scale * rule.points[q]);
+      result.weights.push_back(rule.weights[q] / (2 * k));
+    }
+  };
+  add(Point<k>::Zero(), 0.5);
+  for (int i = 0; i < k; ++i) add(0.5 * Point<k>::Unit(i), 0.5);
+  if constexpr (k == 2) add(Point<k>::Constant(0.5), -0.5);
+  return result;
+}
+
+}  // namespace
+
+template <int dim>
+std::string BodyCheck<dim>::hint(std::span<const Coefficients> free) const
+{
+  std::vector<std::string> remedies;
+  for (const Coefficients& z : free)
+    if (const std::optional<Remedy> remedy = support_.remedy(z))
+      if (const std::string words = describe(*remedy); std::ranges::find(remedies, words) == remedies.end())
+        remedies.push_back(words);
+  const auto has_smooth_contact = [&](const mesh::BoundaryFacet& facet)
+  {
+    const auto& contact = problem_.boundary(facet.tag).contact;
+    return contact && !cone(contact->law).resists_sliding();
+  };
+  const bool friction_may_help = std::ranges::any_of(body_.facets, has_smooth_contact);
+  return fmt::format(
+      "fix a displacement component that such a motion would change{} (symmetry: the component normal to the "
+      "plane of symmetry){}",
+      remedies.empty() ? ", on a boundary of this body"
+                       : fmt::format(", for example {}", fmt::join(remedies, ", ")),
+      friction_may_help ? ", or give its contact friction" : "");
+}
+
+template <int dim>
+void BodyCheck<dim>::check_held() const
+{
+  const std::vector<Coefficients> free = readable_basis<dim>(support_.left_by_contact(true));
+  if (free.empty()) return;
+  std::vector<std::string> motions;
+  motions.reserve(free.size());
+  for (const Coefficients& z : free) motions.push_back(body_.modes.describe(z));
+  const auto named = std::ranges::find_if(
+      problem_.boundaries(), [](const auto& boundary) { return boundary.where.line > 0; });  // not a --set
+  const std::string file = named == problem_.boundaries().end() ? "" : named->where.file;
+  throw InputError({.file = file, .key = "boundary"},
+                   fmt::format("nothing stops {} from: {}", name_, fmt::join(motions, "; ")), hint(free));
+}
+
+template <int dim>
+Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
+{
+  std::vector<Eigen::VectorXd> generators;
+  const auto add = [&](const Point<dim>& push, const Point<dim>& x)
+  {
+    const Eigen::VectorXd work = motions.transpose() * (body_.modes.at(x).transpose() * push);
+    if (work.norm() > 1e-12) generators.push_back(work.normalized());
+  };
+  support_.for_each_facet_vertex(
+      [&](const problem::BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
+      {
+        if (!condition.contact) return;
+        const problem::FrictionCone law = problem::cone(condition.contact->law);
+        add(n, x);
+        if (!law.resists_sliding()) return;
+        if (law.coefficient == 0 && friction == ConeFriction::no_strength) return;
+        const bool holds = friction == ConeFriction::unlimited ||
+                           (friction == ConeFriction::strong && law.strength != nullptr);
+        const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
+        for (const Point<dim>& t : tangents<dim>(n))
+          add(holds ? t : Point<dim>(n + law.coefficient / around * t), x);
+      });
+  Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
+  for (Eigen::Index j = 0; j < cone.cols(); ++j) cone.col(j) = generators[j];
+  return cone;
+}
+
+/// On the parts of the facets on which the rule integrates s; |z^t| is convex, the largest at a vertex.
+template <int dim>
+auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                   const fem::Quadrature<dim - 1>& rule) const -> FrictionWork
+{
+  FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
+  const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
+  for (std::size_t k = 0; k < body_.facets.size(); ++k)
+  {
+    const mesh::BoundaryFacet& facet = body_.facets[k];
+    const auto& contact = problem_.boundary(facet.tag).contact;
+    if (!contact || problem::cone(contact->law).strength == nullptr) continue;
+    const mesh::FacetMap<dim> map = mesh::facet_map(mesh_, facet.cell, facet.local);
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh_, facet.cell, facet.local);
+    const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
+    { return z_x - z_x.dot(geometry.normal) * geometry.normal; };
+    const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(body_.numbers[k]);
+    for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
+    {
+      const double measure = geometry.measure * fem::fraction<dim - 1>(part);
+      double largest = 0;
+      for (const Point<dim - 1>& s : part)
+        largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
+      result.missed += 2 * strength * measure * largest;
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim> x = map(fem::point_in<dim - 1>(part, rule.points[q]));
+        const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
+        const Point<dim> z_t = tangential(at_x * z);
+        if (z_t.norm() <= 1e-12 * z.norm()) continue;
+        const double force =
+            measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(contact->law, x);
+        result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
+        result.most += force * z_t.norm();
+      }
+    }
+  }
+  return result;
+}
+
+/// The remainders of the integrals hold those against affine weights, the values of which are the largest at
+/// vertices.
+template <int dim>
+double BodyCheck<dim>::missed_work(const Coefficients& motion) const
+{
+  const auto largest = [&](const auto& vertices)
+  {
+    double size = 0;
+    for (const Index v : vertices)
+      size = std::max(size, Point<dim>(body_.modes.at(mesh_.vertex(v)) * motion).norm());
+    return size;
+  };
+  double missed = 0;
+  for (const Index c : body_.cells)
+    if (const double mean = data_.body_remainder(c).mean; mean > 0) missed += mean * largest(mesh_.cell(c));
+  for (std::size_t k = 0; k < body_.facets.size(); ++k)
+    if (const double mean = data_.traction_remainder(body_.numbers[k]).mean; mean > 0)
+      missed += mean * largest(mesh::facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
+  return std::sqrt(dim) * missed;  // by components
+}
+
+// Tresca friction can do work in a convex set Z, all other contact forces in the cone K. The loads c are
+// balanced if c lies in K + Z. The nearest point of it is looked for with K and those points of Z that
+// proved useful, among them 0 (fully corrective Frank-Wolfe method); that their weights add up to at most 1
+// is one more row. What is left of c is a motion r that K can do nothing against, and c is outside as soon
+// as c.r exceeds what Z can do.
+template <int dim>
+std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& motions,
+                                                             const Eigen::VectorXd& loads,
+                                                             double tolerance) const
+{
+  constexpr int max_points = 200;
+  constexpr double relative = 1e-8;
+  const Eigen::Index m = loads.size();
+  const double one = loads.norm();
+  const Eigen::MatrixXd cone = contact_cone(motions, ConeFriction::no_strength);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(m + 1, cone.cols() + 1);
+  columns.topLeftCorner(m, cone.cols()) = cone;
+  columns(m, cone.cols()) = one;
+  Eigen::VectorXd target(m + 1);
+  target << loads, one;
+  for (int i = 0; i < max_points; ++i)
+  {
+    const Eigen::VectorXd r = project_on_polar_cone(columns, target).head(m);
+    if (r.norm() <= tolerance) return {};
+    const FrictionWork friction = strength_work(motions, r, data_.facet_rule());
+    const double driving = r.dot(loads) - missed_work(motions * r);
+    if (driving > (1 + relative) * friction.most + tolerance * r.norm())
+    {
+      // |z^t| has kinks: refuse only what refinement of the rule does not change.
+      const double finer = strength_work(motions, r, on_halves(on_halves(data_.facet_rule()))).most;
+      const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
+      return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
+    }
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) << friction.in_motions, one;
+  }
+  return {};
+}
+
+template <int dim>
+void BodyCheck<dim>::fail(const Coefficients& motion, const std::string& reason) const
+{
+  const auto facet = std::ranges::find_if(body_.facets, [&](const mesh::BoundaryFacet& f)
+                                          { return problem_.boundary(f.tag).contact.has_value(); });
+  throw InputError(problem_.boundary(facet->tag).where,
+                   fmt::format("contact cannot hold {}: the loads drive it into {}; {}", name_,
+                               body_.modes.describe(motion), reason),
+                   "fix a displacement component that this motion would change, or mend the loads "
+                   "(tractions are forces on the body, a pressure acts against the outward normal)");
+}
+
+template <int dim>
+void BodyCheck<dim>::check_balanced(const Coefficients& work, double round_off) const
+{
+  constexpr double relative = 1e-8;
+  const MotionBasis motions = support_.left_by_displacements();  // what contact alone has to stop
+  const Eigen::VectorXd c = motions.transpose() * work;          // L(z) for each of them
+  if (motions.cols() == 0 || c.norm() <= round_off) return;
+
+  const double tolerance = relative * c.norm() + round_off;
+  const Eigen::VectorXd lifted = project_on_polar_cone(contact_cone(motions, ConeFriction::unlimited), c);
+  // The work of the loads in a projection r on the polar cone is |r|^2.
+  const auto is_free = [&](const Eigen::VectorXd& r)
+  { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
+  if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
+
+  const Eigen::VectorXd slipped = project_on_polar_cone(contact_cone(motions, ConeFriction::strong), c);
+  if (is_free(slipped))
+  {
+    // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
+    const Eigen::MatrixXd pressed = support_.contact_gram(false);
+    const MotionBasis sliding =
+        motions * null_space(motions.transpose() * pressed * motions, pressed.trace());
+    const Coefficients slide = sliding * (sliding.transpose() * work);
+    fail(slide.norm() > tolerance ? slide : Coefficients(motions * slipped),
+         "friction is too weak for the load along the contact boundary");
+  }
+
+  if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance))
+  {
+    const FrictionWork friction = strength_work(motions, *z, data_.facet_rule());
+    fail(motions * *z, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
+                                   100 * (friction.most + friction.missed) / z->dot(c)));
+  }
+}
+
+template class BodyCheck<2>;
+template class BodyCheck<3>;
+
+}  // namespace tribound::contact
