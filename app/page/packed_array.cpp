@@ -1,6 +1,5 @@
 #include "app/page/packed_array.h"
 
-#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -40,9 +39,8 @@ std::string packed_bytes(std::span<const std::uint32_t> numbers, int width)
   return deflated(bytes);
 }
 
-/// Each number as its difference from the one `stride` places before; `decoding`: the further members of the
-/// object, each with a comma in front.
-std::string packed(std::span<const std::uint32_t> numbers, std::size_t stride, const std::string& decoding)
+/// Each number as its difference from the one `stride` places before.
+io::Json packed(std::span<const std::uint32_t> numbers, std::size_t stride)
 {
   std::vector<std::uint32_t> codes;
   codes.reserve(numbers.size());
@@ -56,8 +54,8 @@ std::string packed(std::span<const std::uint32_t> numbers, std::size_t stride, c
   }
   int width = 1;
   while (width < 4 && used >> (8 * width) != 0) ++width;
-  return fmt::format(R"({{"count":{},"width":{},"stride":{}{},"data":"{}"}})", codes.size(), width, stride,
-                     decoding, packed_bytes(codes, width));
+  return {
+      {"count", codes.size()}, {"width", width}, {"stride", stride}, {"data", packed_bytes(codes, width)}};
 }
 
 /// 2^bits - 1.
@@ -83,7 +81,7 @@ std::string base64(std::span<const unsigned char> bytes)
   return text;
 }
 
-std::string pack_linear(std::span<const double> values, int bits, std::size_t stride)
+io::Json pack_linear(std::span<const double> values, int bits, std::size_t stride)
 {
   assert(bits >= 1 && bits <= 31);
   const auto [low, high] =
@@ -93,10 +91,12 @@ std::string pack_linear(std::span<const double> values, int bits, std::size_t st
   codes.reserve(values.size());
   for (const double value : values)
     codes.push_back(step > 0.0 ? static_cast<std::uint32_t>(std::round((value - low) / step)) : 0U);
-  return packed(codes, stride, fmt::format(R"(,"offset":{},"step":{})", low, step));
+  io::Json result = packed(codes, stride);
+  result.update({{"offset", low}, {"step", step}});
+  return result;
 }
 
-std::string pack_logarithmic(std::span<const double> values, int bits, double decades)
+io::Json pack_logarithmic(std::span<const double> values, int bits, double decades)
 {
   const double largest = values.empty() ? 0.0 : std::ranges::max(values);
   const double top = largest > 0.0 ? std::log10(largest) : 0.0;
@@ -111,18 +111,20 @@ std::string pack_logarithmic(std::span<const double> values, int bits, double de
     const double place = value > 0.0 ? std::round((std::log10(value) - bottom) / step) : -1.0;
     codes.push_back(place < 0.0 ? 0U : 1U + static_cast<std::uint32_t>(place));
   }
-  return packed(codes, 1, fmt::format(R"(,"offset":{},"step":{},"log":true)", bottom, step));
+  io::Json result = packed(codes, 1);
+  result.update({{"offset", bottom}, {"step", step}, {"log", true}});
+  return result;
 }
 
-std::string pack_integers(std::span<const Index> values, std::size_t stride)
+io::Json pack_integers(std::span<const Index> values, std::size_t stride)
 {
-  return packed(std::vector<std::uint32_t>(values.begin(), values.end()), stride, {});
+  return packed(std::vector<std::uint32_t>(values.begin(), values.end()), stride);
 }
 
-std::string pack_text(std::string_view text)
+io::Json pack_text(std::string_view text)
 {
   const std::vector<unsigned char> bytes(text.begin(), text.end());
-  return fmt::format(R"({{"text":"{}"}})", deflated(bytes));
+  return {{"text", deflated(bytes)}};
 }
 
 }  // namespace tribound::app

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file packed_array.h
-/// Numbers as short text for the report page: quantised, zlib-compressed, base64. Each function returns a
-/// JSON object that report/src/arrays.js reads: `count`, `width` (bytes per number), `data` (base64 of the
+/// Numbers as short text for the report page: quantised, zlib-compressed, base64. Each function returns an
+/// object that report/src/arrays.js reads: `count`, `width` (bytes per number), `data` (base64 of the
 /// compressed bytes, all lowest bytes first, then all second ones, ...: like bytes side by side compress
 /// better), and what turns the integer q that these bytes are into the number.
 
@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "tribound/base/types.h"
+#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {
@@ -21,16 +22,16 @@ namespace tribound::app
 
 /// value = offset + step q, q of `bits` bits (at most 31): off by at most (max - min) / 2^(bits + 1).
 /// `stride`, here and below: each q is stored as its difference from the one so many places before.
-[[nodiscard]] std::string pack_linear(std::span<const double> values, int bits, std::size_t stride = 1);
+[[nodiscard]] io::Json pack_linear(std::span<const double> values, int bits, std::size_t stride = 1);
 
 /// value = 10^(offset + step (q - 1)), and 0 for q = 0, of values >= 0 that span decades: those more than
 /// `decades` below the largest become 0.
-[[nodiscard]] std::string pack_logarithmic(std::span<const double> values, int bits, double decades);
+[[nodiscard]] io::Json pack_logarithmic(std::span<const double> values, int bits, double decades);
 
 /// Integers from 0 to 2^31 - 1: numbers of the vertices of neighbouring cells are close to each other.
-[[nodiscard]] std::string pack_integers(std::span<const Index> values, std::size_t stride = 1);
+[[nodiscard]] io::Json pack_integers(std::span<const Index> values, std::size_t stride = 1);
 
 /// Text, compressed: its bytes in UTF-8.
-[[nodiscard]] std::string pack_text(std::string_view text);
+[[nodiscard]] io::Json pack_text(std::string_view text);
 
 }  // namespace tribound::app

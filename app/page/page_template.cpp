@@ -7,7 +7,6 @@
 #include "app/machine.h"
 #include "tribound/certify/bound/components.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {
@@ -33,8 +32,7 @@ PageTemplate::PageTemplate(const std::filesystem::path& path)
   tail_ = text.substr(marker + page_data_marker.size());
 }
 
-void PageTemplate::write(const std::filesystem::path& page, std::string_view id,
-                         std::span<const std::string_view> json) const
+void PageTemplate::write(const std::filesystem::path& page, std::string_view id, const io::Json& data) const
 {
   if (empty()) return;
   io::AtomicFile file(page);
@@ -42,7 +40,7 @@ void PageTemplate::write(const std::filesystem::path& page, std::string_view id,
   file.write(R"(<script type="application/json" id=")");
   file.write(id);
   file.write(R"(">)");
-  for (const std::string_view piece : json) file.write(script_safe(piece));
+  file.write(script_safe(io::json_text(data, -1)));
   file.write("</script>");
   file.write(tail_);
   file.commit();
@@ -54,18 +52,17 @@ std::string read_text(const std::filesystem::path& path)
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::string machine_json()
+io::Json machine_json()
 {
   const MachineFacts machine = machine_facts();
-  return io::Json{{"processor", machine.processor},
-                  {"processors", machine.n_processors},
-                  {"memory", machine.memory},
-                  {"system", machine.system},
-                  {"written", date_and_time()}}
-      .dump(-1, ' ', false, io::Json::error_handler_t::replace);
+  return {{"processor", machine.processor},
+          {"processors", machine.n_processors},
+          {"memory", machine.memory},
+          {"system", machine.system},
+          {"written", date_and_time()}};
 }
 
-std::string components_json(bool regularised)
+io::Json components_json(bool regularised)
 {
   io::Json components = io::Json::array();
   for (const certify::Component& c : certify::components_of_run(regularised))
@@ -73,15 +70,15 @@ std::string components_json(bool regularised)
                           {"meaning", c.meaning},
                           {"part", certify::to_string(c.part)},
                           {"cause", certify::to_string(c.cause)}});
-  return components.dump();
+  return components;
 }
 
-std::string files_json(const std::filesystem::path& directory, std::span<const std::string> names)
+io::Json files_json(const std::filesystem::path& directory, std::span<const std::string> names)
 {
   io::Json existing = io::Json::array();
   for (const std::string& name : names)
     if (std::filesystem::exists(directory / name)) existing.push_back(name);
-  return existing.dump(-1, ' ', false, io::Json::error_handler_t::replace);
+  return existing;
 }
 
 }  // namespace tribound::app

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "tribound/io/file/json.h"
+
 namespace tribound::app
 {
 
@@ -26,10 +28,9 @@ class PageTemplate
 
   [[nodiscard]] bool empty() const { return head_.empty(); }
 
-  /// Writes the page with the JSON, given in pieces, in a script element with this id. Does nothing where
-  /// the template is empty. Throws WriteError when the file cannot be written.
-  void write(const std::filesystem::path& page, std::string_view id,
-             std::span<const std::string_view> json) const;
+  /// Writes the page with the data in a script element with this id. Does nothing where the template is
+  /// empty. Throws WriteError when the file cannot be written.
+  void write(const std::filesystem::path& page, std::string_view id, const io::Json& data) const;
 
  private:
   std::string head_;  ///< the template before the marker
@@ -40,13 +41,12 @@ class PageTemplate
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
 /// This computer, and when it writes.
-[[nodiscard]] std::string machine_json();
+[[nodiscard]] io::Json machine_json();
 
 /// What is said of the components of the bound that a run has, plain or regularised.
-[[nodiscard]] std::string components_json(bool regularised);
+[[nodiscard]] io::Json components_json(bool regularised);
 
 /// Those of the files that are in the directory, in this order.
-[[nodiscard]] std::string files_json(const std::filesystem::path& directory,
-                                     std::span<const std::string> names);
+[[nodiscard]] io::Json files_json(const std::filesystem::path& directory, std::span<const std::string> names);
 
 }  // namespace tribound::app

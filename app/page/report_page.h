@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,22 +18,22 @@
 namespace tribound::app
 {
 
-/// The fields of a level, as JSON.
+/// The fields of a level.
 struct PageLevel
 {
   int number = 0;
   std::size_t n_triangles = 0;
-  std::string json;
+  io::Json json;
 };
 
 template <int dim>
 [[nodiscard]] PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
                                    const adapt::CertifiedLevel<dim>& level, const PageLimits& limits = {});
 
-/// The inside of a body in 3D, as JSON; "null" in 2D, and beyond max_volume_cells.
+/// The inside of a body in 3D; null in 2D, and beyond max_volume_cells.
 template <int dim>
-[[nodiscard]] std::string page_volume(const contact::NitscheForm<dim>& form,
-                                      const adapt::CertifiedLevel<dim>& level);
+[[nodiscard]] io::Json page_volume(const contact::NitscheForm<dim>& form,
+                                   const adapt::CertifiedLevel<dim>& level);
 
 /// Leaves out levels between the first and the last, the largest first, until all have at most
 /// limits.all_levels triangles together.
@@ -73,7 +72,7 @@ class ReportPage
  private:
   PageTemplate template_;
   std::vector<PageLevel> levels_;
-  std::string volume_ = "null";  ///< of the last level
+  io::Json volume_;  ///< of the last level
 };
 
 }  // namespace tribound::app

@@ -1,11 +1,8 @@
 #include "app/page/study_page.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "app/page/page_template.h"
@@ -46,10 +43,11 @@ void write_study_page(const std::filesystem::path& page_template, const std::fil
 {
   const PageTemplate page(page_template);
   if (page.empty()) return;
-  const std::string json = fmt::format(R"({{"study":{},"components":{},"machine":{},"files":{}}})",
-                                       study_json(study), components_json(is_regularised(study)),
-                                       machine_json(), files_json(directory, study_files(directory, study)));
-  page.write(directory / "report.html", "study-data", std::vector<std::string_view>{json});
+  page.write(directory / "report.html", "study-data",
+             {{"study", study_object(study)},
+              {"components", components_json(is_regularised(study))},
+              {"machine", machine_json()},
+              {"files", files_json(directory, study_files(directory, study))}});
 }
 
 }  // namespace tribound::app

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tribound/io/record/facts_json.h"
+#include "tribound/io/record/record_json.h"
 
 namespace tribound::app
 {
@@ -36,8 +36,7 @@ std::string check_json(const io::CaseFacts& facts, const io::MeshFacts& mesh, co
   object["warnings"] = std::ranges::count(findings, doctor::Severity::warning, &doctor::Finding::severity);
   object["findings"] = io::Json::array();
   for (const doctor::Finding& finding : findings) object["findings"].push_back(finding_json(finding));
-  // Names from a file need not be UTF-8.
-  return object.dump(2, ' ', false, io::Json::error_handler_t::replace) + "\n";
+  return io::json_text(object);
 }
 
 }  // namespace tribound::app

@@ -6,8 +6,7 @@
 
 #include "tribound/adapt/rate.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/io/file/json.h"
-#include "tribound/io/record/facts_json.h"
+#include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
 namespace tribound::app
@@ -236,7 +235,7 @@ std::string study_csv(const Study& study)
   return io::csv_text(row(any, 0), rows);
 }
 
-std::string study_json(const Study& study)
+io::Json study_object(const Study& study)
 {
   io::Json object{{"schema", study_schema},
                   {"program", io::program_json(study.build)},
@@ -257,8 +256,12 @@ std::string study_json(const Study& study)
   object["difference"] = differences(study);
   object["times"] = io::Json::object();
   for (const auto& [stage, seconds] : study.times) object["times"][stage] = seconds;
-  // Names from a file need not be UTF-8.
-  return object.dump(2, ' ', false, io::Json::error_handler_t::replace) + "\n";
+  return object;
+}
+
+std::string study_json(const Study& study)
+{
+  return io::json_text(study_object(study));
 }
 
 void write_study(const std::filesystem::path& directory, const Study& study)

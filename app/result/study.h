@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tribound/certify/truth/true_error.h"
+#include "tribound/io/file/json.h"
 #include "tribound/io/record/report.h"
 
 namespace tribound::app
@@ -98,7 +99,8 @@ struct Rates
 /// A row per variant and level; the columns are those of docs/output.md.
 [[nodiscard]] std::string study_csv(const Study& study);
 
-/// The same with the reference, the rates and the comparisons; unknown numbers are null.
+/// The same with the reference, the rates and the comparisons; unknown numbers are null. And its text.
+[[nodiscard]] io::Json study_object(const Study& study);
 [[nodiscard]] std::string study_json(const Study& study);
 
 /// Writes study.csv and study.json. Throws WriteError when they cannot be written.

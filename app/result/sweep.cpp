@@ -219,7 +219,7 @@ std::string sweep_json(const SweepRecord& sweep)
     for (const auto& [name, value] : run.figures) row[name] = io::number_or_null(value);
     object["runs"].push_back(row);
   }
-  return object.dump(2, ' ', false, io::Json::error_handler_t::replace) + "\n";
+  return io::json_text(object);
 }
 
 void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep)

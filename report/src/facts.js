@@ -108,8 +108,8 @@ const contents = { "certificate.json": "the whole result, for programs", "conver
   "../report.html": "the study that this run belongs to" };
 
 /** Tables that the page holds: it may be read where the files are not. */
-function heldTables({ tables, newton, certificate }) {
-  const texts = { ...tables, "newton.csv": newton && { plain: newton }, "certificate.json": { plain: JSON.stringify(certificate, null, 2) } };
+function heldTables({ tables, certificate }) {
+  const texts = { ...tables, "certificate.json": { plain: JSON.stringify(certificate, null, 2) } };
   const held = Object.entries(texts).filter(([, packed]) => packed);
   const save = async (name, packed) =>
     download(name, name.endsWith(".json") ? "application/json" : "text/csv", packed.plain ?? await unpackText(packed));

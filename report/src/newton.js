@@ -1,13 +1,6 @@
 // Newton's method, step by step.
 
-import { csvParseRows } from "d3";
 import { number, percent, seconds, section, table, withoutNoise } from "./dom.js";
-
-/** The rows of newton.csv as objects; an unknown number is null. (d3.csvParse builds code, which the page forbids.) */
-function newtonRows(text) {
-  const [head, ...rows] = csvParseRows(text);
-  return rows.map((row) => Object.fromEntries(row.map((cell, i) => [head[i], cell === "" ? null : Number(cell)])));
-}
 
 /**
  * The sum of the components in a row, or null where one is not known: a step in 3D whose linearisation part alone is too large has
@@ -30,8 +23,8 @@ function stepCells(level, step, row, components, isFirst) {
   return cells;
 }
 
-export function newtonSection(run, text, components) {
-  const rows = newtonRows(text);
+/** `rows`: those of newton.csv; an unknown number is null. */
+export function newtonSection(run, rows, components) {
   const steps = run.levels.flatMap((level) => level.newton.map((step, i) => stepCells(level, step,
     rows.find((row) => row.level === level.level && row.step === step.step), components, i === 0)));
   if (steps.length === 0) return null;

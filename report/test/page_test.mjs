@@ -148,7 +148,7 @@ async function checkGivenCertificate(browser, directory) {
       { kind: "reaction", name: "left", source: "displacement", force: [0, 0.2], moment: null },
       { kind: "sum", name: "", source: "", force: [2e-16, 1e-15], moment: [1e-16] }] } });
   data.certificate.components.quad = 1;
-  data.newton = withColumn(data.newton, "quad", 1e6); // then the linearisation is nothing beside the rest
+  for (const row of data.newton) row.quad = 1e6; // then the linearisation is nothing beside the rest
   data.case = { file: "case.toml", sha256: "0123", overrides: ["degree=3"], text: "[load]\nbody = [0, \"-x\"]" };
   const changed = `${directory}/given.html`;
   writeFileSync(changed, page.replace(text, () => JSON.stringify(data).replaceAll("<", "\\u003c")));
@@ -166,13 +166,6 @@ async function checkGivenCertificate(browser, directory) {
   for (const text of ofTheRest) assert.match(text, /^0\s|\u00d710\u207b/);
   assert.deepEqual(given.complaints, []);
   await given.page.close();
-}
-
-/** Comma-separated values with one number in all rows of a column. */
-function withColumn(text, name, value) {
-  const [head, ...rows] = text.trim().split("\n").map((line) => line.split(","));
-  const column = head.indexOf(name);
-  return [head, ...rows.map((row) => row.map((cell, k) => (k === column ? String(value) : cell)))].map((row) => row.join(",")).join("\n");
 }
 
 /** Without WebGL the page draws the picture itself. */

@@ -29,13 +29,13 @@ TEST(PageTemplate, NoStringEndsTheScript)
   EXPECT_EQ(app::script_safe(R"("</script><!-- & > \u00e4")"), R"("\u003c/script>\u003c!-- & > \u00e4")");
 }
 
-TEST_F(PageTemplateFile, TakesTheDataInPiecesInThePlaceOfTheMarker)
+TEST_F(PageTemplateFile, TakesTheDataInThePlaceOfTheMarker)
 {
   const std::filesystem::path file = directory_ / "template.html";
   std::ofstream(file) << "<p>" << app::page_data_marker << "</p>";
   const app::PageTemplate page(file);
   EXPECT_FALSE(page.empty());
-  page.write(directory_ / "page.html", "the-id", std::array<std::string_view, 3>{"[\"<\"", ",", "2]"});
+  page.write(directory_ / "page.html", "the-id", io::Json::array({"<", 2}));
   EXPECT_EQ(app::read_text(directory_ / "page.html"),
             R"(<p><script type="application/json" id="the-id">["\u003c",2]</script></p>)");
 }
@@ -57,7 +57,7 @@ TEST_F(PageTemplateFile, NamesTheFilesThatAreThere)
   std::ofstream(directory_ / "b.csv") << "";
   std::ofstream(directory_ / "a.csv") << "";
   EXPECT_EQ(app::files_json(directory_, std::array<std::string, 3>{"b.csv", "missing.csv", "a.csv"}),
-            R"(["b.csv","a.csv"])");
+            io::Json::array({"b.csv", "a.csv"}));
 }
 
 }  // namespace

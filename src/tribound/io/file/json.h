@@ -16,6 +16,13 @@ namespace tribound::io
 /// Keys stay in the order in which they were added.
 using Json = nlohmann::ordered_json;
 
+/// The text of a file, or on one line for `indent` -1. Names from a case or a mesh need not be UTF-8: what is
+/// not is replaced.
+[[nodiscard]] inline std::string json_text(const Json& json, int indent = 2)
+{
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + (indent < 0 ? "" : "\n");
+}
+
 /// null for what is not known.
 [[nodiscard]] inline Json number_or_null(const std::optional<double>& value)
 {

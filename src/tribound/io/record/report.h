@@ -31,7 +31,7 @@ struct RunRecord
   double setup = 0.0;                     ///< wall time before the first level; s
 };
 
-/// The certificate, JSON with the fields of docs/output.md; unknown numbers are null.
+/// The text of certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
 
 /// Writes the effective case, convergence.csv, newton.csv and certificate.json, the last one last. Throws

@@ -1,7 +1,7 @@
 #pragma once
 
-/// @file facts_json.h
-/// Facts as JSON.
+/// @file record_json.h
+/// The record of a run as JSON.
 
 #include "tribound/certify/bound/balance.h"
 #include "tribound/io/file/json.h"
@@ -22,5 +22,8 @@ namespace tribound::io
 
 /// `balance` of the certificate.
 [[nodiscard]] Json balance_json(const certify::Balance& balance);
+
+/// certificate.json, see docs/output.md; unknown numbers are null.
+[[nodiscard]] Json certificate(const RunRecord& run);
 
 }  // namespace tribound::io

@@ -1,0 +1,227 @@
+#include "tribound/io/record/record_json.h"
+
+#include "tribound/base/sha256.h"
+
+namespace tribound::io
+{
+
+namespace
+{
+
+constexpr const char* certificate_schema = "1";
+
+std::optional<double> member(const std::optional<certify::Bound>& bound, double certify::Bound::*value)
+{
+  return bound ? std::optional((*bound).*value) : std::nullopt;
+}
+
+Json json(const std::optional<certify::Bound>& bound, bool regularised)
+{
+  if (!bound) return nullptr;
+  Json object;
+  for (const certify::Component& c : certify::components_of_run(regularised))
+    object[c.name] = bound->global.*c.value;
+  return object;
+}
+
+Json json(const std::optional<certify::IdentityDefects>& identities)
+{
+  if (!identities) return nullptr;
+  return {{"divergence", identities->divergence},
+          {"jump", identities->jump},
+          {"neumann", identities->neumann},
+          {"contact", identities->contact},
+          {"symmetry", identities->symmetry}};
+}
+
+Json json(const Resultants& resultants)
+{
+  return {{"resolution", resultants.resolution},
+          {"normal", resultants.normal},
+          {"tangential", resultants.tangential},
+          {"abs_tangential", resultants.abs_tangential},
+          {"force", resultants.force}};
+}
+
+Json json(const std::optional<Sliding>& sliding)
+{
+  if (!sliding) return nullptr;
+  return {{"coefficient", sliding->coefficient},
+          {"sliding_factor", sliding->sliding_factor},
+          {"safety_factor", number_or_null(sliding->safety_factor)}};
+}
+
+Json json(const adapt::CertifiedStep& record, bool regularised)
+{
+  Json object{{"step", record.step.step},
+              {"residual", record.step.residual},
+              {"damping", record.step.damping},
+              {"linear_iterations", record.step.linear_iterations},
+              {"factorised", record.step.factorised},
+              {"seconds", record.step.seconds},
+              {"total", number_or_null(member(record.bound, &certify::Bound::total))},
+              {"accepted", record.accepted}};
+  if (regularised) object["delta"] = record.step.delta;
+  return object;
+}
+
+/// Bound and figures, which the certificate has of the last level and of each.
+void add_results(Json& object, const LevelRecord& level)
+{
+  object["cells"] = level.cells;
+  object["dofs"] = level.dofs;
+  object["bound"] = number_or_null(member(level.bound, &certify::Bound::total_sharp));
+  object["bound_plain"] = number_or_null(member(level.bound, &certify::Bound::total));
+  object["relative"] = number_or_null(relative_bound(level));
+  object["components"] = json(level.bound, is_regularised(level));
+  if (is_regularised(level))
+    object["regularisation"] = {{"delta", number_or_null(last_delta(level))},
+                                {"updates", *level.delta_updates}};
+  object["identities"] = json(level.identities);
+  object["energy"] = level.figures.energy;
+  object["sigma_norm"] = level.figures.sigma_norm;
+  object["max_displacement"] = level.figures.max_displacement;
+  object["contact"] = nullptr;
+  if (level.figures.boundary_contact.empty()) return;
+  Json contact = json(level.figures.contact);
+  for (const Resultants& part : level.figures.boundary_contact)
+  {
+    contact["boundaries"][part.boundary] = json(part);
+    contact["boundaries"][part.boundary]["sliding"] = json(sliding(part));
+  }
+  object["contact"] = contact;
+}
+
+Json json(const StageTimes& times)
+{
+  Json object;
+  for (const auto& [name, seconds] : stages) object[name] = times.*seconds;
+  return object;
+}
+
+/// Before the first level, and the stages of all levels.
+Json times_json(const RunRecord& run)
+{
+  StageTimes sum;
+  for (const LevelRecord& level : run.levels) sum += level.times.stages;
+  Json object{{"setup", run.setup}};
+  object.update(json(sum));
+  return object;
+}
+
+Json json(const LevelRecord& level)
+{
+  Json object{{"level", level.level}};
+  add_results(object, level);
+  object["finishing_steps"] = level.finishing_steps;
+  object["newton"] = Json::array();
+  for (const adapt::CertifiedStep& record : level.newton)
+    object["newton"].push_back(json(record, is_regularised(level)));
+  object["times"] = json(level.times.stages);
+  object["times"].update({{"level", level.times.level},
+                          {"solve_cpu", level.times.solve_cpu},
+                          {"certify_cpu", level.times.certify_cpu},
+                          {"level_cpu", level.times.level_cpu}});
+  return object;
+}
+
+Json json(const doctor::Finding& warning)
+{
+  return {{"code", warning.code},
+          {"text", warning.text},
+          {"value", warning.numbers.empty() ? 0 : warning.numbers.front().second},
+          {"where", text_or_null(doctor::location(warning))}};
+}
+
+template <typename Value>
+Json json(const std::vector<std::pair<std::string, Value>>& named)
+{
+  Json object = Json::object();
+  for (const auto& [name, value] : named) object[name] = value;
+  return object;
+}
+
+}  // namespace
+
+Json program_json(const BuildFacts& build)
+{
+  return {{"name", "tribound"},         {"version", build.version},
+          {"compiler", build.compiler}, {"petsc", build.petsc},
+          {"mumps", build.mumps},       {"gmsh", build.gmsh},
+          {"blas", build.blas},         {"blas_threads", build.blas_threads},
+          {"mpi", build.mpi},           {"eigen", build.eigen},
+          {"features", build.features}};
+}
+
+Json mesh_json(const MeshFacts& mesh)
+{
+  Json object{
+      {"vertices", mesh.vertices},         {"cells", mesh.cells},      {"smallest_cell", mesh.smallest_cell},
+      {"largest_cell", mesh.largest_cell}, {"regions", Json::array()}, {"boundaries", Json::array()}};
+  for (const RegionFacts& region : mesh.regions)
+    object["regions"].push_back({{"name", region.name},
+                                 {"cells", region.cells},
+                                 {"measure", region.measure},
+                                 {"material", region.material}});
+  for (const BoundaryFacts& boundary : mesh.boundaries)
+    object["boundaries"].push_back({{"name", boundary.name},
+                                    {"facets", boundary.facets},
+                                    {"measure", boundary.measure},
+                                    {"condition", boundary.condition}});
+  return object;
+}
+
+Json effective_case_json(const RunRecord& run)
+{
+  if (run.effective.text.empty()) return nullptr;
+  return {{"file", run.case_file},
+          {"sha256", sha256(run.effective.text)},
+          {"overrides", run.effective.overrides}};
+}
+
+Json balance_json(const certify::Balance& balance)
+{
+  Json object{{"about", balance.about}, {"rows", Json::array()}};
+  for (const certify::BalanceRow& row : balance.rows)
+    object["rows"].push_back({{"kind", certify::to_string(row.kind)},
+                              {"name", row.name},
+                              {"source", row.source},
+                              {"force", row.force},
+                              {"moment", row.moment ? Json(*row.moment) : Json(nullptr)}});
+  object["note"] = text_or_null(certify::moment_note(balance));
+  return object;
+}
+
+Json certificate(const RunRecord& run)
+{
+  Json object{{"schema", certificate_schema},
+              {"program", program_json(run.build)},
+              {"title", run.facts.title},
+              {"file", run.facts.file},
+              {"case", effective_case_json(run)},
+              {"status", certify::to_string(run.status)},
+              {"reason", text_or_null(run.reason)},
+              {"d", run.facts.dimension},
+              {"p", run.facts.degree},
+              {"friction", run.facts.friction},
+              {"gamma0", run.facts.gamma0}};
+  if (!run.levels.empty()) add_results(object, run.levels.back());
+  object["balance"] = nullptr;
+  if (!run.levels.empty() && run.levels.back().balance)
+    object["balance"] = balance_json(*run.levels.back().balance);
+  object["tolerance"] = run.tolerance;
+  object["covered"] = run.statements.covered;
+  object["law"] = run.statements.law;
+  object["constants"] = json(run.statements.constants);
+  object["assumptions"] = json(run.statements.assumptions);
+  object["not_covered"] = run.statements.not_covered;
+  object["warnings"] = Json::array();
+  for (const doctor::Finding& warning : run.warnings) object["warnings"].push_back(json(warning));
+  object["mesh"] = mesh_json(run.mesh);
+  object["levels"] = Json::array();
+  for (const LevelRecord& level : run.levels) object["levels"].push_back(json(level));
+  object["times"] = times_json(run);
+  return object;
+}
+
+}  // namespace tribound::io
