@@ -12,6 +12,7 @@
 
 #include "app/command/interrupt.h"
 #include "app/command/run_report.h"
+#include "app/command/study_cases.h"
 #include "app/output_directory.h"
 #include "app/page/report_page.h"
 #include "app/page/study_page.h"
@@ -22,7 +23,6 @@
 #include "tribound/base/clock.h"
 #include "tribound/case/resolve.h"
 #include "tribound/certify/truth/solution_error.h"
-#include "tribound/fem/degree.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/bisect.h"
 
@@ -54,62 +54,6 @@ enum class Keep
   all,
   last
 };
-
-/// The relative bound that counts as round-off.
-constexpr double resolution = 1e-10;
-
-/// The case as variant `name` of the study.
-case_file::Config variant_config(const case_file::Config& config, const std::string& name)
-{
-  case_file::Config variant = config;
-  const bool converged = name.ends_with("_converged");
-  if (converged)
-    variant.method.stopping.criterion = adapt::Stopping::tolerance;
-  else if (config.method.stopping.criterion == adapt::Stopping::tolerance)
-    variant.method.stopping.criterion = adapt::Stopping::adaptive;
-  if (name.starts_with("uniform")) variant.adapt.marking.strategy = adapt::Marking::uniform;
-  variant.method.stopping.finish = false;  // stopping criteria are what is compared
-  variant.output.directory /= name;
-  variant.effective = {};  // that of the study stands beside its tables
-  variant.output.vtu = config.output.vtu && !converged;
-  variant.output.mesh = false;
-  return variant;
-}
-
-/// The case of the reference solution, its bound to be at most `required` of ||sigma||. Its Newton iterates
-/// are ten times closer to convergence than those it is to measure.
-case_file::Config reference_config(const case_file::Config& config, double required)
-{
-  case_file::Config reference = config;
-  reference.method.degree =
-      config.study.reference_degree.value_or(std::min(config.method.degree + 1, fem::max_degree));
-  reference.method.stopping.criterion = adapt::Stopping::adaptive;
-  reference.method.stopping.gamma_lin = 0.1 * config.method.stopping.gamma_lin;
-  reference.method.newton.damping = true;
-  reference.method.stopping.finish = false;
-  reference.adapt.tolerance = required;
-  reference.adapt.max_levels = std::numeric_limits<int>::max();
-  reference.adapt.max_cells.reset();
-  reference.adapt.max_dofs = config.study.max_reference_dofs;
-  reference.output.directory /= "reference";
-  reference.effective = {};
-  reference.output.vtu = false;
-  reference.output.mesh = false;
-  return reference;
-}
-
-/// The richest space within the budget in which the dual norm can be looked for, if there is one.
-template <int dim>
-std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<dim>& space, long max_dofs)
-{
-  for (const int refinements : {2, 1})
-    for (const int further : {2, 1})
-    {
-      const certify::RicherSpace richer = {.refinements = refinements, .degree = space.degree() + further};
-      if (certify::count_dofs(space.mesh(), richer) <= static_cast<double>(max_dofs)) return richer;
-    }
-  return std::nullopt;
-}
 
 template <int dim>
 class StudyCommand
@@ -251,7 +195,8 @@ void StudyCommand<dim>::solve_reference()
 {
   const double smallest = smallest_relative_bound();
   if (!std::isfinite(smallest)) return;
-  const double required = std::max(config_.study.reference_factor * smallest, resolution);
+  constexpr double round_off = 1e-10;
+  const double required = std::max(config_.study.reference_factor * smallest, round_off);
   const case_file::Config config = reference_config(config_, required);
   print_stage("reference",
               fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.method.degree, required));
