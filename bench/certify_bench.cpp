@@ -8,15 +8,16 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tribound/case/resolve.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/penalty.h"
 #include "tribound/mesh/box.h"
 
 namespace
@@ -62,17 +63,16 @@ mesh::Mesh<dim> block_mesh(int degree, bool distorted)
   return mesh::Mesh<dim>(std::move(data));
 }
 
-case_file::Config block_config(int dim, int degree)
+/// Clamped on the left, pressed on a floor with friction.
+template <int dim>
+problem::Problem<dim> block_problem(const mesh::Mesh<dim>& mesh)
 {
-  const std::string sides = dim == 2 ? "boundary.left.displacement = [0, 0]\n"
-                                       "boundary.top.traction = [0, -0.1]\n"
-                                     : "boundary.left.displacement = [0, 0, 0]\n"
-                                       "boundary.top.traction = [0, -0.1, 0]\n";
-  const std::string box = dim == 2 ? "{ lower = [0, 0], upper = [2, 1], cells = [1, 1] }"
-                                   : "{ lower = [0, 0, 0], upper = [2, 1, 1], cells = [1, 1, 1] }";
-  return case_file::parse_config("degree = " + std::to_string(degree) + "\nmesh.box = " + box +
-                                 "\nmaterial = { E = 1.0, nu = 0.3 }\n" + sides +
-                                 "boundary.bottom.contact = { friction = \"tresca\", threshold = 0.03 }\n");
+  std::array<std::optional<problem::Field>, dim> zero;
+  zero.fill(0.0);
+  return problem::Problem<dim>(
+      mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
+      {problem::with_displacement<dim>("left", zero), problem::with_traction<dim>("top", {0.0, -0.1}),
+       problem::with_contact<dim>("bottom", problem::Tresca(0.03))});
 }
 
 /// A smooth displacement and a traction that is not its own: what equilibrate() costs does not depend on
@@ -81,11 +81,10 @@ template <int dim>
 struct Block
 {
   Block(int degree, bool distorted)
-      : config(block_config(dim, degree)),
-        mesh(block_mesh<dim>(degree, distorted)),
-        problem(case_file::resolve(config, mesh)),
+      : mesh(block_mesh<dim>(degree, distorted)),
+        problem(block_problem(mesh)),
         space(mesh, degree),
-        form(problem, space, config.method.gamma_0())
+        form(problem, space, contact::default_gamma0(degree))
   {
     for (const Point<dim>& x : space.node_points())
       for (int c = 0; c < dim; ++c)
@@ -96,7 +95,6 @@ struct Block
   Block(const Block&) = delete;
   Block& operator=(const Block&) = delete;
 
-  case_file::Config config;
   mesh::Mesh<dim> mesh;
   problem::Problem<dim> problem;
   fem::LagrangeSpace<dim> space;
