@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/discrete_problem.h"
+#include "support/fields.h"
 #include "support/meshes.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/fem/degree.h"
@@ -105,6 +106,31 @@ TEST(ContactTerms, KinksAreResolvedIn3D)
   const double exact = 0.5 * std::pow(0.9, 4) / 12;
   EXPECT_NEAR(sum_over_facets(c, u, certify::ContactRule::resolved).cnt, exact, 1e-5 * exact);
   EXPECT_GT(std::abs(sum_over_facets(c, u, certify::ContactRule::reference).cnt - exact), 1e-4 * exact);
+}
+
+TEST(ContactTerms, TheDirectionOfSlipIsResolvedIn3D)
+{
+  // u = (1, 0, 2z - 1), s = 0.3 < gamma |u|: T^t = -s u/|u| turns without a kink. Against a traction (c, 0,
+  // 0) the square is s^2 + 2 s c/|u| + c^2, and the integral of 1/(1 + (2z - 1)^2)^{1/2} is asinh 1.
+  constexpr double s = 0.3;
+  constexpr double c = 0.2;
+  const DiscreteProblem<3> block = unit_block<3>(1, 0, Tresca(s));
+  const std::vector<double> u =
+      interpolate<3>(block.space, [](const Point<3>& x) { return Point<3>(1, 0, 2 * x[2] - 1); });
+  certify::Stress<3> stress = no_stress(block);
+  for (Index cell = 0; cell < block.mesh.n_cells(); ++cell)  // sigma_xy = -c, the normal is -e_y
+    stress.dis[cell * stress.block_size() + stress.n] =
+        -c * std::sqrt(mesh::cell_map(block.mesh, cell).measure());
+  const double exact = s * s + 2 * s * c * std::asinh(1) + c * c;
+  const auto frc = [&](certify::ContactRule rule)
+  {
+    const certify::ContactTerms<3> terms(block.form, rule);
+    double sum = 0;
+    for (int k = 0; k < 2; ++k) sum += terms(k, u, stress).frc / block.form.segments()[k].h;
+    return sum;
+  };
+  EXPECT_NEAR(frc(certify::ContactRule::resolved), exact, 1e-6 * exact);
+  EXPECT_GT(std::abs(frc(certify::ContactRule::reference) - exact), 1e-6 * exact);
 }
 
 TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)

@@ -107,7 +107,9 @@ std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRu
   if (!form.problem().has_contact()) return text;
   return text +
          (rule == ContactRule::resolved
-              ? "; cnt and frc on facets with a kink of the traction are subdivided until they settle"
+              ? "; facets with a kink of the traction, in 3D also those that slip, are subdivided until cnt "
+                "and frc "
+                "settle"
               : "; cnt and frc with the plain rule, which is not rigorous on facets with a kink of the "
                 "traction (certify.contact_rule = \"reference\")");
 }

@@ -38,6 +38,13 @@ std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
   return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
 }
 
+/// Whether the rule may not be exact for T(u), P(u) being a polynomial.
+template <int dim>
+bool is_rough(const Kinks& kinks)
+{
+  return kinks.possible || (dim == 3 && kinks.slips);
+}
+
 /// h_F |F| / |Fhat|.
 template <int dim>
 double norm_scale(const contact::ContactSegment<dim>& segment)
@@ -175,7 +182,7 @@ auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, con
   return result;
 }
 
-/// Halves the parts that may have a kink, and of these those again, until that changes nothing any more. What
+/// Halves the parts on which T is rough, and of these those again, until that changes nothing any more. What
 /// it did change last, where there is no end of it, is added.
 template <int dim>
 void ContactTerms<dim>::settle(int k, const Fields& fields,
@@ -184,7 +191,7 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
 {
   std::vector<Halved> active;
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (integrals[i].kinks.possible)
+    if (is_rough<dim>(integrals[i].kinks))
     {
       active.push_back(halve(k, fields, i, parts[i].part, integrals[i]));
       integrals[i] = {.kinks = integrals[i].kinks};
@@ -208,7 +215,7 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
       Integrals& sum = integrals[halved.part];
       const bool enough = last || halved.change * static_cast<double>(active.size()) <= negligible;
       for (std::size_t i = 0; i < halved.pieces.size(); ++i)
-        if (enough || !halved.values[i].kinks.possible)
+        if (enough || !is_rough<dim>(halved.values[i].kinks))
           sum += halved.values[i];
         else
           next.push_back(halve(k, fields, halved.part, halved.pieces[i], halved.values[i]));

@@ -33,7 +33,8 @@ struct ContactSquares
 
 /// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
 /// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
-/// again, until the value settles. ContactRule::reference takes the reference rule as it is.
+/// again, until the value settles, and so it does in 3D where the contact slips. ContactRule::reference takes
+/// the reference rule as it is.
 template <int dim>
 class ContactTerms
 {

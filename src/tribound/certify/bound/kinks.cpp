@@ -80,11 +80,13 @@ Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, const Point<di
 
   const Range pressing{coefficients.col(0).minCoeff(), coefficients.col(0).maxCoeff(),
                        at_points.col(0).minCoeff(), at_points.col(0).maxCoeff()};
-  Kinks result{pressing.changes_sign(noise), pressing.hidden(), pressing.lowest};
+  Kinks result{
+      .possible = pressing.changes_sign(noise), .hidden = pressing.hidden(), .lowest = pressing.lowest};
   const bool rubs = coefficients.col(dim + 1).maxCoeff() > noise;
   if (!rubs) return result;
   const Range slipping = slip_range<dim>(at_points, coefficients);
   result.possible = result.possible || slipping.changes_sign(noise);
+  result.slips = slipping.highest > noise;
   result.hidden += slipping.hidden();
   return result;
 }

@@ -16,6 +16,7 @@ namespace tribound::certify
 struct Kinks
 {
   bool possible = false;  ///< P^n or |P^t| - S_h may change sign
+  bool slips = false;     ///< |P^t| may exceed S_h: in 3D T is no polynomial there, as P^t/|P^t| is none
   double hidden = 0;  ///< the square of their values of the sign that no point of the rule has seen, at most
   double lowest = 0;  ///< P^n is above
 };
