@@ -174,7 +174,7 @@ certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form, st
   stress.n = given.n;
   stress.dis.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
-  for (Index c = 0; c < given.mesh.n_cells(); ++c) stress.lin_place.push_back(c);
+  for (Index c = 0; c < given.mesh.n_cells(); ++c) stress.lin_block.push_back(c);
   const mesh::BoundaryFacet& first = form.segments().front().slave.facet;
   const Index left_out = given.mesh.cell(first.cell)[(first.local + 1) % (dim + 1)];
   for (Index a = 0; a < given.mesh.n_vertices(); ++a)

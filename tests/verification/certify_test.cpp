@@ -82,7 +82,7 @@ void expect_the_same_in_parts(DiscreteProblem<dim> c)
     const certify::Stress<dim> lin = equilibrator.linearisation(newton.u, newton.traction);
     EXPECT_EQ(equilibrator(newton.u, newton.traction).dis, whole.dis);
     EXPECT_TRUE(lin.dis.empty());
-    EXPECT_EQ(lin.lin_place, whole.lin_place);
+    EXPECT_EQ(lin.lin_block, whole.lin_block);
     EXPECT_EQ(lin.lin, whole.lin);
 
     const certify::BoundComponents eta = estimator(newton.u, whole).global;

@@ -92,7 +92,7 @@ double difference(const certify::Stress<dim>& a, const certify::Stress<dim>& b)
     dis += std::pow(a.dis[i] - b.dis[i], 2);
     norm += a.dis[i] * a.dis[i];
   }
-  for (std::size_t c = 0; c < a.lin_place.size(); ++c)
+  for (std::size_t c = 0; c < a.lin_block.size(); ++c)
   {
     const std::vector<double> x = lin_of(a, static_cast<Index>(c));
     const std::vector<double> y = lin_of(b, static_cast<Index>(c));

@@ -46,7 +46,7 @@ certify::Stress<dim> no_stress(const DiscreteProblem<dim>& c)
   stress.degree = c.method.degree;
   stress.n = fem::polynomial_dimension(dim, stress.degree);
   stress.dis.assign(c.mesh.n_cells() * stress.block_size(), 0.0);
-  stress.lin_place.assign(c.mesh.n_cells(), -1);
+  stress.lin_block.assign(c.mesh.n_cells(), -1);
   return stress;
 }
 

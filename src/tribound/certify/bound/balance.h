@@ -17,7 +17,7 @@ namespace tribound::certify
 enum class BalanceKind
 {
   load,      ///< integral of f over a region, or of g_N over a boundary
-  reaction,  ///< integral of sigma_h n over a boundary, those components that its displacement fixes
+  reaction,  ///< integral of sigma_h n over a boundary, in the components that are fixed there
   contact,   ///< integral of sigma_h n over a boundary in contact: that of t^k
   sum        ///< of all rows
 };

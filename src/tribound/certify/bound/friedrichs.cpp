@@ -39,7 +39,7 @@ struct ProofMesh
   double facet_scale;  ///< h_F of the facet of the given mesh / diameter of its part here
 };
 
-/// A and M over the facet means that are not fixed: the same places in both.
+/// A and M over the facet means that are not fixed, with the same sparsity pattern.
 struct Pencil
 {
   Index n = 0;

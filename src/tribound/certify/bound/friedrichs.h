@@ -22,7 +22,7 @@ struct FriedrichsConstant
   Index cells;       ///< of the mesh of the proof
 };
 
-/// With more cells than that in 3D the proof does without factors. A cube of Kuhn's tetrahedra, one
+/// With more cells than this in 3D the proof needs no factorisation. A cube of Kuhn's tetrahedra, one
 /// component, seconds of a core with factors and without: 105 000 cells 10 and 1.4, 304 000 cells 40 and 6,
 /// where the factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large.
 inline constexpr Index most_cells_factorised_3d = 100'000;
@@ -31,8 +31,8 @@ inline constexpr Index most_cells_factorised_3d = 100'000;
 ///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2,
 /// on this mesh and on all its refinements, whose h_F are not larger. Infinite (and theta = 0) where a body
 /// has a component with neither Gamma_D nor Gamma_C, which check_rigid_motions() refuses as a free
-/// translation, and where no theta could be proved. Where the factorisation fails, as for want of memory,
-/// the proof does without factors, too.
+/// translation, and where no theta could be proved. Where the factorisation fails, for example for lack
+/// of memory, the proof does without it, too.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(
     const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,

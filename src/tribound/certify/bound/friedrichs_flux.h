@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file friedrichs_flux.h
-/// A bound behind the Friedrichs constant without factorisation, less sharp: for large meshes in 3D.
+/// The eigenvalue bound on which the Friedrichs constant rests, without factorisation and less sharp: for
+/// large meshes in 3D.
 
 #include <span>
 

@@ -41,8 +41,8 @@ class BlockCholesky
     adjacency_[j * words_ + i / 64] |= std::uint64_t{1} << (i % 64);
   }
 
-  /// Orders by minimum degree and makes room for all blocks, which become 0. Returns each block's place in
-  /// the order: its new name.
+  /// Orders by minimum degree and makes room for all blocks, which become 0. Returns the position
+  /// of each block in that order: its new number.
   std::span<const int> order()
   {
     sequence_.clear();
@@ -56,7 +56,7 @@ class BlockCholesky
   [[nodiscard]] Matrix& block(int i, int j)
   {
     assert(i <= j);
-    return pool_[place_[i * n_ + j]];
+    return pool_[index_[i * n_ + j]];
   }
 
   /// Replaces `count` rows and columns of block row i, from `begin` on, by those of a multiple of the
@@ -164,7 +164,7 @@ class BlockCholesky
   {
     columns_.clear();
     row_begin_.assign(1, 0);
-    place_.resize(std::max(place_.size(), static_cast<std::size_t>(n_) * n_));
+    index_.resize(std::max(index_.size(), static_cast<std::size_t>(n_) * n_));
     reciprocal_.resize(std::max(reciprocal_.size(), static_cast<std::size_t>(n_)));
     for (int i = 0; i < n_; ++i)
     {
@@ -172,7 +172,7 @@ class BlockCholesky
       for_later_neighbours(sequence_[i], [&](int k) { columns_.push_back(rank_[k]); });
       std::sort(columns_.begin() + row_begin_.back(), columns_.end());
       for (int e = row_begin_.back(); e < static_cast<int>(columns_.size()); ++e)
-        place_[i * n_ + columns_[e]] = e;
+        index_[i * n_ + columns_[e]] = e;
       row_begin_.push_back(static_cast<int>(columns_.size()));
     }
     pool_.resize(std::max(pool_.size(), columns_.size()));
@@ -187,7 +187,7 @@ class BlockCholesky
 
   std::vector<int> row_begin_;  ///< of the rows in columns_ and pool_
   std::vector<int> columns_;
-  std::vector<int> place_;                         ///< position of block (i, j) in columns_ and pool_
+  std::vector<int> index_;                         ///< position of block (i, j) in columns_ and pool_
   std::vector<Matrix> pool_;                       ///< A, then U
   std::vector<std::array<double, n>> reciprocal_;  ///< of the diagonal of U
 };

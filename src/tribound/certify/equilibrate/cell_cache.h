@@ -53,8 +53,8 @@ class BodyMoments
  private:
   static constexpr int m = Sizes<dim, p>::multiplier;
 
-  /// The points in the order of the cell's own numbering, in which f is given, in those of the sorted cell,
-  /// and the basis of P^{p-1} there.
+  /// The points of the rule in sorted coordinates, numbered as in the cell's own, in which f is given; and
+  /// the basis of P^{p-1} there.
   struct Table
   {
     Table() = default;

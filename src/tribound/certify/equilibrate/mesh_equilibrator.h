@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file mesh_equilibrator.h
-/// What stands behind Equilibrator: an object for each dimension and degree, with sizes that the compiler
-/// knows.
+/// The implementations of Equilibrator: one for each dimension and degree, with sizes known at compile time.
 
 #include <memory>
 #include <span>

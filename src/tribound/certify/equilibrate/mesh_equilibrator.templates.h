@@ -75,11 +75,11 @@ void Equilibration<dim, p>::prepare_stress()
   stress_.degree = p;
   stress_.n = S::stress;
   if (with_dis_) stress_.dis.resize(mesh_.n_cells() * stress_.block_size());
-  stress_.lin_place.assign(mesh_.n_cells(), -1);
+  stress_.lin_block.assign(mesh_.n_cells(), -1);
   int n_lin = 0;
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (std::ranges::any_of(mesh_.cell(c), [&](Index v) { return data_.on_contact(v); }))
-      stress_.lin_place[c] = n_lin++;
+      stress_.lin_block[c] = n_lin++;
   stress_.lin.resize(n_lin * stress_.block_size());
   if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
 }
@@ -138,7 +138,7 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
   const std::size_t size = stress_.block_size();
   for (int problem = with_dis_ ? 0 : 1; problem < (with_dis_ ? data_.n_parts() : 2); ++problem)
   {
-    if (problem > 0 && stress_.lin_place[cell] < 0) return;
+    if (problem > 0 && stress_.lin_block[cell] < 0) return;
     DenseVector<S::u> r_u;
     if (problem == 0) r_u = prepared.divergence;
     Tensor<dim> w = Tensor<dim>::Zero();
@@ -157,7 +157,7 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
       for (int entry = 0; entry < dim * dim; ++entry)
         for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
     std::vector<double>& values = problem == 0 ? stress_.dis : problem == 1 ? stress_.lin : stress_.reg;
-    std::ranges::copy(sigma, &values[(problem == 0 ? cell : stress_.lin_place[cell]) * size]);
+    std::ranges::copy(sigma, &values[(problem == 0 ? cell : stress_.lin_block[cell]) * size]);
   }
 }
 

@@ -45,7 +45,7 @@ class Patch
   struct CellPart
   {
     int vertex;                       ///< the patch's vertex in the sorted cell: also its outer facet
-    std::array<int, dim + 1> facets;  ///< place in `facets_`, -1 for the outer one
+    std::array<int, dim + 1> facets;  ///< index in `facets_`, -1 for the outer one
     const PreparedCell<dim, p>* prepared;
     std::span<CellShare<dim, p>> shares;
     const OuterElimination<dim, p>* outer;  ///< of the cell's shape, or `own_outer`
@@ -81,11 +81,11 @@ class Patch
   void assemble();
   void condense(CellPart& part);
   void assemble_load(CellPart& part, int problem);
-  void decouple_fixed_components(int place);
-  void fix_rigid_motions(int place);
+  void decouple_fixed_components(int facet);
+  void fix_rigid_motions(int facet);
   void recover(CellPart& part, int problem);
   [[nodiscard]] UVector raw_load(const CellPart& part) const;
-  [[nodiscard]] FacetVector moments_on_facet(int place, int motion) const;
+  [[nodiscard]] FacetVector moments_on_facet(int facet, int motion) const;
   [[nodiscard]] int local_vertex(Index facet) const;
   [[nodiscard]] double traction_work(int problem, int motion) const;
   [[nodiscard]] const typename FacetData<dim, p>::FacetVector* traction(Index facet, int problem) const;

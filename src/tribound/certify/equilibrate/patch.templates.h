@@ -91,15 +91,15 @@ void Patch<dim, p>::order_facets()
 
 /// Coefficients of motion i in P^p(F)^d.
 template <int dim, int p>
-auto Patch<dim, p>::moments_on_facet(int place, int motion) const -> FacetVector
+auto Patch<dim, p>::moments_on_facet(int facet, int motion) const -> FacetVector
 {
   const auto& hat = reference<dim, p>().facet_hat_moment;
   FacetVector moments;
-  const double scale = std::sqrt(facets_[place].scale);
+  const double scale = std::sqrt(facets_[facet].scale);
   for (int v = 0; v < dim; ++v)
   {
     const Point<dim> z =
-        scale * motions_(motion, mesh_.vertex(mesh_.topology().facets[facets_[place].number][v]));
+        scale * motions_(motion, mesh_.vertex(mesh_.topology().facets[facets_[facet].number][v]));
     for (int c = 0; c < dim; ++c)
       for (int i = 0; i < S::facet; ++i) moments[c * S::facet + i] += z[c] * hat(i, v);
   }
@@ -209,31 +209,31 @@ void Patch<dim, p>::assemble_load(CellPart& part, int problem)
 
 /// Where Gamma_D fixes a component the normal trace is free: its multiplier is 0.
 template <int dim, int p>
-void Patch<dim, p>::decouple_fixed_components(int place)
+void Patch<dim, p>::decouple_fixed_components(int facet)
 {
   for (int c = 0; c < dim; ++c)
   {
-    if (!data_.fixes(facets_[place].number, c)) continue;
-    matrix_.template decouple<S::facet>(place, c * S::facet);
+    if (!data_.fixes(facets_[facet].number, c)) continue;
+    matrix_.template decouple<S::facet>(facet, c * S::facet);
     for (int problem = 0; problem < n_problems_; ++problem)
-      std::fill_n(x_[problem][place].data() + c * S::facet, S::facet, 0.0);
+      std::fill_n(x_[problem][facet].data() + c * S::facet, S::facet, 0.0);
   }
 }
 
 /// Multipliers that are the trace of an admissible rigid motion change nothing: makes the matrix definite by
 /// a term on one facet, which the solution, the data being compatible, does not feel.
 template <int dim, int p>
-void Patch<dim, p>::fix_rigid_motions(int place)
+void Patch<dim, p>::fix_rigid_motions(int facet)
 {
-  auto& diagonal = matrix_.block(place, place);
+  auto& diagonal = matrix_.block(facet, facet);
   double scale = 0;
   for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
   for (int motion = 0; motion < motions_.size(); ++motion)
   {
-    FacetVector trace = moments_on_facet(place, motion);
-    if (data_.is_boundary(facets_[place].number))
+    FacetVector trace = moments_on_facet(facet, motion);
+    if (data_.is_boundary(facets_[facet].number))
       for (int c = 0; c < dim; ++c)
-        if (data_.fixes(facets_[place].number, c)) std::fill_n(trace.data() + c * S::facet, S::facet, 0.0);
+        if (data_.fixes(facets_[facet].number, c)) std::fill_n(trace.data() + c * S::facet, S::facet, 0.0);
     double square = 0;
     for (int i = 0; i < S::block; ++i) square += trace[i] * trace[i];
     for (int i = 0; i < S::block; ++i)

@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr double exact = 1e-12;
-constexpr int table_size = 1 << 12;  // of the hash table: a shape that finds its place taken is given up
+constexpr int table_size = 1 << 12;  // of the hash table: a shape whose entry is taken is given up
 
 /// Equal for most pairs of matrices that differ by much less than the quantum.
 template <int dim>

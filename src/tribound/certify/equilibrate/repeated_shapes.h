@@ -117,7 +117,7 @@ class RepeatedShapes
  private:
   static constexpr int often = 64;  ///< cells over which the memory of a shape is spread
 
-  std::vector<int> number_;  ///< per cell: place in shapes_, or -1
+  std::vector<int> number_;  ///< per cell: index in shapes_, or -1
   std::vector<std::unique_ptr<RepeatedShape<dim, p>>> shapes_;
 };
 

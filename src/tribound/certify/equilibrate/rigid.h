@@ -35,8 +35,8 @@ class RigidMotions
  public:
   static constexpr int n_all = dim + dim * (dim - 1) / 2;
 
-  /// Those whose fixed components vanish on every fixed facet around `centre`: first the translations, then
-  /// the rotations about the centre. (A motion that vanishes at the centre in the fixed components has a
+  /// The motions whose fixed components vanish on every fixed facet around `centre`: first the translations,
+  /// then the rotations about the centre. (A motion that vanishes at the centre in the fixed components has a
   /// translation and a rotation that do so one by one.)
   RigidMotions(const Point<dim>& centre, double size, std::span<const FixedFacet<dim>> facets);
 

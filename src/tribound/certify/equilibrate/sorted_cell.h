@@ -43,15 +43,15 @@ template <std::size_t n>
   int number = 0;
   for (std::size_t i = 0; i < n; ++i)
   {
-    int smaller_behind = 0;
-    for (std::size_t j = i + 1; j < n; ++j) smaller_behind += permutation[j] < permutation[i];
-    number = number * static_cast<int>(n - i) + smaller_behind;
+    int smaller = 0;  // entries to the right that are smaller
+    for (std::size_t j = i + 1; j < n; ++j) smaller += permutation[j] < permutation[i];
+    number = number * static_cast<int>(n - i) + smaller;
   }
   return number;
 }
 
-/// A point given in the reference coordinates of Mesh::cell, in those of the sorted cell, whose vertices are
-/// local[0], local[1], ... of the cell.
+/// A point in the coordinates of the sorted cell, whose vertices are local[0], local[1], ... of Mesh::cell;
+/// given in the reference coordinates of Mesh::cell.
 template <int dim>
 [[nodiscard]] Point<dim> to_sorted_cell(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
 {

@@ -13,15 +13,15 @@ namespace tribound::certify
 
 /// sigma_h = sigma_dis + sigma_lin (+ sigma_reg, method section 7). On each cell, entry (r, c) has
 /// coefficients in the orthonormal basis of P^p(T), phi_j(xhat) / sqrt(det J) with the cell's vertices in
-/// ascending order (certify/equilibrate/sorted_cell.h); they are stored entry by entry: place (dim * r + c) *
-/// n + j. Norms are sums of squares, projections truncations.
+/// ascending order (certify/equilibrate/sorted_cell.h); they are stored entry by entry: coefficient j of
+/// entry (r, c) at (dim * r + c) * n + j. Norms are sums of squares, projections truncations.
 template <int dim>
 struct Stress
 {
   int degree = 0;
   int n = 0;                   ///< dim P^p
   std::vector<double> dis;     ///< all cells
-  std::vector<int> lin_place;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
+  std::vector<int> lin_block;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
   std::vector<double> lin;     ///< the cells with a vertex on Gamma_C
   std::vector<double> reg;     ///< the same cells; empty unless T was regularised
 
@@ -38,8 +38,8 @@ struct Stress
  private:
   [[nodiscard]] std::span<const double> in_cell(const std::vector<double>& part, Index cell) const
   {
-    if (lin_place[cell] < 0 || part.empty()) return {};
-    return std::span(part).subspan(lin_place[cell] * block_size(), block_size());
+    if (lin_block[cell] < 0 || part.empty()) return {};
+    return std::span(part).subspan(lin_block[cell] * block_size(), block_size());
   }
 };
 

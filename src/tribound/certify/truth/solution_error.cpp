@@ -26,8 +26,8 @@ class CellGradients
   {
   }
 
-  /// In the cell with the map `map`, at `points`, those of the rule on the cell `inside` it. Valid until the
-  /// next call.
+  /// In the cell with the map `map`, at the `points` of the rule on the cell with the map `inside`, which
+  /// lies in it. Valid until the next call.
   std::span<const Tensor<dim>> at(Index cell, const mesh::CellMap<dim>& map, const mesh::CellMap<dim>& inside,
                                   std::span<const Point<dim>> points)
   {

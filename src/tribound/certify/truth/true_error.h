@@ -93,7 +93,7 @@ class DualNorm
 };
 
 /// bound / dual_norm, which the theorem says is at least 1; nothing where both are below norms.round_off or
-/// 1e-10 ||sigma(u)||, the size of the round-off to which the identities behind the bound hold.
+/// 1e-10 ||sigma(u)||, the size of the round-off to which the identities of the bound hold.
 [[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm,
                                                 const contact::StressNorms& norms);
 

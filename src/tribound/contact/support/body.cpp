@@ -99,8 +99,8 @@ std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space)
   {
     bodies[cell_label[c]].cells.push_back(c);
     std::vector<int>& regions = bodies[cell_label[c]].regions;
-    const auto place = std::ranges::lower_bound(regions, mesh.region(c));
-    if (place == regions.end() || *place != mesh.region(c)) regions.insert(place, mesh.region(c));
+    const auto position = std::ranges::lower_bound(regions, mesh.region(c));
+    if (position == regions.end() || *position != mesh.region(c)) regions.insert(position, mesh.region(c));
   }
   return bodies;
 }

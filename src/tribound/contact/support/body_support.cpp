@@ -21,8 +21,8 @@ struct Candidate
   bool loaded = false;
 };
 
-/// Whether `a` is the better choice. A component tangential to its boundary stops a motion as well: it comes
-/// behind every normal one.
+/// Whether `a` is the better choice. A component tangential to its boundary stops a motion as well, but
+/// ranks below every normal one.
 bool better(const Candidate& a, const Candidate& b)
 {
   constexpr double tie = 1e-9;

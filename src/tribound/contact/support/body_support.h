@@ -51,8 +51,8 @@ class BodySupport
 
   /// Motions that displacement conditions leave.
   [[nodiscard]] MotionBasis left_by_displacements() const;
-  /// Those that contact, could it pull as well, would leave, too: without friction only friction, with it
-  /// nothing stops them.
+  /// Motions that would be left even if contact could pull as well: without friction only friction stops
+  /// them, with friction nothing does.
   [[nodiscard]] MotionBasis left_by_contact(bool with_friction) const;
 
   /// The boundary component to fix against the motion z: the one with the largest mean of (z_c n_c)^2, that
