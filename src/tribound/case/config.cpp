@@ -12,6 +12,7 @@
 #include "tribound/case/physics.h"
 #include "tribound/case/table_reader.h"
 #include "tribound/fem/degree.h"
+#include "tribound/mesh/box.h"
 
 namespace tribound::case_file
 {
@@ -39,25 +40,7 @@ mesh::BoxMesh read_box(const Node& node)
       .upper = components<double>(table, "upper", to_number),
       .cells = components<int>(table, "cells", integer_from(1, "the number of cells in this direction")),
       .where = node.where};
-  const std::size_t dim = box.lower.size();
-  if (box.upper.size() != dim || box.cells.size() != dim)
-    throw InputError(node.where,
-                     fmt::format("lower, upper and cells have {}, {} and {} numbers", dim, box.upper.size(),
-                                 box.cells.size()),
-                     "each has 2 in 2D, 3 in 3D");
-  double n_simplices = dim == 2 ? 2.0 : 6.0;
-  for (std::size_t i = 0; i < dim; ++i)
-  {
-    if (!(box.lower[i] < box.upper[i]))
-      throw InputError(
-          table.find("upper")->where,
-          fmt::format("upper[{}] = {} is not above lower[{}] = {}", i, box.upper[i], i, box.lower[i]),
-          "lower and upper are opposite corners of the box");
-    n_simplices *= box.cells[i];
-  }
-  if (n_simplices > static_cast<double>(std::numeric_limits<Index>::max()))
-    throw InputError(table.find("cells")->where, fmt::format("makes {:.3g} simplices", n_simplices),
-                     fmt::format("at most {}", std::numeric_limits<Index>::max()));
+  mesh::require_valid(box);
   return box;
 }
 

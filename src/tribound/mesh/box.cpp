@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -21,31 +22,6 @@ constexpr auto cube_cells = []
     return std::array<Cell<3>, 6>{
         {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 }();
-
-void check(const BoxMesh& box, int dim)
-{
-  const auto expect = [&](bool good, const std::string& problem, const std::string& hint)
-  {
-    if (!good) throw InputError(box.where, problem, hint);
-  };
-  const auto n = static_cast<std::size_t>(dim);
-  expect(box.lower.size() == n && box.upper.size() == n && box.cells.size() == n,
-         fmt::format("lower, upper and cells have {}, {} and {} entries", box.lower.size(), box.upper.size(),
-                     box.cells.size()),
-         "two entries each in 2D, three in 3D");
-  double n_cells = dim == 2 ? 2.0 : 6.0;
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    expect(std::isfinite(box.lower[i]) && std::isfinite(box.upper[i]) && box.lower[i] < box.upper[i],
-           fmt::format("lower = {} and upper = {} along {}", box.lower[i], box.upper[i], "xyz"[i]),
-           "lower < upper along every axis");
-    expect(box.cells[i] >= 1, fmt::format("{} cells along {}", box.cells[i], "xyz"[i]),
-           "at least one cell along every axis");
-    n_cells *= box.cells[i];
-  }
-  expect(n_cells * Topology<3>::n_cell_edges <= std::numeric_limits<Index>::max(),
-         fmt::format("{:.3g} cells are too many for 32-bit numbers", n_cells), "fewer cells along some axis");
-}
 
 /// Steps through the grid points below `counts`, the first axis fastest; calls visit(grid point).
 template <int dim, class Visit>
@@ -80,10 +56,43 @@ void for_each_side(const std::array<Index, dim>& corners, const std::array<Index
 
 }  // namespace
 
+void require_valid(const BoxMesh& box)
+{
+  const auto expect = [&](bool good, const char* key, const std::string& problem, const std::string& hint)
+  {
+    if (good) return;
+    Where where = box.where;
+    where.key += key;
+    throw InputError(where, problem, hint);
+  };
+  const std::size_t dim = box.lower.size();
+  expect((dim == 2 || dim == 3) && box.upper.size() == dim && box.cells.size() == dim, "",
+         fmt::format("lower, upper and cells have {}, {} and {} numbers", dim, box.upper.size(),
+                     box.cells.size()),
+         "each has 2 in 2D, 3 in 3D");
+  double n_cells = dim == 2 ? 2.0 : 6.0;
+  for (std::size_t i = 0; i < dim; ++i)
+  {
+    expect(std::isfinite(box.lower[i]) && std::isfinite(box.upper[i]), "",
+           fmt::format("reaches from {} to {} along {}", box.lower[i], box.upper[i], "xyz"[i]),
+           "finite numbers in lower and upper");
+    expect(box.lower[i] < box.upper[i], ".upper",
+           fmt::format("upper[{}] = {} is not above lower[{}] = {}", i, box.upper[i], i, box.lower[i]),
+           "lower and upper are opposite corners of the box");
+    expect(box.cells[i] >= 1, ".cells", fmt::format("cells[{}] = {}", i, box.cells[i]),
+           "at least one cell along every axis");
+    n_cells *= box.cells[i];
+  }
+  constexpr int largest = std::numeric_limits<Index>::max() / Topology<3>::n_cell_edges;
+  expect(n_cells <= largest, ".cells", fmt::format("makes {:.3g} simplices", n_cells),
+         fmt::format("at most {}", largest));
+}
+
 template <int dim>
 MeshData<dim> box_mesh(const BoxMesh& box)
 {
-  check(box, dim);
+  require_valid(box);
+  assert(box.lower.size() == dim);
   MeshData<dim> data;
   data.source = box.where;
   data.region_names = {"box"};

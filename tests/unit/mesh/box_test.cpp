@@ -90,16 +90,18 @@ TEST(Box, RejectsNonsenseNamingTheKey)
     return [=] { (void)mesh::box_mesh<2>({lower, upper, cells, where}); };
   };
   expect_input_error(build({0, 0}, {1}, {1, 1}),
-                     {"case.toml:4: mesh.box: ", "2, 1 and 2 entries", "hint: two"});
-  expect_input_error(build({0, 0}, {1, 0}, {1, 1}), {"lower = 0 and upper = 0 along y", "lower < upper"});
-  expect_input_error(build({0, 0}, {INFINITY, 1}, {1, 1}), {"upper = inf along x"});
-  expect_input_error(build({0, 0}, {1, 1}, {1, 0}), {"0 cells along y", "at least one"});
-  expect_input_error(build({0, 0}, {1, 1}, {100'000, 100'000}), {"2e+10 cells are too many"});
+                     {"case.toml:4: mesh.box: ", "2, 1 and 2 numbers", "hint: each has 2"});
+  expect_input_error(build({0, 0}, {1, 0}, {1, 1}),
+                     {"case.toml:4: mesh.box.upper: ", "upper[1] = 0 is not above lower[1] = 0"});
+  expect_input_error(build({0, 0}, {INFINITY, 1}, {1, 1}), {"mesh.box: ", "reaches from 0 to inf along x"});
+  expect_input_error(build({0, 0}, {1, 1}, {1, 0}), {"mesh.box.cells: ", "cells[1] = 0", "at least one"});
+  expect_input_error(build({0, 0}, {1, 1}, {100'000, 100'000}),
+                     {"mesh.box.cells: ", "makes 2e+10 simplices", "at most 357913941"});
   expect_input_error(
       [&] {
         (void)mesh::read_mesh(mesh::BoxMesh{{0}, {1}, {2}, where});
       },
-      {"1, 1 and 1 entries"});
+      {"1, 1 and 1 numbers"});
 }
 
 TEST(Box, ReadMeshTakesTheDimensionFromTheNumberOfEntries)
