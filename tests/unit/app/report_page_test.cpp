@@ -54,6 +54,7 @@ TEST(ReportPage, LevelsInBetweenAreLeftOutFromTheLargestOn)
   std::vector<app::PageLevel> levels = {{0, 10, {}}, {1, 20, {}}, {2, 40, {}}, {3, 30, {}}, {4, 50, {}}};
   app::drop_levels(levels, {.all_levels = 120});
   std::vector<int> numbers;
+  numbers.reserve(levels.size());
   for (const app::PageLevel& level : levels) numbers.push_back(level.number);
   EXPECT_THAT(numbers, ::testing::ElementsAre(0, 1, 3, 4));
   app::drop_levels(levels, {.all_levels = 0});
