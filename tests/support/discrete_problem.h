@@ -17,16 +17,17 @@ namespace tribound::test
 template <int dim>
 struct DiscreteProblem
 {
-  DiscreteProblem(mesh::Mesh<dim> m, const ProblemData<dim>& data, adapt::Method options = {})
-      : method(std::move(options)),
+  DiscreteProblem(mesh::Mesh<dim> m, const ProblemData<dim>& data, const adapt::Method& options = {})
+      : method(options),
         mesh(std::move(m)),
         problem(data.on(mesh)),
         space(mesh, method.degree),
         form(problem, space, method.gamma_0())
   {
   }
-  DiscreteProblem(mesh::MeshData<dim> data, const ProblemData<dim>& problem, adapt::Method options = {})
-      : DiscreteProblem(mesh::Mesh<dim>(std::move(data)), problem, std::move(options))
+  DiscreteProblem(mesh::MeshData<dim> data, const ProblemData<dim>& problem,
+                  const adapt::Method& options = {})
+      : DiscreteProblem(mesh::Mesh<dim>(std::move(data)), problem, options)
   {
   }
   DiscreteProblem(const DiscreteProblem&) = delete;

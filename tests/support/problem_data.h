@@ -74,11 +74,11 @@ template <int dim>
 
 /// g_N = -pressure n on a boundary.
 template <int dim>
-[[nodiscard]] problem::BoundaryCondition<dim> pressed(const std::string& name, problem::Field pressure)
+[[nodiscard]] problem::BoundaryCondition<dim> pressed(const std::string& name, const problem::Field& pressure)
 {
   problem::BoundaryCondition<dim> condition;
   condition.name = name;
-  condition.pressure = std::move(pressure);
+  condition.pressure = pressure;
   return condition;
 }
 
@@ -101,7 +101,8 @@ template <int dim>
   return obstacle<dim>(name, contact.law, contact.gap);
 }
 
-/// A problem before it meets a mesh. (GCC 12 does not survive an initialiser {} of the members here.)
+/// A problem before it meets a mesh. No member is initialised with {}: GCC 12 ends there with an internal
+/// error.
 template <int dim>
 struct ProblemData
 {

@@ -8,7 +8,6 @@
 
 #include <iostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "support/discrete_problem.h"

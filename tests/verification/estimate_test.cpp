@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "support/discrete_problem.h"
 #include "support/meshes.h"

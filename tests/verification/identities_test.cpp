@@ -10,7 +10,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "support/box_sides.h"
 #include "support/discrete_problem.h"

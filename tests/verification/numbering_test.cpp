@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "support/discrete_problem.h"

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "support/contact_points.h"
 #include "support/discrete_problem.h"

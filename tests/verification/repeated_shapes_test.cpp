@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "support/discrete_problem.h"
 #include "support/meshes.h"

@@ -4,12 +4,10 @@
 
 #include "tribound/certify/bound/friedrichs.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "support/discrete_problem.h"
 #include "support/meshes.h"

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <random>
-#include <string>
 
 #include "support/dimensions.h"
 #include "support/discrete_problem.h"
