@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "tribound/base/error.h"
+#include "support/input_error.h"
 #include "tribound/io/file/atomic_file.h"
 
 namespace tribound
@@ -34,15 +34,7 @@ class OutputDirectoryTest : public ::testing::Test
 
   static std::string message(const fs::path& path)
   {
-    try
-    {
-      const app::OutputDirectory opened(path);
-    }
-    catch (const InputError& error)
-    {
-      return error.what();
-    }
-    return {};
+    return test::message_of([&] { const app::OutputDirectory opened(path); });
   }
 
   const fs::path directory;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "support/input_error.h"
+
 namespace tribound
 {
 namespace
@@ -31,15 +33,7 @@ template <int dim = 2>
 std::string message(const std::string& text, const Names& region_names = regions,
                     const Names& boundary_names = sides)
 {
-  try
-  {
-    (void)problem<dim>(text, region_names, boundary_names);
-  }
-  catch (const InputError& error)
-  {
-    return error.what();
-  }
-  return "accepted";
+  return test::message_of([&] { (void)problem<dim>(text, region_names, boundary_names); });
 }
 
 TEST(CaseFacts, AreThoseOfTheCase)
@@ -135,24 +129,12 @@ TEST(Problem, GapAndThresholdMustNotBeNegative)
   const problem::Contact& contact = *p.boundary(2).contact;
   EXPECT_EQ(problem::gap_at<2>(contact, {0, 0.5}), 0.5);
   EXPECT_EQ(problem::strength_at<2>(contact.law, {0.25, 0}), 0.75);
-  const auto thrown = [](auto&& evaluate) -> std::string
-  {
-    try
-    {
-      (void)evaluate();
-    }
-    catch (const InputError& error)
-    {
-      return error.what();
-    }
-    return "accepted";
-  };
-  EXPECT_THAT(thrown(
+  EXPECT_THAT(test::message_of(
                   [&] {
                     return problem::gap_at<2>(contact, {0, -0.5});
                   }),
               HasSubstr("boundary.bottom.contact.gap: is negative, -0.5, at the point (0, -0.5)"));
-  EXPECT_THAT(thrown(
+  EXPECT_THAT(test::message_of(
                   [&] {
                     return problem::strength_at<2>(contact.law, {3, 0});
                   }),

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "support/discrete_problem.h"
+#include "support/input_error.h"
 #include "support/meshes.h"
-#include "tribound/base/error.h"
 #include "tribound/contact/support/rigid_motion.h"
 
 namespace tribound::test
@@ -18,15 +18,9 @@ namespace tribound::test
 template <int dim>
 std::string verdict(const DiscreteProblem<dim>& c, std::span<const double> load)
 {
-  try
-  {
-    contact::check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load);
-  }
-  catch (const InputError& error)
-  {
-    return error.what();
-  }
-  return "held";
+  const std::string said =
+      message_of([&] { contact::check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load); });
+  return said.empty() ? "held" : said;
 }
 
 /// The same with the load of the problem.

@@ -15,6 +15,7 @@
 #include <numbers>
 #include <string>
 
+#include "support/input_error.h"
 #include "support/meshes.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
@@ -50,20 +51,7 @@ class Directory
   std::filesystem::path path_;
 };
 
-/// The text of the InputError that `action` throws, or empty.
-template <class Action>
-std::string message_of(const Action& action)
-{
-  try
-  {
-    action();
-  }
-  catch (const InputError& error)
-  {
-    return error.what();
-  }
-  return {};
-}
+using test::message_of;
 
 /// `action` throws InputError whose text has all the given parts.
 template <class Action>

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/input_error.h"
 #include "tribound/problem/formula.h"
 
 namespace tribound
@@ -28,15 +29,7 @@ double at(const std::string& formula, const Point<3>& x)
 
 std::string message(const std::string& formula)
 {
-  try
-  {
-    const problem::Field expression(formula, in_case_file);
-  }
-  catch (const InputError& error)
-  {
-    return error.what();
-  }
-  return "accepted";
+  return test::message_of([&] { const problem::Field expression(formula, in_case_file); });
 }
 
 TEST(Field, EvaluatesFormulas)
