@@ -90,7 +90,7 @@ bool peak_settles(const problem::Problem<2>& problem, mesh::Mesh<2> mesh)
   };
   const certify::Verdict verdict = adapt::adapt(levels, strategy);
   std::printf("%s: %s\n", certify::to_string(verdict.status), verdict.reason.c_str());
-  return settled == 3 && adapt::holds(verdict);
+  return settled == 3 && certify::is_bound(verdict.status);
 }
 
 }  // namespace

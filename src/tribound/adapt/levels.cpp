@@ -44,11 +44,6 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
   contact::check_rigid_motions<dim>(problem_, current_->space, current_->form.data(), current_->form.load());
 }
 
-bool holds(const certify::Verdict& verdict)
-{
-  return verdict.status == certify::RunStatus::certified || verdict.status == certify::RunStatus::budget;
-}
-
 template <int dim>
 std::string Levels<dim>::advance(const StepObserver& observer)
 {
@@ -67,7 +62,7 @@ std::string Levels<dim>::try_to_advance(const StepObserver& observer)
   std::optional<CertifiedLevel<dim>> level = solve(observer, why);
   if (!level) return why;
   certify::Verdict verdict = judge(*level);
-  if (discrete_before_ && !holds(verdict))
+  if (discrete_before_ && !certify::is_bound(verdict.status))
     return fmt::format("this is level {}, level {} failed: {}", number_, number_ + 1, verdict.reason);
   ++number_;
   level_ = std::move(*level);
@@ -113,7 +108,7 @@ certify::Verdict Levels<dim>::judge(const CertifiedLevel<dim>& level) const
   if (!level.solved()) return {certify::RunStatus::failed, level.failure};
   certify::Verdict verdict =
       certify::judge(level.estimate, level.identities, method_.degree, level.norms, tolerance_);
-  if (level.tightened && !holds(verdict))
+  if (level.tightened && !certify::is_bound(verdict.status))
     verdict.reason +=
         "; solving the systems anew as far as rounding lets them be, with solver.tolerance = 0, did not mend "
         "it: are materials of very different stiffness, nu near 0.5 or very flat cells involved?";
@@ -133,7 +128,7 @@ StepObserver Levels<dim>::watch(const StepObserver& observer, bool interruptible
 template <int dim>
 bool Levels<dim>::finish(const StepObserver& observer)
 {
-  if (!method_.stopping.finish || level_.converged || !holds(verdict_) || interrupted()) return false;
+  if (!method_.stopping.finish || level_.converged || !certify::is_bound(verdict_.status) || interrupted()) return false;
   const Clock::time_point begin = Clock::now();
   const auto attempt = [&]() -> std::optional<CertifiedLevel<dim>>
   {

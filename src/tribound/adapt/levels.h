@@ -36,9 +36,6 @@ struct NextMesh
   double growth = 1;           ///< of the free ones against the mesh before, where they are known
 };
 
-/// Whether the bound is one.
-[[nodiscard]] bool holds(const certify::Verdict& verdict);
-
 /// Why a mesh is not to be solved on; empty: it may be.
 using MeshLimit = std::function<std::string(const NextMesh&)>;
 
