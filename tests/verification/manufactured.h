@@ -12,6 +12,7 @@
 
 #include "support/discrete_problem.h"
 #include "support/meshes.h"
+#include "tribound/fem/evaluation.h"
 
 namespace tribound::test
 {

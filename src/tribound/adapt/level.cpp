@@ -78,7 +78,7 @@ class Certifier
     level.estimate = estimator_(u, level.stress);
     level.friedrichs = estimator_.friedrichs();
     level.norms = contact::stress_norms(form_.problem(), form_.space(), u);
-    step.bound = level.estimate;
+    step.bound = level.estimate.bound();
     step.linearisation = linearisation_part(level.estimate.global);
     if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;
     known_ = level.estimate.global.discretisation();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
@@ -48,15 +47,11 @@ class FacetSearch
  public:
   explicit FacetSearch(std::span<const OuterFacet<dim>> facets)
   {
-    lower_.setConstant(std::numeric_limits<double>::max());
-    Point<dim> upper = -lower_;
+    BoundingBox<dim> box;
     for (const auto& facet : facets)
-      for (const auto& x : facet.points)
-      {
-        lower_ = lower_.cwiseMin(x);
-        upper = upper.cwiseMax(x);
-      }
-    size_ = (upper - lower_).maxCoeff();
+      for (const auto& x : facet.points) box.add(x);
+    lower_ = box.lower;
+    size_ = box.longest_edge();
 
     std::size_t n_buckets = 1;
     while (n_buckets < 2 * facets.size()) n_buckets *= 2;
@@ -110,16 +105,10 @@ class FacetSearch
   {
     const int level = std::clamp(std::ilogb(size_ / facet.diameter), 0, n_levels - 1);
     used_[level] = true;
-    Point<dim> low = facet.points[0];
-    Point<dim> high = low;
-    for (const auto& x : facet.points)
-    {
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
-    }
+    const BoundingBox<dim> box = bounding_box<dim>(facet.points);
     const auto margin = Point<dim>::Constant(2 * coincidence * facet.diameter);
-    const GridCell first = grid_cell(level, low - margin);
-    const GridCell last = grid_cell(level, high + margin);
+    const GridCell first = grid_cell(level, box.lower - margin);
+    const GridCell last = grid_cell(level, box.upper + margin);
     for (GridCell cell = first;;)
     {
       visit(bucket(level, cell));

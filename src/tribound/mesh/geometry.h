@@ -8,6 +8,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "tribound/base/types.h"
@@ -58,27 +59,28 @@ struct FacetGeometry
   [[nodiscard]] double det() const { return factorial<dim - 1> * measure; }
 };
 
-/// The smallest box with edges along the axes that contains given points.
+/// The smallest box with edges along the axes that contains the points added.
 template <int dim>
 struct BoundingBox
 {
-  Point<dim> lower;
-  Point<dim> upper;
+  Point<dim> lower = Point<dim>::Constant(std::numeric_limits<double>::infinity());
+  Point<dim> upper = -lower;
+
+  void add(const Point<dim>& x)
+  {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
 
   [[nodiscard]] double longest_edge() const { return (upper - lower).maxCoeff(); }
   [[nodiscard]] double diagonal() const { return (upper - lower).norm(); }
 };
 
-/// Of at least one point.
 template <int dim>
 [[nodiscard]] BoundingBox<dim> bounding_box(std::span<const Point<dim>> points)
 {
-  BoundingBox<dim> box{points[0], points[0]};
-  for (const Point<dim>& x : points)
-  {
-    box.lower = box.lower.cwiseMin(x);
-    box.upper = box.upper.cwiseMax(x);
-  }
+  BoundingBox<dim> box;
+  for (const Point<dim>& x : points) box.add(x);
   return box;
 }
 

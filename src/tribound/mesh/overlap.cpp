@@ -22,19 +22,6 @@ namespace
 /// check_conformity looks at that.
 constexpr double coincidence = 1e-9;
 
-template <int dim>
-struct Box
-{
-  Point<dim> lower = Point<dim>::Constant(HUGE_VAL);
-  Point<dim> upper = Point<dim>::Constant(-HUGE_VAL);
-
-  void add(const Point<dim>& x)
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-};
-
 /// A facet with one cell, and the normal that points out of it (not of unit length).
 template <int dim>
 struct OuterFacet
@@ -42,7 +29,7 @@ struct OuterFacet
   std::array<Index, dim> vertices;
   std::array<Point<dim>, dim> points;
   Point<dim> normal;
-  Box<dim> box;
+  BoundingBox<dim> box;
 };
 
 template <int dim>
@@ -110,7 +97,7 @@ class BoxTree
  private:
   struct Node
   {
-    Box<dim> box;
+    BoundingBox<dim> box;
     std::size_t begin;
     std::size_t end;
     std::size_t second;  ///< the first child is the next node; 0 for a leaf
@@ -207,7 +194,7 @@ void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>>
 {
   for (std::size_t f = 0; f < facets.size(); ++f)
     tree.traverse(
-        [&](const Box<dim>& box)
+        [&](const BoundingBox<dim>& box)
         {
           return (box.lower.array() <= facets[f].box.upper.array()).all() &&
                  (box.upper.array() >= facets[f].box.lower.array()).all();
@@ -232,7 +219,7 @@ std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<
 {
   Point<dim> from = Point<dim>::Zero();
   for (const Point<dim>& x : facets[start].points) from += x / dim;
-  const auto meets = [&](const Box<dim>& box)
+  const auto meets = [&](const BoundingBox<dim>& box)
   {
     double first = 0;
     double last = HUGE_VAL;

@@ -120,6 +120,7 @@ BoundaryCondition<dim> with_displacement(const std::string& name,
 {
   BoundaryCondition<dim> condition;
   condition.name = name;
+  condition.where.key = name;
   condition.displacement = std::move(displacement);
   return condition;
 }
@@ -129,6 +130,7 @@ BoundaryCondition<dim> with_traction(const std::string& name, std::array<Field, 
 {
   BoundaryCondition<dim> condition;
   condition.name = name;
+  condition.where.key = name;
   condition.traction = std::move(traction);
   return condition;
 }
@@ -138,6 +140,7 @@ BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Fie
 {
   BoundaryCondition<dim> condition;
   condition.name = name;
+  condition.where.key = name;
   condition.contact.emplace(std::move(law), std::move(gap));
   return condition;
 }

@@ -15,6 +15,7 @@
 #include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 
 namespace tribound::test

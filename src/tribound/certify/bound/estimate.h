@@ -26,6 +26,9 @@ struct Bound
 struct Estimate : Bound
 {
   std::vector<BoundComponents> cells;
+
+  /// Without the cells.
+  [[nodiscard]] const Bound& bound() const { return *this; }
 };
 
 /// Evaluates every component on every cell, for the iterates on one mesh.

@@ -73,12 +73,10 @@ class BodyMoments
   /// The share of one point in the moments of all vertices.
   static void add(Vector* moments, const Point<dim>& xhat, const Point<dim>& weighted_f, const double* chi)
   {
+    const std::array<double, dim + 1> hat = fem::barycentric<dim>(xhat);
     for (int a = 0; a <= dim; ++a)
-    {
-      const double hat = a == 0 ? 1 - xhat.sum() : xhat[a - 1];
       for (int r = 0; r < dim; ++r)
-        for (int i = 0; i < m; ++i) moments[a][r * m + i] += hat * weighted_f[r] * chi[i];
-    }
+        for (int i = 0; i < m; ++i) moments[a][r * m + i] += hat[a] * weighted_f[r] * chi[i];
   }
 
   std::vector<Vector> moments_;

@@ -37,9 +37,7 @@ class FacetMoments
   /// Hat functions and theta at a point of the reference facet.
   void at(const Point<dim - 1>& s)
   {
-    std::array<double, dim> in_cell_order;
-    in_cell_order[0] = 1 - s.sum();
-    for (int i = 1; i < dim; ++i) in_cell_order[i] = s[i - 1];
+    const std::array<double, dim> in_cell_order = fem::barycentric<dim - 1>(s);
     for (int i = 0; i < dim; ++i) hat_[i] = in_cell_order[order_[i]];
     Point<dim - 1> sorted;
     for (int i = 1; i < dim; ++i) sorted[i - 1] = hat_[i];

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "tribound/base/types.h"
+#include "tribound/fem/polynomials.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::certify
@@ -55,9 +56,7 @@ template <std::size_t n>
 template <int dim>
 [[nodiscard]] Point<dim> to_sorted_cell(const std::array<int, dim + 1>& local, const Point<dim>& in_cell)
 {
-  std::array<double, dim + 1> lambda;  // of the cell's own vertices
-  lambda[0] = 1 - in_cell.sum();
-  for (int i = 0; i < dim; ++i) lambda[i + 1] = in_cell[i];
+  const std::array<double, dim + 1> lambda = fem::barycentric<dim>(in_cell);  // of the cell's own vertices
   Point<dim> sorted;
   for (int i = 0; i < dim; ++i) sorted[i] = lambda[local[i + 1]];
   return sorted;

@@ -1,4 +1,5 @@
 #include "tribound/certify/equilibrate/vertex_partition.h"
+#include "tribound/mesh/geometry.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,15 +16,9 @@ namespace
 template <int dim>
 std::vector<Index> by_locality(const mesh::Mesh<dim>& mesh, std::span<const Index> vertices, int n_threads)
 {
-  Point<dim> lower = mesh.vertex(0);
-  Point<dim> upper = mesh.vertex(0);
-  for (const Point<dim>& x : mesh.vertices())
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
+  const mesh::BoundingBox<dim> box = mesh::bounding_box(mesh.vertices());
   constexpr int bits = 20;
-  const double scale = ((std::uint64_t{1} << bits) - 1) / (upper - lower).maxCoeff();
+  const double scale = ((std::uint64_t{1} << bits) - 1) / box.longest_edge();
   std::vector<std::pair<std::uint64_t, Index>> keys(vertices.size());
 #pragma omp parallel for num_threads(n_threads)
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -31,7 +26,8 @@ std::vector<Index> by_locality(const mesh::Mesh<dim>& mesh, std::span<const Inde
     keys[i] = {0, vertices[i]};
     for (int c = 0; c < dim; ++c)
     {
-      const auto coordinate = static_cast<std::uint64_t>((mesh.vertex(vertices[i])[c] - lower[c]) * scale);
+      const auto coordinate =
+          static_cast<std::uint64_t>((mesh.vertex(vertices[i])[c] - box.lower[c]) * scale);
       for (int b = 0; b < bits; ++b) keys[i].first |= (coordinate >> b & 1) << (b * dim + c);
     }
   }

@@ -26,7 +26,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
     record.identities = level.identities;  // relative to rounding they say nothing
   if (certify::is_bound(view.verdict.status))
   {
-    record.bound = level.estimate;
+    record.bound = level.estimate.bound();
     record.balance = certify::balance<dim>(form, level.stress, moment_about);
   }
   else  // what violates an identity is no bound, and is not shown as one
