@@ -16,6 +16,7 @@
 
 #include "support/fields.h"
 #include "support/meshes.h"
+#include "support/problem_data.h"
 #include "tribound/base/error.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
@@ -50,40 +51,27 @@ mesh::MeshData<dim> blocks(int n_upper, int n_lower)
   return side_by_side(box<dim>(Point<dim>::Zero(), corner, upper), box<dim>(low, low_top, lower), "_below");
 }
 
-/// The upper block pressed on the lower one and moved aside by `shift`; u_x = 0 on the ends of both if
-/// `confined`.
+/// The upper block pressed on the lower one and moved aside by `shift`; no displacement normal to the sides
+/// of both if `confined`.
 template <int dim>
 problem::Problem<dim> pressed_blocks(const mesh::Mesh<dim>& mesh, const problem::ContactLaw& law,
                                      double E_below, double shift, bool confined)
 {
-  std::array<std::optional<problem::Field>, dim> top;
-  std::array<std::optional<problem::Field>, dim> floor;
-  top.fill(0.0);
-  floor.fill(0.0);
-  top[0] = shift;
-  top[1] = -pressed;
   std::vector<problem::BoundaryCondition<dim>> conditions = {
-      problem::with_displacement<dim>("top", top), problem::with_displacement<dim>("bottom_below", floor),
+      fixed<dim>("top", shift, -pressed), clamped<dim>("bottom_below"),
       problem::with_contact<dim>("bottom", law, gap), problem::with_contact<dim>("top_below", law, gap)};
-  const auto roller = [&](const std::string& name, int component)
-  {
-    std::array<std::optional<problem::Field>, dim> fixed;
-    fixed[component] = 0.0;
-    conditions.push_back(problem::with_displacement<dim>(name, fixed));
-  };
-  for (const char* suffix : {"", "_below"})
-  {
-    if (!confined) continue;
-    roller(std::string("left") + suffix, 0);
-    roller(std::string("right") + suffix, 0);
-    if (dim == 2) continue;
-    roller(std::string("back") + suffix, 2);
-    roller(std::string("front") + suffix, 2);
-  }
-  return problem::Problem<dim>(mesh,
-                               {{.name = "box", .material = problem::lame(1, 0.3)},
-                                {.name = "box_below", .material = problem::lame(E_below, 0.2)}},
-                               conditions);
+  for (const std::string suffix : {"", "_below"})
+    for (const char* side : {"left", "right", "back", "front"})
+    {
+      const bool along_z = side[0] == 'b' || side[0] == 'f';
+      if (!confined || (dim == 2 && along_z)) continue;
+      conditions.push_back(along_z ? fixed<dim>(side + suffix, free, free, 0.0)
+                                   : fixed<dim>(side + suffix, 0.0, free, free));
+    }
+  return problem::Problem<dim>(
+      mesh,
+      {{.name = "box", .material = lame(1, 0.3)}, {.name = "box_below", .material = lame(E_below, 0.2)}},
+      conditions);
 }
 
 /// Coordinates on the reference facet of the point above or below x.
@@ -156,7 +144,7 @@ std::vector<contact::ContactSegment<dim>> overlay(const problem::Problem<dim>& p
 
 struct Setting
 {
-  problem::ContactLaw law = problem::Frictionless();
+  problem::ContactLaw law = Frictionless();
   int p = 1;
   int n_upper = 3;
   int n_lower = 3;
@@ -198,8 +186,7 @@ struct Blocks
   contact::NitscheForm<dim> form;
 };
 
-const std::vector<problem::ContactLaw> laws = {problem::Frictionless(), problem::Tresca(0.005),
-                                               problem::Coulomb(0.3)};
+const std::vector<problem::ContactLaw> laws = {Frictionless(), Tresca(0.005), Coulomb(0.3)};
 
 /// In uniaxial strain the stress is constant, through facets that do not match, too.
 template <int dim>
@@ -315,8 +302,7 @@ TEST(ContactSegments, OnAFlatInterfaceEitherSideMayBeTheSlave)
 
 TEST(ContactSegments, AStiffMasterIsAnObstacle)
 {
-  const Blocks<2> c(
-      {.law = problem::Coulomb(0.3), .p = 2, .n_upper = 3, .n_lower = 3, .E_below = 1e8, .shift = 0.02});
+  const Blocks<2> c({.law = Coulomb(0.3), .p = 2, .n_upper = 3, .n_lower = 3, .E_below = 1e8, .shift = 0.02});
   const contact::NitscheForm<2> on_obstacle(
       c.problem, c.space, c.gamma0,
       [&]
@@ -335,7 +321,7 @@ TEST(ContactSegments, AStiffMasterIsAnObstacle)
 /// Normal and tangential parts may be taken by any unit vector.
 TEST(ContactSegments, NormalsNeedNotBeThoseOfTheFacets)
 {
-  const Blocks<2> c({.law = problem::Coulomb(0.3), .p = 2, .n_upper = 4, .n_lower = 3, .shift = 0.02});
+  const Blocks<2> c({.law = Coulomb(0.3), .p = 2, .n_upper = 4, .n_lower = 3, .shift = 0.02});
   std::vector<contact::ContactSegment<2>> segments(c.form.segments().begin(), c.form.segments().end());
   for (auto& segment : segments) segment.normal = Point<2>(0.3, -1).normalized();
   const contact::NitscheForm<2> form(c.problem, c.space, c.gamma0, std::move(segments));
