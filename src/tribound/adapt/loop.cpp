@@ -85,7 +85,7 @@ certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy)
   {
     end = levels.advance(strategy.observer.step);
     told = !end.empty();
-    if (end.empty()) end = strategy.stop(levels.view());
+    if (end.empty() && strategy.stop) end = strategy.stop(levels.view());
     const bool is_last = !end.empty() || levels.verdict().status != certify::RunStatus::budget;
     if ((is_last && finish()) || !told) tell();
     if (is_last) break;

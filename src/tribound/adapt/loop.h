@@ -39,7 +39,7 @@ struct LoopObserver
   std::function<void(const LevelView<dim>&)> level{};
 };
 
-/// What may be exchanged in the loop.
+/// What may be exchanged in the loop; all but `mark` may be empty.
 template <int dim>
 struct Strategy
 {

@@ -8,6 +8,7 @@
 ///       integral += dx * f(x);
 
 #include <span>
+#include <vector>
 
 #include "tribound/base/types.h"
 #include "tribound/fem/quadrature.h"

@@ -52,12 +52,12 @@ Groups read_groups(const Where& where, int dim)
     gmsh::model::getEntitiesForPhysicalGroup(group_dim, tag, entities);
     for (const int entity : entities)
     {
-      const auto [place, is_new] = groups.of_entity.try_emplace(std::abs(entity), group);
-      if (is_new || place->second == group) continue;
+      const auto [entry, is_new] = groups.of_entity.try_emplace(std::abs(entity), group);
+      if (is_new || entry->second == group) continue;
       throw InputError(
           where,
           fmt::format("{} {} is in two physical groups, \"{}\" and \"{}\"", entity_word(dim),
-                      std::abs(entity), groups.names[place->second], name),
+                      std::abs(entity), groups.names[entry->second], name),
           "every region and every part of the boundary has one name; in .msh files of version 1 and 2, "
           "elements of different groups also need different elementary tags");
     }

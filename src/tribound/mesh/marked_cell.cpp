@@ -121,9 +121,9 @@ MarkedCell<dim> longest_edges_marked(std::span<const Point<dim>> points, const C
   bool odd = false;
   for (int end = 0; end < 2; ++end)
   {
-    const auto place = std::find(vertices.begin(), vertices.end(), refinement_edge[end]);
-    odd ^= place != vertices.begin() + end;
-    std::swap(vertices[end], *place);
+    const auto found = std::find(vertices.begin(), vertices.end(), refinement_edge[end]);
+    odd ^= found != vertices.begin() + end;
+    std::swap(vertices[end], *found);
   }
   if (odd) std::swap(vertices[0], vertices[1]);
 

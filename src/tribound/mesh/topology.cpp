@@ -28,7 +28,7 @@ struct Slot
 {
   using Key = std::conditional_t<n_corners == 2, std::uint32_t, std::uint64_t>;
   Key others;           ///< the second and the third vertex in ascending order, packed
-  std::uint32_t place;  ///< cell * n_local + local number
+  std::uint32_t index;  ///< cell * n_local + local number
 };
 
 template <std::size_t n_corners>
@@ -89,7 +89,7 @@ void number_entities(Index n_vertices, std::span<const std::array<Index, n>> cel
 
   std::vector<Slot<n_corners>> slots(cells.size() * n_local);
   std::vector<Index> next(begin.begin(), begin.end() - 1);
-  std::uint32_t place = 0;
+  std::uint32_t index = 0;
   for (const auto& cell : cells)
     for (const auto& l : local)
     {
@@ -99,7 +99,7 @@ void number_entities(Index n_vertices, std::span<const std::array<Index, n>> cel
         slot.others = static_cast<std::uint32_t>(v[1]);
       else
         slot.others = static_cast<std::uint64_t>(v[1]) << 32 | static_cast<std::uint64_t>(v[2]);
-      slot.place = place++;
+      slot.index = index++;
     }
 
   entities.clear();
@@ -114,7 +114,7 @@ void number_entities(Index n_vertices, std::span<const std::array<Index, n>> cel
     {
       if (slot == first || slot->others != (slot - 1)->others)
         entities.push_back(unpack<n_corners>(v, slot->others));
-      cell_entities[slot->place / n_local][slot->place % n_local] = static_cast<Index>(entities.size()) - 1;
+      cell_entities[slot->index / n_local][slot->index % n_local] = static_cast<Index>(entities.size()) - 1;
     }
   }
 }

@@ -43,20 +43,20 @@ class FacetData
   /// psi_a g_N or psi_a T(u), -psi_a T(u) on a master; null where the facet carries no load.
   [[nodiscard]] const Moments* discretisation(Index facet) const
   {
-    const int place = conditions_[number_[facet]].moments;
-    return place < 0 ? nullptr : &discretisation_[place];
+    const int index = conditions_[number_[facet]].moments;
+    return index < 0 ? nullptr : &discretisation_[index];
   }
   /// psi_a (t^k - T_delta(u)); null off Gamma_C.
   [[nodiscard]] const Moments* linearisation(Index facet) const
   {
-    const int place = conditions_[number_[facet]].contact;
-    return place < 0 ? nullptr : &linearisation_[place];
+    const int index = conditions_[number_[facet]].contact;
+    return index < 0 ? nullptr : &linearisation_[index];
   }
   /// psi_a (T_delta(u) - T(u)); null off Gamma_C. There is none for delta = 0.
   [[nodiscard]] const Moments* regularisation(Index facet) const
   {
-    const int place = conditions_[number_[facet]].contact;
-    return place < 0 ? nullptr : &regularisation_[place];
+    const int index = conditions_[number_[facet]].contact;
+    return index < 0 ? nullptr : &regularisation_[index];
   }
   /// Whether the vertex lies on Gamma_C.
   [[nodiscard]] bool on_contact(Index vertex) const { return on_contact_[vertex]; }

@@ -165,15 +165,15 @@ double DiscreteData<dim>::largest_effect() const
 
 template <int dim>
 template <int k>
-void DiscreteData<dim>::keep(Represented& represented, std::size_t place, DatumOnSimplex<k, dim>&& found)
+void DiscreteData<dim>::keep(Represented& represented, std::size_t index, DatumOnSimplex<k, dim>&& found)
 {
-  if (!represented.remainders.empty()) represented.remainders[place] = {found.oscillation, found.mean};
+  if (!represented.remainders.empty()) represented.remainders[index] = {found.oscillation, found.mean};
   if (found.moments.empty()) return;
 #pragma omp critical(tribound_discrete_data)
   {
     ++effort_.subdivided;
     effort_.parts += found.parts.size();
-    represented.moments.emplace(place, std::move(found.moments));
+    represented.moments.emplace(index, std::move(found.moments));
   }
 }
 

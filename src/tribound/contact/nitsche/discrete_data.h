@@ -114,7 +114,7 @@ class DiscreteData
   void represent_contact(double accuracy);
   void check_signs(const mesh::BoundaryFacet& facet, const DatumOnSimplex<dim - 1, dim>& found) const;
   template <int k>
-  void keep(Represented& represented, std::size_t place, DatumOnSimplex<k, dim>&& found);
+  void keep(Represented& represented, std::size_t index, DatumOnSimplex<k, dim>&& found);
 
   const problem::Problem<dim>& problem_;
   const mesh::Mesh<dim>& mesh_;

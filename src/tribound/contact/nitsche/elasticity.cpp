@@ -75,7 +75,7 @@ class BlockRow
       : problem_(&problem),
         space_(&space),
         reference_(fem::gradient_products(space.basis())),
-        place_(space.n_nodes(), -1)
+        index_(space.n_nodes(), -1)
   {
   }
 
@@ -89,9 +89,9 @@ class BlockRow
       const problem::Material& material = problem_->material(space_->mesh().region(c));
       const std::span<const Index> nodes = space_->cell_nodes(c);
       for (int j = 0; j < n; ++j)
-        blocks_[place_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
+        blocks_[index_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
     }
-    for (const Index j : neighbours_) place_[j] = -1;
+    for (const Index j : neighbours_) index_[j] = -1;
   }
 
   /// Nodes in ascending order, and the block of each.
@@ -104,16 +104,16 @@ class BlockRow
     neighbours_.clear();
     for (const LocalNode& cell : cells)
       for (const Index j : space_->cell_nodes(cell.cell))
-        if (std::exchange(place_[j], 0) < 0) neighbours_.push_back(j);
+        if (std::exchange(index_[j], 0) < 0) neighbours_.push_back(j);
     std::ranges::sort(neighbours_);
-    for (std::size_t k = 0; k < neighbours_.size(); ++k) place_[neighbours_[k]] = static_cast<Index>(k);
+    for (std::size_t k = 0; k < neighbours_.size(); ++k) index_[neighbours_[k]] = static_cast<Index>(k);
     blocks_.assign(neighbours_.size(), Tensor<dim>::Zero());
   }
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
   std::vector<Tensor<dim>> reference_;
-  std::vector<Index> place_;  ///< per node: its place among the neighbours, or -1
+  std::vector<Index> index_;  ///< per node: its index among the neighbours, or -1
   std::vector<Index> neighbours_;
   std::vector<Tensor<dim>> blocks_;
 };

@@ -26,7 +26,7 @@ template <int dim>
   return s;
 }
 
-/// a(phi_j, phi_i) over free i and j, every place once, in the order of rows and columns: a seventh of the
+/// a(phi_j, phi_i) over free i and j, every entry once, in the order of rows and columns: a seventh of the
 /// cells' own entries in 3D. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal alone, which
 /// decouples it without spoiling the scaling.
 template <int dim>

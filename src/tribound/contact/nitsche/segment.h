@@ -21,7 +21,7 @@ struct SegmentSide
 {
   mesh::BoundaryFacet facet;
   std::size_t number = 0;  ///< of the facet in Mesh::boundary()
-  /// Corners in the coordinates of the reference facet, whose place in the cell is mesh::facet_to_cell();
+  /// Corners in the coordinates of the reference facet, whose points in the cell are mesh::facet_to_cell();
   /// absent: the whole facet. Corner i of the slave lies opposite corner i of the master.
   std::optional<fem::Part<dim - 1>> part{};
   /// w n on the slave, -w dM/dS n on the master, n the outward normal of the facet: {sigma} is the sum of
