@@ -1,4 +1,5 @@
 #include "app/page/packed_array.h"
+#include "tribound/io/file/json.h"
 
 #include <zlib.h>
 

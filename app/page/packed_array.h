@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "tribound/base/types.h"
-#include "tribound/io/file/json.h"
+#include "tribound/io/file/json_forward.h"
 
 namespace tribound::app
 {

@@ -7,6 +7,7 @@
 #include "app/machine.h"
 #include "tribound/certify/bound/components.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {

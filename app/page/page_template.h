@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "tribound/io/file/json.h"
+#include "tribound/io/file/json_forward.h"
 
 namespace tribound::app
 {

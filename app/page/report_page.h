@@ -13,6 +13,7 @@
 #include "app/page/page_surface.h"
 #include "app/page/page_template.h"
 #include "tribound/adapt/level.h"
+#include "tribound/io/file/json.h"
 #include "tribound/io/record/report.h"
 
 namespace tribound::app

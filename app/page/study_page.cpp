@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/page/page_template.h"
+#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {

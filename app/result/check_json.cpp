@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tribound/io/file/json.h"
 #include "tribound/io/record/record_json.h"
 
 namespace tribound::app

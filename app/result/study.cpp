@@ -6,6 +6,7 @@
 
 #include "tribound/adapt/rate.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/json.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tribound/certify/truth/true_error.h"
-#include "tribound/io/file/json.h"
+#include "tribound/io/file/json_forward.h"
 #include "tribound/io/record/report.h"
 
 namespace tribound::app

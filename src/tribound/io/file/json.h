@@ -9,12 +9,10 @@
 #include <variant>
 
 #include "tribound/io/file/csv.h"
+#include "tribound/io/file/json_forward.h"
 
 namespace tribound::io
 {
-
-/// Keys stay in the order in which they were added.
-using Json = nlohmann::ordered_json;
 
 /// The text of a file, or on one line for `indent` -1. Names from a case or a mesh need not be UTF-8: what is
 /// not is replaced.

@@ -1,6 +1,7 @@
 #include "tribound/io/record/record_json.h"
 
 #include "tribound/base/sha256.h"
+#include "tribound/io/file/json.h"
 
 namespace tribound::io
 {

@@ -4,7 +4,7 @@
 /// The record of a run as JSON.
 
 #include "tribound/certify/bound/balance.h"
-#include "tribound/io/file/json.h"
+#include "tribound/io/file/json_forward.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/report.h"
 

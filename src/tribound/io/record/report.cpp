@@ -1,6 +1,7 @@
 #include "tribound/io/record/report.h"
 
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/json.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
