@@ -1,4 +1,5 @@
 #include "app/page/page_template.h"
+#include "tribound/io/file/json.h"
 
 #include <gtest/gtest.h>
 
