@@ -1,7 +1,7 @@
 /// @file own_loop.cpp
 /// A program that takes the adaptive loop into its own hands: a load given by a function of the program, a
 /// marking that adds the cells in which the contact opens or begins to slip, and a stopping rule of its own,
-/// the friction force on the floor. Exit code 0 if the bound of the last level is one and the rule was met.
+/// the friction force on the floor. Exit code 0 if the bound of the last level is valid and the rule was met.
 
 #include <tribound/tribound.h>
 #include <algorithm>
@@ -66,7 +66,7 @@ double friction_force(const adapt::LevelView<2>& view)
   return contact::contact_resultants<2>(form, form.traction(view.level.u)).tangential;
 }
 
-/// Refines until the friction force has changed by less than a ten-thousandth on three levels.
+/// Refines until the friction force has changed by less than a ten-thousandth on three levels in a row.
 bool friction_settles(const problem::Problem<2>& problem, mesh::Mesh<2> mesh)
 {
   const adapt::Method method{.degree = 2};

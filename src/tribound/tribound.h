@@ -5,7 +5,6 @@
 /// are the parts of these parts.
 
 // The problem: what the case file says, and what holds where.
-#include "tribound/adapt/levels.h"
 #include "tribound/base/apart.h"
 #include "tribound/base/error.h"
 #include "tribound/base/types.h"
@@ -13,7 +12,6 @@
 #include "tribound/case/config.h"
 #include "tribound/case/resolve.h"
 #include "tribound/case/sweep_values.h"
-#include "tribound/fem/evaluation.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
 #include "tribound/problem/problem.h"
@@ -36,6 +34,7 @@
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/bernstein.h"
 #include "tribound/fem/degree.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/fem/lagrange.h"
 #include "tribound/fem/nested.h"
 #include "tribound/fem/polynomials.h"
@@ -70,6 +69,7 @@
 
 // The adaptive loop: a level of it, where to refine, the whole.
 #include "tribound/adapt/level.h"
+#include "tribound/adapt/levels.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/adapt/mark.h"
 #include "tribound/adapt/persistent.h"

@@ -49,7 +49,12 @@ std::string Levels<dim>::advance(const StepObserver& observer)
 {
   const Clock::time_point begin = Clock::now();
   std::string why = try_to_advance(observer);
-  if (!why.empty()) current_ = std::move(discrete_before_);
+  if (!why.empty())
+  {
+    current_ = std::move(discrete_before_);
+    start_.clear();
+    expected_.reset();
+  }
   seconds_ = (why.empty() ? 0 : seconds_) + std::exchange(seconds_of_next_, 0) + seconds_since(begin);
   return why;
 }
@@ -128,7 +133,8 @@ StepObserver Levels<dim>::watch(const StepObserver& observer, bool interruptible
 template <int dim>
 bool Levels<dim>::finish(const StepObserver& observer)
 {
-  if (!method_.stopping.finish || level_.converged || !certify::is_bound(verdict_.status) || interrupted()) return false;
+  if (!method_.stopping.finish || level_.converged || !certify::is_bound(verdict_.status) || interrupted())
+    return false;
   const Clock::time_point begin = Clock::now();
   const auto attempt = [&]() -> std::optional<CertifiedLevel<dim>>
   {
@@ -159,13 +165,14 @@ bool Levels<dim>::finish(const StepObserver& observer)
 }
 
 template <int dim>
-std::string Levels<dim>::refine(std::span<const Index> marked, const MeshLimit& limit)
+std::string Levels<dim>::refine(const Marker<dim>& mark, const MeshLimit& limit)
 {
+  assert(!level_.estimate.cells.empty());  // of a level that was not given up
   const Clock::time_point begin = Clock::now();
   std::string why;
   try
   {
-    why = try_to_refine(marked, limit);
+    why = try_to_refine(mark, limit);
   }
   catch (const std::bad_alloc&)
   {
@@ -176,11 +183,11 @@ std::string Levels<dim>::refine(std::span<const Index> marked, const MeshLimit& 
 }
 
 template <int dim>
-std::string Levels<dim>::try_to_refine(std::span<const Index> marked, const MeshLimit& limit)
+std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit& limit)
 {
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
-  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, marked);
+  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, mark(view()));
   RefinementSeconds seconds{.bisect = lap()};
   NextMesh is_next{.cells = finer.mesh.n_cells()};
   if (limit)

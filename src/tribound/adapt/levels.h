@@ -36,6 +36,10 @@ struct NextMesh
   double growth = 1;           ///< of the free ones against the mesh before, where they are known
 };
 
+/// The cells of a level to bisect, ascending.
+template <int dim>
+using Marker = std::function<std::vector<Index>(const LevelView<dim>&)>;
+
 /// Why a mesh is not to be solved on; empty: it may be.
 using MeshLimit = std::function<std::string(const NextMesh&)>;
 
@@ -45,7 +49,9 @@ using MeshLimit = std::function<std::string(const NextMesh&)>;
 ///
 ///     adapt::Levels<2> levels(problem, method, 0.01, std::move(first));
 ///     while (levels.advance().empty() && levels.verdict().status == certify::RunStatus::budget)
-///       if (!levels.refine(my_marking(levels.view())).empty()) break;
+///       if (!levels.refine(my_marking).empty()) break;
+///
+/// Keeps references to problem, method and stop.
 template <int dim>
 class Levels
 {
@@ -58,16 +64,17 @@ class Levels
          std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop = nullptr);
 
   /// Solves and certifies on the current mesh. Not empty: why this level was given up; the one before is the
-  /// last again, without its stress and estimate. Throws SolveError and bad_alloc for the first level.
+  /// last again, without its stress and estimate: finish() may then be called, refine() may not. Throws
+  /// SolveError and bad_alloc for the first level.
   [[nodiscard]] std::string advance(const StepObserver& observer = {});
 
   /// Lets Newton's method converge to newton.tolerance on the last level (newton.finish), as far as it does
   /// so without harm; whether it has changed anything.
   bool finish(const StepObserver& observer = {});
 
-  /// Bisects the marked cells and carries the solution to the new mesh, which becomes the current one. Not
-  /// empty: why the current one stays: a limit, or there is not the memory.
-  [[nodiscard]] std::string refine(std::span<const Index> marked, const MeshLimit& limit = {});
+  /// Bisects the cells that `mark` names for the last level and carries the solution to the new mesh, which
+  /// becomes the current one. Not empty: why the current one stays: a limit, or there is not the memory.
+  [[nodiscard]] std::string refine(const Marker<dim>& mark, const MeshLimit& limit = {});
 
   /// The last level; not between refine() and advance().
   [[nodiscard]] LevelView<dim> view() const
@@ -87,7 +94,7 @@ class Levels
                                                          std::string& why) const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   [[nodiscard]] std::string try_to_advance(const StepObserver& observer);
-  [[nodiscard]] std::string try_to_refine(std::span<const Index> marked, const MeshLimit& limit);
+  [[nodiscard]] std::string try_to_refine(const Marker<dim>& mark, const MeshLimit& limit);
 
   const problem::Problem<dim>& problem_;
   const Method& method_;

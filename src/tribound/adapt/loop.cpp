@@ -81,15 +81,15 @@ certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy)
   };
   const auto finish = [&] { return levels.finish(strategy.observer.step); };
   std::string end;  // why the last level is the last
-  for (bool told = false;; told = false)
+  for (;;)
   {
     end = levels.advance(strategy.observer.step);
-    told = !end.empty();
+    const bool told = !end.empty();
     if (end.empty() && strategy.stop) end = strategy.stop(levels.view());
     const bool is_last = !end.empty() || levels.verdict().status != certify::RunStatus::budget;
     if ((is_last && finish()) || !told) tell();
     if (is_last) break;
-    end = levels.refine(strategy.mark(levels.view()), strategy.limit);
+    end = levels.refine(strategy.mark, strategy.limit);
     if (end.empty()) continue;
     if (finish()) tell();
     break;

@@ -43,8 +43,7 @@ struct LoopObserver
 template <int dim>
 struct Strategy
 {
-  /// The cells to bisect, ascending.
-  std::function<std::vector<Index>(const LevelView<dim>&)> mark;
+  Marker<dim> mark;
   /// Why a level is the last though its bound is above the tolerance; empty: it is not.
   std::function<std::string(const LevelView<dim>&)> stop;
   MeshLimit limit;

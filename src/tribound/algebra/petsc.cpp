@@ -218,6 +218,7 @@ class Pattern
   explicit Pattern(Mat mat) : mat_(mat)
   {
     check(MatGetRowIJ(mat_, 0, PETSC_FALSE, PETSC_FALSE, &n_, &rows_, &columns_, &done_), "reading a matrix");
+    if (!done_) throw SolveError("PETSc does not give the pattern of a matrix");
   }
   ~Pattern() { MatRestoreRowIJ(mat_, 0, PETSC_FALSE, PETSC_FALSE, &n_, &rows_, &columns_, &done_); }
   Pattern(const Pattern&) = delete;
@@ -250,6 +251,7 @@ SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
   check(MatAXPY(result.mat_.get(), 1.0, b.mat_.get(),
                 result.has_more_ ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN),
         "adding matrices");
+  check(MatSetOption(result.mat_.get(), MAT_USE_INODES, PETSC_FALSE), "adding matrices");
   return result;
 }
 

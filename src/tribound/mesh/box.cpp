@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -92,7 +91,9 @@ template <int dim>
 MeshData<dim> box_mesh(const BoxMesh& box)
 {
   require_valid(box);
-  assert(box.lower.size() == dim);
+  if (box.lower.size() != dim)
+    throw InputError(box.where, fmt::format("the box has {} dimensions", box.lower.size()),
+                     fmt::format("a mesh in {}D needs {} coordinates for each corner", dim, dim));
   MeshData<dim> data;
   data.source = box.where;
   data.region_names = {"box"};

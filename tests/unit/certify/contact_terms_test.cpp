@@ -133,6 +133,22 @@ TEST(ContactTerms, TheDirectionOfSlipIsResolvedIn3D)
   EXPECT_GT(std::abs(frc(certify::ContactRule::reference) - exact), 1e-6 * exact);
 }
 
+/// Where all slips in one direction T is a polynomial, and what is left of the component is rounding.
+TEST(ContactTerms, UniformSlipIn3DLeavesRounding)
+{
+  constexpr double s = 0.3;
+  const DiscreteProblem<3> block = unit_block<3>(1, 0, Tresca(s));
+  const Point<3> direction = Point<3>(0.6, 0, 0.8);
+  const std::vector<double> u = interpolate<3>(block.space, [&](const Point<3>&) { return direction; });
+  certify::Stress<3> stress = no_stress(block);
+  for (Index cell = 0; cell < block.mesh.n_cells(); ++cell)  // sigma n = -s direction: the normal is -e_y
+    for (const int row : {0, 2})
+      stress.dis[cell * stress.block_size() + (3 * row + 1) * stress.n] =
+          s * direction[row] * std::sqrt(mesh::cell_map(block.mesh, cell).measure());
+  const certify::ContactTerms<3> terms(block.form, certify::ContactRule::resolved);
+  for (int k = 0; k < 2; ++k) EXPECT_LE(terms(k, u, stress).frc, 1e-26);
+}
+
 TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)
 {
   const DiscreteProblem<2> c = unit_block<2>(2, formula("0.1*x"));

@@ -108,10 +108,9 @@ std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRu
   return text +
          (rule == ContactRule::resolved
               ? "; facets with a kink of the traction, in 3D also those that slip, are subdivided until cnt "
-                "and frc "
-                "settle"
+                "and frc settle"
               : "; cnt and frc with the plain rule, which is not rigorous on facets with a kink of the "
-                "traction (certify.contact_rule = \"reference\")");
+                "traction, in 3D also on those that slip (certify.contact_rule = \"reference\")");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ enum class RunStatus
 
 [[nodiscard]] const char* to_string(RunStatus status);
 
-/// Whether the numbers are a bound, be it above the tolerance.
+/// Whether the numbers are a bound, even if it is above the tolerance.
 [[nodiscard]] bool is_bound(RunStatus status);
 
 /// Above this, relative to ||sigma_h||, an identity counts as violated.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tribound/base/error.h"
+#include "tribound/certify/bound/obstacles.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
@@ -76,9 +76,7 @@ ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRu
       kinks_(form.facet_rule(), form.space().degree() + 2)
 {
   fem::require_degree(form.space().degree());
-  if (!std::ranges::all_of(form.segments(), &contact::ContactSegment<dim>::is_obstacle_facet))
-    throw InputError({}, "the bound is not known for contact on parts of facets or between bodies",
-                     "take contact with rigid obstacles, on whole facets");
+  require_obstacles(form, "the bound");
   const fem::Quadrature<dim - 1>& points = form.facet_rule();
   for (int local = 0; local <= dim; ++local)
     stress_table_.emplace_back(form.space().degree(), fem::points_on_facet<dim>(local, points.points));
@@ -162,6 +160,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
   result.kinks = kinks_(law, n, augmented, strengths, round_off);
+  result.round_off = round_off;
   return result;
 }
 
@@ -189,6 +188,8 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
                                std::span<const contact::ContactDatumPart<dim>> parts,
                                std::span<Integrals> integrals) const
 {
+  double rounding = 0;  // what is left where T is a polynomial all the same never settles
+  for (const Integrals& part : integrals) rounding = std::max(rounding, std::pow(1e3 * part.round_off, 2));
   std::vector<Halved> active;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_rough<dim>(integrals[i].kinks))
@@ -206,7 +207,7 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
       change += halved.change;
       for (const Integrals& value : halved.values) total += value;
     }
-    const double negligible = settled<dim> * (total.normal + total.tangential);
+    const double negligible = std::max(rounding, settled<dim> * (total.normal + total.tangential));
     const bool done = change <= negligible;
     const bool last = done || depth == max_depth<dim> || active.size() > max_pieces + parts.size();
     std::vector<Halved> next;

@@ -33,8 +33,8 @@ struct ContactSquares
 
 /// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
 /// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
-/// again, until the value settles, and so it does in 3D where the contact slips. ContactRule::reference takes
-/// the reference rule as it is.
+/// again, until the value settles. In 3D it also subdivides where the contact slips. ContactRule::reference
+/// takes the reference rule as it is.
 template <int dim>
 class ContactTerms
 {
@@ -64,6 +64,7 @@ class ContactTerms
     double normal = 0;      ///< of ([P^n]_- - sigma_dis^n)^2
     double tangential = 0;  ///< of |[P^t]_S - sigma_dis^t|^2
     Kinks kinks{};          ///< up to what gap and threshold leave out
+    double round_off = 0;   ///< of P, at most
 
     Integrals& operator+=(const Integrals& other)
     {

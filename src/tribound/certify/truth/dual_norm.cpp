@@ -2,6 +2,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "tribound/certify/bound/obstacles.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
@@ -83,6 +84,7 @@ DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace
       space_(refined_.mesh, richer.degree)
 {
   assert(richer.degree >= form.space().degree());
+  require_obstacles(form, "the dual norm of the residual");
   find_contact_parts();
   find_operators();
 }

@@ -24,7 +24,7 @@ template <int dim>
 struct ContactState
 {
   Point<dim> point;
-  Point<dim> normal;    ///< outward unit normal
+  Point<dim> normal;    ///< of the segment
   double pressure;      ///< -[P^n]_- >= 0
   Point<dim> traction;  ///< T = [P^n]_- n + [P^t]_S
   double limit;         ///< S_h: what |T^t| may reach

@@ -73,8 +73,8 @@ struct FacetPart
   std::optional<fem::Part<dim - 1>> part{};
 };
 
-/// The segment between a part of the slave and a part of the master, or an obstacle. The sides are weighted
-/// by their stiffness, with M = the penalty modulus of a side, J = dM/dS:
+/// The segment between parts of the slave, whose boundary has contact, and of the master, or an obstacle. The
+/// sides are weighted by their stiffness, with M = the penalty modulus of a side, J = dM/dS:
 ///     c_s = M_s/h_s,  c_m = J M_m/h_m,  w_s = c_m/(c_s + c_m),  w_m = c_s/(c_s + c_m),
 ///     gamma = gamma_0 c_s c_m/(c_s + c_m);  against an obstacle w_s = 1, gamma = gamma_0 c_s.
 template <int dim>

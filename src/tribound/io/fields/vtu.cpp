@@ -1,5 +1,4 @@
 #include "tribound/io/fields/vtu.h"
-#include "tribound/fem/evaluation.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +13,7 @@
 #include "tribound/base/error.h"
 #include "tribound/certify/equilibrate/stress_tabulation.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/evaluation.h"
 #include "tribound/io/fields/vtk_nodes.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/vtu_file.h"
