@@ -117,8 +117,8 @@ template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
 {
   const contact::SegmentValues<dim> on_segment = form_.values(k);
-  std::vector<Point<dim>> augmented;
-  for (int q = 0; q < form_.n_segment_points(); ++q) augmented.push_back(on_segment.augmented_traction(u, q));
+  std::vector<Point<dim>> augmented(form_.n_segment_points());
+  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = on_segment.augmented_traction(u, q);
   return {project(augmented), normal_trace(k, stress.dis_in(form_.segments()[k].slave.facet.cell))};
 }
 
