@@ -235,16 +235,31 @@ double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const
   return sum;
 }
 
-/// moments += weight theta_i t at the point s of the reference facet, theta orthonormal on the facet with the
-/// given determinant.
+/// Moments (t, theta_i)_F of tractions in the orthonormal basis theta of one boundary facet.
 template <int dim>
-void add_moments(int degree, const Point<dim - 1>& s, double weight, double det, const Point<dim>& t,
-                 std::span<Point<dim>> moments)
+class FacetMoments
 {
-  std::vector<double> theta(moments.size());
-  fem::orthonormal_values<dim - 1>(degree, s, theta);
-  for (std::size_t i = 0; i < moments.size(); ++i) moments[i] += weight / std::sqrt(det) * theta[i] * t;
-}
+ public:
+  FacetMoments(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, int degree)
+      : degree_(degree),
+        scale_(1 / std::sqrt(mesh::facet_geometry(mesh, facet.cell, facet.local).det())),
+        theta_(fem::polynomial_dimension(dim - 1, degree))
+  {
+  }
+
+  [[nodiscard]] std::vector<Point<dim>> none() const { return {theta_.size(), Point<dim>::Zero()}; }
+  /// moments += weight theta_i t at the point s of the reference facet.
+  void add(const Point<dim - 1>& s, double weight, const Point<dim>& t, std::span<Point<dim>> moments)
+  {
+    fem::orthonormal_values<dim - 1>(degree_, s, theta_);
+    for (std::size_t i = 0; i < moments.size(); ++i) moments[i] += weight * scale_ * theta_[i] * t;
+  }
+
+ private:
+  int degree_;
+  double scale_;  ///< normalises theta on the facet
+  std::vector<double> theta_;
+};
 
 /// The moments of what acts on each boundary facet: g_N, t^k on slaves, -t^k on masters; empty: nothing.
 template <int dim>
@@ -254,31 +269,27 @@ std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheFo
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   std::vector<std::vector<Point<dim>>> moments(mesh.boundary().size());
-  const auto add = [&](std::size_t number, const Point<dim - 1>& s, double weight, const Point<dim>& traction)
-  {
-    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
-    moments[number].resize(fem::polynomial_dimension(dim - 1, degree), Point<dim>::Zero());
-    add_moments<dim>(degree, s, weight, mesh::facet_geometry(mesh, facet.cell, facet.local).det(), traction,
-                     moments[number]);
-  };
   std::vector<Point<dim>> g(rule.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     if (!form.data().has_traction(number)) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    FacetMoments<dim> on_facet(mesh, facet, degree);
+    moments[number] = on_facet.none();
     form.data().traction(number, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      add(number, rule.points[q], dx, g[q]);
+      on_facet.add(rule.points[q], dx, g[q], moments[number]);
   }
   for (std::size_t k = 0; k < form.segments().size(); ++k)
-    for (int q = 0; q < rule.size(); ++q)
-      form.segments()[k].for_each_side(
-          [&](const contact::SegmentSide<dim>& side)
-          {
-            const std::size_t i = k * rule.size() + q;
-            add(side.number, side.on_facet(rule.points[q]), form.contact_points()[i].weight,
-                side.sign * t[i]);
-          });
+    form.segments()[k].for_each_side(
+        [&](const contact::SegmentSide<dim>& side)
+        {
+          FacetMoments<dim> on_facet(mesh, side.facet, degree);
+          if (moments[side.number].empty()) moments[side.number] = on_facet.none();
+          for (int q = 0; q < rule.size(); ++q)
+            on_facet.add(side.on_facet(rule.points[q]), side.sign * form.contact_points(k)[q].weight,
+                         t[k * rule.size() + q], moments[side.number]);
+        });
   return moments;
 }
 
@@ -299,10 +310,10 @@ void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const CellStress<dim> sigma(mesh, stress, facet.cell);
-    std::vector<Point<dim>> moments(fem::polynomial_dimension(dim - 1, stress.degree), Point<dim>::Zero());
+    FacetMoments<dim> on_facet(mesh, facet, stress.degree);
+    std::vector<Point<dim>> moments = on_facet.none();
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      add_moments<dim>(stress.degree, rule.points[q], dx, geometry.det(),
-                       sigma.normal_trace_at(x, geometry.normal), moments);
+      on_facet.add(rule.points[q], dx, sigma.normal_trace_at(x, geometry.normal), moments);
     for (std::size_t i = 0; i < prescribed[number].size(); ++i) moments[i] -= prescribed[number][i];
     double& sum = in_contact[number] ? squares.contact : squares.neumann;
     for (const Point<dim>& moment : moments)

@@ -1,5 +1,8 @@
 #include "tribound/contact/nitsche/segment_values.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
 
@@ -12,8 +15,7 @@ SegmentTables<dim>::SegmentTables(const fem::LagrangeBasis<dim>& basis,
                                   std::span<const Point<dim - 1>> points)
     : points_(points.begin(), points.end())
 {
-  for (int local = 0; local <= dim; ++local)
-    tables_.push_back(basis.tabulate(fem::points_on_facet<dim>(local, points)));
+  std::ranges::move(fem::tabulate_on_facets<dim>(basis, points).on_facet, std::back_inserter(tables_));
   const auto table_of = [&](const SegmentSide<dim>& side)
   {
     if (!side.part) return side.facet.local;
