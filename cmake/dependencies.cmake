@@ -10,6 +10,7 @@ find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 pkg_search_module(MPI REQUIRED IMPORTED_TARGET mpi-c ompi-c mpich)
 pkg_search_module(PETSC REQUIRED IMPORTED_TARGET PETSc petsc)
+pkg_check_modules(LAPACK REQUIRED IMPORTED_TARGET lapack blas)
 pkg_check_modules(EIGEN REQUIRED IMPORTED_TARGET eigen3>=3.4)
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}) # FindGmsh.cmake
 find_package(Gmsh REQUIRED)

@@ -90,8 +90,8 @@ VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
   iterate.step = newton.step;
   iterate.bound = eta.total_sharp;
   iterate.bound_plain = eta.total;
-  iterate.dual_norm = dual_norm(newton.u);
-  iterate.norms = contact::stress_norms<dim>(form.problem(), form.space(), newton.u);
+  iterate.dual_norm = dual_norm(newton.u());
+  iterate.norms = contact::stress_norms<dim>(form.problem(), form.space(), newton.u());
   iterate.identities =
       certify::check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
   return iterate;
@@ -139,8 +139,8 @@ ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
       [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
   {
     const certify::Stress<dim> stress =
-        certify::equilibrate<dim>(form, iterate.u, iterate.traction, 0, iterate.step.delta);
-    const certify::Estimate eta = estimator(iterate.u, stress);
+        certify::equilibrate<dim>(form, iterate.u(), iterate.traction, 0, iterate.step.delta);
+    const certify::Estimate eta = estimator(iterate.u(), stress);
     result.iterates.push_back(verified_iterate(form, iterate, stress, eta, dual_norm));
     progress(iterate.step);
     if (!regularisation) return false;

@@ -101,7 +101,7 @@ void every_iterate(int p)
     const auto examine = [&](const solve::NewtonIterate<dim>& iterate)
     {
       const certify::Balance b = certify::balance<dim>(
-          c.form, certify::equilibrate<dim>(c.form, iterate.u, iterate.traction), about);
+          c.form, certify::equilibrate<dim>(c.form, iterate.u(), iterate.traction), about);
       EXPECT_EQ(b.rows.back().moment.has_value(), p > 1);
       const Defect d = defect(b);
       ++iterates;

@@ -65,7 +65,7 @@ double largest_defect(int p, const ProblemData<dim>& problem)
   {
     const double delta = iterate.step.delta;
     const certify::Stress<dim> stress =
-        certify::equilibrate<dim>(c.form, iterate.u, iterate.traction, 0, delta);
+        certify::equilibrate<dim>(c.form, iterate.u(), iterate.traction, 0, delta);
     EXPECT_FALSE(stress.reg.empty());
     largest = std::max(largest, certify::check_identities<dim>(c.form, iterate.traction, stress).largest(p));
     solve::NewtonAdvice advice = false;

@@ -63,10 +63,11 @@ class Certifier
   }
 
   /// Whether the iterate may be kept as the solution; its bound, unless sigma_lin alone says that it may not.
-  [[nodiscard]] bool examine(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step,
+  [[nodiscard]] bool examine(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step,
                              CertifiedLevel<dim>& level)
   {
-    if (always_complete() || !known_ || may_be_accepted(u, t, step)) complete(u, t, step, level);
+    if (always_complete() || may_be_accepted(iterate, step))
+      complete(iterate.u(), iterate.traction, step, level);
     return step.bound && linearisation_is_negligible(level.estimate, method_.stopping);
   }
 
@@ -87,17 +88,20 @@ class Certifier
  private:
   [[nodiscard]] bool always_complete() const
   {
-    return dim == 2 || method_.stopping.criterion == Stopping::tolerance || method_.regularisation;
+    return method_.stopping.criterion == Stopping::tolerance || method_.regularisation;
   }
 
-  /// Whether the linearisation error may be negligible, the discretisation error being that last known. What
-  /// is negligible on every cell is so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for
-  /// vectors x, y, z >= 0.
-  bool may_be_accepted(std::span<const double> u, std::span<const Point<dim>> t, CertifiedStep& step)
+  /// Whether the linearisation error may be negligible, the discretisation error being that last known, or,
+  /// before any is, at most as large as the stress. What is negligible on every cell is so in all but for a
+  /// factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
+  bool may_be_accepted(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
     const double factor = method_.stopping.criterion == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
-    step.linearisation = estimator_.linearisation(equilibrator_.linearisation(u, t));
-    return step.linearisation->linearisation() <= factor * method_.stopping.gamma_lin * *known_;
+    step.linearisation =
+        estimator_.linearisation(equilibrator_.linearisation(iterate.contact_u, iterate.traction));
+    const double discretisation =
+        known_ ? *known_ : contact::stress_norms(form_.problem(), form_.space(), iterate.u()).sigma;
+    return step.linearisation->linearisation() <= factor * method_.stopping.gamma_lin * discretisation;
   }
 
   const contact::NitscheForm<dim>& form_;
@@ -207,7 +211,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     {
       const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
       if (!certifier) certifier.emplace(form, method, expected, friedrichs);
-      advice = certifier->examine(iterate.u, iterate.traction, step, level);
+      advice = certifier->examine(iterate, step, level);
       if (regularisation)
         advice = regularisation->advise(form, iterate, level.estimate.global,
                                         advice.good_enough || iterate.converged);

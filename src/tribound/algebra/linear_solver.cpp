@@ -243,8 +243,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double>
   constexpr double useless = 1e-6;
   if (!converged && !(!rule.history.empty() && rule.history.back() <= useless * norm(b)))
     throw SolveError(
-        direct ? "the tangent matrix is singular to working precision: contact that alone holds a body "
-                 "may have opened (fix a displacement component, or raise nitsche.gamma0)"
+        direct ? detail::singular_tangent
                : "GMRES with multigrid did not converge in " + std::to_string(iterations) +
                      " iterations (try [solver] method = \"direct\" or a larger max_iterations)");
   // With the interpolation kept, a new multigrid hierarchy costs 10 to 15 of its iterations (3D, 40k to

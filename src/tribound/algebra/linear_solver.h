@@ -17,8 +17,9 @@ namespace tribound::algebra
 enum class LinearMethod
 {
   automatic,
-  direct,
-  iterative
+  direct,     ///< LU factors of the whole matrix
+  condensed,  ///< the problem condensed onto the contact boundary, where dense LU factors do
+  iterative   ///< multigrid
 };
 
 enum class DirectPackage

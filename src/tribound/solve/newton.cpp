@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
-#include "tribound/algebra/linear_solver.h"
-#include "tribound/algebra/petsc.h"
 #include "tribound/base/clock.h"
+#include "tribound/base/error.h"
 #include "tribound/base/norm.h"
-#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/solve/equilibrium.h"
 
 namespace tribound::solve
 {
@@ -32,32 +32,33 @@ class Newton
  public:
   Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton,
          const algebra::SolverOptions& solver, double delta)
-      : form_(form),
-        config_(newton),
-        delta_(delta),
-        linear_tolerance_(solver.tolerance),
-        stiffness_(form.space().n_dofs(), dim,
-                   contact::stiffness(form.problem(), form.space(), form.constraints())),
-        contact_(form.space().n_dofs(), dim,
-                 form.contact_tangent(contact::Linearisation::closed_sticking, zero())),
-        tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
-        diagonal_(stiffness_.diagonal()),
-        linear_solver_(solver, std::span<const Point<dim>>(form.space().node_points()))
+      : Newton(form, newton, solver, delta, external_forces(form))
   {
   }
 
   NewtonResult<dim> run(std::span<const double> start, const NewtonObserver<dim>& observer);
 
  private:
-  [[nodiscard]] std::vector<double> zero() const { return std::vector<double>(form_.space().n_dofs(), 0.0); }
+  Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton,
+         const algebra::SolverOptions& solver, double delta, ExternalForces&& forces)
+      : form_(form),
+        config_(newton),
+        delta_(delta),
+        linear_tolerance_(solver.tolerance),
+        scale_(forces.scale),
+        equilibrium_(make_equilibrium(form, std::move(forces.load), solver))
+  {
+  }
+
   void initialise(std::span<const double> start);
   void set_residual(std::vector<double> r);
   void regularise(double delta);
-  [[nodiscard]] std::vector<double> residual(std::span<const Point<dim>> traction,
-                                             std::span<const double> ku) const;
-  [[nodiscard]] double round_off() const;
+  [[nodiscard]] std::vector<double>& displacement();
   [[nodiscard]] bool in_balance() const { return residual_norm_ <= smallest_residual(); }
-  [[nodiscard]] double smallest_residual() const { return std::max(config_.tolerance * scale_, round_off()); }
+  [[nodiscard]] double smallest_residual() const
+  {
+    return std::max(config_.tolerance * scale_, equilibrium_->round_off(x_));
+  }
   [[nodiscard]] bool traction_settled() const;
   [[nodiscard]] double relative_residual() const
   {
@@ -65,55 +66,38 @@ class Newton
   }
   [[nodiscard]] std::string describe_residual() const;
   [[nodiscard]] NewtonStep step(int k, contact::Linearisation kind);
-  [[nodiscard]] algebra::LinearSolve solve_tangent(int k, std::span<const double> rhs, double target,
-                                                   std::span<double> delta);
+  [[nodiscard]] algebra::LinearSolve solve_tangent(int k, contact::Linearisation kind,
+                                                   std::span<const double> rhs, std::span<double> delta);
   [[nodiscard]] double search(std::span<const double> direction, bool full_step);
 
   const contact::NitscheForm<dim>& form_;
   const NewtonOptions& config_;
   double delta_;  ///< of T_delta
   double linear_tolerance_;
-  algebra::SparseMatrix stiffness_;  ///< a(phi_j, phi_i)
-  algebra::SparseMatrix contact_;    ///< -(DT(u)[phi_j], phi_i)_C
-  algebra::SparseMatrix tangent_;    ///< their sum
-  std::vector<double> diagonal_;     ///< of the stiffness
-  algebra::LinearSolver linear_solver_;
+  double scale_;  ///< of the forces that balance
+  std::unique_ptr<Equilibrium<dim>> equilibrium_;
 
-  std::vector<double> u_;             ///< u^k
-  std::vector<double> ku_;            ///< a(u^k - lifting of u_D, phi_i)
-  std::vector<double> load_;          ///< L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0
-  std::vector<double> residual_;      ///< <R(u^k), phi_i> for free i, else 0
+  std::vector<double> x_;             ///< u^k as unknowns of the equilibrium
+  std::vector<double> internal_;      ///< their internal forces
+  std::vector<double> u_;             ///< what is linearised at: u^k on cells at the contact boundary
+  std::vector<double> residual_;      ///< <R(u^k), phi_i>
   std::vector<Point<dim>> traction_;  ///< t^k
   double residual_norm_ = 0;
-  double scale_ = 0;  ///< size of the forces that balance: the residual is measured against it
+  std::optional<std::vector<double>> displacement_;  ///< u^k everywhere, where it has been asked for
 };
-
-/// Sets entries of fixed degrees of freedom to 0.
-void restrict_to_free(const fem::Constraints& constraints, std::span<double> v)
-{
-  for (std::size_t i = 0; i < v.size(); ++i)
-    if (constraints.fixed[i]) v[i] = 0;
-}
 
 template <int dim>
 void Newton<dim>::initialise(std::span<const double> start)
 {
   const fem::Constraints& constraints = form_.constraints();
-  u_ = start.empty() ? zero() : std::vector<double>(start.begin(), start.end());
-  std::vector<double> free_part = u_;
-  restrict_to_free(constraints, free_part);
+  u_.assign(form_.space().n_dofs(), 0.0);
+  std::ranges::copy(start, u_.begin());
   for (std::size_t i = 0; i < u_.size(); ++i)
     if (constraints.fixed[i]) u_[i] = constraints.values[i];
-
-  ku_ = stiffness_.multiply(free_part);
-  load_.assign(form_.load().begin(), form_.load().end());
-  std::vector<double> lifting = contact::apply_stiffness(form_.problem(), form_.space(), constraints.values);
-  restrict_to_free(constraints, lifting);
-  restrict_to_free(constraints, load_);
-  scale_ = norm(load_) + norm(lifting);
-  axpy(-1, lifting, load_);
+  x_ = equilibrium_->unknowns(u_);
+  internal_ = equilibrium_->internal_forces(x_);
   traction_ = form_.traction(u_, delta_);
-  set_residual(residual(traction_, ku_));
+  set_residual(equilibrium_->residual(internal_, traction_));
 }
 
 template <int dim>
@@ -128,28 +112,15 @@ template <int dim>
 void Newton<dim>::regularise(double delta)
 {
   delta_ = delta;
-  set_residual(residual(form_.traction(u_, delta_), ku_));
+  set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
 }
 
-/// <R, phi_i> = L(phi_i) - a(u, phi_i) + (t, phi_i)_C for free i.
+/// u^k everywhere, computed when it is first asked for.
 template <int dim>
-std::vector<double> Newton<dim>::residual(std::span<const Point<dim>> traction,
-                                          std::span<const double> ku) const
+std::vector<double>& Newton<dim>::displacement()
 {
-  std::vector<double> r = load_;
-  axpy(-1, ku, r);
-  form_.add_contact_load(traction, r);
-  restrict_to_free(form_.constraints(), r);
-  return r;
-}
-
-/// What the residual cannot resolve: round-off in K u, estimated through the diagonal of K.
-template <int dim>
-double Newton<dim>::round_off() const
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < u_.size(); ++i) sum += std::pow(diagonal_[i] * u_[i], 2);
-  return 10 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+  if (!displacement_) displacement_ = equilibrium_->displacement(x_);
+  return *displacement_;
 }
 
 /// Whether t^k = T(u^k) as far as it matters: forces at the contact points, with a margin for their number,
@@ -178,40 +149,45 @@ template <int dim>
 double Newton<dim>::search(std::span<const double> direction, bool full_step)
 {
   constexpr int max_halvings = 10;
-  const std::vector<double> k_direction = stiffness_.multiply(direction);
+  const std::vector<double> of_direction = equilibrium_->internal_forces(direction);
   struct Trial
   {
     double alpha = 0;
-    double norm = std::numeric_limits<double>::infinity();
-    std::vector<double> u, ku, residual;
+    double norm = 0;
+    std::vector<double> x, internal, residual;
   } best;
   const double good_enough = smallest_residual();
   double alpha = 1;
   for (int halvings = 0; halvings <= max_halvings; ++halvings, alpha /= 2)
   {
-    Trial trial{alpha, 0, u_, ku_, {}};
-    axpy(alpha, direction, trial.u);
-    axpy(alpha, k_direction, trial.ku);
-    trial.residual = residual(form_.traction(trial.u, delta_), trial.ku);
+    Trial trial{alpha, 0, x_, internal_, {}};
+    axpy(alpha, direction, trial.x);
+    axpy(alpha, of_direction, trial.internal);
+    equilibrium_->displace_contact(trial.x, u_);
+    trial.residual = equilibrium_->residual(trial.internal, form_.traction(u_, delta_));
     trial.norm = norm(trial.residual);
-    if (full_step || trial.norm < best.norm) best = std::move(trial);
+    if (halvings == 0 || trial.norm < best.norm) best = std::move(trial);
     if (full_step || best.norm < std::max(residual_norm_, good_enough)) break;
   }
-  u_ = std::move(best.u);
-  ku_ = std::move(best.ku);
+  x_ = std::move(best.x);
+  displacement_.reset();
+  equilibrium_->displace_contact(x_, u_);
+  internal_ = std::move(best.internal);
   residual_ = std::move(best.residual);
   residual_norm_ = best.norm;
   return best.alpha;
 }
 
-/// Solves with the tangent; says at which step it failed.
+/// Solves with the tangent at u; says at which step it failed.
 template <int dim>
-algebra::LinearSolve Newton<dim>::solve_tangent(int k, std::span<const double> rhs, double target,
-                                                std::span<double> delta)
+algebra::LinearSolve Newton<dim>::solve_tangent(int k, contact::Linearisation kind,
+                                                std::span<const double> rhs, std::span<double> delta)
 {
+  const double target = std::max({std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_,
+                                  equilibrium_->round_off(x_), 1e-14 * norm(rhs)});
   try
   {
-    return linear_solver_.solve(tangent_, rhs, target, delta);
+    return equilibrium_->solve(form_.contact_tangent(kind, u_, delta_), rhs, target, delta);
   }
   catch (const SolveError& error)
   {
@@ -224,16 +200,16 @@ template <int dim>
 NewtonStep Newton<dim>::step(int k, contact::Linearisation kind)
 {
   const bool first = k == 1;
-  contact_.set_values(form_.contact_tangent(kind, u_, delta_).values);
-  tangent_.assign_sum(stiffness_, contact_);
-  const std::vector<double> rhs = residual(form_.linearised_traction(kind, u_, u_, delta_), ku_);
-  const double target = std::max(
-      {std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_, round_off(), 1e-14 * norm(rhs)});
-  std::vector<double> delta = zero();
-  const algebra::LinearSolve linear = solve_tangent(k, rhs, target, delta);
-
   std::vector<double> target_u = u_;
-  axpy(1, delta, target_u);
+  equilibrium_->displace_contact(x_, target_u);
+  const std::vector<double> rhs =
+      equilibrium_->residual(internal_, form_.linearised_traction(kind, u_, target_u, delta_));
+  std::vector<double> delta(x_.size(), 0.0);
+  const algebra::LinearSolve linear = solve_tangent(k, kind, rhs, delta);
+
+  std::vector<double> target_x = x_;
+  axpy(1, delta, target_x);
+  equilibrium_->displace_contact(target_x, target_u);
   const std::vector<Point<dim>> t_lin = form_.linearised_traction(kind, u_, target_u, delta_);
   const double alpha = search(delta, first || !config_.damping);
   for (std::size_t i = 0; i < t_lin.size(); ++i)
@@ -246,7 +222,7 @@ NewtonStep Newton<dim>::step(int k, contact::Linearisation kind)
   report.delta = delta_;
   report.linear_iterations = linear.iterations;
   report.factorised = linear.factorised;
-  report.method = linear_solver_.method();
+  report.method = equilibrium_->method();
   report.fell_back = linear.fell_back;
   return report;
 }
@@ -256,15 +232,15 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 {
   NewtonResult<dim> result;
   initialise(start);
-  const bool nothing_moves = start.empty() && residual_norm_ == 0;
+  const bool at_rest = start.empty() && scale_ == 0 && residual_norm_ == 0;
   int without_progress = 0;
   for (int k = 1; k <= config_.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
   {
     const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && start.empty();
     const double before = residual_norm_;
-    NewtonStep report{.step = k, .delta = delta_, .method = linear_solver_.method()};
-    if (!nothing_moves)
+    NewtonStep report{.step = k, .delta = delta_, .method = equilibrium_->method()};
+    if (!at_rest)
       report =
           step(k, from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
     report.seconds = seconds_since(begin);
@@ -272,7 +248,9 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
     const bool converged =
         in_balance() && (k == config_.max_steps || without_progress > 0 || traction_settled());
-    const NewtonAdvice advice = observer ? observer({report, u_, traction_, converged}) : false;
+    const NewtonIterate<dim> iterate{report, u_, traction_, converged,
+                                     [this] { return std::span<const double>(displacement()); }};
+    const NewtonAdvice advice = observer ? observer(iterate) : false;
     if (advice.delta)
     {
       regularise(*advice.delta);
@@ -295,7 +273,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
   if (result.status == NewtonStatus::too_many_steps)
     result.message =
         fmt::format("step {} was the last of newton.max_steps; {}", config_.max_steps, describe_residual());
-  result.u = std::move(u_);
+  result.u = std::move(displacement());
   result.traction = std::move(traction_);
   return result;
 }

@@ -59,9 +59,10 @@ template <int dim>
 struct NewtonIterate
 {
   const NewtonStep& step;
-  std::span<const double> u;             ///< u^k
+  std::span<const double> contact_u;     ///< u^k on the cells at the contact boundary, elsewhere anything
   std::span<const Point<dim>> traction;  ///< t^k
   bool converged;                        ///< the residual is below the tolerance, and t^k is T(u^k)
+  std::function<std::span<const double>()> u;  ///< u^k everywhere, computed when it is first asked for
 };
 
 /// What an observer says about an iterate.

@@ -1,0 +1,86 @@
+#pragma once
+
+/// @file equilibrium.h
+/// The discrete problem as Newton's method sees it: internal forces K x, loads and contact tractions.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::solve
+{
+
+/// Find unknowns x with K x = load + contact forces of the tractions that the displacement of x has. What the
+/// unknowns are is up to the implementation: all of u, or those on the contact boundary.
+template <int dim>
+class Equilibrium
+{
+ public:
+  virtual ~Equilibrium() = default;
+
+  /// The unknowns of a displacement whose fixed degrees of freedom have their values.
+  [[nodiscard]] virtual std::vector<double> unknowns(std::span<const double> u) const = 0;
+  /// Sets u on the cells at the contact boundary, where tractions need it; other entries may stay as they
+  /// are.
+  virtual void displace_contact(std::span<const double> x, std::span<double> u) const = 0;
+  /// u everywhere.
+  [[nodiscard]] virtual std::vector<double> displacement(std::span<const double> x) const = 0;
+
+  /// K x; what fixed degrees of freedom have in it is not used.
+  [[nodiscard]] virtual std::vector<double> internal_forces(std::span<const double> x) const = 0;
+  /// load - K x + (t, [phi_i])_C for t at the contact points of the form, 0 at fixed degrees of freedom.
+  [[nodiscard]] virtual std::vector<double> residual(std::span<const double> internal_forces,
+                                                     std::span<const Point<dim>> traction) const = 0;
+  /// What a residual cannot resolve: round-off in K x, estimated through the diagonal of the stiffness.
+  [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
+
+  /// d with (K + contact) d = r, contact as NitscheForm::contact_tangent has it, |residual| <= tolerance up
+  /// to round-off. Throws SolveError when the matrix is singular.
+  virtual algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r,
+                                     double tolerance, std::span<double> d) = 0;
+  [[nodiscard]] virtual algebra::LinearMethod method() const = 0;
+};
+
+/// What loads and prescribed displacements do.
+struct ExternalForces
+{
+  std::vector<double> load;  ///< L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0
+  double scale = 0;          ///< size of the forces that balance: residuals are measured against it
+};
+template <int dim>
+[[nodiscard]] ExternalForces external_forces(const contact::NitscheForm<dim>& form);
+
+/// All of u, with sparse matrices.
+template <int dim>
+[[nodiscard]] std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<dim>& form,
+                                                                   std::vector<double> load,
+                                                                   const algebra::SolverOptions& options);
+
+/// The degrees of freedom that condensation keeps: free ones of nodes on the contact boundary, and of the
+/// other nodes of cells there.
+struct CondensedDofs
+{
+  std::vector<Index> layer;
+  std::vector<Index> trace;
+};
+template <int dim>
+[[nodiscard]] CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form);
+
+/// The displacement on the contact boundary, everything else condensed. Throws SolveError when the stiffness
+/// is not positive definite with the contact boundary held.
+template <int dim>
+[[nodiscard]] std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheForm<dim>& form,
+                                                                      std::span<const double> load,
+                                                                      CondensedDofs dofs);
+
+/// One of the two, by options.method. Where it is automatic, condensation is for 2D, as long as its dense
+/// matrices cost less than the factors that it saves.
+template <int dim>
+[[nodiscard]] std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<dim>& form,
+                                                                 std::vector<double> load,
+                                                                 const algebra::SolverOptions& options);
+
+}  // namespace tribound::solve

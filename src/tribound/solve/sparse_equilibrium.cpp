@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tribound/algebra/petsc.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/solve/equilibrium.h"
+
+namespace tribound::solve
+{
+
+namespace
+{
+
+template <int dim>
+class SparseEquilibrium final : public Equilibrium<dim>
+{
+ public:
+  SparseEquilibrium(const contact::NitscheForm<dim>& form, std::vector<double> load,
+                    const algebra::SolverOptions& options)
+      : form_(form),
+        stiffness_(form.space().n_dofs(), dim,
+                   contact::stiffness(form.problem(), form.space(), form.constraints())),
+        contact_(form.space().n_dofs(), dim,
+                 form.contact_tangent(contact::Linearisation::closed_sticking,
+                                      std::vector<double>(form.space().n_dofs(), 0.0))),
+        tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
+        diagonal_(stiffness_.diagonal()),
+        load_(std::move(load)),
+        linear_solver_(options, std::span<const Point<dim>>(form.space().node_points()))
+  {
+  }
+
+  std::vector<double> unknowns(std::span<const double> u) const override { return {u.begin(), u.end()}; }
+  void displace_contact(std::span<const double> x, std::span<double> u) const override
+  {
+    std::ranges::copy(x, u.begin());
+  }
+  std::vector<double> displacement(std::span<const double> x) const override { return {x.begin(), x.end()}; }
+  std::vector<double> internal_forces(std::span<const double> x) const override
+  {
+    return stiffness_.multiply(x);
+  }
+
+  std::vector<double> residual(std::span<const double> internal_forces,
+                               std::span<const Point<dim>> traction) const override
+  {
+    std::vector<double> r = load_;
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal_forces[i];
+    form_.add_contact_load(traction, r);
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (form_.constraints().fixed[i]) r[i] = 0;
+    return r;
+  }
+
+  double round_off(std::span<const double> x) const override
+  {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) sum += std::pow(diagonal_[i] * x[i], 2);
+    return 10 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+  }
+
+  algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
+                             std::span<double> d) override
+  {
+    contact_.set_values(contact.values);
+    tangent_.assign_sum(stiffness_, contact_);
+    return linear_solver_.solve(tangent_, r, tolerance, d);
+  }
+  algebra::LinearMethod method() const override { return linear_solver_.method(); }
+
+ private:
+  const contact::NitscheForm<dim>& form_;
+  algebra::SparseMatrix stiffness_;  ///< a(phi_j, phi_i)
+  algebra::SparseMatrix contact_;    ///< -(DT(u)[phi_j], phi_i)_C
+  algebra::SparseMatrix tangent_;    ///< their sum
+  std::vector<double> diagonal_;     ///< of the stiffness
+  std::vector<double> load_;
+  algebra::LinearSolver linear_solver_;
+};
+
+}  // namespace
+
+template <int dim>
+std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<dim>& form,
+                                                     std::vector<double> load,
+                                                     const algebra::SolverOptions& options)
+{
+  return std::make_unique<SparseEquilibrium<dim>>(form, std::move(load), options);
+}
+
+template std::unique_ptr<Equilibrium<2>> sparse_equilibrium(const contact::NitscheForm<2>&,
+                                                            std::vector<double>,
+                                                            const algebra::SolverOptions&);
+template std::unique_ptr<Equilibrium<3>> sparse_equilibrium(const contact::NitscheForm<3>&,
+                                                            std::vector<double>,
+                                                            const algebra::SolverOptions&);
+
+}  // namespace tribound::solve
