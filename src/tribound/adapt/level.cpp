@@ -128,6 +128,9 @@ void tighten(const contact::NitscheForm<dim>& form, const Method& method, const 
 {
   Method tight = method;
   tight.solver.tolerance = 0;
+  if (level.equilibrium->method() == algebra::LinearMethod::condensed)
+    tight.solver.method = algebra::LinearMethod::direct;
+  level.equilibrium.reset();
   try
   {
     if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
@@ -167,7 +170,8 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   solve::NewtonResult<dim> newton;
   {
     const ScopedTimer timer(result.solve_seconds, result.solve_cpu);
-    newton = solve::solve<dim>(form, level.u, method.newton, method.solver, record, level.delta);
+    newton = solve::solve<dim>(form, level.u, method.newton, method.solver, record, level.delta,
+                               level.equilibrium);
   }
   if (newton.status != solve::NewtonStatus::converged) return std::nullopt;
   for (CertifiedStep& step : result.steps) step.accepted = false;
@@ -175,6 +179,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   result.converged = true;
   result.u = std::move(newton.u);
   result.traction = std::move(newton.traction);
+  result.equilibrium = std::move(newton.equilibrium);
   {
     const ScopedTimer timer(result.certify_seconds, result.certify_cpu);
     Certifier<dim> certifier(form, method, {}, level.friedrichs);
@@ -241,6 +246,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   level.converged = newton.status == solve::NewtonStatus::converged;
   level.u = std::move(newton.u);
   level.traction = std::move(newton.traction);
+  level.equilibrium = std::move(newton.equilibrium);
   if (!level.solved())
   {
     level.norms = contact::stress_norms(form.problem(), form.space(), level.u);

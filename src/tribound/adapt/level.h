@@ -5,6 +5,7 @@
 /// and the identities of the iterate that is kept.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,6 +84,7 @@ struct CertifiedLevel
   double solve_cpu = 0;                                   ///< CPU time, all threads
   double certify_cpu = 0;
   RefinementSeconds refinement;
+  std::shared_ptr<solve::Equilibrium<dim>> equilibrium;  ///< with factors, for converge()
 
   [[nodiscard]] bool solved() const { return failure.empty(); }
 };

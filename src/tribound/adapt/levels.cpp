@@ -206,6 +206,7 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
   expected_ = level_.estimate.global.discretisation() * std::pow(is_next.growth, -1.0 * method_.degree / dim);
   level_.stress = {};
   level_.estimate = {};
+  level_.equilibrium = {};
   discrete_before_ = std::exchange(current_, std::move(next));
   return {};
 }

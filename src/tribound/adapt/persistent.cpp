@@ -79,9 +79,9 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
                                             const solve::NewtonObserver<dim>& observer, double delta,
                                             const std::function<void(const solve::NewtonStep&)>& record)
 {
-  const auto attempt = [&](std::span<const double> u)
-  { return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta); };
   solve::NewtonResult<dim> first;
+  const auto attempt = [&](std::span<const double> u)
+  { return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta, first.equilibrium); };
   std::exception_ptr failure;
   try
   {

@@ -45,10 +45,12 @@ class CondensedEquilibrium final : public Equilibrium<dim>
 {
  public:
   CondensedEquilibrium(const contact::NitscheForm<dim>& form, const algebra::Triplets& stiffness,
-                       std::span<const double> load, CondensedDofs dofs)
+                       const ExternalForces& forces, CondensedDofs dofs)
       : form_(form),
         diagonal_(form.space().n_dofs(), 0.0),
-        condensed_(form.space().n_dofs(), dim, stiffness, std::move(dofs.layer), std::move(dofs.trace), load)
+        condensed_(form.space().n_dofs(), dim, stiffness, std::move(dofs.layer), std::move(dofs.trace),
+                   forces.load),
+        force_scale_(forces.scale)
   {
     for (std::size_t e = 0; e < stiffness.rows.size(); ++e)
       if (const int i = stiffness.rows[e]; i >= 0 && i == stiffness.cols[e])
@@ -110,11 +112,13 @@ class CondensedEquilibrium final : public Equilibrium<dim>
     return {.factorised = !std::exchange(used_, true)};
   }
   algebra::LinearMethod method() const override { return algebra::LinearMethod::condensed; }
+  double force_scale() const override { return force_scale_; }
 
  private:
   const contact::NitscheForm<dim>& form_;
   std::vector<double> diagonal_;  ///< of the stiffness
   algebra::Condensation condensed_;
+  double force_scale_;
   bool used_ = false;
 };
 
@@ -122,17 +126,17 @@ class CondensedEquilibrium final : public Equilibrium<dim>
 
 template <int dim>
 std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheForm<dim>& form,
-                                                        std::span<const double> load, CondensedDofs dofs)
+                                                        const ExternalForces& forces, CondensedDofs dofs)
 {
   return std::make_unique<CondensedEquilibrium<dim>>(
-      form, contact::stiffness(form.problem(), form.space(), form.constraints()), load, std::move(dofs));
+      form, contact::stiffness(form.problem(), form.space(), form.constraints()), forces, std::move(dofs));
 }
 
 template CondensedDofs condensed_dofs(const contact::NitscheForm<2>&);
 template CondensedDofs condensed_dofs(const contact::NitscheForm<3>&);
 template std::unique_ptr<Equilibrium<2>> condensed_equilibrium(const contact::NitscheForm<2>&,
-                                                               std::span<const double>, CondensedDofs);
+                                                               const ExternalForces&, CondensedDofs);
 template std::unique_ptr<Equilibrium<3>> condensed_equilibrium(const contact::NitscheForm<3>&,
-                                                               std::span<const double>, CondensedDofs);
+                                                               const ExternalForces&, CondensedDofs);
 
 }  // namespace tribound::solve

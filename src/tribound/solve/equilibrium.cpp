@@ -38,25 +38,25 @@ bool condensation_pays(int dim, const CondensedDofs& dofs, const algebra::Solver
 
 template <int dim>
 std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<dim>& form,
-                                                   std::vector<double> load,
                                                    const algebra::SolverOptions& options)
 {
+  ExternalForces forces = external_forces(form);
   if (CondensedDofs dofs = condensed_dofs(form); condensation_pays(dim, dofs, options)) try
     {
-      return condensed_equilibrium(form, load, std::move(dofs));
+      return condensed_equilibrium(form, forces, std::move(dofs));
     }
     catch (const SolveError&)  // the tangent may be regular where the stiffness is not
     {
       if (options.method == algebra::LinearMethod::condensed) throw;
     }
-  return sparse_equilibrium(form, std::move(load), options);
+  return sparse_equilibrium(form, std::move(forces), options);
 }
 
 template ExternalForces external_forces(const contact::NitscheForm<2>&);
 template ExternalForces external_forces(const contact::NitscheForm<3>&);
-template std::unique_ptr<Equilibrium<2>> make_equilibrium(const contact::NitscheForm<2>&, std::vector<double>,
+template std::unique_ptr<Equilibrium<2>> make_equilibrium(const contact::NitscheForm<2>&,
                                                           const algebra::SolverOptions&);
-template std::unique_ptr<Equilibrium<3>> make_equilibrium(const contact::NitscheForm<3>&, std::vector<double>,
+template std::unique_ptr<Equilibrium<3>> make_equilibrium(const contact::NitscheForm<3>&,
                                                           const algebra::SolverOptions&);
 
 }  // namespace tribound::solve

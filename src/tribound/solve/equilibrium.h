@@ -13,8 +13,18 @@
 namespace tribound::solve
 {
 
+/// What loads and prescribed displacements do.
+struct ExternalForces
+{
+  std::vector<double> load;  ///< L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0
+  double scale = 0;          ///< size of the forces that balance: residuals are measured against it
+};
+template <int dim>
+[[nodiscard]] ExternalForces external_forces(const contact::NitscheForm<dim>& form);
+
 /// Find unknowns x with K x = load + contact forces of the tractions that the displacement of x has. What the
-/// unknowns are is up to the implementation: all of u, or those on the contact boundary.
+/// unknowns are is up to the implementation: all of u, or those on the contact boundary. Keeps factors of its
+/// matrices for the next solve, and a reference to the form.
 template <int dim>
 class Equilibrium
 {
@@ -42,21 +52,14 @@ class Equilibrium
   virtual algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r,
                                      double tolerance, std::span<double> d) = 0;
   [[nodiscard]] virtual algebra::LinearMethod method() const = 0;
+  /// ExternalForces::scale.
+  [[nodiscard]] virtual double force_scale() const = 0;
 };
-
-/// What loads and prescribed displacements do.
-struct ExternalForces
-{
-  std::vector<double> load;  ///< L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0
-  double scale = 0;          ///< size of the forces that balance: residuals are measured against it
-};
-template <int dim>
-[[nodiscard]] ExternalForces external_forces(const contact::NitscheForm<dim>& form);
 
 /// All of u, with sparse matrices.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<dim>& form,
-                                                                   std::vector<double> load,
+                                                                   ExternalForces forces,
                                                                    const algebra::SolverOptions& options);
 
 /// The degrees of freedom that condensation keeps: free ones of nodes on the contact boundary, and of the
@@ -73,14 +76,13 @@ template <int dim>
 /// is not positive definite with the contact boundary held.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheForm<dim>& form,
-                                                                      std::span<const double> load,
+                                                                      const ExternalForces& forces,
                                                                       CondensedDofs dofs);
 
 /// One of the two, by options.method. Where it is automatic, condensation is for 2D, as long as its dense
 /// matrices cost less than the factors that it saves.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<dim>& form,
-                                                                 std::vector<double> load,
                                                                  const algebra::SolverOptions& options);
 
 }  // namespace tribound::solve

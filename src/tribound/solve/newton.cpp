@@ -31,25 +31,19 @@ class Newton
 {
  public:
   Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton,
-         const algebra::SolverOptions& solver, double delta)
-      : Newton(form, newton, solver, delta, external_forces(form))
+         const algebra::SolverOptions& solver, double delta, std::shared_ptr<Equilibrium<dim>> equilibrium)
+      : form_(form),
+        config_(newton),
+        delta_(delta),
+        linear_tolerance_(solver.tolerance),
+        equilibrium_(equilibrium ? std::move(equilibrium) : make_equilibrium(form, solver)),
+        scale_(equilibrium_->force_scale())
   {
   }
 
   NewtonResult<dim> run(std::span<const double> start, const NewtonObserver<dim>& observer);
 
  private:
-  Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton,
-         const algebra::SolverOptions& solver, double delta, ExternalForces&& forces)
-      : form_(form),
-        config_(newton),
-        delta_(delta),
-        linear_tolerance_(solver.tolerance),
-        scale_(forces.scale),
-        equilibrium_(make_equilibrium(form, std::move(forces.load), solver))
-  {
-  }
-
   void initialise(std::span<const double> start);
   void set_residual(std::vector<double> r);
   void regularise(double delta);
@@ -74,8 +68,8 @@ class Newton
   const NewtonOptions& config_;
   double delta_;  ///< of T_delta
   double linear_tolerance_;
+  std::shared_ptr<Equilibrium<dim>> equilibrium_;
   double scale_;  ///< of the forces that balance
-  std::unique_ptr<Equilibrium<dim>> equilibrium_;
 
   std::vector<double> x_;             ///< u^k as unknowns of the equilibrium
   std::vector<double> internal_;      ///< their internal forces
@@ -275,6 +269,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
         fmt::format("step {} was the last of newton.max_steps; {}", config_.max_steps, describe_residual());
   result.u = std::move(displacement());
   result.traction = std::move(traction_);
+  result.equilibrium = std::move(equilibrium_);
   return result;
 }
 
@@ -283,14 +278,17 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 template <int dim>
 NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
                         const NewtonOptions& newton, const algebra::SolverOptions& solver,
-                        const NewtonObserver<dim>& observer, double delta)
+                        const NewtonObserver<dim>& observer, double delta,
+                        std::shared_ptr<Equilibrium<dim>> equilibrium)
 {
-  return Newton<dim>(form, newton, solver, delta).run(start, observer);
+  return Newton<dim>(form, newton, solver, delta, std::move(equilibrium)).run(start, observer);
 }
 
 template NewtonResult<2> solve(const contact::NitscheForm<2>&, std::span<const double>, const NewtonOptions&,
-                               const algebra::SolverOptions&, const NewtonObserver<2>&, double);
+                               const algebra::SolverOptions&, const NewtonObserver<2>&, double,
+                               std::shared_ptr<Equilibrium<2>>);
 template NewtonResult<3> solve(const contact::NitscheForm<3>&, std::span<const double>, const NewtonOptions&,
-                               const algebra::SolverOptions&, const NewtonObserver<3>&, double);
+                               const algebra::SolverOptions&, const NewtonObserver<3>&, double,
+                               std::shared_ptr<Equilibrium<3>>);
 
 }  // namespace tribound::solve

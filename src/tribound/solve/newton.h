@@ -4,6 +4,7 @@
 /// The generalised Newton method of method section 2 with damping and running traction.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/solve/equilibrium.h"
 
 namespace tribound::solve
 {
@@ -52,6 +54,7 @@ struct NewtonResult
   std::vector<double> u;             ///< u^k, dofs of the space
   std::vector<Point<dim>> traction;  ///< t^k at the contact points of the form
   std::vector<NewtonStep> steps;
+  std::shared_ptr<Equilibrium<dim>> equilibrium;  ///< what was solved with, for more of the same form
 };
 
 /// What an observer of the iteration sees after each step.
@@ -81,11 +84,12 @@ using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
 /// Solves the discrete problem, with T_delta in the place of T for delta > 0. `start` is a solution carried
 /// from a coarser mesh (then the first step linearises there), or empty (then the first step is closed and
 /// sticking). `observer` is called after each step and says what to do with its iterate. t^k is in
-/// equilibrium with u^k whatever delta is, and goes on when delta changes. Throws SolveError when a matrix is
-/// singular.
+/// equilibrium with u^k whatever delta is, and goes on when delta changes. `equilibrium` of the same form may
+/// be given to save its factors. Throws SolveError when a matrix is singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                       const NewtonOptions& newton, const algebra::SolverOptions& solver,
-                                      const NewtonObserver<dim>& observer = {}, double delta = 0);
+                                      const NewtonObserver<dim>& observer = {}, double delta = 0,
+                                      std::shared_ptr<Equilibrium<dim>> equilibrium = {});
 
 }  // namespace tribound::solve

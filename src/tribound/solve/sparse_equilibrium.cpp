@@ -17,7 +17,7 @@ template <int dim>
 class SparseEquilibrium final : public Equilibrium<dim>
 {
  public:
-  SparseEquilibrium(const contact::NitscheForm<dim>& form, std::vector<double> load,
+  SparseEquilibrium(const contact::NitscheForm<dim>& form, ExternalForces forces,
                     const algebra::SolverOptions& options)
       : form_(form),
         stiffness_(form.space().n_dofs(), dim,
@@ -27,7 +27,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
                                       std::vector<double>(form.space().n_dofs(), 0.0))),
         tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
         diagonal_(stiffness_.diagonal()),
-        load_(std::move(load)),
+        forces_(std::move(forces)),
         linear_solver_(options, std::span<const Point<dim>>(form.space().node_points()))
   {
   }
@@ -46,7 +46,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
   std::vector<double> residual(std::span<const double> internal_forces,
                                std::span<const Point<dim>> traction) const override
   {
-    std::vector<double> r = load_;
+    std::vector<double> r = forces_.load;
     for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal_forces[i];
     form_.add_contact_load(traction, r);
     for (std::size_t i = 0; i < r.size(); ++i)
@@ -69,6 +69,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
     return linear_solver_.solve(tangent_, r, tolerance, d);
   }
   algebra::LinearMethod method() const override { return linear_solver_.method(); }
+  double force_scale() const override { return forces_.scale; }
 
  private:
   const contact::NitscheForm<dim>& form_;
@@ -76,7 +77,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
   algebra::SparseMatrix contact_;    ///< -(DT(u)[phi_j], phi_i)_C
   algebra::SparseMatrix tangent_;    ///< their sum
   std::vector<double> diagonal_;     ///< of the stiffness
-  std::vector<double> load_;
+  ExternalForces forces_;
   algebra::LinearSolver linear_solver_;
 };
 
@@ -84,17 +85,17 @@ class SparseEquilibrium final : public Equilibrium<dim>
 
 template <int dim>
 std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<dim>& form,
-                                                     std::vector<double> load,
+                                                     ExternalForces forces,
                                                      const algebra::SolverOptions& options)
 {
-  return std::make_unique<SparseEquilibrium<dim>>(form, std::move(load), options);
+  return std::make_unique<SparseEquilibrium<dim>>(form, std::move(forces), options);
 }
 
 template std::unique_ptr<Equilibrium<2>> sparse_equilibrium(const contact::NitscheForm<2>&,
-                                                            std::vector<double>,
+                                                            ExternalForces,
                                                             const algebra::SolverOptions&);
 template std::unique_ptr<Equilibrium<3>> sparse_equilibrium(const contact::NitscheForm<3>&,
-                                                            std::vector<double>,
+                                                            ExternalForces,
                                                             const algebra::SolverOptions&);
 
 }  // namespace tribound::solve
