@@ -61,7 +61,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   require_mesh_elsewhere(config);
   try_output_directory(config.output.directory);
   print_check(case_file::case_facts(config, dim), io::mesh_facts<dim>(problem, space, form.constraints()),
-              describe_solver(algebra::choose_method(config.method.solver, dim, space.n_dofs())),
+              describe_solver(solve::choose_method(form, config.method.solver, true)),
               doctor::findings(doctor::diagnose(form, config.method, config.adapt)), as_json);
 }
 

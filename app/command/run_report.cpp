@@ -106,7 +106,15 @@ io::BuildFacts library_facts()
 
 std::string describe_solver(algebra::LinearMethod method)
 {
-  return method == algebra::LinearMethod::direct ? "direct" : "GMRES with multigrid";
+  switch (method)
+  {
+    case algebra::LinearMethod::condensed:
+      return "direct, condensed onto the contact boundary";
+    case algebra::LinearMethod::iterative:
+      return "GMRES with multigrid";
+    default:
+      return "direct";
+  }
 }
 
 std::string describe_solver(std::span<const adapt::CertifiedStep> steps)

@@ -25,7 +25,7 @@ namespace tribound::app
 /// Versions of the program and of the libraries it runs with.
 [[nodiscard]] io::BuildFacts library_facts();
 
-/// "direct", "GMRES with multigrid": for people.
+/// "direct", "GMRES with multigrid", ...: for people.
 [[nodiscard]] std::string describe_solver(algebra::LinearMethod method);
 /// The same of the steps on a mesh, at least one.
 [[nodiscard]] std::string describe_solver(std::span<const adapt::CertifiedStep> steps);

@@ -191,7 +191,7 @@ def random_keys(dice, degree):
     if dice.chance(0.12):
         keys["regularisation"] = {"delta": dice.power(-2, 1)} if dice.chance(0.7) else {}
     if dice.chance(0.2):
-        keys["solver"] = {"method": dice.one_of(["direct", "iterative"])}
+        keys["solver"] = {"method": dice.one_of(["direct", "condensed", "iterative"])}
         if keys["solver"]["method"] == "direct":
             keys["solver"]["package"] = dice.one_of(["mumps", "umfpack", "auto"])
         elif dice.chance(0.5):

@@ -62,13 +62,18 @@ class Certifier
   {
   }
 
-  /// Whether the iterate may be kept as the solution; its bound, unless sigma_lin alone says that it may not.
-  [[nodiscard]] bool examine(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step,
-                             CertifiedLevel<dim>& level)
+  /// Whether sigma_lin lets the iterate be a candidate for the solution on the mesh, so that its bound is
+  /// needed.
+  [[nodiscard]] bool is_candidate(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
-    if (always_complete() || may_be_accepted(iterate, step))
-      complete(iterate.u(), iterate.traction, step, level);
-    return step.bound && linearisation_is_negligible(level.estimate, method_.stopping);
+    return method_.stopping.criterion == Stopping::tolerance || method_.regularisation ||
+           may_be_accepted(iterate, step);
+  }
+
+  /// Whether the iterate whose bound the level has may be kept as the solution.
+  [[nodiscard]] bool accepts(const CertifiedLevel<dim>& level) const
+  {
+    return linearisation_is_negligible(level.estimate, method_.stopping);
   }
 
   /// The stress of the iterate and its bound.
@@ -86,11 +91,6 @@ class Certifier
   }
 
  private:
-  [[nodiscard]] bool always_complete() const
-  {
-    return method_.stopping.criterion == Stopping::tolerance || method_.regularisation;
-  }
-
   /// Whether the linearisation error may be negligible, the discretisation error being that last known, or,
   /// before any is, at most as large as the stress. What is negligible on every cell is so in all but for a
   /// factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
@@ -214,9 +214,19 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     solve::NewtonAdvice advice = false;
     if (std::isfinite(iterate.step.residual))
     {
-      const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
-      if (!certifier) certifier.emplace(form, method, expected, friedrichs);
-      advice = certifier->examine(iterate, step, level);
+      const auto timed = [&](auto work)
+      {
+        const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
+        return work();
+      };
+      if (!certifier) timed([&] { certifier.emplace(form, method, expected, friedrichs); });
+      if (timed([&] { return certifier->is_candidate(iterate, step); }))
+      {
+        const std::span<const double> u = iterate.u();
+        step.step.linear_iterations = iterate.step.linear_iterations;
+        timed([&] { certifier->complete(u, iterate.traction, step, level); });
+        advice = certifier->accepts(level);
+      }
       if (regularisation)
         advice = regularisation->advise(form, iterate, level.estimate.global,
                                         advice.good_enough || iterate.converged);

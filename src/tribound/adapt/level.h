@@ -106,12 +106,11 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// regularised variant (method.regularisation) it starts with `delta` (0: chosen after the first step), and
 /// goes on with smaller ones until the regularisation is negligible too.
 ///
-/// The iterate that is kept always has the complete bound of its own stress; so has every other in 2D, with
-/// Stopping::tolerance and in the regularised variant. Otherwise in 3D, where the patches cost as much as
-/// some steps, sigma_lin comes first, which needs those around Gamma_C alone: an iterate whose linearisation
-/// error is not negligible beside osc + str + neu + cnt + frc + quad of the last complete bound, or at first
-/// beside what this sum is `expected` to be if something is known of it, gets no complete bound, and Newton's
-/// method goes on.
+/// The iterate that is kept always has the complete bound of its own stress; so has every other with
+/// Stopping::tolerance and in the regularised variant. Otherwise sigma_lin comes first, which needs the
+/// patches around Gamma_C alone: an iterate whose linearisation error is not negligible beside osc + str +
+/// neu + cnt + frc + quad of the last complete bound, or at first beside what this sum is `expected` to be,
+/// or, if nothing is known of it, beside ||sigma(u^k)||, gets no complete bound, and Newton's method goes on.
 ///
 /// `friedrichs`: of a mesh of which this is a refinement, if it is known.
 ///

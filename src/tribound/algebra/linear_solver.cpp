@@ -117,9 +117,25 @@ void KspDeleter::operator()(_p_KSP* ksp) const
   KSPDestroy(&ksp);
 }
 
+const char* to_string(LinearMethod method)
+{
+  switch (method)
+  {
+    case LinearMethod::automatic:
+      return "auto";
+    case LinearMethod::direct:
+      return "direct";
+    case LinearMethod::condensed:
+      return "condensed";
+    case LinearMethod::iterative:
+      return "iterative";
+  }
+  return "";
+}
+
 LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs, Index direct_limit)
 {
-  if (config.method != LinearMethod::automatic) return config.method;
+  if (config.method == LinearMethod::direct || config.method == LinearMethod::iterative) return config.method;
   return dim == 2 || n_dofs <= direct_limit ? LinearMethod::direct : LinearMethod::iterative;
 }
 
@@ -242,10 +258,10 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double>
   const int iterations = std::max(0, static_cast<int>(rule.history.size()) - 1);
   constexpr double useless = 1e-6;
   if (!converged && !(!rule.history.empty() && rule.history.back() <= useless * norm(b)))
-    throw SolveError(
-        direct ? detail::singular_tangent
-               : "GMRES with multigrid did not converge in " + std::to_string(iterations) +
-                     " iterations (try [solver] method = \"direct\" or a larger max_iterations)");
+    throw SolveError(direct
+                         ? detail::singular_tangent
+                         : "GMRES with multigrid did not converge in " + std::to_string(iterations) +
+                               " iterations (try [solver] method = \"direct\" or a larger max_iterations)");
   // With the interpolation kept, a new multigrid hierarchy costs 10 to 15 of its iterations (3D, 40k to
   // 300k).
   reuse_budget_ = direct ? iterations_worth_a_factorisation(ksp_.get()) : iterations + 12;

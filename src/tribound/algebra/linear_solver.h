@@ -22,6 +22,9 @@ enum class LinearMethod
   iterative   ///< multigrid
 };
 
+/// As in case files: "auto", "direct", "condensed", "iterative".
+[[nodiscard]] const char* to_string(LinearMethod method);
+
 enum class DirectPackage
 {
   automatic,
@@ -62,8 +65,8 @@ enum class MatrixKind
 /// p = 1 and 5 % less at 25k with p = 2. Below, the factorisation costs seconds at most and always works.
 inline constexpr Index direct_limit_3d = 30'000;
 
-/// Direct or iterative, as configured or by dimension and size: factorisations in 2D at every size that fits,
-/// in 3D up to `direct_limit` degrees of freedom.
+/// Direct or iterative for a whole matrix, as configured or by dimension and size: factorisations in 2D at
+/// every size that fits, in 3D up to `direct_limit` degrees of freedom. `condensed` is taken for automatic.
 [[nodiscard]] LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs,
                                          Index direct_limit = direct_limit_3d);
 

@@ -79,10 +79,17 @@ template <int dim>
                                                                       const ExternalForces& forces,
                                                                       CondensedDofs dofs);
 
-/// One of the two, by options.method. Where it is automatic, condensation is for 2D, as long as its dense
-/// matrices cost less than the factors that it saves.
+/// Which of the two, by options.method. Where it is automatic, condensation is for 2D, as long as the
+/// unknowns that it keeps are at most 12 n^{1/2} of n, or 6 n^{1/2} where few steps are to come: not
+/// `from_scratch`. Else as algebra::choose_method.
+template <int dim>
+[[nodiscard]] algebra::LinearMethod choose_method(const contact::NitscheForm<dim>& form,
+                                                  const algebra::SolverOptions& options, bool from_scratch);
+
+/// By the chosen method, or by sparse matrices where the stiffness cannot be condensed.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<dim>& form,
-                                                                 const algebra::SolverOptions& options);
+                                                                 const algebra::SolverOptions& options,
+                                                                 bool from_scratch);
 
 }  // namespace tribound::solve

@@ -25,18 +25,37 @@ void axpy(double a, std::span<const double> x, std::span<double> y)
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += a * x[i];
 }
 
+/// T_lin of a Newton step.
+template <int dim>
+struct Linearised
+{
+  contact::Linearisation kind = contact::Linearisation::newton;
+  std::vector<double> u = {};  ///< where, on the cells at the contact boundary
+  double delta = 0;            ///< of T_delta
+
+  [[nodiscard]] std::vector<Point<dim>> traction(const contact::NitscheForm<dim>& form,
+                                                 std::span<const double> w) const
+  {
+    return form.linearised_traction(kind, u, w, delta);
+  }
+  [[nodiscard]] algebra::Triplets tangent(const contact::NitscheForm<dim>& form) const
+  {
+    return form.contact_tangent(kind, u, delta);
+  }
+};
+
 /// The state of the iteration on one mesh.
 template <int dim>
 class Newton
 {
  public:
-  Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton,
-         const algebra::SolverOptions& solver, double delta, std::shared_ptr<Equilibrium<dim>> equilibrium)
+  Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton, double linear_tolerance,
+         double delta, std::shared_ptr<Equilibrium<dim>> equilibrium)
       : form_(form),
         config_(newton),
         delta_(delta),
-        linear_tolerance_(solver.tolerance),
-        equilibrium_(equilibrium ? std::move(equilibrium) : make_equilibrium(form, solver)),
+        linear_tolerance_(linear_tolerance),
+        equilibrium_(std::move(equilibrium)),
         scale_(equilibrium_->force_scale())
   {
   }
@@ -47,6 +66,9 @@ class Newton
   void initialise(std::span<const double> start);
   void set_residual(std::vector<double> r);
   void regularise(double delta);
+  [[nodiscard]] double forcing_term() const;
+  [[nodiscard]] double tight_target(std::span<const double> rhs) const;
+  void balance_traction();
   [[nodiscard]] std::vector<double>& displacement();
   [[nodiscard]] bool in_balance() const { return residual_norm_ <= smallest_residual(); }
   [[nodiscard]] double smallest_residual() const
@@ -59,9 +81,9 @@ class Newton
     return scale_ > 0 ? residual_norm_ / scale_ : residual_norm_;
   }
   [[nodiscard]] std::string describe_residual() const;
-  [[nodiscard]] NewtonStep step(int k, contact::Linearisation kind);
-  [[nodiscard]] algebra::LinearSolve solve_tangent(int k, contact::Linearisation kind,
-                                                   std::span<const double> rhs, std::span<double> delta);
+  void step(contact::Linearisation kind);
+  [[nodiscard]] algebra::LinearSolve solve_tangent(std::span<const double> rhs, double target,
+                                                   std::span<double> delta);
   [[nodiscard]] double search(std::span<const double> direction, bool full_step);
 
   const contact::NitscheForm<dim>& form_;
@@ -77,6 +99,10 @@ class Newton
   std::vector<double> residual_;      ///< <R(u^k), phi_i>
   std::vector<Point<dim>> traction_;  ///< t^k
   double residual_norm_ = 0;
+  double norm_before_ = 0;                           ///< of the residual of u^{k-1}
+  NewtonStep report_;                                ///< of step k
+  Linearised<dim> linearised_;                       ///< in step k
+  bool loose_ = false;                               ///< t^k is not in equilibrium with u^k
   std::optional<std::vector<double>> displacement_;  ///< u^k everywhere, where it has been asked for
 };
 
@@ -109,11 +135,53 @@ void Newton<dim>::regularise(double delta)
   set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
 }
 
-/// u^k everywhere, computed when it is first asked for.
+/// Relative residual to which the linear system of step k is solved: as loosely as Newton's method converges,
+/// [EisenstatWalker96, choice 2]. Multigrid alone gains by it.
+template <int dim>
+double Newton<dim>::forcing_term() const
+{
+  constexpr double largest = 0.1;
+  constexpr double smallest = 1e-4;
+  if (equilibrium_->method() != algebra::LinearMethod::iterative) return 0;
+  if (norm_before_ == 0) return largest;
+  return std::clamp(0.9 * std::pow(residual_norm_ / norm_before_, 2), smallest, largest);
+}
+
+/// Residual of a linear system that is as good as none.
+template <int dim>
+double Newton<dim>::tight_target(std::span<const double> rhs) const
+{
+  return std::max({std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_, equilibrium_->round_off(x_),
+                   1e-14 * norm(rhs)});
+}
+
+/// Brings t^k into equilibrium with u^k where a loose solve has left it: corrects both by the tangent of step
+/// k, under which K u^k - (t^k, v)_C changes by the defect.
+template <int dim>
+void Newton<dim>::balance_traction()
+{
+  if (!std::exchange(loose_, false)) return;
+  const std::vector<double> defect = equilibrium_->residual(internal_, traction_);
+  std::vector<double> delta(x_.size(), 0.0);
+  report_.linear_iterations += solve_tangent(defect, tight_target(defect), delta).iterations;
+  const std::vector<Point<dim>> before = linearised_.traction(form_, u_);
+  axpy(1, delta, x_);
+  axpy(1, equilibrium_->internal_forces(delta), internal_);
+  equilibrium_->displace_contact(x_, u_);
+  const std::vector<Point<dim>> after = linearised_.traction(form_, u_);
+  for (std::size_t i = 0; i < after.size(); ++i) traction_[i] += after[i] - before[i];
+  set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
+}
+
+/// u^k everywhere, computed when it is first asked for, with t^k in equilibrium.
 template <int dim>
 std::vector<double>& Newton<dim>::displacement()
 {
-  if (!displacement_) displacement_ = equilibrium_->displacement(x_);
+  if (!displacement_)
+  {
+    balance_traction();
+    displacement_ = equilibrium_->displacement(x_);
+  }
   return *displacement_;
 }
 
@@ -172,53 +240,51 @@ double Newton<dim>::search(std::span<const double> direction, bool full_step)
   return best.alpha;
 }
 
-/// Solves with the tangent at u; says at which step it failed.
+/// Solves with the tangent of the step; says at which step it failed.
 template <int dim>
-algebra::LinearSolve Newton<dim>::solve_tangent(int k, contact::Linearisation kind,
-                                                std::span<const double> rhs, std::span<double> delta)
+algebra::LinearSolve Newton<dim>::solve_tangent(std::span<const double> rhs, double target,
+                                                std::span<double> delta)
 {
-  const double target = std::max({std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_,
-                                  equilibrium_->round_off(x_), 1e-14 * norm(rhs)});
   try
   {
-    return equilibrium_->solve(form_.contact_tangent(kind, u_, delta_), rhs, target, delta);
+    return equilibrium_->solve(linearised_.tangent(form_), rhs, target, delta);
   }
   catch (const SolveError& error)
   {
-    throw SolveError("Newton step " + std::to_string(k) + ": " + error.what());
+    throw SolveError("Newton step " + std::to_string(report_.step) + ": " + error.what());
   }
 }
 
 /// Solves a(u + delta, v) - (T_lin(u + delta), v)_C = L(v), moves along delta and updates t^k.
 template <int dim>
-NewtonStep Newton<dim>::step(int k, contact::Linearisation kind)
+void Newton<dim>::step(contact::Linearisation kind)
 {
-  const bool first = k == 1;
+  const bool first = report_.step == 1;
+  linearised_ = {kind, u_, delta_};
   std::vector<double> target_u = u_;
   equilibrium_->displace_contact(x_, target_u);
-  const std::vector<double> rhs =
-      equilibrium_->residual(internal_, form_.linearised_traction(kind, u_, target_u, delta_));
+  const std::vector<double> rhs = equilibrium_->residual(internal_, linearised_.traction(form_, target_u));
+  const double tight = tight_target(rhs);
+  const double target = std::max(tight, forcing_term() * norm(rhs));
+  norm_before_ = residual_norm_;
+  loose_ = target > tight;
   std::vector<double> delta(x_.size(), 0.0);
-  const algebra::LinearSolve linear = solve_tangent(k, kind, rhs, delta);
+  const algebra::LinearSolve linear = solve_tangent(rhs, target, delta);
 
   std::vector<double> target_x = x_;
   axpy(1, delta, target_x);
   equilibrium_->displace_contact(target_x, target_u);
-  const std::vector<Point<dim>> t_lin = form_.linearised_traction(kind, u_, target_u, delta_);
+  const std::vector<Point<dim>> t_lin = linearised_.traction(form_, target_u);
   const double alpha = search(delta, first || !config_.damping);
   for (std::size_t i = 0; i < t_lin.size(); ++i)
     traction_[i] = first ? t_lin[i] : (1 - alpha) * traction_[i] + alpha * t_lin[i];
 
-  NewtonStep report;
-  report.step = k;
-  report.residual = relative_residual();
-  report.damping = alpha;
-  report.delta = delta_;
-  report.linear_iterations = linear.iterations;
-  report.factorised = linear.factorised;
-  report.method = equilibrium_->method();
-  report.fell_back = linear.fell_back;
-  return report;
+  report_.residual = relative_residual();
+  report_.damping = alpha;
+  report_.linear_iterations = linear.iterations;
+  report_.factorised = linear.factorised;
+  report_.method = equilibrium_->method();
+  report_.fell_back = linear.fell_back;
 }
 
 template <int dim>
@@ -233,18 +299,17 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && start.empty();
     const double before = residual_norm_;
-    NewtonStep report{.step = k, .delta = delta_, .method = equilibrium_->method()};
+    report_ = {.step = k, .delta = delta_, .method = equilibrium_->method()};
     if (!at_rest)
-      report =
-          step(k, from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
-    report.seconds = seconds_since(begin);
-    result.steps.push_back(report);
+      step(from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
+    report_.seconds = seconds_since(begin);
     without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
     const bool converged =
         in_balance() && (k == config_.max_steps || without_progress > 0 || traction_settled());
-    const NewtonIterate<dim> iterate{report, u_, traction_, converged,
+    const NewtonIterate<dim> iterate{report_, u_, traction_, converged,
                                      [this] { return std::span<const double>(displacement()); }};
     const NewtonAdvice advice = observer ? observer(iterate) : false;
+    result.steps.push_back(report_);
     if (advice.delta)
     {
       regularise(*advice.delta);
@@ -268,6 +333,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     result.message =
         fmt::format("step {} was the last of newton.max_steps; {}", config_.max_steps, describe_residual());
   result.u = std::move(displacement());
+  if (!result.steps.empty()) result.steps.back() = report_;
   result.traction = std::move(traction_);
   result.equilibrium = std::move(equilibrium_);
   return result;
@@ -281,7 +347,8 @@ NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const d
                         const NewtonObserver<dim>& observer, double delta,
                         std::shared_ptr<Equilibrium<dim>> equilibrium)
 {
-  return Newton<dim>(form, newton, solver, delta, std::move(equilibrium)).run(start, observer);
+  if (!equilibrium) equilibrium = make_equilibrium(form, solver, start.empty());
+  return Newton<dim>(form, newton, solver.tolerance, delta, std::move(equilibrium)).run(start, observer);
 }
 
 template NewtonResult<2> solve(const contact::NitscheForm<2>&, std::span<const double>, const NewtonOptions&,

@@ -65,7 +65,9 @@ struct NewtonIterate
   std::span<const double> contact_u;     ///< u^k on the cells at the contact boundary, elsewhere anything
   std::span<const Point<dim>> traction;  ///< t^k
   bool converged;                        ///< the residual is below the tolerance, and t^k is T(u^k)
-  std::function<std::span<const double>()> u;  ///< u^k everywhere, computed when it is first asked for
+  /// u^k everywhere. Where the linear system was solved loosely, this solves it tightly first, and u^k, t^k
+  /// and the iterations of the step change: from then on, t^k is in equilibrium.
+  std::function<std::span<const double>()> u;
 };
 
 /// What an observer says about an iterate.

@@ -91,11 +91,9 @@ std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<
   return std::make_unique<SparseEquilibrium<dim>>(form, std::move(forces), options);
 }
 
-template std::unique_ptr<Equilibrium<2>> sparse_equilibrium(const contact::NitscheForm<2>&,
-                                                            ExternalForces,
+template std::unique_ptr<Equilibrium<2>> sparse_equilibrium(const contact::NitscheForm<2>&, ExternalForces,
                                                             const algebra::SolverOptions&);
-template std::unique_ptr<Equilibrium<3>> sparse_equilibrium(const contact::NitscheForm<3>&,
-                                                            ExternalForces,
+template std::unique_ptr<Equilibrium<3>> sparse_equilibrium(const contact::NitscheForm<3>&, ExternalForces,
                                                             const algebra::SolverOptions&);
 
 }  // namespace tribound::solve

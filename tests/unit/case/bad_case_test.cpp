@@ -156,7 +156,7 @@ std::vector<BadCase> values()
       {"ContactRule", head + "[certify]\ncontact_rule = 1\n", "case.toml:4:16: certify.contact_rule: ",
        "must be a string, found the integer 1", "one of \"resolved\", \"reference\""},
       {"SolverMethod", head + "[solver]\nmethod = 'lu'\n", "case.toml:4:10: solver.method: ",
-       "unknown value \"lu\"", "one of \"auto\", \"direct\", \"iterative\""},
+       "unknown value \"lu\"", "one of \"auto\", \"direct\", \"condensed\", \"iterative\""},
       {"SolverIterations", head + "[solver]\nmax_iterations = 1e3\n",
        "case.toml:4:18: solver.max_iterations: ", "must be an integer, found the number 1000", "500"},
       {"Vtu", head + "[output]\nvtu = 1\n",

@@ -133,7 +133,9 @@ TEST(Newton, EveryLinearSolverGivesTheSameSolution)
     const solve::NewtonResult<3> umfpack = c.solve();
     c.method.solver.method = algebra::LinearMethod::iterative;
     const solve::NewtonResult<3> multigrid = c.solve();
-    for (const solve::NewtonResult<3>* result : {&mumps, &umfpack, &multigrid})
+    c.method.solver.method = algebra::LinearMethod::condensed;
+    const solve::NewtonResult<3> condensed = c.solve();
+    for (const solve::NewtonResult<3>* result : {&mumps, &umfpack, &multigrid, &condensed})
     {
       ASSERT_EQ(result->status, solve::NewtonStatus::converged) << words(law) << ": " << result->message;
       EXPECT_LE(distance(result->u, mumps.u), 1e-9 * norm(mumps.u)) << words(law);
@@ -147,8 +149,9 @@ TEST(Newton, KeptFactorsDoNotChangeTheIterates)
 {
   for (const problem::ContactLaw& law : laws)
   {
-    DiscreteProblem<2> c(renumbered_block<2>(), lifted_block<2>(law),
-                         {.degree = 2, .newton = {.damping = false}});
+    DiscreteProblem<2> c(
+        renumbered_block<2>(), lifted_block<2>(law),
+        {.degree = 2, .newton = {.damping = false}, .solver = {.method = algebra::LinearMethod::direct}});
     const solve::NewtonResult<2> together = c.solve();
     ASSERT_EQ(together.status, solve::NewtonStatus::converged);
     EXPECT_FALSE(std::ranges::all_of(together.steps, &solve::NewtonStep::factorised)) << words(law);

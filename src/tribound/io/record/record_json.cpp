@@ -115,6 +115,8 @@ Json json(const LevelRecord& level)
   Json object{{"level", level.level}};
   add_results(object, level);
   object["finishing_steps"] = level.finishing_steps;
+  object["solver"] =
+      level.newton.empty() ? Json(nullptr) : algebra::to_string(level.newton.back().step.method);
   object["newton"] = Json::array();
   for (const adapt::CertifiedStep& record : level.newton)
     object["newton"].push_back(json(record, is_regularised(level)));

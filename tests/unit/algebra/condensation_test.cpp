@@ -1,0 +1,153 @@
+/// @file condensation_test.cpp
+/// Static condensation against dense algebra that eliminates the unknowns one block at a time.
+
+#include "tribound/algebra/condensation.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "tribound/base/error.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr int n = 30;
+const std::vector<Index> layer{4, 0, 17, 29};  // in no order
+const std::vector<Index> trace{9, 25, 3, 11, 10};
+
+std::vector<double> values(const Vector& v)
+{
+  return {v.begin(), v.end()};
+}
+Vector vector(std::span<const double> v)
+{
+  return Eigen::Map<const Vector>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+Vector random_vector(int size, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return Vector::NullaryExpr(size, [&] { return uniform(random); });
+}
+
+/// The stiffness of springs between random unknowns: one rigid mode, all ones; plus `ground` on the diagonal.
+algebra::Triplets springs(double ground)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> stiffness(0.5, 2);
+  algebra::Triplets k;
+  const auto connect = [&](int i, int j)
+  {
+    const double c = stiffness(random);
+    k.add(i, i, c);
+    k.add(j, j, c);
+    k.add(i, j, -c);
+    k.add(j, i, -c);
+  };
+  for (int i = 0; i + 1 < n; ++i) connect(i, i + 1);
+  for (int e = 0; e < 60; ++e)
+    if (const int i = static_cast<int>(random() % n), j = static_cast<int>(random() % n); i != j)
+      connect(i, j);
+  for (int i = 0; i < n; ++i) k.add(i, i, ground);
+  return k;
+}
+
+Matrix dense(const algebra::Triplets& entries)
+{
+  Matrix a = Matrix::Zero(n, n);
+  for (std::size_t e = 0; e < entries.rows.size(); ++e)
+    a(entries.rows[e], entries.cols[e]) += entries.values[e];
+  return a;
+}
+
+/// K u = b + f with f on the trace: f = S x - g, and u, for the given x there.
+struct Reference
+{
+  Reference(const Matrix& k, const Vector& b, const Vector& x) : u(n)
+  {
+    std::vector<Index> rest;
+    for (Index i = 0; i < n; ++i)
+      if (std::ranges::find(trace, i) == trace.end()) rest.push_back(i);
+    u(trace) = x;
+    const Vector r = b(rest) - k(rest, trace) * x;
+    u(rest) = Matrix(k(rest, rest)).llt().solve(r).eval();
+    f = (k * u - b)(trace);
+  }
+  Vector u;
+  Vector f;
+};
+
+TEST(Condensation, IsTheWholeProblemOnTheTrace)
+{
+  for (const double ground : {0.0, 1e-3, 1.0})  // 0: only what acts on the trace can hold it
+  {
+    const algebra::Triplets k = springs(ground);
+    const Vector b = random_vector(n, 1);
+    const algebra::Condensation condensed(n, 2, k, layer, trace, values(b));
+    for (const unsigned seed : {2U, 3U})
+    {
+      const Vector x = random_vector(static_cast<int>(trace.size()), seed);
+      const Reference exact(dense(k), b, x);
+      EXPECT_LE((vector(condensed.multiply(values(x))) - vector(condensed.load()) - exact.f).norm(), 1e-12);
+      EXPECT_LE((vector(condensed.on_layer(values(x))) - exact.u(layer)).norm(), 1e-12);
+      EXPECT_LE((vector(condensed.expand(values(x))) - exact.u).norm(), 1e-12);
+    }
+  }
+}
+
+/// Entries of rows on the trace, columns on trace and layer, some twice, some that do not count.
+algebra::Triplets forces_on_trace()
+{
+  std::mt19937 random(5);
+  algebra::Triplets entries;
+  for (int e = 0; e < 40; ++e)
+  {
+    const std::size_t column = random() % (trace.size() + layer.size());
+    const Index j = column < trace.size() ? trace[column] : layer[column - trace.size()];
+    entries.add(e % 7 == 0 ? -1 : trace[random() % trace.size()], e % 5 == 0 ? -1 : j,
+                0.3 + 1e-3 * static_cast<double>(random() % 1000));
+  }
+  for (const Index i : trace) entries.add(i, i, 10.0);
+  return entries;
+}
+
+TEST(Condensation, SolvesWithForcesOfTraceAndLayer)
+{
+  const algebra::Triplets k = springs(0);
+  const Vector b = random_vector(n, 1);
+  const algebra::Condensation condensed(n, 2, k, layer, trace, values(b));
+  const algebra::Triplets contact = forces_on_trace();
+  Matrix tangent = dense(k);
+  for (std::size_t e = 0; e < contact.rows.size(); ++e)
+    if (contact.rows[e] >= 0 && contact.cols[e] >= 0)
+      tangent(contact.rows[e], contact.cols[e]) += contact.values[e];
+  const Vector r = random_vector(static_cast<int>(trace.size()), 4);
+  Vector whole = Vector::Zero(n);
+  whole(trace) = r;
+  const Vector d = tangent.partialPivLu().solve(whole);
+  EXPECT_LE((vector(condensed.solve(contact, values(r), 1e-14)) - d(trace)).norm(), 1e-12 * d.norm());
+}
+
+TEST(Condensation, RefusesWhatIsSingular)
+{
+  const std::vector<double> b(n, 1.0);
+  const algebra::Condensation condensed(n, 2, springs(0), layer, trace, b);
+  const std::vector<double> r(trace.size(), 1.0);
+  EXPECT_THROW((void)condensed.solve({}, r, 1e-14), SolveError);  // nothing holds the rigid mode
+  EXPECT_THROW(algebra::Condensation(n, 2, springs(-3.0), layer, trace, b), SolveError);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
