@@ -92,21 +92,20 @@ class Certifier
 
  private:
   /// Whether the linearisation error may be negligible, the discretisation error being that last known, or,
-  /// before any is, at most as large as the stress. What is negligible on every cell is so in all but for a
-  /// factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
+  /// before any is, at most as large as the stress of the first iterate. What is negligible on every cell is
+  /// so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
   bool may_be_accepted(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
     const double factor = method_.stopping.criterion == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
     step.linearisation =
         estimator_.linearisation(equilibrator_.linearisation(iterate.contact_u, iterate.traction));
-    const double discretisation =
-        known_ ? *known_ : contact::stress_norms(form_.problem(), form_.space(), iterate.u()).sigma;
-    return step.linearisation->linearisation() <= factor * method_.stopping.gamma_lin * discretisation;
+    if (!known_) known_ = contact::stress_norms(form_.problem(), form_.space(), iterate.rough_u()).sigma;
+    return step.linearisation->linearisation() <= factor * method_.stopping.gamma_lin * *known_;
   }
 
   const contact::NitscheForm<dim>& form_;
   const Method& method_;
-  std::optional<double> known_;  ///< discretisation() of the last complete bound, or as expected
+  std::optional<double> known_;  ///< discretisation() of the last complete bound, or what it is taken for
   certify::Equilibrator<dim> equilibrator_;
   certify::Estimator<dim> estimator_;
 };

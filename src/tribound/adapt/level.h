@@ -110,7 +110,7 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// Stopping::tolerance and in the regularised variant. Otherwise sigma_lin comes first, which needs the
 /// patches around Gamma_C alone: an iterate whose linearisation error is not negligible beside osc + str +
 /// neu + cnt + frc + quad of the last complete bound, or at first beside what this sum is `expected` to be,
-/// or, if nothing is known of it, beside ||sigma(u^k)||, gets no complete bound, and Newton's method goes on.
+/// or, if nothing is known of it, beside ||sigma(u^1)||, gets no complete bound, and Newton's method goes on.
 ///
 /// `friedrichs`: of a mesh of which this is a refinement, if it is known.
 ///

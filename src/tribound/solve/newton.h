@@ -68,6 +68,12 @@ struct NewtonIterate
   /// u^k everywhere. Where the linear system was solved loosely, this solves it tightly first, and u^k, t^k
   /// and the iterations of the step change: from then on, t^k is in equilibrium.
   std::function<std::span<const double>()> u;
+
+  /// u^k everywhere as a loose solve has left it.
+  [[nodiscard]] std::span<const double> rough_u() const
+  {
+    return step.method == algebra::LinearMethod::condensed ? u() : contact_u;
+  }
 };
 
 /// What an observer says about an iterate.
