@@ -1,0 +1,41 @@
+#pragma once
+
+/// @file node_hierarchy.h
+/// Nested spaces on one mesh, as plain data for multigrid.
+
+#include <span>
+#include <vector>
+
+#include "tribound/algebra/triplets.h"
+#include "tribound/base/types.h"
+#include "tribound/fem/space.h"
+
+namespace tribound::algebra
+{
+
+/// Values at the nodes of a space from those at the nodes of one contained in it.
+struct NodeInterpolation
+{
+  Index n_fine = 0;
+  Index n_coarse = 0;
+  Triplets weights;  ///< row: fine node, column: coarse node; each that is not 0, once
+};
+
+/// Spaces from the one of a matrix down to one that algebraic multigrid can take over. Degree of freedom
+/// dim * node + component in all of them.
+struct NodeHierarchy
+{
+  int dim = 0;
+  std::vector<NodeInterpolation> steps;      ///< to each space from the next coarser one, the finest first
+  std::vector<double> coarsest_coordinates;  ///< of the nodes of the coarsest space, [dim * node + component]
+};
+
+/// One space, of which nothing is known but where its nodes are.
+template <int dim>
+[[nodiscard]] NodeHierarchy node_hierarchy(std::span<const Point<dim>> nodes);
+
+/// P^p, P^q, ..., P^1 on the mesh of `space`, with q = p / 2 rounded up.
+template <int dim>
+[[nodiscard]] NodeHierarchy node_hierarchy(const fem::LagrangeSpace<dim>& space);
+
+}  // namespace tribound::algebra
