@@ -25,7 +25,7 @@ class SparseCholesky
   void solve(std::span<const double> b, std::span<double> x) const;
 
  private:
-  std::unique_ptr<_p_Mat, MatDeleter> factors_;
+  MatHandle factors_;
   bool positive_definite_ = false;
 };
 

@@ -53,7 +53,7 @@ class Condensation
   std::vector<Index> layer_;
   std::vector<Index> trace_;
   std::vector<int> position_;  ///< of an unknown in [layer, trace]; -1 for others
-  std::unique_ptr<_p_Mat, MatDeleter> factors_;
+  MatHandle factors_;
   std::vector<double> sprung_;   ///< (K + D)^{-1} b
   std::vector<double> penalty_;  ///< D on the trace
   std::vector<double> s_;        ///< S, by columns

@@ -12,7 +12,6 @@ namespace tribound::algebra
 {
 
 using detail::check;
-using detail::VecHandle;
 using detail::wrap;
 
 namespace
@@ -140,6 +139,17 @@ LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs, I
 }
 
 template <int dim>
+LinearSolver::LinearSolver(const SolverOptions& config, const fem::LagrangeSpace<dim>& space, MatrixKind kind,
+                           Index direct_limit)
+    : config_(config),
+      method_(choose_method(config, dim, space.n_dofs(), direct_limit)),
+      kind_(kind),
+      dim_(dim)
+{
+  if (method_ == LinearMethod::iterative) multigrid_.emplace(node_hierarchy(space));
+}
+
+template <int dim>
 LinearSolver::LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes, MatrixKind kind,
                            Index direct_limit)
     : config_(config),
@@ -147,10 +157,11 @@ LinearSolver::LinearSolver(const SolverOptions& config, std::span<const Point<di
       kind_(kind),
       dim_(dim)
 {
-  if (method_ == LinearMethod::iterative)
-    for (const Point<dim>& x : nodes) coordinates_.insert(coordinates_.end(), x.data(), x.data() + dim);
+  if (method_ == LinearMethod::iterative) multigrid_.emplace(node_hierarchy(nodes));
 }
 
+template LinearSolver::LinearSolver(const SolverOptions&, const fem::LagrangeSpace<2>&, MatrixKind, Index);
+template LinearSolver::LinearSolver(const SolverOptions&, const fem::LagrangeSpace<3>&, MatrixKind, Index);
 template LinearSolver::LinearSolver(const SolverOptions&, std::span<const Point<2>>, MatrixKind, Index);
 template LinearSolver::LinearSolver(const SolverOptions&, std::span<const Point<3>>, MatrixKind, Index);
 
@@ -164,17 +175,23 @@ void LinearSolver::configure(const SparseMatrix& a)
   check(KSPGMRESSetRestart(ksp, 60), "creating a solver");
   check(KSPSetOptionsPrefix(ksp, "tribound_"), "creating a solver");
   check(KSPSetOperators(ksp, a.handle(), a.handle()), "creating a solver");
-  if (method_ == LinearMethod::iterative)
-    configure_multigrid(a);
+  if (multigrid_)
+    multigrid_->configure(preconditioner());
   else
     configure_direct(a);
   check(KSPSetFromOptions(ksp), "reading solver options");
 }
 
-void LinearSolver::configure_direct(const SparseMatrix& a)
+_p_PC* LinearSolver::preconditioner() const
 {
   PC pc = nullptr;
   check(KSPGetPC(ksp_.get(), &pc), "creating a solver");
+  return pc;
+}
+
+void LinearSolver::configure_direct(const SparseMatrix& a)
+{
+  const PC pc = preconditioner();
   const bool symmetric = kind_ == MatrixKind::positive_definite;
   if (symmetric) check(MatSetOption(a.handle(), MAT_SPD, PETSC_TRUE), "creating a solver");
   check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU), "creating a solver");
@@ -189,23 +206,6 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
   detail::configure_mumps(factors, dim_);
 }
 
-void LinearSolver::configure_multigrid(const SparseMatrix& a)
-{
-  Vec coordinates = nullptr;
-  check(VecCreateSeqWithArray(detail::communicator(), dim_, static_cast<PetscInt>(coordinates_.size()),
-                              coordinates_.data(), &coordinates),
-        "creating rigid body modes");
-  const VecHandle owner(coordinates);
-  MatNullSpace modes = nullptr;
-  check(MatNullSpaceCreateRigidBody(coordinates, &modes), "creating rigid body modes");
-  check(MatSetNearNullSpace(a.handle(), modes), "creating rigid body modes");
-  check(MatNullSpaceDestroy(&modes), "creating rigid body modes");
-
-  PC pc = nullptr;
-  check(KSPGetPC(ksp_.get(), &pc), "creating a solver");
-  check(PCSetType(pc, PCGAMG), "creating a solver");
-}
-
 /// Makes a new preconditioner. Setting the operators again tells the KSP that its set-up is out of date.
 void LinearSolver::prepare(const SparseMatrix& a)
 {
@@ -213,6 +213,7 @@ void LinearSolver::prepare(const SparseMatrix& a)
   const detail::Options options(method_ == LinearMethod::iterative);
   check(KSPSetOperators(ksp_.get(), a.handle(), a.handle()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
+  if (multigrid_) multigrid_->renew(preconditioner(), a);
   check(KSPSetUp(ksp_.get()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_TRUE), "factorising");
 }
@@ -230,6 +231,7 @@ LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b
   {
     method_ = LinearMethod::direct;
     ksp_.reset();  // its memory is needed
+    multigrid_.reset();
     reuse_budget_ = 0;
   }
   LinearSolve result = attempt(a, b, tolerance, x);

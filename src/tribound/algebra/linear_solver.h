@@ -4,10 +4,12 @@
 /// Linear systems of a Newton loop: factorisations kept as preconditioners, or multigrid.
 
 #include <memory>
+#include <optional>
 #include <span>
-#include <vector>
 
+#include "tribound/algebra/multigrid.h"
 #include "tribound/algebra/petsc.h"
+#include "tribound/fem/space.h"
 
 struct _p_KSP;
 
@@ -71,13 +73,17 @@ inline constexpr Index direct_limit_3d = 30'000;
                                          Index direct_limit = direct_limit_3d);
 
 /// Solves the linear systems of one Newton loop by flexible GMRES, preconditioned by a factorisation (then
-/// one iteration is the rule) or by smoothed-aggregation multigrid with rigid body modes. The preconditioner
-/// is kept for the next systems as long as the additional iterations cost less than a new one. Where
-/// multigrid was not asked for by name and fails, a factorisation takes its place for the rest of the loop.
+/// one iteration is the rule) or by multigrid. The preconditioner is kept for the next systems as long as the
+/// additional iterations cost less than a new one. Where multigrid was not asked for by name and fails, a
+/// factorisation takes its place for the rest of the loop.
 class LinearSolver
 {
  public:
-  /// `nodes`: positions of the nodes; degree of freedom dim * node + component.
+  /// For matrices of this space: multigrid goes through the lower degrees.
+  template <int dim>
+  LinearSolver(const SolverOptions& config, const fem::LagrangeSpace<dim>& space,
+               MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
+  /// For any others; `nodes`: positions of the nodes; degree of freedom dim * node + component.
   template <int dim>
   LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
@@ -93,14 +99,14 @@ class LinearSolver
                                     std::span<double> x);
   void configure(const SparseMatrix& a);
   void configure_direct(const SparseMatrix& a);
-  void configure_multigrid(const SparseMatrix& a);
+  [[nodiscard]] _p_PC* preconditioner() const;
   void prepare(const SparseMatrix& a);
 
   SolverOptions config_;
   LinearMethod method_;
   MatrixKind kind_;
   int dim_;
-  std::vector<double> coordinates_;
+  std::optional<Multigrid> multigrid_;  ///< unless the method is direct
   std::unique_ptr<_p_KSP, KspDeleter> ksp_;
   int reuse_budget_ =
       0;  ///< iterations with the old preconditioner that cost less than a new one; 0: none yet

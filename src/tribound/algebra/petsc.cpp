@@ -66,8 +66,11 @@ Options::Options(bool multigrid)
     // second and third matrix had 2.8 times the entries of the first, and Galerkin's products took four
     // fifths of a first step. Weak couplings must not glue aggregates together, or iterations grow by a
     // third.
-    set_default("-tribound_pc_gamg_aggressive_coarsening", "20");  // forgotten if set by a call
-    set_default("-tribound_pc_gamg_threshold", "0.02");
+    for (const std::string prefix : {"-tribound_", "-tribound_mg_coarse_"})  // the second below P^p
+    {
+      set_default(prefix + "pc_gamg_aggressive_coarsening", "20");  // forgotten if set by a call
+      set_default(prefix + "pc_gamg_threshold", "0.02");
+    }
     // Products as R A P in place of a scalable algorithm, and rows one by one: both take up to a third off.
     // The matrices on the levels are made by PETSc, out of reach for anything but its options.
     set_default("-matptap_via", "rap");
@@ -82,11 +85,11 @@ Options::~Options()
   PetscOptionsDestroy(&own_);
 }
 
-void Options::set_default(const char* name, const char* value)
+void Options::set_default(const std::string& name, const char* value)
 {
   PetscBool is_set = PETSC_FALSE;
-  check(PetscOptionsHasName(own_, nullptr, name, &is_set), "setting solver options");
-  if (!is_set) check(PetscOptionsSetValue(own_, name, value), "setting solver options");
+  check(PetscOptionsHasName(own_, nullptr, name.c_str(), &is_set), "setting solver options");
+  if (!is_set) check(PetscOptionsSetValue(own_, name.c_str(), value), "setting solver options");
 }
 
 void configure_mumps(Mat factors, int dim)

@@ -50,6 +50,7 @@ struct MatDeleter
 {
   void operator()(_p_Mat* mat) const;
 };
+using MatHandle = std::unique_ptr<_p_Mat, MatDeleter>;
 
 /// A square sparse matrix assembled from (row, column, value) entries.
 class SparseMatrix
@@ -78,7 +79,7 @@ class SparseMatrix
 
   Index size_ = 0;
   bool has_more_ = false;  ///< a sum whose second pattern is not within the first
-  std::unique_ptr<_p_Mat, MatDeleter> mat_;
+  MatHandle mat_;
 };
 
 }  // namespace tribound::algebra

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 #include "tribound/base/error.h"
 
@@ -42,7 +43,7 @@ class Options
   Options& operator=(const Options&) = delete;
 
  private:
-  void set_default(const char* name, const char* value);
+  void set_default(const std::string& name, const char* value);
 
   PetscOptions own_ = nullptr;
 };

@@ -28,7 +28,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
         tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
         diagonal_(stiffness_.diagonal()),
         forces_(std::move(forces)),
-        linear_solver_(options, std::span<const Point<dim>>(form.space().node_points()))
+        linear_solver_(options, form.space())
   {
   }
 

@@ -34,7 +34,7 @@ struct System
   [[nodiscard]] algebra::SparseMatrix matrix() const { return {c.space.n_dofs(), dim, entries}; }
   [[nodiscard]] algebra::LinearSolver solver(const algebra::SolverOptions& config) const
   {
-    return algebra::LinearSolver(config, std::span<const Point<dim>>(nodes));
+    return algebra::LinearSolver(config, c.space);
   }
 
   DiscreteProblem<dim> c;
@@ -73,6 +73,117 @@ TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
     expect_solved<2>(config);
     expect_solved<3>(config);
   }
+}
+
+/// What p-multigrid takes to 1e-10 on a problem; the solution must be that of the matrix.
+template <int dim>
+int p_multigrid_iterations(const DiscreteProblem<dim>& c)
+{
+  const algebra::Triplets entries = contact::stiffness(c.problem, c.space, c.form.constraints());
+  const algebra::SparseMatrix a(c.space.n_dofs(), dim, entries);
+  std::vector<double> exact = random_free_vector(c.form.constraints(), 1.0, 2);
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    if (c.form.constraints().fixed[i] != 0) exact[i] = 0.5;  // decoupled, but equations all the same
+  const std::vector<double> b = multiply(entries, exact);
+  algebra::LinearSolver solver({.method = algebra::LinearMethod::iterative}, c.space);
+  std::vector<double> x(exact.size(), 0.0);
+  const int iterations = solver.solve(a, b, 1e-10 * norm(b), x).iterations;
+  EXPECT_LE(distance(x, exact), 1e-7 * norm(exact));
+  return iterations;
+}
+
+/// Components fixed on different sides, which meet at edges and corners.
+template <int dim>
+ProblemData<dim> held_by_components()
+{
+  ProblemData<dim> data{
+      .boundaries = {fixed<dim>("left", 0.0, free, free), fixed<dim>("bottom", free, 0.0, free)}};
+  if (dim == 3) data.boundaries.push_back(fixed<dim>("front", free, free, 0.0));
+  return data;
+}
+
+/// The reference simplex; the side opposite vertex i is the i-th of "bottom", "left", "front", "top".
+template <int dim>
+mesh::MeshData<dim> one_cell()
+{
+  mesh::MeshData<dim> data;
+  data.vertices.assign(dim + 1, Point<dim>::Zero());
+  for (int a = 0; a < dim; ++a) data.vertices[a + 1][a] = 1;
+  mesh::Cell<dim> cell{};
+  for (int v = 0; v <= dim; ++v) cell[v] = v;
+  data.cells = {cell};
+  data.regions = {0};
+  data.region_names = {"cell"};
+  data.boundary_names = {"bottom", "left", "front", "top"};
+  for (int v = 0; v <= dim; ++v) data.facets.push_back({mesh::facet_vertices(cell, v), v});
+  data.boundary_names.resize(dim + 1);
+  return data;
+}
+
+TEST(LinearSolver, IterationsOfPMultigridHardlyGrowWithTheDegree)
+{
+  for (const int degree : {2, 3, 4})
+  {
+    SCOPED_TRACE(degree);
+    const adapt::Method method{.degree = degree};
+    for (const auto& data : {ProblemData<2>{.boundaries = {clamped<2>("left")}}, held_by_components<2>()})
+      EXPECT_LE(p_multigrid_iterations<2>({block<2>({8, 4}), data, method}), 30);
+    for (const auto& data : {ProblemData<3>{.boundaries = {clamped<3>("left")}}, held_by_components<3>()})
+      EXPECT_LE(p_multigrid_iterations<3>({block<3>({4, 2, 2}), data, method}), 40);
+  }
+}
+
+/// Every vertex of such meshes may be fixed, so that P^1 has nothing but decoupled degrees of freedom.
+TEST(LinearSolver, PMultigridTakesTheSmallestMeshes)
+{
+  for (const int degree : {2, 3, 4})
+  {
+    SCOPED_TRACE(degree);
+    const adapt::Method method{.degree = degree};
+    EXPECT_LE(p_multigrid_iterations<2>({one_cell<2>(), held_by_components<2>(), method}), 40);
+    EXPECT_LE(p_multigrid_iterations<3>({one_cell<3>(), held_by_components<3>(), method}), 60);
+    EXPECT_LE(p_multigrid_iterations<2>(
+                  {block<2>({1, 1}), {.boundaries = {clamped<2>("left"), clamped<2>("right")}}, method}),
+              40);
+    EXPECT_LE(p_multigrid_iterations<3>(
+                  {block<3>({1, 1, 1}), {.boundaries = {clamped<3>("left"), clamped<3>("right")}}, method}),
+              60);
+  }
+}
+
+TEST(LinearSolver, OnP1TheSpaceAddsNothingToItsNodes)
+{
+  const DiscreteProblem<3> c(block<3>({8, 4, 4}), {.boundaries = {clamped<3>("left")}});
+  const algebra::SparseMatrix a(c.space.n_dofs(), 3,
+                                contact::stiffness(c.problem, c.space, c.form.constraints()));
+  const std::vector<double> b = random_free_vector(c.form.constraints(), 1.0, 1);
+  const algebra::SolverOptions multigrid{.method = algebra::LinearMethod::iterative};
+  const std::vector<Point<3>> nodes = c.space.node_points();
+  algebra::LinearSolver of_space(multigrid, c.space);
+  algebra::LinearSolver of_nodes(multigrid, std::span<const Point<3>>(nodes));
+  std::vector<double> x(b.size(), 0.0);
+  std::vector<double> y(b.size(), 0.0);
+  EXPECT_EQ(of_space.solve(a, b, 1e-10 * norm(b), x).iterations,
+            of_nodes.solve(a, b, 1e-10 * norm(b), y).iterations);
+  EXPECT_EQ(x, y);
+}
+
+/// The products on the coarser levels follow the values of the matrix.
+TEST(LinearSolver, PMultigridIsRenewedWithTheMatrix)
+{
+  const System<3> system;
+  algebra::SparseMatrix a = system.matrix();
+  algebra::LinearSolver solver = system.solver({.method = algebra::LinearMethod::iterative});
+  std::vector<double> x(system.x.size(), 0.0);
+  const int first = solver.solve(a, system.b, 1e-11 * norm(system.b), x).iterations;
+  algebra::Triplets entries = system.entries;
+  for (double& value : entries.values) value *= 1e8;
+  a.set_values(entries.values);
+  const std::vector<double> b = multiply(entries, system.x);
+  const algebra::LinearSolve again = solver.solve(a, b, 1e-11 * norm(b), x);
+  EXPECT_TRUE(again.factorised);
+  EXPECT_LE(again.iterations, 2 * first);
+  EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
 }
 
 TEST(LinearSolver, ADirectSolveTakesOneIteration)

@@ -1,0 +1,164 @@
+#include "tribound/algebra/multigrid.h"
+
+#include <algorithm>
+
+#include "tribound/algebra/petsc_detail.h"
+
+namespace tribound::algebra
+{
+
+using detail::check;
+using detail::VecHandle;
+
+namespace
+{
+
+constexpr const char* making = "making multigrid levels";
+
+/// The degrees of freedom that nothing couples: whose row has one entry.
+std::vector<char> decoupled(Mat a)
+{
+  PetscInt n = 0;
+  check(MatGetSize(a, &n, nullptr), making);
+  std::vector<char> result(n);
+  for (PetscInt i = 0; i < n; ++i)
+  {
+    PetscInt n_entries = 0;
+    check(MatGetRow(a, i, &n_entries, nullptr, nullptr), making);
+    result[i] = n_entries == 1 ? 1 : 0;
+    check(MatRestoreRow(a, i, &n_entries, nullptr, nullptr), making);
+  }
+  return result;
+}
+
+/// The interpolation of the nodes for every component, between the functions that vanish at the fixed degrees
+/// of freedom. Fixed ones of the coarse space, those with weight at fixed ones of the fine space, keep their
+/// largest weight alone: it belongs to no other, and P^T A P gets a diagonal there.
+Triplets free_weights(const NodeInterpolation& nodes, int dim, const std::vector<char>& fixed)
+{
+  constexpr int none = -1;
+  const Triplets& all = nodes.weights;
+  std::vector<int> anchor(dim * nodes.n_coarse, none);  // entry of `all` that a fixed coarse dof keeps
+  for (std::size_t k = 0; k < all.values.size(); ++k)
+    for (int a = 0; a < dim; ++a)
+    {
+      int& kept = anchor[dim * all.cols[k] + a];
+      if (fixed[dim * all.rows[k] + a] != 0 && (kept == none || all.values[k] > all.values[kept]))
+        kept = static_cast<int>(k);
+    }
+
+  Triplets result;
+  for (std::size_t k = 0; k < all.values.size(); ++k)
+    for (int a = 0; a < dim; ++a)
+    {
+      const int row = dim * all.rows[k] + a;
+      const int col = dim * all.cols[k] + a;
+      if (anchor[col] == none || anchor[col] == static_cast<int>(k)) result.add(row, col, all.values[k]);
+    }
+  return result;
+}
+
+MatHandle interpolation_matrix(const NodeInterpolation& nodes, int dim, const std::vector<char>& fixed)
+{
+  Triplets weights = free_weights(nodes, dim, fixed);
+  Mat mat = nullptr;
+  check(MatCreate(detail::communicator(), &mat), making);
+  MatHandle result(mat);
+  const PetscInt n_rows = dim * nodes.n_fine;
+  const PetscInt n_cols = dim * nodes.n_coarse;
+  check(MatSetSizes(mat, n_rows, n_cols, n_rows, n_cols), making);
+  check(MatSetType(mat, MATSEQAIJ), making);
+  check(MatSetBlockSize(mat, dim), making);
+  check(MatSetPreallocationCOO(mat, static_cast<PetscCount>(weights.rows.size()), weights.rows.data(),
+                               weights.cols.data()),
+        making);
+  check(MatSetValuesCOO(mat, weights.values.data(), INSERT_VALUES), making);
+  return result;
+}
+
+bool has_degrees(PC pc)
+{
+  PetscBool result = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCMG, &result), making);
+  return result == PETSC_TRUE;
+}
+
+}  // namespace
+
+void Multigrid::configure(PC pc) const
+{
+  if (hierarchy_.steps.empty())
+  {
+    check(PCSetType(pc, PCGAMG), making);
+    return;
+  }
+  const auto n_steps = static_cast<PetscInt>(hierarchy_.steps.size());
+  check(PCSetType(pc, PCMG), making);
+  check(PCMGSetLevels(pc, n_steps + 1, nullptr), making);
+  KSP solver = nullptr;
+  PC inner = nullptr;
+  for (PetscInt level = 1; level <= n_steps; ++level)  // PETSc counts from the coarsest
+  {
+    check(PCMGGetSmoother(pc, level, &solver), making);
+    check(KSPSetType(solver, KSPCHEBYSHEV), making);
+    check(KSPGetPC(solver, &inner), making);
+    check(PCSetType(inner, PCJACOBI), making);
+  }
+  // Two cycles: as few iterations as with a factorisation on P^1.
+  check(PCMGGetCoarseSolve(pc, &solver), making);
+  check(KSPSetType(solver, KSPRICHARDSON), making);
+  check(KSPSetNormType(solver, KSP_NORM_NONE), making);
+  check(KSPSetTolerances(solver, 0, 0, PETSC_DEFAULT, 2), making);
+  check(KSPGetPC(solver, &inner), making);
+  check(PCSetType(inner, PCGAMG), making);
+}
+
+void Multigrid::renew(PC pc, const SparseMatrix& a)
+{
+  if (!hierarchy_.steps.empty() && !has_degrees(pc)) return;  // options have made it something else
+  if (!made_) return make_levels(pc, a.handle());
+  Mat fine = a.handle();
+  for (const Level& level : levels_)
+  {
+    Mat coarse = level.matrix.get();
+    check(MatPtAP(fine, level.interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse), making);
+    fine = coarse;
+  }
+}
+
+void Multigrid::make_levels(PC pc, Mat finest)
+{
+  Mat fine = finest;
+  for (const NodeInterpolation& step : hierarchy_.steps)
+  {
+    Level level{interpolation_matrix(step, hierarchy_.dim, decoupled(fine)), nullptr};
+    Mat coarse = nullptr;
+    check(MatPtAP(fine, level.interpolation.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse), making);
+    level.matrix.reset(coarse);
+    const auto number = static_cast<PetscInt>(hierarchy_.steps.size() - levels_.size());
+    check(PCMGSetInterpolation(pc, number, level.interpolation.get()), making);
+    KSP solver = nullptr;
+    check(PCMGGetSmoother(pc, number - 1, &solver), making);
+    check(KSPSetOperators(solver, coarse, coarse), making);
+    levels_.push_back(std::move(level));
+    fine = coarse;
+  }
+  set_rigid_body_modes(fine);
+  made_ = true;
+}
+
+void Multigrid::set_rigid_body_modes(Mat coarsest)
+{
+  std::vector<double>& x = hierarchy_.coarsest_coordinates;
+  Vec coordinates = nullptr;
+  check(VecCreateSeqWithArray(detail::communicator(), hierarchy_.dim, static_cast<PetscInt>(x.size()),
+                              x.data(), &coordinates),
+        making);
+  const VecHandle owner(coordinates);
+  MatNullSpace modes = nullptr;
+  check(MatNullSpaceCreateRigidBody(coordinates, &modes), making);
+  check(MatSetNearNullSpace(coarsest, modes), making);
+  check(MatNullSpaceDestroy(&modes), making);
+}
+
+}  // namespace tribound::algebra
