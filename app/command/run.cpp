@@ -48,6 +48,11 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
     report.fail(error.what());
     throw;
   }
+  catch (const InputError&)  // data that are not valid on a finer mesh: the levels before hold
+  {
+    report.write_what_holds();
+    throw;
+  }
 }
 
 template <int dim>

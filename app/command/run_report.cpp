@@ -40,6 +40,9 @@ ExitCode exit_code(certify::RunStatus status)
   }
 }
 
+/// Seconds of work that a program which is killed may lose: the first levels take less time than files.
+constexpr double most_lost = 1.0;
+
 /// eta_tot and the components cell by cell, for the VTU file.
 class CellComponents
 {
@@ -170,24 +173,25 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
 }
 
 template <int dim>
-void RunReport<dim>::write_fields(const adapt::LevelView<dim>& view) const
+void RunReport<dim>::write_fields(const KeptLevel<dim>& last) const
 {
-  const contact::NitscheForm<dim>& form = view.discrete.form;
+  const contact::NitscheForm<dim>& form = last.discrete->form;
   if (output_.mesh)
-    io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(view.discrete.mesh, free_sides_));
-  io::write_contact_csv(output_.directory / "contact.csv", form, view.level.u, view.number);
+    io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(last.discrete->mesh, free_sides_));
+  io::write_contact_csv(output_.directory / "contact.csv", form, last.level.u, last.number);
   if (!output_.vtu) return;
-  write_level_fields<dim>(output_.directory, view.number, view.discrete, view.level);
-  io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", view.number), view.number,
-                             form, view.level.u);
-  io::write_series(output_.directory, view.number + 1);
+  write_level_fields<dim>(output_.directory, last.number, *last.discrete, last.level);
+  io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", last.number), last.number,
+                             form, last.level.u);
+  io::write_series(output_.directory, writes_all_levels() ? 0 : last.number, last.number);
 }
 
 template <int dim>
-void RunReport<dim>::write_record() const
+void RunReport<dim>::take(const adapt::LevelView<dim>& view)
 {
-  io::write_report(output_.directory, record_);
-  page_.write(output_.directory, record_);
+  if (last_ && last_->number != view.number) page_.add(last_->number, last_->discrete->form, last_->level);
+  last_.emplace(view);
+  if (writes_all_levels()) write_fields(*last_);
 }
 
 template <int dim>
@@ -225,13 +229,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   const Clock::time_point before_output = Clock::now();
   io::LevelRecord& level = record_.levels.emplace_back(io::level_record<dim>(view, moment_about_));
   std::exception_ptr failure;
-  if (level.bound)
-    failure = failure_of(
-        [&]
-        {
-          write_fields(view);
-          page_.add(view.number, form, view.level);
-        });
+  if (level.bound) failure = failure_of([&] { take(view); });
   const double output = seconds_since(before_output);
   level.times.stages.output = before.stages.output + output;
   level.times.level += level.times.stages.output;
@@ -245,21 +243,46 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
           ? doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
                                  doctor::contact_outcomes<dim>(form, view.level.u))
           : std::vector<doctor::Finding>{};
-  if (!failure) failure = failure_of([&] { write_record(); });
+  if (!failure && (writes_all_levels() || seconds_since(written_) > most_lost))
+    failure = failure_of([&] { write_record(); });
   if (printed_ != Printed::verdict && !again) print_level(level);
+  if (failure) std::rethrow_exception(failure);
+}
+
+template <int dim>
+void RunReport<dim>::write_record()
+{
+  io::write_report(output_.directory, record_);
+  written_ = Clock::now();
+}
+
+template <int dim>
+void RunReport<dim>::write_what_holds()
+{
+  std::exception_ptr failure;
+  if (last_)
+  {
+    const Clock::time_point before_output = Clock::now();
+    if (!writes_all_levels()) failure = failure_of([&] { write_fields(*last_); });
+    page_.add_last(last_->number, last_->discrete->form, last_->level);
+    const double output = seconds_since(before_output);
+    io::LevelTimes& times = record_.levels.back().times;
+    times.stages.output += output;
+    times.level += output;
+    const double cpu_now = cpu_seconds();
+    times.level_cpu += cpu_now - std::exchange(cpu_before_, cpu_now);
+  }
+  write_record();
+  page_.write(output_.directory, record_);
   if (failure) std::rethrow_exception(failure);
 }
 
 template <int dim>
 ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
 {
-  // A certified run has been written with its last level.
-  if (record_.status != verdict.status || record_.reason != verdict.reason)
-  {
-    record_.status = verdict.status;
-    record_.reason = verdict.reason;
-    write_record();
-  }
+  record_.status = verdict.status;
+  record_.reason = verdict.reason;
+  write_what_holds();
   if (printed_ == Printed::everything) print_summary(record_, output_.directory.string());
   if (printed_ == Printed::verdict) print_verdict(record_, output_.directory.string());
   return exit_code(verdict.status);
@@ -270,7 +293,7 @@ void RunReport<dim>::fail(const std::string& reason)
 {
   record_.status = certify::RunStatus::failed;
   record_.reason = reason;
-  write_record();
+  write_what_holds();
 }
 
 template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<2>&,

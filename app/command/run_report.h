@@ -4,6 +4,7 @@
 /// What a run tells and leaves behind, level by level.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +37,20 @@ void write_level_fields(const std::filesystem::path& directory, int number,
                         const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
                         std::span<const io::CellField> further = {});
 
+/// A level that is still needed when the loop goes on.
+template <int dim>
+struct KeptLevel
+{
+  explicit KeptLevel(const adapt::LevelView<dim>& view)
+      : number(view.number), discrete(view.owner), level(view.level)
+  {
+  }
+
+  int number;
+  std::shared_ptr<const adapt::Discretisation<dim>> discrete;
+  adapt::CertifiedLevel<dim> level;
+};
+
 /// What a run says on stdout.
 enum class Printed
 {
@@ -55,25 +70,30 @@ class RunReport
             const adapt::Discretisation<dim>& first, Clock::time_point begin,
             Printed printed = Printed::everything);
 
-  /// After every level, and once more for the last one if Newton's method has converged on it later: fields,
-  /// tables and a certificate that holds should the program be killed. Throws WriteError, the level being
-  /// printed.
+  /// After every level, and once more for the last one if Newton's method has converged on it later: tables
+  /// and a certificate that holds should the program be killed, at most a second behind; fields where they
+  /// are asked for of all levels. Throws WriteError, the level being printed.
   void add(const adapt::LevelView<dim>& view);
-  /// The last word.
+  /// Which level is the last is known only now: its fields, the page, and the last word.
   [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
+  /// The files of the levels so far, where the run ends by an exception. Throws WriteError.
+  void write_what_holds();
   /// The same where there is no level at all: leaves a certificate of the failure behind.
   void fail(const std::string& reason);
 
   [[nodiscard]] const io::RunRecord& record() const { return record_; }
 
  private:
-  void write_fields(const adapt::LevelView<dim>& view) const;
+  [[nodiscard]] bool writes_all_levels() const { return output_.levels == case_file::FieldLevels::all; }
+  void write_fields(const KeptLevel<dim>& last) const;
+  /// Keeps the level, the one before being for the page only, and writes its fields if they are due.
+  void take(const adapt::LevelView<dim>& view);
   /// Removes the record of the level, if it is the last, and returns its times.
   io::LevelTimes take_back(int number);
+  /// Tables and certificate.
+  void write_record();
   /// What the certificate says about the level: its data, and how its systems were solved.
   void update_statements(const adapt::LevelView<dim>& view);
-
-  void write_record() const;
 
   const case_file::OutputConfig& output_;
   certify::ContactRule contact_rule_;
@@ -81,8 +101,10 @@ class RunReport
   std::optional<OutputDirectory> directory_;
   io::RunRecord record_;
   ReportPage page_;
+  std::optional<KeptLevel<dim>> last_;  ///< the last level that has a bound
   Point<dim> moment_about_;
   std::vector<std::string> free_sides_;  ///< boundaries that the case does not mention
+  Clock::time_point written_;            ///< when the record was; long ago: not yet
   double cpu_before_ = cpu_seconds();    ///< CPU time up to the level in work
 };
 

@@ -32,14 +32,6 @@ namespace tribound::app
 namespace
 {
 
-/// A level that is still needed when its run is over.
-template <int dim>
-struct KeptLevel
-{
-  std::shared_ptr<const adapt::Discretisation<dim>> discrete;
-  adapt::CertifiedLevel<dim> level;
-};
-
 /// A run that is over.
 template <int dim>
 struct FinishedRun
@@ -135,7 +127,7 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
                        {
                          report.add(view);
                          if (keep == Keep::last) finished.levels.clear();
-                         finished.levels.push_back({view.owner, view.level});
+                         finished.levels.emplace_back(view);
                          if (!config.output.vtu) finished.levels.back().level.stress = {};
                        }};
   try
@@ -242,7 +234,7 @@ void StudyCommand<dim>::show_errors(const StudyVariant& variant) const
 template <int dim>
 void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
 {
-  const auto& [discrete, level] = levels_[variant][number];
+  const auto& [_, discrete, level] = levels_[variant][number];
   StudiedLevel& result = study_.variants[variant].levels[number];
   if (!result.record.bound) return;
   if (const auto space = dual_space(discrete->space, config_.study.dual_norm_dofs))

@@ -21,6 +21,7 @@ case_file::Config variant_config(const case_file::Config& config, const std::str
   variant.output.directory /= name;
   variant.effective = {};  // that of the study stands beside its tables
   variant.output.vtu = config.output.vtu && !converged;
+  variant.output.levels = case_file::FieldLevels::all;  // each gets its errors in the end
   variant.output.mesh = false;
   return variant;
 }

@@ -242,6 +242,17 @@ Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const do
   return surface;
 }
 
+template <int dim>
+std::size_t n_triangles(const contact::NitscheForm<dim>& form, const PageLimits& limits)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const std::size_t n_faces = dim == 2 ? mesh.n_cells() : mesh.boundary().size();
+  const int k = subdivision(n_faces, form.space().degree(), limits.subdivided);
+  return std::min(n_faces * k * k, limits.triangles);
+}
+
+template std::size_t n_triangles(const contact::NitscheForm<2>&, const PageLimits&);
+template std::size_t n_triangles(const contact::NitscheForm<3>&, const PageLimits&);
 template Surface sample_surface(const contact::NitscheForm<2>&, std::span<const double>,
                                 const certify::Stress<2>&, const PageLimits&);
 template Surface sample_surface(const contact::NitscheForm<3>&, std::span<const double>,

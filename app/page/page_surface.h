@@ -63,6 +63,10 @@ inline constexpr std::array<int, 6> stress_entries = {0, 1, 2, 3, 4, 5};
 template <>
 inline constexpr std::array<int, 3> stress_entries<2> = {0, 1, 3};
 
+/// At most so many triangles has the surface of the body on a level.
+template <int dim>
+[[nodiscard]] std::size_t n_triangles(const contact::NitscheForm<dim>& form, const PageLimits& limits);
+
 /// The surface of the body on one level.
 template <int dim>
 [[nodiscard]] Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,

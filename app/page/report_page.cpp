@@ -155,6 +155,14 @@ io::Json newton_json(const io::RunRecord& run)
   return steps;
 }
 
+/// Of all levels together.
+std::size_t n_triangles(std::span<const PageLevel> levels)
+{
+  std::size_t n = 0;
+  for (const PageLevel& level : levels) n += level.n_triangles;
+  return n;
+}
+
 /// The files of a run, in the order in which a reader wants them.
 std::vector<std::string> run_files(const io::RunRecord& run)
 {
@@ -214,13 +222,7 @@ io::Json page_volume(const contact::NitscheForm<dim>& form, const adapt::Certifi
 
 void drop_levels(std::vector<PageLevel>& levels, const PageLimits& limits)
 {
-  const auto total = [&levels]
-  {
-    std::size_t n = 0;
-    for (const PageLevel& level : levels) n += level.n_triangles;
-    return n;
-  };
-  while (levels.size() > 2 && total() > limits.all_levels)
+  while (levels.size() > 2 && n_triangles(levels) > limits.all_levels)
     levels.erase(std::ranges::max_element(levels.begin() + 1, levels.end() - 1, {}, &PageLevel::n_triangles));
 }
 
@@ -248,7 +250,17 @@ void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
                      const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
-  if (!levels_.empty() && levels_.back().number == number) levels_.pop_back();
+  // The last level will have as many triangles at least: this one would then be dropped.
+  const PageLimits limits;
+  if (!levels_.empty() && n_triangles(levels_) + 2 * n_triangles(form, limits) > limits.all_levels) return;
+  levels_.push_back(page_level(number, form, level, limits));
+}
+
+template <int dim>
+void ReportPage::add_last(int number, const contact::NitscheForm<dim>& form,
+                          const adapt::CertifiedLevel<dim>& level)
+{
+  if (template_.empty()) return;
   levels_.push_back(page_level(number, form, level));
   volume_ = page_volume(form, level);
   drop_levels(levels_, {});
@@ -283,5 +295,7 @@ template PageLevel page_level(int, const contact::NitscheForm<3>&, const adapt::
                               const PageLimits&);
 template void ReportPage::add(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
 template void ReportPage::add(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
+template void ReportPage::add_last(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
+template void ReportPage::add_last(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
 
 }  // namespace tribound::app

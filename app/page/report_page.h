@@ -62,9 +62,12 @@ class ReportPage
   /// `page_template`: what report/ builds; where there is none nothing is collected or written.
   explicit ReportPage(const std::filesystem::path& page_template);
 
-  /// In the place of the level with this number, if it is the last.
+  /// A level which is not the last, unless it is too large to be shown beside the following ones.
   template <int dim>
   void add(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
+  /// The last level, with the inside of the body; before write().
+  template <int dim>
+  void add_last(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
 
   /// Writes report.html into the directory, with links to those results that are there. Throws WriteError
   /// when the file cannot be written.

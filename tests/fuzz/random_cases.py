@@ -93,7 +93,7 @@ def random_case(seed, directory):
         "material": random_material(dice, mesh),
         "boundary": random_boundaries(dice, mesh),
         **random_keys(dice, degree),
-        "output": {"report": False},
+        "output": {"report": False, "levels": "all"},
     }
     conditions = table["boundary"].values()
     loaded = any(str(entry.get("traction", [])).strip("[0, ]") or "pressure" in entry for entry in conditions)

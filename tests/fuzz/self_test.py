@@ -35,6 +35,7 @@ contact = { friction = "coulomb", coefficient = 0.3, gap = "0.01*x^2" }
 tolerance = 0.1
 max_levels = 2
 [output]
+levels = "all"
 report = false
 """
 

@@ -153,11 +153,12 @@ StudyConfig read_study(const Node& node, int degree)
 
 OutputConfig read_output(const Node& node, OutputConfig output)
 {
-  const TableReader table(node, {"directory", "vtu", "report", "mesh", "moment_about"});
+  const TableReader table(node, {"directory", "vtu", "levels", "report", "mesh", "moment_about"});
   table.read("directory", output.directory, to_text);
   if (output.directory.empty())
     throw InputError(table.find("directory")->where, "is empty", "a directory to write to, such as \"out\"");
   table.read("vtu", output.vtu, to_bool);
+  table.read("levels", output.levels, one_of<FieldLevels>({"last", "all"}));
   table.read("report", output.report, to_bool);
   table.read("mesh", output.mesh, to_bool);
   if (const Node* point = table.find("moment_about"))

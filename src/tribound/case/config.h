@@ -60,10 +60,18 @@ struct StudyConfig
   bool figures = true;            ///< whether to draw them
 };
 
+/// Levels of which a run writes fields.
+enum class FieldLevels
+{
+  last,  ///< when the run ends
+  all    ///< each as soon as it is complete
+};
+
 struct OutputConfig
 {
   std::filesystem::path directory;  ///< relative to the working directory; default_directory() of the case
   bool vtu = true;
+  FieldLevels levels = FieldLevels::last;
   bool report = true;                ///< the page report.html
   bool mesh = true;                  ///< the last mesh, adapted.msh
   std::vector<double> moment_about;  ///< point of the moments in the balance; empty: centroid of the body

@@ -61,6 +61,21 @@ TEST(ReportPage, LevelsInBetweenAreLeftOutFromTheLargestOn)
   EXPECT_EQ(levels.size(), 2u);
 }
 
+TEST_F(ReportPageFile, LevelsAreSampledOnceAndThoseTooLargeAreNot)
+{
+  const DiscreteProblem<2> small = constant_stress_problem<2>(1, 2);
+  const DiscreteProblem<2> large = constant_stress_problem<2>(1, 300);  // 180 000 triangles
+  app::ReportPage page(template_);
+  page.add(0, small.form, constant_stress_level(small));
+  page.add(1, large.form, constant_stress_level(large));  // two of them are too many
+  page.add_last(2, large.form, constant_stress_level(large));
+  page.write(directory_, {});
+  const json fields = data()["fields"];
+  ASSERT_EQ(fields.size(), 2u);
+  EXPECT_EQ(fields[0]["level"], 0);
+  EXPECT_EQ(fields[1]["level"], 2);
+}
+
 TEST_F(ReportPageFile, HoldsTheRunAndTheUsersStringsAsTheyAre)
 {
   io::RunRecord run;
@@ -92,7 +107,7 @@ TEST_F(ReportPageFile, FieldsOfALevel)
 {
   const DiscreteProblem<2> box = constant_stress_problem<2>(2, 3);
   app::ReportPage page(template_);
-  page.add(0, box.form, constant_stress_level(box));
+  page.add_last(0, box.form, constant_stress_level(box));
   std::ofstream(directory_ / "newton.csv") << "";
   std::ofstream(directory_ / "contact.csv") << "boundary,facet\n";
   page.write(directory_, {});
@@ -131,7 +146,7 @@ TEST_F(ReportPageFile, TablesThatAreTooLargeAreLeftOut)
 {
   const DiscreteProblem<2> box = constant_stress_problem<2>(1, 2);
   app::ReportPage page(template_);
-  page.add(0, box.form, constant_stress_level(box));
+  page.add_last(0, box.form, constant_stress_level(box));
   std::string text;
   for (std::uint32_t i = 0, digits = 1; i < 100'000; ++i, digits *= 2654435761U)
     text += std::to_string(digits) + "\n";

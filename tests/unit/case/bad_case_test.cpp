@@ -161,6 +161,8 @@ std::vector<BadCase> values()
        "case.toml:4:18: solver.max_iterations: ", "must be an integer, found the number 1000", "500"},
       {"Vtu", head + "[output]\nvtu = 1\n",
        "case.toml:4:7: output.vtu: ", "must be true or false, found the integer 1", "without quotes"},
+      {"Levels", head + "[output]\nlevels = 'first'\n",
+       "case.toml:4:10: output.levels: ", "unknown value \"first\"", "one of \"last\", \"all\""},
       {"Report", head + "[output]\nreport = \"page.html\"\n",
        "case.toml:4:10: output.report: ", "must be true or false", "without quotes"},
       {"NoCharacter", head + "[output]\ndirectory = \"a\\u0000\"\n",

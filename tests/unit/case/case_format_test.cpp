@@ -289,6 +289,8 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
       {"output.directory",
        [](const case_file::Config& c, const Row&) { return "`\"" + c.output.directory.string() + "\"`"; }},
       {"output.vtu", [=](const case_file::Config& c, const Row&) { return truth(c.output.vtu); }},
+      {"output.levels", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.output.levels)); }},
       {"output.report", [=](const case_file::Config& c, const Row&) { return truth(c.output.report); }},
       {"output.mesh", [=](const case_file::Config& c, const Row&) { return truth(c.output.mesh); }},
       {"output.moment_about", [](const case_file::Config& c, const Row&)

@@ -78,6 +78,7 @@ figures = false
 [output]
 directory = "results"
 vtu = false
+levels = "all"
 report = false
 )toml";
 
@@ -114,6 +115,7 @@ TEST(Config, ReadsEveryKey)
   EXPECT_FALSE(config.study.figures);
   EXPECT_EQ(config.output.directory, "results");
   EXPECT_FALSE(config.output.vtu);
+  EXPECT_EQ(config.output.levels, case_file::FieldLevels::all);
   EXPECT_FALSE(config.output.report);
 }
 

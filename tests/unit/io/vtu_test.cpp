@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/vtu_file.h"
+
+namespace fs = std::filesystem;
 
 namespace tribound
 {
@@ -63,7 +67,6 @@ TEST(VtuFileDeathTest, AnArrayOfAnotherLengthThanAnnouncedIsAsserted)
 
 TEST(VtuSeries, RemovesOnlyWhatARunHasWritten)
 {
-  namespace fs = std::filesystem;
   const fs::path directory = fs::path(::testing::TempDir()) / "old_series";
   fs::remove_all(directory);
   fs::create_directories(directory / "level_004.vtu");  // a directory
@@ -75,7 +78,7 @@ TEST(VtuSeries, RemovesOnlyWhatARunHasWritten)
   for (const int level : {0, 12, 1234})
     for (const char* stem : {"level", "contact"})
       io::write_file(directory / io::level_file_name(stem, level), "");
-  io::write_series(directory, 3);
+  io::write_series(directory, 0, 2);
 
   io::remove_series(directory);
   std::set<std::string> left;
@@ -84,6 +87,18 @@ TEST(VtuSeries, RemovesOnlyWhatARunHasWritten)
   EXPECT_EQ(left, kept);
   EXPECT_TRUE(fs::exists(directory / "level_004.vtu"));
   io::remove_series(directory / "does_not_exist");  // nothing to do
+  fs::remove_all(directory);
+}
+
+TEST(Series, ListsTheLevelsThatAreThere)
+{
+  const fs::path directory = fs::path(::testing::TempDir()) / "series_of_one";
+  fs::create_directories(directory);
+  io::write_series(directory, 7, 7);
+  std::ifstream file(directory / "series.pvd");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(text, ::testing::HasSubstr(R"(timestep="7" part="0" file="level_007.vtu")"));
+  EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("level_006")));
   fs::remove_all(directory);
 }
 

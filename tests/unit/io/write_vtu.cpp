@@ -103,7 +103,7 @@ int main(int argc, char** argv)
     tribound::test::write<2>(directory, degree, manifest);
     tribound::test::write<3>(directory, degree, manifest);
   }
-  tribound::io::write_series(directory, 2);
+  tribound::io::write_series(directory, 0, 1);
   tribound::test::write_without_contact(directory);
   std::ofstream(directory / "manifest.json") << manifest.dump(2) << '\n';
 }

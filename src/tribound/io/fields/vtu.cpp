@@ -248,10 +248,10 @@ std::string level_file_name(std::string_view stem, int level)
   return fmt::format("{}_{:03}.vtu", stem, level);
 }
 
-void write_series(const std::filesystem::path& directory, int n_levels)
+void write_series(const std::filesystem::path& directory, int first, int last)
 {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-  for (int level = 0; level < n_levels; ++level)
+  for (int level = first; level <= last; ++level)
     text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level,
                         level_file_name("level", level));
   text += "</Collection>\n</VTKFile>\n";

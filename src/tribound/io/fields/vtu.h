@@ -83,9 +83,9 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const conta
 /// The name of a numbered file, such as "level_003.vtu".
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
-/// Writes series.pvd, which lists level_000.vtu, level_001.vtu, ... with the level as time.
+/// Writes series.pvd, which lists level_NNN.vtu from `first` to `last` with the level as time.
 /// Throws WriteError when the file cannot be written.
-void write_series(const std::filesystem::path& directory, int n_levels);
+void write_series(const std::filesystem::path& directory, int first, int last);
 
 /// Removes what an earlier run left of such a series: level_NNN.vtu and contact_NNN.vtu, N a digit, at least
 /// three, and series.pvd. Other files stay. Throws InputError when one cannot be removed.

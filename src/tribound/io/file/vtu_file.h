@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -26,8 +27,7 @@ class VtuStream
 {
  public:
   /// Starts an array of `n_bytes` bytes at the end of `file`.
-  /// `noisy`: numbers in which hardly more than bytes repeat; not looking for more saves half the time.
-  VtuStream(AtomicFile& file, std::uint64_t n_bytes, bool noisy);
+  VtuStream(AtomicFile& file, std::uint64_t n_bytes);
 
   template <typename T>
   requires std::is_arithmetic_v<T>
@@ -45,7 +45,7 @@ class VtuStream
   void flush();
 
   AtomicFile* file_;
-  bool noisy_;
+  std::optional<int> level_;  ///< of compression, zlib's; decided with the first block
   std::uint64_t header_position_;
   std::vector<std::uint64_t> header_;  ///< number of blocks, block size, size of a last partial block, sizes
   std::vector<std::byte> block_;
