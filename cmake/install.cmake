@@ -33,7 +33,7 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/tribound-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tribound-config-version.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/tribound-config-version.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/FindGmsh.cmake DESTINATION ${package_dir})
+        DESTINATION ${package_dir})
 install(FILES LICENSE COPYING README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The guide and the examples it refers to, beside each other as in the sources; and the script of pictures.

@@ -1,7 +1,6 @@
 #include "tribound/mesh/gmsh.h"
 
 #include <fmt/format.h>
-#include <gmsh.h>
 
 #include <algorithm>
 #include <exception>
@@ -11,6 +10,7 @@
 #include "tribound/base/apart.h"
 #include "tribound/base/memory.h"
 #include "tribound/mesh/box.h"
+#include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/gmsh_session.h"
 #include "tribound/mesh/mesh_bytes.h"
@@ -184,7 +184,7 @@ AnyMesh read_mesh(const MeshSource& source, const std::atomic<bool>* stop)
 
 std::string gmsh_version()
 {
-  return std::string(GMSH_API_VERSION) + " (API)";
+  return gmsh::version() + " (API)";
 }
 
 }  // namespace tribound::mesh

@@ -1,10 +1,8 @@
 #include "tribound/mesh/gmsh_elements.h"
 
 #include <fmt/format.h>
-#include <gmsh.h>
 
-#include <string>
-#include <vector>
+#include "tribound/mesh/gmsh_library.h"
 
 namespace tribound::mesh
 {
@@ -12,11 +10,7 @@ namespace tribound::mesh
 int mesh_dimension(const Where& where)
 {
   for (const int dim : {3, 2})
-  {
-    std::vector<int> types;
-    gmsh::model::mesh::getElementTypes(types, dim);
-    if (!types.empty()) return dim;
-  }
+    if (!gmsh::element_types(dim).empty()) return dim;
   throw InputError(
       where, "the mesh has neither triangles nor tetrahedra",
       "mesh the surface (gmsh -2) or the volume (gmsh -3), and put it into a physical group if any "
@@ -28,13 +22,7 @@ namespace
 
 [[noreturn]] void reject_element_type(const Where& where, int type)
 {
-  std::string name;
-  int dim = 0;
-  int order = 0;
-  int n_nodes = 0;
-  int n_primary = 0;
-  std::vector<double> nodes;
-  gmsh::model::mesh::getElementProperties(type, name, dim, order, n_nodes, nodes, n_primary);
+  const auto [name, order] = gmsh::element_properties(type);
   if (order != 1)
     throw InputError(where, fmt::format("the mesh has elements of order {} ({})", order, name),
                      "the geometry is straight-sided whatever the degree of the case; mesh with -order 1 "
@@ -42,23 +30,6 @@ namespace
   throw InputError(where, fmt::format("the mesh has elements that are not simplices ({})", name),
                    "only triangles and tetrahedra; mesh with Mesh.RecombineAll=0 and without Recombine or "
                    "Layers{...} with Recombine");
-}
-
-/// Gmsh's number of the type of an element; later versions than 4.8 also return where it is.
-template <class Tag>
-int element_type(Tag element)
-{
-  int type = 0;
-  std::vector<std::size_t> nodes;
-  if constexpr (requires { gmsh::model::mesh::getElement(element, type, nodes); })
-    gmsh::model::mesh::getElement(element, type, nodes);
-  else
-  {
-    int dim = 0;
-    int entity = 0;
-    gmsh::model::mesh::getElement(element, type, nodes, dim, entity);
-  }
-  return type;
 }
 
 }  // namespace
@@ -69,18 +40,11 @@ void check_element_types(const Where& where, int mesh_dim)
 {
   for (const int dim : {mesh_dim, mesh_dim - 1})
   {
-    std::vector<int> types;
-    gmsh::model::mesh::getElementTypes(types, dim);
-    for (const int type : types)
+    for (const int type : gmsh::element_types(dim))
       if (type != simplex_type[dim]) reject_element_type(where, type);
-
-    std::vector<std::size_t> elements;
-    std::vector<std::size_t> no_nodes;
-    gmsh::model::mesh::preallocateElementsByType(simplex_type[dim], true, false, elements, no_nodes);
-    if (elements.empty()) continue;
-    gmsh::model::mesh::getElementsByType(simplex_type[dim], elements, no_nodes);
-    for (const std::size_t element : elements)
-      if (const int type = element_type(element); type != simplex_type[dim]) reject_element_type(where, type);
+    for (const std::size_t element : gmsh::elements(simplex_type[dim]))
+      if (const int type = gmsh::element_type(element); type != simplex_type[dim])
+        reject_element_type(where, type);
   }
 }
 

@@ -1,7 +1,6 @@
 #include "tribound/mesh/gmsh_load.h"
 
 #include <fmt/format.h>
-#include <gmsh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh_elements.h"
+#include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_session.h"
 
 namespace tribound::mesh
@@ -37,20 +37,15 @@ struct Groups
 Groups read_groups(const Where& where, int dim)
 {
   Groups groups;
-  gmsh::vectorpair found;
-  gmsh::model::getPhysicalGroups(found, dim);
-  for (const auto& [group_dim, tag] : found)
+  for (const gmsh::Entity& physical : gmsh::physical_groups(dim))
   {
-    std::string name;
-    gmsh::model::getPhysicalName(group_dim, tag, name);
-    if (name.empty()) name = std::to_string(tag);
+    std::string name = gmsh::physical_name(physical);
+    if (name.empty()) name = std::to_string(physical.second);
     const auto known = std::find(groups.names.begin(), groups.names.end(), name);
     const int group = static_cast<int>(known - groups.names.begin());
     if (known == groups.names.end()) groups.names.push_back(name);
 
-    std::vector<int> entities;
-    gmsh::model::getEntitiesForPhysicalGroup(group_dim, tag, entities);
-    for (const int entity : entities)
+    for (const int entity : gmsh::entities_of(physical))
     {
       const auto [entry, is_new] = groups.of_entity.try_emplace(std::abs(entity), group);
       if (is_new || entry->second == group) continue;
@@ -65,15 +60,6 @@ Groups read_groups(const Where& where, int dim)
   return groups;
 }
 
-std::vector<int> entities_of(int dim)
-{
-  gmsh::vectorpair found;
-  gmsh::model::getEntities(found, dim);
-  std::vector<int> tags;
-  for (const auto& entity : found) tags.push_back(entity.second);
-  return tags;
-}
-
 /// Simplices named by node tags, and the group of each.
 template <int n_corners>
 struct Simplices
@@ -84,9 +70,7 @@ struct Simplices
   /// Appends the simplices of one entity; returns how many there are.
   std::size_t append(int entity, int group)
   {
-    std::vector<std::size_t> elements;
-    std::vector<std::size_t> flat;
-    gmsh::model::mesh::getElementsByType(simplex_type[n_corners - 1], elements, flat, entity);
+    const std::vector<std::size_t> flat = gmsh::element_nodes(simplex_type[n_corners - 1], entity);
     const std::size_t n_before = nodes.size();
     const std::size_t n_new = flat.size() / n_corners;
     nodes.resize(n_before + n_new);
@@ -111,14 +95,11 @@ struct Nodes
 
 Nodes read_nodes()
 {
-  std::vector<std::size_t> tags;
-  std::vector<double> x;
-  std::vector<double> parameters;
-  gmsh::model::mesh::getNodes(tags, x, parameters, -1, -1, false, false);
+  const auto [tags, x] = gmsh::nodes();
   const std::size_t largest = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
   if (largest > 16 * tags.size() + 1024)  // too sparse for tables indexed by tag
   {
-    gmsh::model::mesh::renumberNodes();
+    gmsh::renumber_nodes();
     return read_nodes();
   }
   Nodes nodes{std::vector<Point<3>>(largest + 1), std::vector<Index>(largest + 1, Nodes::absent)};
@@ -127,8 +108,7 @@ Nodes read_nodes()
     nodes.positions[tags[i]] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
     nodes.numbers[tags[i]] = Nodes::unused;
   }
-  gmsh::model::mesh::getNodes(tags, x, parameters, 0, -1, false, false);
-  for (const std::size_t tag : tags) nodes.numbers[tag] = Nodes::point;
+  for (const std::size_t tag : gmsh::nodes(0).tags) nodes.numbers[tag] = Nodes::point;
   return nodes;
 }
 
@@ -174,7 +154,7 @@ Simplices<dim + 1> read_cells(const Where& where, const Nodes& nodes, const Grou
   Simplices<dim + 1> cells;
   std::size_t n_homeless = 0;
   std::string example;
-  for (const int entity : entities_of(dim))
+  for (const auto& [_, entity] : gmsh::entities(dim))
   {
     const auto group = groups.of_entity.find(entity);
     const bool homeless = !groups.names.empty() && group == groups.of_entity.end();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gmsh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tribound/mesh/gmsh_library.h"
 
 namespace tribound::mesh
 {
@@ -22,11 +23,9 @@ namespace
 std::string logged_errors()
 {
   constexpr std::string_view prefix = "Error: ";
-  std::vector<std::string> log;
-  gmsh::logger::get(log);
   std::string text;
   int n = 0;
-  for (const std::string& line : log)
+  for (const std::string& line : gmsh::log())
     if (line.starts_with(prefix) && ++n <= 3) text += (text.empty() ? "" : "; ") + line.substr(prefix.size());
   return n > 3 ? fmt::format("{}; and {} more", text, n - 3) : text;
 }
@@ -59,16 +58,8 @@ void attempt(const std::filesystem::path& file, const std::string& what, const s
 /// The log outlives finalize() unless it is stopped.
 void stop_gmsh()
 {
-  gmsh::logger::stop();
+  gmsh::stop_logger();
   gmsh::finalize();
-}
-
-/// Whether cells of this dimension have been read or made.
-bool has_cells(int dim)
-{
-  std::vector<int> types;
-  gmsh::model::mesh::getElementTypes(types, dim);
-  return !types.empty();
 }
 
 /// Coordinates beyond this have squares and volumes outside the range of a double.
@@ -77,12 +68,9 @@ constexpr double largest_coordinate = 1e60;
 /// Gmsh does not end where a point of the geometry is not finite, or absurdly far away.
 void check_points(const std::filesystem::path& file)
 {
-  gmsh::vectorpair points;
-  gmsh::model::getEntities(points, 0);
-  for (const auto& [dim, tag] : points)
+  for (const auto& [_, tag] : gmsh::entities(0))
   {
-    std::vector<double> x;
-    gmsh::model::getValue(dim, tag, {}, x);
+    const std::vector<double> x = gmsh::position(tag);
     if (std::ranges::all_of(x, [](double xi) { return std::abs(xi) <= largest_coordinate; })) continue;
     const bool finite = std::ranges::all_of(x, [](double xi) { return std::isfinite(xi); });
     throw InputError(
@@ -97,24 +85,28 @@ void check_points(const std::filesystem::path& file)
 
 GmshSession::GmshSession(const std::filesystem::path& file)
 {
-  gmsh::initialize(0, nullptr, false);
+  if (const std::string problem = gmsh::load(); !problem.empty())
+    throw InputError({.file = file.string()}, "Gmsh's library, which reads it, cannot be loaded: " + problem,
+                     "install Gmsh " + gmsh::version() +
+                         " with its library (Debian: libgmsh); a box (mesh.box) needs none");
+  gmsh::initialize();
   try
   {
-    gmsh::option::setNumber("General.Terminal", 1);    // signs of progress for the process that waits
-    gmsh::option::setNumber("General.NumThreads", 1);  // a copied process has no team of threads
-    gmsh::logger::start();
+    gmsh::set_number("General.Terminal", 1);    // signs of progress for the process that waits
+    gmsh::set_number("General.NumThreads", 1);  // a copied process has no team of threads
+    gmsh::start_logger();
     attempt(file, "read the file", "is it complete? gmsh itself shows more: gmsh " + file.filename().string(),
             [&] { gmsh::open(file.string()); });
     if (file.extension() != ".geo") return;
-    const int dim = gmsh::model::getDimension();
+    const int dim = gmsh::dimension();
     check_points(file);
-    if (dim >= 2 && !has_cells(dim))
+    if (dim >= 2 && gmsh::element_types(dim).empty())
     {
       // Errors go to the log instead of being thrown, within a team of threads where nobody catches them.
-      gmsh::option::setNumber("General.AbortOnError", 0);
+      gmsh::set_number("General.AbortOnError", 0);
       attempt(file, "mesh the geometry",
               fmt::format("gmsh itself shows more: gmsh -{} {}", dim, file.filename().string()),
-              [&] { gmsh::model::mesh::generate(dim); });
+              [&] { gmsh::generate(dim); });
     }
   }
   catch (...)

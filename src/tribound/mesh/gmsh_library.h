@@ -1,0 +1,80 @@
+#pragma once
+
+/// @file gmsh_library.h
+/// Gmsh's library, loaded when it is needed: with the geometry kernel and the windows it brings along it
+/// takes longer to start than many a case to solve. These are those of its functions that are used here, by
+/// the names they have in Gmsh's own interfaces. Each throws GmshError where Gmsh reports a failure.
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tribound::mesh::gmsh
+{
+
+/// What has failed; the reason is in log().
+class GmshError : public std::runtime_error
+{
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Loads the library; once is enough. Before, no other function may be called. Returns why it cannot be
+/// loaded, or an empty text.
+[[nodiscard]] std::string load();
+/// The version whose interface is used, such as "4.8.0".
+[[nodiscard]] std::string version();
+
+void initialize();
+void finalize();
+void open(const std::string& file);
+void set_number(const std::string& option, double value);
+
+void start_logger();
+void stop_logger();
+[[nodiscard]] std::vector<std::string> log();
+
+/// Dimension and tag.
+using Entity = std::pair<int, int>;
+
+[[nodiscard]] int dimension();
+[[nodiscard]] std::vector<Entity> entities(int dim);
+/// The coordinates of a point of the geometry.
+[[nodiscard]] std::vector<double> position(int point);
+[[nodiscard]] std::vector<Entity> physical_groups(int dim);
+[[nodiscard]] std::string physical_name(const Entity& group);
+/// Their tags, negative where an entity is turned round.
+[[nodiscard]] std::vector<int> entities_of(const Entity& group);
+
+/// Meshes the geometry up to this dimension.
+void generate(int dim);
+void renumber_nodes();
+
+struct Nodes
+{
+  std::vector<std::size_t> tags;
+  std::vector<double> x;  ///< 3 coordinates each
+};
+
+/// Of the entities of one dimension without their boundaries; dim = -1: all nodes.
+[[nodiscard]] Nodes nodes(int dim = -1);
+
+/// The types of the elements of this dimension.
+[[nodiscard]] std::vector<int> element_types(int dim);
+
+struct ElementType
+{
+  std::string name;
+  int order;
+};
+
+[[nodiscard]] ElementType element_properties(int type);
+[[nodiscard]] int element_type(std::size_t element);
+/// Tags of the elements of a type, without reading their nodes.
+[[nodiscard]] std::vector<std::size_t> elements(int type);
+/// Tags of the nodes of the elements of a type, element by element.
+[[nodiscard]] std::vector<std::size_t> element_nodes(int type, int entity);
+
+}  // namespace tribound::mesh::gmsh
