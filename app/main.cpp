@@ -91,7 +91,6 @@ void check_command(const Arguments& arguments)
 {
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
   const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh);
-  const algebra::Environment environment;
   std::visit([&](const auto& m) { app::check(config, m, arguments.json); }, mesh);
 }
 

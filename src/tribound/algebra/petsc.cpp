@@ -5,6 +5,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdlib>
 #include <filesystem>
@@ -110,18 +111,51 @@ using detail::wrap;
 namespace
 {
 
-constexpr const char* tmpdir_base = "OMPI_MCA_orte_tmpdir_base";
-
-/// A directory of its own for the files of Open MPI, unless mpirun has chosen one; empty where there is none.
-/// In the common one a process that starts may fail because another one, ending, removes it.
-std::filesystem::path make_session_directory()
+/// A variable of the environment in its scope, unless it has a value already or is to have none.
+class Variable
 {
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv(tmpdir_base)) return {};
+ public:
+  Variable(const char* name, const std::string& value)
+      : name_(value.empty() || std::getenv(name) ? nullptr : name)
+  {
+    if (name_) ::setenv(name_, value.c_str(), 1);
+  }
+  ~Variable()
+  {
+    if (name_) ::unsetenv(name_);
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+/// By mpirun or a batch system, which have chosen how MPI runs.
+bool is_launched()
+{
+  constexpr std::array variables = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+  return std::ranges::any_of(variables, [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+/// A directory of its own; empty where there is none.
+std::filesystem::path make_directory()
+{
   std::error_code error;
   std::string name = (std::filesystem::temp_directory_path(error) / "tribound-XXXXXX").string();
   if (error || ::mkdtemp(name.data()) == nullptr) return {};
-  ::setenv(tmpdir_base, name.c_str(), 1);
   return name;
+}
+
+/// Alone, Open MPI puts its files into the directory: in the common one a process that starts may fail
+/// because another one, ending, removes it. And it starts no daemon, which takes longer than MPI itself and
+/// would serve further processes only. Neither is for children.
+bool start_mpi(bool alone, const std::filesystem::path& directory)
+{
+  const Variable files("OMPI_MCA_orte_tmpdir_base", directory.string());
+  const Variable no_daemon("OMPI_MCA_ess_singleton_isolated", alone ? "1" : "");
+  int provided = 0;
+  return MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided) == MPI_SUCCESS;
 }
 
 }  // namespace
@@ -132,10 +166,9 @@ Environment::Environment()
   MPI_Initialized(&has_mpi);
   if (has_mpi == 0)
   {
-    session_directory_ = make_session_directory();
-    int provided = 0;
-    started_mpi_ = MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided) == MPI_SUCCESS;
-    if (!session_directory_.empty()) ::unsetenv(tmpdir_base);  // not for children
+    const bool alone = !is_launched();
+    if (alone) session_directory_ = make_directory();
+    started_mpi_ = start_mpi(alone, session_directory_);
     if (!started_mpi_) throw SolveError("MPI does not start");
   }
   PetscBool has_petsc = PETSC_FALSE;
