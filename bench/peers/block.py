@@ -28,7 +28,10 @@ def block(n):
 
 
 def elasticity(mf, mim, gamma, friction):
-    """The model without contact: stiffness and loads; data and terms of the contact conditions. gamma: per lambda + 2 mu."""
+    """The model without contact: stiffness and loads; data and terms of the contact conditions.
+
+    gamma: over lambda + 2 mu.
+    """
     E, nu = 1, 0.3
     lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
     threshold = 0.0 if friction else 0.03
