@@ -63,9 +63,9 @@ enum class MatrixKind
   positive_definite
 };
 
-/// Tresca block, whole Newton loops: multigrid takes half the time of MUMPS at 20k degrees of freedom with
-/// p = 1 and 5 % less at 25k with p = 2. Below, the factorisation costs seconds at most and always works.
-inline constexpr Index direct_limit_3d = 30'000;
+/// Tresca block, whole Newton loops of p = 1, 2, 3: multigrid takes 0.39, 0.36, 0.48 of the time of MUMPS at
+/// 13k degrees of freedom, 1.0, 0.43, 0.88 at 6k to 8k (bench/README.md).
+inline constexpr Index direct_limit_3d = 10'000;
 
 /// Direct or iterative for a whole matrix, as configured or by dimension and size: factorisations in 2D at
 /// every size that fits, in 3D up to `direct_limit` degrees of freedom. `condensed` is taken for automatic.
