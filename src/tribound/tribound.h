@@ -44,6 +44,7 @@
 
 // Its solution by the generalised Newton method.
 #include "tribound/algebra/cholesky.h"
+#include "tribound/algebra/condensation.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/solve/newton.h"

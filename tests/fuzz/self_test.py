@@ -80,7 +80,7 @@ def scale_bounds(directory, factor):
         columns = [k for k, key in enumerate(rows[0]) if re.fullmatch(r"osc|str|neu|lin\w+|cnt|frc|quad|total\w*|relative", key)]
         for row in rows[1:]:
             for k in columns:
-                row[k] = repr(factor * float(row[k]))
+                row[k] = row[k] and repr(factor * float(row[k]))  # not every iterate has a complete bound
         (directory / name).write_text("".join(",".join(row) + "\n" for row in rows))
     for file in directory.glob("level_*.vtu"):
         for key in ("tot", "osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t"):

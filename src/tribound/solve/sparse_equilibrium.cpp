@@ -66,7 +66,10 @@ class SparseEquilibrium final : public Equilibrium<dim>
   {
     contact_.set_values(contact.values);
     tangent_.assign_sum(stiffness_, contact_);
-    return linear_solver_.solve(tangent_, r, tolerance, d);
+    const algebra::LinearSolve result = linear_solver_.solve(tangent_, r, tolerance, d);
+    for (std::size_t i = 0; i < d.size(); ++i)  // multigrid moves fixed ones as far as the tolerance lets it
+      if (form_.constraints().fixed[i]) d[i] = 0;
+    return result;
   }
   algebra::LinearMethod method() const override { return linear_solver_.method(); }
   double force_scale() const override { return forces_.scale; }
