@@ -123,7 +123,8 @@ algebra::SolverOptions read_solver(const Node& node)
 {
   const TableReader table(node, {"method", "package", "tolerance", "max_iterations"});
   algebra::SolverOptions solver;
-  table.read("method", solver.method, one_of<algebra::LinearMethod>({"auto", "direct", "condensed", "iterative"}));
+  table.read("method", solver.method,
+             one_of<algebra::LinearMethod>({"auto", "direct", "condensed", "iterative"}));
   table.read("package", solver.package, one_of<algebra::DirectPackage>({"auto", "mumps", "umfpack"}));
   table.read("tolerance", solver.tolerance,
              number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
