@@ -28,23 +28,34 @@ bool succeeded(Mat factors)
 
 }  // namespace
 
-SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
+MatHandle detail::start_cholesky(const SparseMatrix& a, int dim)
 {
   check(MatSetOption(a.handle(), MAT_SPD, PETSC_TRUE), "factorising");  // no pivoting
-  const detail::Options options(false);
   Mat factors = nullptr;
   check(MatGetFactor(a.handle(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors), "factorising");
-  factors_.reset(factors);
-  detail::configure_mumps(factors, dim);
+  MatHandle result(factors);
+  configure_mumps(factors, dim);
+  return result;
+}
+
+bool detail::factorise_cholesky(const SparseMatrix& a, Mat factors)
+{
   MatFactorInfo info;
   check(MatFactorInfoInitialize(&info), "factorising");
   check(MatCholeskyFactorSymbolic(factors, a.handle(), nullptr, &info), "ordering a matrix");
-  if (!succeeded(factors)) return;
+  if (!succeeded(factors)) return false;
   check(MatCholeskyFactorNumeric(factors, a.handle(), &info), "factorising");
-  if (!succeeded(factors)) return;
+  return succeeded(factors);
+}
+
+SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
+{
+  const detail::Options options(false);
+  factors_ = detail::start_cholesky(a, dim);
+  if (!detail::factorise_cholesky(a, factors_.get())) return;
 
   PetscInt negative = 0;
-  check(MatMumpsGetInfog(factors, 12, &negative), "counting pivots");
+  check(MatMumpsGetInfog(factors_.get(), 12, &negative), "counting pivots");
   if (negative > 0) return;
   // A pivot that is no number counts as none of them; it spoils every solution.
   const std::vector<double> ones(a.size(), 1.0);

@@ -81,28 +81,19 @@ Condensation::Condensation(Index n, int dim, Triplets entries, std::vector<Index
 
 void Condensation::factorise(const SparseMatrix& k, int dim)
 {
-  check(MatSetOption(k.handle(), MAT_SPD, PETSC_TRUE), "factorising");  // no pivoting
   const detail::Options options(false);
-  Mat factors = nullptr;
-  check(MatGetFactor(k.handle(), MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors), "factorising");
-  factors_.reset(factors);
-  detail::configure_mumps(factors, dim);
+  factors_ = detail::start_cholesky(k, dim);
   std::vector<PetscInt> kept(layer_.begin(), layer_.end());
   kept.insert(kept.end(), trace_.begin(), trace_.end());
   IS rows = nullptr;
   check(ISCreateGeneral(detail::communicator(), static_cast<PetscInt>(kept.size()), kept.data(),
                         PETSC_USE_POINTER, &rows),
         "factorising");
-  const PetscErrorCode error = MatFactorSetSchurIS(factors, rows);
+  const PetscErrorCode error = MatFactorSetSchurIS(factors_.get(), rows);
   ISDestroy(&rows);
   check(error, "factorising");
-  MatFactorInfo info;
-  check(MatFactorInfoInitialize(&info), "factorising");
-  check(MatCholeskyFactorSymbolic(factors, k.handle(), nullptr, &info), "ordering a matrix");
-  check(MatCholeskyFactorNumeric(factors, k.handle(), &info), "factorising");
-  MatFactorError failure = MAT_FACTOR_NOERROR;
-  check(MatFactorGetError(factors, &failure), "factorising");
-  if (failure != MAT_FACTOR_NOERROR) throw SolveError("the stiffness matrix is not positive definite");
+  if (!detail::factorise_cholesky(k, factors_.get()))
+    throw SolveError("the stiffness matrix is not positive definite");
 }
 
 /// With the Cholesky factor [L_LL 0; L_GL L_GG] of the Schur complement on layer and trace:

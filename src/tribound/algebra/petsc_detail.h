@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
 
 namespace tribound::algebra::detail
@@ -56,5 +57,10 @@ inline constexpr const char* singular_tangent =
 
 /// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
 void configure_mumps(Mat factors, int dim);
+/// MUMPS's Cholesky factors of a symmetric matrix without pivoting, not yet computed.
+[[nodiscard]] MatHandle start_cholesky(const SparseMatrix& a, int dim);
+/// Computes them, with an Options object alive. False: a pivot is 0. Throws SolveError when the memory does
+/// not suffice.
+[[nodiscard]] bool factorise_cholesky(const SparseMatrix& a, Mat factors);
 
 }  // namespace tribound::algebra::detail

@@ -12,6 +12,7 @@
 #include "tribound/base/error.h"
 #include "tribound/base/norm.h"
 #include "tribound/solve/equilibrium.h"
+#include "tribound/solve/linearised.h"
 
 namespace tribound::solve
 {
@@ -24,25 +25,6 @@ void axpy(double a, std::span<const double> x, std::span<double> y)
 {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += a * x[i];
 }
-
-/// T_lin of a Newton step.
-template <int dim>
-struct Linearised
-{
-  contact::Linearisation kind = contact::Linearisation::newton;
-  std::vector<double> u = {};  ///< where, on the cells at the contact boundary
-  double delta = 0;            ///< of T_delta
-
-  [[nodiscard]] std::vector<Point<dim>> traction(const contact::NitscheForm<dim>& form,
-                                                 std::span<const double> w) const
-  {
-    return form.linearised_traction(kind, u, w, delta);
-  }
-  [[nodiscard]] algebra::Triplets tangent(const contact::NitscheForm<dim>& form) const
-  {
-    return form.contact_tangent(kind, u, delta);
-  }
-};
 
 /// The state of the iteration on one mesh.
 template <int dim>
