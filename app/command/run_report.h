@@ -44,6 +44,7 @@ struct KeptLevel
   explicit KeptLevel(const adapt::LevelView<dim>& view)
       : number(view.number), discrete(view.owner), level(view.level)
   {
+    level.equilibrium.reset();  // factors are large, and no more steps are to come
   }
 
   int number;
