@@ -135,26 +135,30 @@ std::vector<double> Condensation::multiply(std::span<const double> x) const
   return y;
 }
 
+std::vector<double> Condensation::deviation(std::span<const double> x) const
+{
+  std::vector<double> difference(x.begin(), x.end());
+  for (std::size_t i = 0; i < trace_.size(); ++i) difference[i] -= sprung_[trace_[i]];
+  return difference;
+}
+
 std::vector<double> Condensation::on_layer(std::span<const double> x) const
 {
-  std::vector<double> deviation(x.begin(), x.end());
-  for (std::size_t i = 0; i < trace_.size(); ++i) deviation[i] -= sprung_[trace_[i]];
   std::vector<double> u;
   u.reserve(layer_.size());
   for (const Index i : layer_) u.push_back(sprung_[i]);
   add_product(-1, w_, static_cast<PetscBLASInt>(trace_.size()), static_cast<PetscBLASInt>(layer_.size()),
-              true, deviation, u);
+              true, deviation(x), u);
   return u;
 }
 
 /// (K + D)(u - (K + D)^{-1} b) acts on the trace alone, where it is (S + D)(x - its trace).
 std::vector<double> Condensation::expand(std::span<const double> x) const
 {
-  std::vector<double> deviation(x.begin(), x.end());
-  for (std::size_t i = 0; i < trace_.size(); ++i) deviation[i] -= sprung_[trace_[i]];
-  const std::vector<double> force = multiply(deviation);
+  const std::vector<double> of_trace = deviation(x);
+  const std::vector<double> force = multiply(of_trace);
   std::vector<double> b(sprung_.size(), 0.0);
-  for (std::size_t i = 0; i < trace_.size(); ++i) b[trace_[i]] = force[i] + penalty_[i] * deviation[i];
+  for (std::size_t i = 0; i < trace_.size(); ++i) b[trace_[i]] = force[i] + penalty_[i] * of_trace[i];
   std::vector<double> u(sprung_.size());
   check(MatSolve(factors_.get(), wrap(std::span<const double>(b)).get(), wrap(std::span(u)).get()),
         "solving a linear system");

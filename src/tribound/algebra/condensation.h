@@ -48,6 +48,8 @@ class Condensation
  private:
   void factorise(const SparseMatrix& k, int dim);
   void condense();
+  /// x - trace of (K + D)^{-1} b
+  [[nodiscard]] std::vector<double> deviation(std::span<const double> x) const;
   [[nodiscard]] std::vector<double> transposed_tangent(const Triplets& n) const;
 
   std::vector<Index> layer_;

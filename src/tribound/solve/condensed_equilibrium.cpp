@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "tribound/algebra/condensation.h"
@@ -47,14 +45,16 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   CondensedEquilibrium(const contact::NitscheForm<dim>& form, const algebra::Triplets& stiffness,
                        const ExternalForces& forces, CondensedDofs dofs)
       : form_(form),
-        diagonal_(form.space().n_dofs(), 0.0),
         condensed_(form.space().n_dofs(), dim, stiffness, std::move(dofs.layer), std::move(dofs.trace),
                    forces.load),
         force_scale_(forces.scale)
   {
+    std::vector<double> diagonal(form.space().n_dofs(), 0.0);
     for (std::size_t e = 0; e < stiffness.rows.size(); ++e)
       if (const int i = stiffness.rows[e]; i >= 0 && i == stiffness.cols[e])
-        diagonal_[i] += stiffness.values[e];
+        diagonal[i] += stiffness.values[e];
+    for (const std::span<const Index> kept : {condensed_.layer(), condensed_.trace()})
+      for (const Index i : kept) diagonal_.push_back(diagonal[i]);
   }
 
   std::vector<double> unknowns(std::span<const double> u) const override
@@ -98,11 +98,9 @@ class CondensedEquilibrium final : public Equilibrium<dim>
 
   double round_off(std::span<const double> x) const override
   {
-    std::vector<double> u(diagonal_.size(), 0.0);
-    displace_contact(x, u);
-    double sum = 0;
-    for (std::size_t i = 0; i < u.size(); ++i) sum += std::pow(diagonal_[i] * u[i], 2);
-    return 10 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+    std::vector<double> u = condensed_.on_layer(x);
+    u.insert(u.end(), x.begin(), x.end());
+    return solve::round_off(diagonal_, u);
   }
 
   algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
@@ -116,7 +114,7 @@ class CondensedEquilibrium final : public Equilibrium<dim>
 
  private:
   const contact::NitscheForm<dim>& form_;
-  std::vector<double> diagonal_;  ///< of the stiffness
+  std::vector<double> diagonal_;  ///< of the stiffness, [layer, trace]
   algebra::Condensation condensed_;
   double force_scale_;
   bool used_ = false;

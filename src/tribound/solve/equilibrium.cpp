@@ -1,6 +1,8 @@
 #include "tribound/solve/equilibrium.h"
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "tribound/base/error.h"
@@ -26,19 +28,25 @@ ExternalForces external_forces(const contact::NitscheForm<dim>& form)
 namespace
 {
 
-/// Whether condensing costs less than factorising the tangents. In 2D a factorisation takes about n^{3/2}
-/// operations, dense ones the cube of their size. Measured on blocks and strips with p = 1, 2, 4: from
-/// scratch, with 11 to 15 steps, condensing takes as long from 13 to 18 n^{1/2} kept unknowns on; on adaptive
-/// meshes, with one step or two, it makes no difference at 6 n^{1/2}.
-bool condensation_pays(int dim, Index n, const CondensedDofs& dofs, const algebra::SolverOptions& options,
-                       bool from_scratch)
+/// What condensation keeps, where it is to be used. It costs less than factorising the tangents where it
+/// keeps little: in 2D a factorisation takes about n^{3/2} operations, dense ones the cube of their size.
+/// Measured on blocks and strips with p = 1, 2, 4: from scratch, with 11 to 15 steps, condensing takes as
+/// long from 13 to 18 n^{1/2} kept unknowns on; on adaptive meshes, with one step or two, it makes no
+/// difference at 6 n^{1/2}.
+template <int dim>
+std::optional<CondensedDofs> worth_condensing(const contact::NitscheForm<dim>& form,
+                                              const algebra::SolverOptions& options, bool from_scratch)
 {
-  const std::size_t kept = dofs.layer.size() + dofs.trace.size();
-  if (dofs.layer.empty() || kept >= static_cast<std::size_t>(n)) return false;
-  if (options.method == algebra::LinearMethod::condensed) return true;
-  return dim == 2 && options.method == algebra::LinearMethod::automatic &&
-         options.package != algebra::DirectPackage::umfpack &&
-         static_cast<double>(kept) <= (from_scratch ? 12 : 6) * std::sqrt(n);
+  const bool told = options.method == algebra::LinearMethod::condensed;
+  const bool may_pay = dim == 2 && options.method == algebra::LinearMethod::automatic &&
+                       options.package != algebra::DirectPackage::umfpack;
+  if (!told && !may_pay) return std::nullopt;
+  CondensedDofs dofs = condensed_dofs(form);
+  const auto n = static_cast<double>(form.space().n_dofs());
+  const auto kept = static_cast<double>(dofs.layer.size() + dofs.trace.size());
+  const bool pays = told || kept <= (from_scratch ? 12 : 6) * std::sqrt(n);
+  if (dofs.layer.empty() || kept >= n || !pays) return std::nullopt;
+  return dofs;
 }
 
 }  // namespace
@@ -47,8 +55,7 @@ template <int dim>
 algebra::LinearMethod choose_method(const contact::NitscheForm<dim>& form,
                                     const algebra::SolverOptions& options, bool from_scratch)
 {
-  if (condensation_pays(dim, form.space().n_dofs(), condensed_dofs(form), options, from_scratch))
-    return algebra::LinearMethod::condensed;
+  if (worth_condensing(form, options, from_scratch)) return algebra::LinearMethod::condensed;
   return algebra::choose_method(options, dim, form.space().n_dofs());
 }
 
@@ -57,15 +64,22 @@ std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<di
                                                    const algebra::SolverOptions& options, bool from_scratch)
 {
   ExternalForces forces = external_forces(form);
-  if (choose_method(form, options, from_scratch) == algebra::LinearMethod::condensed) try
+  if (std::optional<CondensedDofs> dofs = worth_condensing(form, options, from_scratch)) try
     {
-      return condensed_equilibrium(form, forces, condensed_dofs(form));
+      return condensed_equilibrium(form, forces, *std::move(dofs));
     }
     catch (const SolveError&)  // the tangent may be regular where the stiffness is not
     {
       if (options.method == algebra::LinearMethod::condensed) throw;
     }
   return sparse_equilibrium(form, std::move(forces), options);
+}
+
+double round_off(std::span<const double> diagonal, std::span<const double> u)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) sum += std::pow(diagonal[i] * u[i], 2);
+  return 10 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
 }
 
 template ExternalForces external_forces(const contact::NitscheForm<2>&);

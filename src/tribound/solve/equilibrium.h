@@ -56,6 +56,9 @@ class Equilibrium
   [[nodiscard]] virtual double force_scale() const = 0;
 };
 
+/// 10 eps |D u|: round-off in K u, with the diagonal D of K; entries of the same unknowns.
+[[nodiscard]] double round_off(std::span<const double> diagonal, std::span<const double> u);
+
 /// All of u, with sparse matrices.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<dim>& form,

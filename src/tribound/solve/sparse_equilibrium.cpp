@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "tribound/algebra/petsc.h"
@@ -54,12 +52,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
     return r;
   }
 
-  double round_off(std::span<const double> x) const override
-  {
-    double sum = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) sum += std::pow(diagonal_[i] * x[i], 2);
-    return 10 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
-  }
+  double round_off(std::span<const double> x) const override { return solve::round_off(diagonal_, x); }
 
   algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
                              std::span<double> d) override
