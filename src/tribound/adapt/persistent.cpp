@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/error.h"
+#include "tribound/contact/nitsche/penalty.h"
+#include "tribound/fem/nested.h"
 
 namespace tribound::adapt
 {
@@ -54,6 +57,25 @@ std::optional<std::vector<double>> regularised_start(
   return std::move(result.u);
 }
 
+/// The solution of another form; nothing where Newton's method fails.
+template <int dim>
+std::optional<std::vector<double>> solution_of(const contact::NitscheForm<dim>& other,
+                                               std::span<const double> start, const Method& method,
+                                               double tolerance,
+                                               const std::function<void(const solve::NewtonStep&)>& record)
+{
+  solve::NewtonOptions newton = method.newton;
+  newton.tolerance = std::max(newton.tolerance, tolerance);
+  const solve::NewtonObserver<dim> watch = [&](const solve::NewtonIterate<dim>& iterate)
+  {
+    record(iterate.step);
+    return false;
+  };
+  solve::NewtonResult<dim> result = solve::solve<dim>(other, start, newton, method.solver, watch);
+  if (!result.message.empty()) return std::nullopt;
+  return std::move(result.u);
+}
+
 /// The solution with gamma times `factor`; nothing where that fails, too.
 template <int dim>
 std::optional<std::vector<double>> start_with_gamma(
@@ -61,14 +83,31 @@ std::optional<std::vector<double>> start_with_gamma(
     const std::function<void(const solve::NewtonStep&)>& record)
 {
   const contact::NitscheForm<dim> other(form.problem(), form.space(), factor * form.gamma0());
-  const solve::NewtonObserver<dim> watch = [&](const solve::NewtonIterate<dim>& iterate)
+  return solution_of(other, start, method, 0, record);
+}
+
+/// The solution with degree 1 on the same mesh, as far as a start needs it; nothing where Newton's method
+/// fails.
+template <int dim>
+std::optional<std::vector<double>> start_of_degree_one(
+    const contact::NitscheForm<dim>& form, const Method& method,
+    const std::function<void(const solve::NewtonStep&)>& record)
+{
+  constexpr double tolerance = 1e-4;
+  const fem::LagrangeSpace<dim> space(form.space().mesh(), 1);
+  const contact::NitscheForm<dim> other(form.problem(), space, contact::default_gamma0(1));
+  try
   {
-    record(iterate.step);
-    return false;
-  };
-  solve::NewtonResult<dim> result = solve::solve<dim>(other, start, method.newton, method.solver, watch);
-  if (!result.message.empty()) return std::nullopt;
-  return std::move(result.u);
+    const auto u = solution_of<dim>(other, {}, method, tolerance, record);
+    if (!u) return std::nullopt;
+    std::vector<Index> itself(space.mesh().n_cells());
+    std::iota(itself.begin(), itself.end(), 0);
+    return fem::nested_interpolant<dim>(space, *u, itself, form.space());
+  }
+  catch (const SolveError&)
+  {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -79,13 +118,18 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
                                             const solve::NewtonObserver<dim>& observer, double delta,
                                             const std::function<void(const solve::NewtonStep&)>& record)
 {
+  const bool may_start_anew = method.newton.damping && !method.regularisation && form.problem().has_contact();
+  std::optional<std::vector<double>> of_degree_one;
+  if (dim == 3 && form.space().degree() > 1 && start.empty() && may_start_anew)
+    of_degree_one = start_of_degree_one(form, method, record);
+
   solve::NewtonResult<dim> first;
   const auto attempt = [&](std::span<const double> u)
   { return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta, first.equilibrium); };
   std::exception_ptr failure;
   try
   {
-    first = attempt(start);
+    first = attempt(of_degree_one ? *of_degree_one : start);
   }
   catch (const SolveError&)
   {
@@ -93,13 +137,13 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   }
   if (!failure && first.message.empty()) return first;
 
-  const bool worth_it = method.newton.damping && !method.regularisation && form.problem().has_contact();
   using Start = std::function<std::optional<std::vector<double>>()>;
   std::vector<Start> others;
-  if (worth_it)
-    others = {[&] { return regularised_start(form, start, method, record); },
-              [&] { return start_with_gamma(3, form, start, method, record); },
-              [&] { return start_with_gamma(1. / 3, form, start, method, record); }};
+  if (of_degree_one) others.emplace_back([] { return std::vector<double>{}; });
+  if (may_start_anew)
+    others.insert(others.end(), {[&] { return regularised_start(form, start, method, record); },
+                                 [&] { return start_with_gamma(3, form, start, method, record); },
+                                 [&] { return start_with_gamma(1. / 3, form, start, method, record); }});
   for (const Start& other : others) try
     {
       if (const auto better = other())

@@ -281,7 +281,8 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && start.empty();
     const double before = residual_norm_;
-    report_ = {.step = k, .delta = delta_, .method = equilibrium_->method()};
+    report_ = {
+        .step = k, .delta = delta_, .method = equilibrium_->method(), .degree = form_.space().degree()};
     if (!at_rest)
       step(from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
     report_.seconds = seconds_since(begin);

@@ -36,6 +36,7 @@ struct NewtonStep
   double delta = 0.0;  ///< of T_delta, method section 7; 0 is the plain T
   algebra::LinearMethod method = algebra::LinearMethod::direct;  ///< of the linear solver
   bool fell_back = false;  ///< whether multigrid failed and the direct solver took its place
+  int degree = 0;          ///< of the space
 };
 
 enum class NewtonStatus

@@ -55,6 +55,7 @@ Json json(const std::optional<Sliding>& sliding)
 Json json(const adapt::CertifiedStep& record, bool regularised)
 {
   Json object{{"step", record.step.step},
+              {"degree", record.step.degree},
               {"residual", record.step.residual},
               {"damping", record.step.damping},
               {"linear_iterations", record.step.linear_iterations},

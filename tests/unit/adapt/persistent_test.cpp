@@ -1,0 +1,95 @@
+/// @file persistent_test.cpp
+/// The starts of Newton's method.
+
+#include "tribound/adapt/persistent.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/discrete_problem.h"
+#include "support/fields.h"
+#include "support/meshes.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// A block held on the left, pressed on a floor below which its corner hangs, and pulled along.
+template <int dim>
+ProblemData<dim> pulled_block(const problem::ContactLaw& law)
+{
+  return {.boundaries = {clamped<dim>("left"), loaded<dim>("top", 0.01, -0.1, 0.02),
+                         obstacle<dim>("bottom", law, formula("0.002*x"))}};
+}
+
+template <int dim>
+struct Found
+{
+  solve::NewtonResult<dim> result;
+  std::vector<int> degrees_before;  ///< of the steps that led to the start
+  std::vector<int> degrees;         ///< of those from it
+};
+
+template <int dim>
+Found<dim> find(const DiscreteProblem<dim>& c, const adapt::Method& method,
+                const std::vector<double>& start = {})
+{
+  Found<dim> found;
+  const solve::NewtonObserver<dim> observe = [&](const solve::NewtonIterate<dim>& iterate)
+  {
+    found.degrees.push_back(iterate.step.degree);
+    return false;
+  };
+  found.result = adapt::solve_persistently<dim>(c.form, start, method, observe, 0,
+                                                [&](const solve::NewtonStep& step)
+                                                { found.degrees_before.push_back(step.degree); });
+  return found;
+}
+
+TEST(DegreeOneStart, LeadsToTheSameSolutionInFewerSteps)
+{
+  for (const problem::ContactLaw& law :
+       std::vector<problem::ContactLaw>{Frictionless(), Tresca(0.02), Coulomb(0.3)})
+    for (int p = 2; p <= 4; ++p)
+    {
+      SCOPED_TRACE(p);
+      const adapt::Method method{.degree = p};
+      const DiscreteProblem<3> c(block<3>({6, 3, 3}), pulled_block<3>(law), method);
+      const solve::NewtonResult<3> from_scratch = c.solve();
+      ASSERT_EQ(from_scratch.status, solve::NewtonStatus::converged) << from_scratch.message;
+
+      const Found<3> found = find(c, method);
+      ASSERT_EQ(found.result.status, solve::NewtonStatus::converged) << found.result.message;
+      ASSERT_FALSE(found.degrees_before.empty());
+      for (const int degree : found.degrees_before) EXPECT_EQ(degree, 1);
+      for (const int degree : found.degrees) EXPECT_EQ(degree, p);
+      EXPECT_LE(found.result.steps.size(), from_scratch.steps.size());
+      EXPECT_LE(norm(sum(found.result.u, -1, from_scratch.u)), 1e-8 * norm(from_scratch.u));
+    }
+}
+
+TEST(DegreeOneStart, OnlyWhereItPays)
+{
+  const ProblemData<3> data = pulled_block<3>(Tresca(0.02));
+  const mesh::MeshData<3> mesh = block<3>({4, 2, 2});
+  const DiscreteProblem<3> linear(mesh, data, {.degree = 1});
+  EXPECT_TRUE(find(linear, {.degree = 1}).degrees_before.empty());
+
+  const DiscreteProblem<3> quadratic(mesh, data, {.degree = 2});
+  const Found<3> first = find(quadratic, {.degree = 2});
+  EXPECT_FALSE(first.degrees_before.empty());
+  EXPECT_TRUE(find(quadratic, {.degree = 2}, first.result.u).degrees_before.empty());
+  EXPECT_TRUE(find(quadratic, {.degree = 2, .newton = {.damping = false}}).degrees_before.empty());
+  EXPECT_TRUE(find(quadratic, {.degree = 2, .regularisation = adapt::RegularisationOptions{}})
+                  .degrees_before.empty());
+
+  const DiscreteProblem<2> plane(block<2>({8, 4}), pulled_block<2>(Tresca(0.02)), {.degree = 2});
+  EXPECT_TRUE(find(plane, {.degree = 2}).degrees_before.empty());
+}
+
+}  // namespace
+
+}  // namespace tribound::test
