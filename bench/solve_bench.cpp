@@ -165,16 +165,14 @@ void run(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool bare
              form.segments().size());
 
   const auto entries = [&] { return contact::stiffness(problem, space, form.constraints()); };
-  algebra::Triplets triplets = timed("stiffness: entries", entries);
-  const auto assemble = [&] { return algebra::SparseMatrix(space.n_dofs(), dim, std::move(triplets)); };
-  const auto matrix = timed("stiffness: COO assembly", assemble);
+  const algebra::SparseRows rows = timed("stiffness: rows", entries);
+  const auto matrix = timed("stiffness: PETSc's copy", [&] { return algebra::SparseMatrix(dim, rows); });
   const std::vector<double> u(space.n_dofs(), 0.0);
   const auto contact_entries = [&]
   { return form.contact_tangent(contact::Linearisation::closed_sticking, u); };
-  algebra::Triplets contact_triplets = contact_entries();
   algebra::SparseMatrix contact =
       timed("contact: pattern, once",
-            [&] { return algebra::SparseMatrix(space.n_dofs(), dim, std::move(contact_triplets)); });
+            [&] { return algebra::SparseMatrix(space.n_dofs(), dim, contact_entries()); });
   auto tangent = timed("tangent: sum, once", [&] { return algebra::SparseMatrix::sum(matrix, contact); });
   timed("contact: entries, each step",
         [&]

@@ -66,6 +66,14 @@ inline double distance(std::span<const double> x, std::span<const double> y)
   return norm(sum(x, -1, y));
 }
 
+inline algebra::Triplets entries(const algebra::SparseRows& rows)
+{
+  algebra::Triplets result;
+  for (int i = 0; i + 1 < static_cast<int>(rows.begin.size()); ++i)
+    for (int k = rows.begin[i]; k < rows.begin[i + 1]; ++k) result.add(i, rows.columns[k], rows.values[k]);
+  return result;
+}
+
 /// A x.
 inline std::vector<double> multiply(const algebra::Triplets& a, std::span<const double> x)
 {

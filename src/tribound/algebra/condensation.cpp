@@ -57,24 +57,20 @@ class SchurFactor
 
 }  // namespace
 
-Condensation::Condensation(Index n, int dim, Triplets entries, std::vector<Index> layer,
-                           std::vector<Index> trace, std::span<const double> b)
-    : layer_(std::move(layer)),
-      trace_(std::move(trace)),
-      position_(n, -1),
-      sprung_(n),
-      penalty_(trace_.size())
+Condensation::Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
+                           std::span<const double> b)
+    : layer_(std::move(layer)), trace_(std::move(trace)), position_(b.size(), -1), sprung_(b.size())
 {
   int position = 0;
   for (const Index i : layer_) position_[i] = position++;
   for (const Index i : trace_) position_[i] = position++;
-  const int n_layer = static_cast<int>(layer_.size());
-  for (std::size_t e = 0; e < entries.rows.size(); ++e)
-    if (const int i = entries.rows[e]; i >= 0 && i == entries.cols[e] && position_[i] >= n_layer)
-      penalty_[position_[i] - n_layer] += entries.values[e];
-  for (std::size_t i = 0; i < trace_.size(); ++i) entries.add(trace_[i], trace_[i], penalty_[i]);
-
-  factorise(SparseMatrix(n, dim, std::move(entries)), dim);
+  for (const Index i : trace_)
+  {
+    double& diagonal = k.diagonal(i);
+    penalty_.push_back(diagonal);
+    diagonal *= 2;
+  }
+  factorise(SparseMatrix(dim, k), dim);
   check(MatSolve(factors_.get(), wrap(b).get(), wrap(std::span(sprung_)).get()), "solving a linear system");
   condense();
 }

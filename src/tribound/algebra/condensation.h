@@ -23,9 +23,9 @@ namespace tribound::algebra
 class Condensation
 {
  public:
-  /// `entries` of K, n x n; `layer` and `trace` are distinct unknowns, neither is empty. `dim` is that of the
-  /// mesh and selects the ordering. Throws SolveError when K + D is not positive definite.
-  Condensation(Index n, int dim, Triplets entries, std::vector<Index> layer, std::vector<Index> trace,
+  /// `k`: K; `layer` and `trace` are distinct unknowns, neither is empty. `dim` is that of the mesh and
+  /// selects the ordering. Throws SolveError when K + D is not positive definite.
+  Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
                std::span<const double> b);
 
   [[nodiscard]] std::span<const Index> layer() const { return layer_; }

@@ -135,6 +135,7 @@ void Multigrid::make_levels(PC pc, Mat finest)
     Mat coarse = nullptr;
     check(MatPtAP(fine, level.interpolation.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse), making);
     level.matrix.reset(coarse);
+    detail::multiply_in_threads(coarse);
     const auto number = static_cast<PetscInt>(hierarchy_.steps.size() - levels_.size());
     check(PCMGSetInterpolation(pc, number, level.interpolation.get()), making);
     KSP solver = nullptr;

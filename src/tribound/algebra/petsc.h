@@ -52,12 +52,14 @@ struct MatDeleter
 };
 using MatHandle = std::unique_ptr<_p_Mat, MatDeleter>;
 
-/// A square sparse matrix assembled from (row, column, value) entries.
+/// A square sparse matrix, in PETSc.
 class SparseMatrix
 {
  public:
   /// Sums the entries; block_size is the number of components per node.
   SparseMatrix(Index n, int block_size, Triplets entries);
+  /// From its rows.
+  SparseMatrix(int block_size, const SparseRows& rows);
 
   /// A matrix of the same pattern and values.
   [[nodiscard]] SparseMatrix duplicate() const;
@@ -67,7 +69,7 @@ class SparseMatrix
   /// A x.
   [[nodiscard]] std::vector<double> multiply(std::span<const double> x) const;
   [[nodiscard]] std::vector<double> diagonal() const;
-  /// New values for the entries the matrix was made of, in the same order.
+  /// New values for the (row, column, value) entries the matrix was made of, in the same order.
   void set_values(std::span<const double> values);
   /// this = a + b again with other values, after sum(a, b).
   void assign_sum(const SparseMatrix& a, const SparseMatrix& b);
@@ -76,6 +78,7 @@ class SparseMatrix
 
  private:
   SparseMatrix() = default;
+  void create(int block_size);
 
   Index size_ = 0;
   bool has_more_ = false;  ///< a sum whose second pattern is not within the first

@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file triplets.h
-/// Sparse matrices as lists of entries.
+/// Sparse matrices as plain data.
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -27,6 +28,49 @@ struct Triplets
     rows.push_back(row);
     cols.push_back(col);
     values.push_back(value);
+  }
+  void resize(std::size_t n)
+  {
+    rows.resize(n);
+    cols.resize(n);
+    values.resize(n);
+  }
+  void put(std::size_t position, int row, int col, double value)
+  {
+    rows[position] = row;
+    cols[position] = col;
+    values[position] = value;
+  }
+};
+
+/// A square sparse matrix row by row; the columns of a row are ascending, each once.
+struct SparseRows
+{
+  std::vector<int> begin{0};  ///< row i has the entries begin[i], ..., begin[i + 1] - 1
+  std::vector<int> columns;
+  std::vector<double> values;
+
+  /// To the last row.
+  void add(int column, double value)
+  {
+    columns.push_back(column);
+    values.push_back(value);
+  }
+  void end_row() { begin.push_back(static_cast<int>(columns.size())); }
+  /// The rows of another after these.
+  void append(const SparseRows& more)
+  {
+    const int shift = begin.back();
+    for (std::size_t i = 1; i < more.begin.size(); ++i) begin.push_back(shift + more.begin[i]);
+    columns.insert(columns.end(), more.columns.begin(), more.columns.end());
+    values.insert(values.end(), more.values.begin(), more.values.end());
+  }
+  /// Entry (i, i), which the row must have.
+  [[nodiscard]] double& diagonal(int i)
+  {
+    const auto first = columns.begin() + begin[i];
+    const auto entry = std::lower_bound(first, columns.begin() + begin[i + 1], i);
+    return values[entry - columns.begin()];
   }
 };
 

@@ -1,5 +1,7 @@
 #include "tribound/base/parallel.h"
 
+#include <omp.h>
+
 #include <atomic>
 #include <exception>
 #include <vector>
@@ -7,13 +9,18 @@
 namespace tribound
 {
 
-void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body)
+int max_threads()
 {
-  constexpr std::size_t worth_threads =
-      2000;  // waking threads and letting them wait costs more than some loops
+  return omp_get_max_threads();
+}
+
+void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, int grain)
+{
+  // Waking threads and letting them wait costs more than some loops.
+  constexpr std::size_t worth_threads = 32;
   std::exception_ptr failure;
   std::atomic<std::size_t> failed = n;
-#pragma omp parallel for schedule(dynamic, 64) if (n > worth_threads)
+#pragma omp parallel for schedule(dynamic, grain) if (n > worth_threads * grain)
   for (std::size_t i = 0; i < n; ++i)
   {
     if (i > failed) continue;  // of no interest any more

@@ -42,19 +42,13 @@ template <int dim>
 class CondensedEquilibrium final : public Equilibrium<dim>
 {
  public:
-  CondensedEquilibrium(const contact::NitscheForm<dim>& form, const algebra::Triplets& stiffness,
+  CondensedEquilibrium(const contact::NitscheForm<dim>& form, algebra::SparseRows stiffness,
                        const ExternalForces& forces, CondensedDofs dofs)
       : form_(form),
-        condensed_(form.space().n_dofs(), dim, stiffness, std::move(dofs.layer), std::move(dofs.trace),
-                   forces.load),
+        diagonal_(diagonal(stiffness, dofs)),
+        condensed_(dim, std::move(stiffness), std::move(dofs.layer), std::move(dofs.trace), forces.load),
         force_scale_(forces.scale)
   {
-    std::vector<double> diagonal(form.space().n_dofs(), 0.0);
-    for (std::size_t e = 0; e < stiffness.rows.size(); ++e)
-      if (const int i = stiffness.rows[e]; i >= 0 && i == stiffness.cols[e])
-        diagonal[i] += stiffness.values[e];
-    for (const std::span<const Index> kept : {condensed_.layer(), condensed_.trace()})
-      for (const Index i : kept) diagonal_.push_back(diagonal[i]);
   }
 
   std::vector<double> unknowns(std::span<const double> u) const override
@@ -113,6 +107,14 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   double force_scale() const override { return force_scale_; }
 
  private:
+  static std::vector<double> diagonal(algebra::SparseRows& stiffness, const CondensedDofs& dofs)
+  {
+    std::vector<double> result;
+    for (const std::span<const Index> kept : {std::span(dofs.layer), std::span(dofs.trace)})
+      for (const Index i : kept) result.push_back(stiffness.diagonal(i));
+    return result;
+  }
+
   const contact::NitscheForm<dim>& form_;
   std::vector<double> diagonal_;  ///< of the stiffness, [layer, trace]
   algebra::Condensation condensed_;

@@ -18,8 +18,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
   SparseEquilibrium(const contact::NitscheForm<dim>& form, ExternalForces forces,
                     const algebra::SolverOptions& options)
       : form_(form),
-        stiffness_(form.space().n_dofs(), dim,
-                   contact::stiffness(form.problem(), form.space(), form.constraints())),
+        stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints())),
         contact_(form.space().n_dofs(), dim,
                  form.contact_tangent(contact::Linearisation::closed_sticking,
                                       std::vector<double>(form.space().n_dofs(), 0.0))),

@@ -42,33 +42,36 @@ Vector random_vector(int size, unsigned seed)
 }
 
 /// The stiffness of springs between random unknowns: one rigid mode, all ones; plus `ground` on the diagonal.
-algebra::Triplets springs(double ground)
+Matrix springs(double ground)
 {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> stiffness(0.5, 2);
-  algebra::Triplets k;
+  Matrix k = Matrix::Identity(n, n) * ground;
   const auto connect = [&](int i, int j)
   {
     const double c = stiffness(random);
-    k.add(i, i, c);
-    k.add(j, j, c);
-    k.add(i, j, -c);
-    k.add(j, i, -c);
+    k(i, i) += c;
+    k(j, j) += c;
+    k(i, j) -= c;
+    k(j, i) -= c;
   };
   for (int i = 0; i + 1 < n; ++i) connect(i, i + 1);
   for (int e = 0; e < 60; ++e)
     if (const int i = static_cast<int>(random() % n), j = static_cast<int>(random() % n); i != j)
       connect(i, j);
-  for (int i = 0; i < n; ++i) k.add(i, i, ground);
   return k;
 }
 
-Matrix dense(const algebra::Triplets& entries)
+algebra::SparseRows rows(const Matrix& a)
 {
-  Matrix a = Matrix::Zero(n, n);
-  for (std::size_t e = 0; e < entries.rows.size(); ++e)
-    a(entries.rows[e], entries.cols[e]) += entries.values[e];
-  return a;
+  algebra::SparseRows result;
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = 0; j < n; ++j)
+      if (a(i, j) != 0) result.add(j, a(i, j));
+    result.end_row();
+  }
+  return result;
 }
 
 /// K u = b + f with f on the trace: f = S x - g, and u, for the given x there.
@@ -92,13 +95,13 @@ TEST(Condensation, IsTheWholeProblemOnTheTrace)
 {
   for (const double ground : {0.0, 1e-3, 1.0})  // 0: only what acts on the trace can hold it
   {
-    const algebra::Triplets k = springs(ground);
+    const Matrix k = springs(ground);
     const Vector b = random_vector(n, 1);
-    const algebra::Condensation condensed(n, 2, k, layer, trace, values(b));
+    const algebra::Condensation condensed(2, rows(k), layer, trace, values(b));
     for (const unsigned seed : {2U, 3U})
     {
       const Vector x = random_vector(static_cast<int>(trace.size()), seed);
-      const Reference exact(dense(k), b, x);
+      const Reference exact(k, b, x);
       EXPECT_LE((vector(condensed.multiply(values(x))) - vector(condensed.load()) - exact.f).norm(), 1e-12);
       EXPECT_LE((vector(condensed.on_layer(values(x))) - exact.u(layer)).norm(), 1e-12);
       EXPECT_LE((vector(condensed.expand(values(x))) - exact.u).norm(), 1e-12);
@@ -124,11 +127,11 @@ algebra::Triplets forces_on_trace()
 
 TEST(Condensation, SolvesWithForcesOfTraceAndLayer)
 {
-  const algebra::Triplets k = springs(0);
+  const Matrix k = springs(0);
   const Vector b = random_vector(n, 1);
-  const algebra::Condensation condensed(n, 2, k, layer, trace, values(b));
+  const algebra::Condensation condensed(2, rows(k), layer, trace, values(b));
   const algebra::Triplets contact = forces_on_trace();
-  Matrix tangent = dense(k);
+  Matrix tangent = k;
   for (std::size_t e = 0; e < contact.rows.size(); ++e)
     if (contact.rows[e] >= 0 && contact.cols[e] >= 0)
       tangent(contact.rows[e], contact.cols[e]) += contact.values[e];
@@ -142,10 +145,10 @@ TEST(Condensation, SolvesWithForcesOfTraceAndLayer)
 TEST(Condensation, RefusesWhatIsSingular)
 {
   const std::vector<double> b(n, 1.0);
-  const algebra::Condensation condensed(n, 2, springs(0), layer, trace, b);
+  const algebra::Condensation condensed(2, rows(springs(0)), layer, trace, b);
   const std::vector<double> r(trace.size(), 1.0);
   EXPECT_THROW((void)condensed.solve({}, r, 1e-14), SolveError);  // nothing holds the rigid mode
-  EXPECT_THROW(algebra::Condensation(n, 2, springs(-3.0), layer, trace, b), SolveError);
+  EXPECT_THROW(algebra::Condensation(2, rows(springs(-3.0)), layer, trace, b), SolveError);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "tribound/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <stdexcept>
 #include <string>
@@ -48,6 +49,26 @@ TEST(ParallelFor, NothingIsStartedBehindAFailure)
                             }),
                std::runtime_error);
   for (std::size_t i = 0; i < visits.size(); ++i) EXPECT_EQ(visits[i], i <= 10 ? 1 : 0);
+}
+
+/// Terms whose sum depends on the order: sums in blocks differ in the last digits from one in one go.
+TEST(ParallelSum, IsTheSameForAnyNumberOfThreads)
+{
+  const int available = omp_get_max_threads();
+  for (const std::size_t n : {0U, 1U, 63U, 64U, 65U, 100'003U})
+  {
+    const auto sum = [&](int n_threads)
+    {
+      omp_set_num_threads(n_threads);
+      return parallel_sum(n, 1.0, [](std::size_t i) { return 1 / (1.0 + static_cast<double>(i)); });
+    };
+    double expected = 1;
+    for (std::size_t i = 0; i < n; ++i) expected += 1 / (1.0 + static_cast<double>(i));
+    const double alone = sum(1);
+    EXPECT_NEAR(alone, expected, 1e-12);
+    for (const int n_threads : {2, 3, 8}) EXPECT_EQ(sum(n_threads), alone);
+  }
+  omp_set_num_threads(available);
 }
 
 }  // namespace

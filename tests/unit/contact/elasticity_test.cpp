@@ -98,7 +98,7 @@ TYPED_TEST(Stiffness, MatrixAndCellwiseProductAgree)
     const fem::Constraints& constraints = c.form.constraints();
     ASSERT_GT(constraints.n_fixed(), 0);
     const std::vector<double> u = random_free_vector(constraints, 1.0, p);
-    const algebra::Triplets matrix = contact::stiffness(c.problem, c.space, constraints);
+    const algebra::Triplets matrix = entries(contact::stiffness(c.problem, c.space, constraints));
     const std::vector<double> expected =
         free_part(constraints, contact::apply_stiffness<dim>(c.problem, c.space, u));
     EXPECT_LE(distance(multiply(matrix, u), expected), 1e-12 * norm(expected)) << "degree " << p;
@@ -110,7 +110,7 @@ TYPED_TEST(Stiffness, FixedDegreesOfFreedomHaveAPositiveDiagonalOnly)
   constexpr int dim = TypeParam::value;
   const DiscreteProblem<dim> c(grid<dim>(), held<dim>(), {.degree = 2});
   const fem::Constraints& constraints = c.form.constraints();
-  const algebra::Triplets matrix = contact::stiffness(c.problem, c.space, constraints);
+  const algebra::Triplets matrix = entries(contact::stiffness(c.problem, c.space, constraints));
   Index n_diagonal = 0;
   for (std::size_t k = 0; k < matrix.values.size(); ++k)
   {

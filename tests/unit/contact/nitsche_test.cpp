@@ -132,7 +132,7 @@ void expect_tangent_agrees_with_differences(int p, const Law& law, problem::Cont
   EXPECT_LE(norm(sum(contact, 1, by_difference)), 1e-7 * norm(contact));
 
   const std::vector<double> whole =
-      sum(multiply(contact::stiffness(c.problem, c.space, constraints), w), 1, contact);
+      sum(multiply(entries(contact::stiffness(c.problem, c.space, constraints)), w), 1, contact);
   const std::vector<double> whole_by_difference =
       difference([&](const std::vector<double>& v) { return residual(c, v); });
   EXPECT_LE(distance(whole, whole_by_difference), 1e-7 * norm(whole));

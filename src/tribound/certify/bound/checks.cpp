@@ -1,14 +1,12 @@
 #include "tribound/certify/bound/checks.h"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
+#include "tribound/base/parallel.h"
+#include "tribound/certify/bound/checked_stress.h"
 #include "tribound/fem/evaluation.h"
-#include "tribound/fem/polynomials.h"
-#include "tribound/fem/quadrature.h"
 
 namespace tribound::certify
 {
@@ -24,147 +22,11 @@ double IdentityDefects::largest(int degree) const
 namespace
 {
 
-/// Tables on the reference cell whose vertices are in ascending order.
-template <int dim>
-struct Tables
-{
-  int n;       ///< dim P^p(T)
-  int n_less;  ///< dim P^{p-1}(T)
-  fem::Quadrature<dim> data_rule;
-  std::array<std::vector<double>, dim> derivative;    ///< (d_k phi_j, chi_i), [i * n + j]
-  fem::Quadrature<dim - 1> jump_rule;                 ///< exact to degree 2p
-  std::array<std::vector<double>, dim + 1> on_facet;  ///< phi at its points, [q * n + j]
-
-  explicit Tables(int degree)
-      : n(fem::polynomial_dimension(dim, degree)),
-        n_less(fem::polynomial_dimension(dim, degree - 1)),
-        data_rule(fem::quadrature<dim>(fem::data_quadrature_degree(degree))),
-        jump_rule(fem::quadrature<dim - 1>(2 * degree))
-  {
-    std::vector<double> phi(n);
-    std::vector<Point<dim>> gradients(n);
-    for (auto& matrix : derivative) matrix.assign(static_cast<std::size_t>(n_less) * n, 0.0);
-    for (int q = 0; q < data_rule.size(); ++q)
-    {
-      fem::orthonormal_gradients<dim>(degree, data_rule.points[q], phi, gradients);
-      for (int k = 0; k < dim; ++k)
-        for (int i = 0; i < n_less; ++i)
-          for (int j = 0; j < n; ++j)
-            derivative[k][i * n + j] += data_rule.weights[q] * phi[i] * gradients[j][k];
-    }
-    for (int f = 0; f <= dim; ++f)
-      for (const Point<dim - 1>& s : jump_rule.points)
-      {
-        fem::orthonormal_values<dim>(degree, mesh::facet_to_cell<dim>(f, s), phi);
-        on_facet[f].insert(on_facet[f].end(), phi.begin(), phi.end());
-      }
-  }
-};
-
-/// sigma_h = sigma_dis + sigma_lin + sigma_reg on one cell, in the coordinates of its vertices in ascending
-/// order.
-template <int dim>
-class CellStress
-{
- public:
-  CellStress(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, Index cell)
-      : degree_(stress.degree),
-        n_(stress.n),
-        coefficients_(stress.dis_in(cell).begin(), stress.dis_in(cell).end()),
-        vertices_(mesh.cell(cell))
-  {
-    for (const std::span<const double> part : {stress.lin_in(cell), stress.reg_in(cell)})
-      for (std::size_t i = 0; i < part.size(); ++i) coefficients_[i] += part[i];
-    std::ranges::sort(vertices_);
-    origin_ = mesh.vertex(vertices_[0]);
-    for (int j = 0; j < dim; ++j) jacobian_.col(j) = mesh.vertex(vertices_[j + 1]) - origin_;
-    det_ = std::abs(jacobian_.determinant());
-    inverse_ = jacobian_.inverse();
-  }
-
-  /// The basis of P^{p-1}(T) at a point of space, up to the factor 1/sqrt(det J).
-  void truncated_basis_at(const Point<dim>& x, std::span<double> values) const
-  {
-    fem::orthonormal_values<dim>(degree_ - 1, inverse_ * (x - origin_), values);
-  }
-  /// Which of the ascending vertices lies opposite to the facet, the cell's vertex `opposite` being that one.
-  [[nodiscard]] int facet_opposite(Index opposite) const
-  {
-    return static_cast<int>(std::ranges::find(vertices_, opposite) - vertices_.begin());
-  }
-  [[nodiscard]] double squared_norm() const
-  {
-    double sum = 0;
-    for (const double c : coefficients_) sum += c * c;
-    return sum;
-  }
-
-  /// sigma_h n from the values of the basis at a point.
-  [[nodiscard]] Point<dim> normal_trace(const double* basis, const Point<dim>& normal) const
-  {
-    Point<dim> trace = Point<dim>::Zero();
-    for (int r = 0; r < dim; ++r)
-      for (int c = 0; c < dim; ++c)
-      {
-        double entry = 0;
-        for (int j = 0; j < n_; ++j) entry += coefficient(r, c, j) * basis[j];
-        trace[r] += entry * normal[c] / std::sqrt(det_);
-      }
-    return trace;
-  }
-  /// sigma_h n at a point of space.
-  [[nodiscard]] Point<dim> normal_trace_at(const Point<dim>& x, const Point<dim>& normal) const
-  {
-    std::vector<double> values(n_);
-    fem::orthonormal_values<dim>(degree_, inverse_ * (x - origin_), values);
-    return normal_trace(values.data(), normal);
-  }
-
-  /// The coefficients of div sigma_h in the orthonormal basis of P^{p-1}(T).
-  [[nodiscard]] std::vector<Point<dim>> divergence(const Tables<dim>& tables) const
-  {
-    std::vector<Point<dim>> result(tables.n_less, Point<dim>::Zero());
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < tables.n_less; ++i)
-        for (int r = 0; r < dim; ++r)
-          for (int c = 0; c < dim; ++c)
-            for (int j = 0; j < n_; ++j)
-              result[i][r] += inverse_(k, c) * tables.derivative[k][i * n_ + j] * coefficient(r, c, j);
-    return result;
-  }
-
-  /// ||Pi^{p-1} skew sigma_h||^2: the skew part of the leading coefficients.
-  [[nodiscard]] double squared_skew_part(int n_less) const
-  {
-    double sum = 0;
-    for (int r = 0; r < dim; ++r)
-      for (int c = 0; c < dim; ++c)
-        for (int j = 0; j < n_less; ++j)
-          sum += std::pow((coefficient(r, c, j) - coefficient(c, r, j)) / 2, 2);
-    return sum;
-  }
-
- private:
-  [[nodiscard]] double coefficient(int r, int c, int j) const
-  {
-    return coefficients_[(dim * r + c) * n_ + j];
-  }
-
-  int degree_;
-  int n_;
-  std::vector<double> coefficients_;
-  mesh::Cell<dim> vertices_;  ///< ascending
-  Point<dim> origin_;
-  Tensor<dim> jacobian_;
-  Tensor<dim> inverse_;
-  double det_;
-};
-
 /// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The points of the rule come in
 /// the numbering of the cell, in which f is given.
 template <int dim>
 double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index cell,
-                                 const Tables<dim>& tables, const CellStress<dim>& sigma,
+                                 const CheckTables<dim>& tables, const CheckedStress<dim>& sigma,
                                  const mesh::CellMap<dim>& map)
 {
   std::vector<Point<dim>> moments = sigma.divergence(tables);
@@ -188,25 +50,28 @@ double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index c
 /// Sums of squares on the cells, and the square of the norm of sigma_h.
 template <int dim>
 double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
-                   const Tables<dim>& tables, IdentityDefects& squares)
+                   const CheckTables<dim>& tables, IdentityDefects& squares)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  double norm_squared = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  const auto of_cell = [&](std::size_t cell)
   {
-    const CellStress<dim> sigma(mesh, stress, c);
-    norm_squared += sigma.squared_norm();
-    squares.symmetry += sigma.squared_skew_part(tables.n_less);
-    squares.divergence += std::pow(mesh::cell_diameter(mesh, c), 2) *
-                          squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c));
-  }
-  return norm_squared;
+    const auto c = static_cast<Index>(cell);
+    const CheckedStress<dim> sigma(mesh, stress, c);
+    return Eigen::Array3d(
+        sigma.squared_norm(), sigma.squared_skew_part(tables.n_less),
+        std::pow(mesh::cell_diameter(mesh, c), 2) *
+            squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c)));
+  };
+  const Eigen::Array3d sums = parallel_sum<Eigen::Array3d>(mesh.n_cells(), Eigen::Array3d::Zero(), of_cell);
+  squares.symmetry = sums[1];
+  squares.divergence = sums[2];
+  return sums[0];
 }
 
 /// sum h_F ||[sigma_h n]||_F^2 over the facets between two cells. Seen from both, the vertices of the facet
 /// come in the same, ascending order.
 template <int dim>
-double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const Tables<dim>& tables)
+double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const CheckTables<dim>& tables)
 {
   const mesh::Topology<dim>& topology = mesh.topology();
   const auto opposite = [&](Index cell, Index facet)
@@ -214,16 +79,18 @@ double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const
     const auto& facets = topology.cell_facets[cell];
     return mesh.cell(cell)[std::ranges::find(facets, facet) - facets.begin()];
   };
-  double sum = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  const auto of_cell = [&](std::size_t cell)
+  {
+    const auto c = static_cast<Index>(cell);
+    double sum = 0;
     for (int local = 0; local <= dim; ++local)
     {
       const Index facet = topology.cell_facets[c][local];
       const auto& [first, second] = topology.facet_cells[facet];
       if (first != c || second < 0) continue;
       const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, c, local);
-      const CellStress<dim> here(mesh, stress, first);
-      const CellStress<dim> there(mesh, stress, second);
+      const CheckedStress<dim> here(mesh, stress, first);
+      const CheckedStress<dim> there(mesh, stress, second);
       const double* const phi_here = tables.on_facet[here.facet_opposite(opposite(first, facet))].data();
       const double* const phi_there = tables.on_facet[there.facet_opposite(opposite(second, facet))].data();
       for (int q = 0; q < tables.jump_rule.size(); ++q)
@@ -232,7 +99,9 @@ double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const
                 there.normal_trace(phi_there + q * tables.n, geometry.normal))
                    .squaredNorm();
     }
-  return sum;
+    return sum;
+  };
+  return parallel_sum(mesh.n_cells(), 0.0, of_cell);
 }
 
 /// Moments (t, theta_i)_F of tractions in the orthonormal basis theta of one boundary facet.
@@ -309,7 +178,7 @@ void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    const CellStress<dim> sigma(mesh, stress, facet.cell);
+    const CheckedStress<dim> sigma(mesh, stress, facet.cell);
     FacetMoments<dim> on_facet(mesh, facet, stress.degree);
     std::vector<Point<dim>> moments = on_facet.none();
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
@@ -328,7 +197,7 @@ template <int dim>
 IdentityDefects check_identities(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t,
                                  const Stress<dim>& stress)
 {
-  const Tables<dim> tables(stress.degree);
+  const CheckTables<dim> tables(stress.degree);
   IdentityDefects squares;
   const double norm_squared = check_cells(form, stress, tables, squares);
   squares.jump = check_jumps(form.space().mesh(), stress, tables);

@@ -1,7 +1,5 @@
 #include "tribound/certify/bound/estimate.h"
 
-#include <omp.h>
-
 #include <cmath>
 
 #include "tribound/base/norm.h"
@@ -65,7 +63,7 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
     result.cells[c].osc = data_.osc[c];
     result.cells[c].neu = data_.neu[c];
   }
-  stress_terms(u, stress, n_threads > 0 ? n_threads : omp_get_max_threads(), result);
+  stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
   contact_terms(u, stress, result);
   add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0);
   return result;

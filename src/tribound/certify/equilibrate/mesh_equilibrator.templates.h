@@ -5,8 +5,6 @@
 
 #include "tribound/certify/equilibrate/mesh_equilibrator.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <exception>
 #include <optional>
@@ -169,7 +167,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
   MeshEquilibrator(const contact::NitscheForm<dim>& form, int n_threads)
       : form_(form),
         mesh_(form.space().mesh()),
-        n_threads_(n_threads > 0 ? n_threads : omp_get_max_threads()),
+        n_threads_(n_threads > 0 ? n_threads : max_threads()),
         body_(form),
         shapes_(mesh_)
   {

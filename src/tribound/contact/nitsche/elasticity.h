@@ -26,13 +26,12 @@ template <int dim>
   return s;
 }
 
-/// a(phi_j, phi_i) over free i and j, every entry once, in the order of rows and columns: a seventh of the
-/// cells' own entries in 3D. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal alone, which
-/// decouples it without spoiling the scaling.
+/// a(phi_j, phi_i) over free i and j. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal
+/// alone, which decouples it without spoiling the scaling.
 template <int dim>
-[[nodiscard]] algebra::Triplets stiffness(const problem::Problem<dim>& problem,
-                                          const fem::LagrangeSpace<dim>& space,
-                                          const fem::Constraints& constraints);
+[[nodiscard]] algebra::SparseRows stiffness(const problem::Problem<dim>& problem,
+                                            const fem::LagrangeSpace<dim>& space,
+                                            const fem::Constraints& constraints);
 
 /// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell.
 template <int dim>

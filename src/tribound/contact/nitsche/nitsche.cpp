@@ -3,6 +3,7 @@
 #include <cassert>
 #include <utility>
 
+#include "tribound/base/parallel.h"
 #include "tribound/fem/evaluation.h"
 
 namespace tribound::contact
@@ -84,41 +85,40 @@ Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_
 }
 
 template <int dim>
+template <class Evaluate>
+std::vector<Point<dim>> NitscheForm<dim>::at_contact_points(const Evaluate& evaluate) const
+{
+  std::vector<Point<dim>> result(n_contact_points());
+  parallel_for(segments_.size(),
+               [&](std::size_t k)
+               {
+                 const SegmentValues<dim> on_segment = values(k);
+                 for (int q = 0; q < n_segment_points(); ++q)
+                   result[k * n_segment_points() + q] = evaluate(on_segment, k, q);
+               });
+  return result;
+}
+
+template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u, double delta) const
 {
-  std::vector<Point<dim>> t;
-  t.reserve(n_contact_points());
-  for (std::size_t k = 0; k < segments_.size(); ++k)
-  {
-    const SegmentValues<dim> on_segment = values(k);
-    for (int q = 0; q < n_segment_points(); ++q)
-      t.push_back(respond(k, q, augmented_traction(on_segment, u, k, q), delta));
-  }
-  return t;
+  return at_contact_points([&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
+                           { return respond(k, q, augmented_traction(on_segment, u, k, q), delta); });
 }
 
 template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind, std::span<const double> u,
                                                               std::span<const double> w, double delta) const
 {
-  std::vector<Point<dim>> t;
-  t.reserve(n_contact_points());
-  for (std::size_t k = 0; k < segments_.size(); ++k)
-  {
-    const SegmentValues<dim> on_segment = values(k);
-    for (int q = 0; q < n_segment_points(); ++q)
-    {
-      const Point<dim> at_w = augmented_traction(on_segment, w, k, q);
-      if (kind == Linearisation::closed_sticking)
+  return at_contact_points(
+      [&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
       {
-        t.push_back(traction_derivative(kind, k, q, at_w, delta) * at_w);
-        continue;
-      }
-      const Point<dim> at_u = augmented_traction(on_segment, u, k, q);
-      t.push_back(respond(k, q, at_u, delta) + traction_derivative(kind, k, q, at_u, delta) * (at_w - at_u));
-    }
-  }
-  return t;
+        const Point<dim> at_w = augmented_traction(on_segment, w, k, q);
+        if (kind == Linearisation::closed_sticking)
+          return traction_derivative(kind, k, q, at_w, delta) * at_w;
+        const Point<dim> at_u = augmented_traction(on_segment, u, k, q);
+        return respond(k, q, at_u, delta) + traction_derivative(kind, k, q, at_u, delta) * (at_w - at_u);
+      });
 }
 
 template <int dim>
@@ -162,8 +162,24 @@ auto NitscheForm<dim>::tangent_block(Linearisation kind, std::span<const double>
 }
 
 template <int dim>
-void NitscheForm<dim>::add_block_entries(const SegmentValues<dim>& on_segment,
-                                         std::span<const Tensor<dim>> block, algebra::Triplets& entries) const
+std::size_t NitscheForm<dim>::n_block_entries(std::size_t k) const
+{
+  const fem::LagrangeBasis<dim>& basis = space_->basis();
+  std::size_t n_sides = 0;
+  std::size_t n_rows = 0;
+  segments_[k].for_each_side(
+      [&](const SegmentSide<dim>& side)
+      {
+        ++n_sides;
+        for (int i = 0; i < basis.n_nodes(); ++i) n_rows += basis.node(i)[side.facet.local] == 0 ? 1 : 0;
+      });
+  return n_rows * n_sides * basis.n_nodes() * dim * dim;
+}
+
+template <int dim>
+void NitscheForm<dim>::put_block_entries(const SegmentValues<dim>& on_segment,
+                                         std::span<const Tensor<dim>> block, std::size_t position,
+                                         algebra::Triplets& entries) const
 {
   const fem::LagrangeBasis<dim>& basis = space_->basis();
   const auto free_dof = [&](Index node, int a)
@@ -182,7 +198,7 @@ void NitscheForm<dim>::add_block_entries(const SegmentValues<dim>& on_segment,
         {
           for (int a = 0; a < dim; ++a)
             for (int b = 0; b < dim; ++b)
-              entries.add(free_dof(row.nodes[i], a), free_dof(node, b), (*entry)(a, b));
+              entries.put(position++, free_dof(row.nodes[i], a), free_dof(node, b), (*entry)(a, b));
           ++entry;
         }
     }
@@ -192,12 +208,17 @@ template <int dim>
 algebra::Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u,
                                                     double delta) const
 {
+  std::vector<std::size_t> begin{0};
+  for (std::size_t k = 0; k < segments_.size(); ++k) begin.push_back(begin.back() + n_block_entries(k));
   algebra::Triplets entries;
-  for (std::size_t k = 0; k < segments_.size(); ++k)
-  {
-    const SegmentValues<dim> on_segment = values(k);
-    add_block_entries(on_segment, tangent_block(kind, u, k, delta, on_segment), entries);
-  }
+  entries.resize(begin.back());
+  parallel_for(segments_.size(),
+               [&](std::size_t k)
+               {
+                 const SegmentValues<dim> on_segment = values(k);
+                 put_block_entries(on_segment, tangent_block(kind, u, k, delta, on_segment), begin[k],
+                                   entries);
+               });
   return entries;
 }
 

@@ -128,9 +128,14 @@ class NitscheForm
   [[nodiscard]] std::vector<Tensor<dim>> tangent_block(Linearisation kind, std::span<const double> u,
                                                        std::size_t k, double delta,
                                                        const SegmentValues<dim>& on_segment) const;
-  /// Appends the rows of a block that belong to nodes on the facets.
-  void add_block_entries(const SegmentValues<dim>& on_segment, std::span<const Tensor<dim>> block,
-                         algebra::Triplets& entries) const;
+  /// Entries of the rows of the block of segment k that belong to nodes on the facets.
+  [[nodiscard]] std::size_t n_block_entries(std::size_t k) const;
+  /// Sets them, from `position` on.
+  void put_block_entries(const SegmentValues<dim>& on_segment, std::span<const Tensor<dim>> block,
+                         std::size_t position, algebra::Triplets& entries) const;
+  /// evaluate(values on segment k, k, q) at every contact point.
+  template <class Evaluate>
+  [[nodiscard]] std::vector<Point<dim>> at_contact_points(const Evaluate& evaluate) const;
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
