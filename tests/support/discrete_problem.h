@@ -17,7 +17,8 @@ namespace tribound::test
 template <int dim>
 struct DiscreteProblem
 {
-  DiscreteProblem(mesh::Mesh<dim> m, const ProblemData<dim>& data, const adapt::Method& options = {})
+  DiscreteProblem(mesh::Mesh<dim> m, const ProblemData<dim>& data,
+                  const adapt::Method& options = {.degree = 1})
       : method(options),
         mesh(std::move(m)),
         problem(data.on(mesh)),
@@ -26,7 +27,7 @@ struct DiscreteProblem
   {
   }
   DiscreteProblem(mesh::MeshData<dim> data, const ProblemData<dim>& problem,
-                  const adapt::Method& options = {})
+                  const adapt::Method& options = {.degree = 1})
       : DiscreteProblem(mesh::Mesh<dim>(std::move(data)), problem, options)
   {
   }

@@ -59,8 +59,8 @@ Told run(const adapt::Method& method, const adapt::AdaptOptions& options,
 TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
 {
   const adapt::AdaptOptions options{.tolerance = 0.05, .max_levels = 40};
-  const Told early = run({.stopping = {.finish = false}}, options);
-  const Told late = run({}, options);
+  const Told early = run({.degree = 1, .stopping = {.finish = false}}, options);
+  const Told late = run({.degree = 1}, options);
   ASSERT_EQ(early.numbers, late.numbers);
   EXPECT_EQ(late.verdict.status, certify::RunStatus::certified);
   EXPECT_FALSE(early.levels.back().converged);
@@ -91,9 +91,10 @@ TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
 TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
 {
   const adapt::AdaptOptions options{.tolerance = 0.9, .max_levels = 0};
-  const Told early = run({.newton = {.tolerance = 1e-14}, .stopping = {.finish = false}}, options);
+  const Told early =
+      run({.degree = 1, .newton = {.tolerance = 1e-14}, .stopping = {.finish = false}}, options);
   const int steps = static_cast<int>(early.levels.back().steps.size());
-  const Told late = run({.newton = {.tolerance = 1e-14, .max_steps = steps}}, options);
+  const Told late = run({.degree = 1, .newton = {.tolerance = 1e-14, .max_steps = steps}}, options);
   EXPECT_EQ(late.verdict.status, certify::RunStatus::certified) << late.verdict.reason;
   EXPECT_EQ(late.levels.back().u == early.levels.back().u, !late.levels.back().converged);
 }
@@ -101,7 +102,8 @@ TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
 /// Systems solved to three digits leave the stress out of equilibrium.
 TEST(Finish, SystemsAreSolvedAnewWhereAnIdentityIsViolated)
 {
-  const Told told = run({.newton = {.tolerance = 1e-3},
+  const Told told = run({.degree = 1,
+                         .newton = {.tolerance = 1e-3},
                          .solver = {.method = algebra::LinearMethod::iterative, .tolerance = 1e-3}},
                         {.tolerance = 0.9, .max_levels = 0});
   EXPECT_EQ(told.verdict.status, certify::RunStatus::certified) << told.verdict.reason;

@@ -248,7 +248,8 @@ TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
 TEST(RegularisedLevel, KeepsToTheLimitOfUpdates)
 {
   const DiscreteProblem<2> c(bent_block<2>(), tresca_problem,
-                             {.newton = {.tolerance = 1e-12},
+                             {.degree = 1,
+                              .newton = {.tolerance = 1e-12},
                               .regularisation = {{.delta = 5, .gamma_reg = 1e-9, .max_updates = 2}}});
   const adapt::CertifiedLevel<2> level = adapt::solve_and_certify<2>(c.form, {}, c.method);
   ASSERT_TRUE(level.solved()) << level.failure;

@@ -31,7 +31,7 @@ struct StoppingOptions
 
 struct Method
 {
-  int degree = 1;                  ///< p = 1, ..., fem::max_degree
+  int degree = 2;                  ///< p = 1, ..., fem::max_degree
   std::optional<double> gamma0{};  ///< > 0; contact::default_gamma0(degree) where absent
   solve::NewtonOptions newton{};
   StoppingOptions stopping{};

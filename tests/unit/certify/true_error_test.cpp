@@ -143,7 +143,7 @@ mesh::MeshData<dim> few_cells()
     return box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
 }
 
-const adapt::Method two_steps{.newton = {.max_steps = 2}};
+const adapt::Method two_steps{.degree = 1, .newton = {.max_steps = 2}};
 
 /// W grows, and so does the supremum over it, towards a limit.
 TYPED_TEST(TrueError, DualNormGrowsWithTheSpace)

@@ -80,7 +80,7 @@ TEST(DiscreteData, GapsAreResolvedForThePenaltyInUse)
         {.boundaries = {fixed<2>("top", 0, -0.1),
                         obstacle<2>("bottom", Frictionless(), formula("0.01*(1 + sin(40*x))"))},
          .material = lame(1, nu)},
-        {.gamma0 = gamma0});
+        {.degree = 1, .gamma0 = gamma0});
     return c.form.data().effort().parts;
   };
   EXPECT_GT(parts(0.3, 1e5), 2 * parts(0.3, {}));

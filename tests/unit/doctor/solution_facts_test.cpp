@@ -28,7 +28,7 @@ using ::testing::SizeIs;
 template <int dim>
 DiscreteProblem<dim> on_obstacle(mesh::MeshData<dim> mesh, const problem::BoundaryCondition<dim>& contact)
 {
-  return {std::move(mesh), {.boundaries = {contact}, .material = lame(1, 0)}, {.gamma0 = 1}};
+  return {std::move(mesh), {.boundaries = {contact}, .material = lame(1, 0)}, {.degree = 1, .gamma0 = 1}};
 }
 
 /// Eight facets of length 1/4 at the bottom: gamma = 4.
