@@ -63,9 +63,10 @@ enum class MatrixKind
   positive_definite
 };
 
-/// Tresca block, whole Newton loops of p = 1, 2, 3: multigrid takes 0.39, 0.36, 0.48 of the time of MUMPS at
-/// 13k degrees of freedom, 1.0, 0.43, 0.88 at 6k to 8k (bench/README.md).
-inline constexpr Index direct_limit_3d = 10'000;
+/// Whole Newton loops of a Tresca block from scratch, p = 1, 2, 3: multigrid takes 0.33, 0.29, 0.47 of the time
+/// of MUMPS at 3k to 6k degrees of freedom; on adaptive meshes of 4k to 9k, with few steps, 1.2 to 0.7
+/// (bench/README.md).
+inline constexpr Index direct_limit_3d = 5'000;
 
 /// Direct or iterative for a whole matrix, as configured or by dimension and size: factorisations in 2D at
 /// every size that fits, in 3D up to `direct_limit` degrees of freedom. `condensed` is taken for automatic.
@@ -97,6 +98,7 @@ class LinearSolver
  private:
   [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, std::span<const double> b, double tolerance,
                                     std::span<double> x);
+  [[nodiscard]] int patience(Index n) const;
   void configure(const SparseMatrix& a);
   void configure_direct(const SparseMatrix& a);
   [[nodiscard]] _p_PC* preconditioner() const;

@@ -287,8 +287,8 @@ TEST(ChooseMethod, DirectUnlessLargeIn3DOrTold)
 {
   const algebra::SolverOptions automatic;
   EXPECT_EQ(algebra::choose_method(automatic, 2, 1'000'000), algebra::LinearMethod::direct);
-  EXPECT_EQ(algebra::choose_method(automatic, 3, 10'000), algebra::LinearMethod::direct);
-  EXPECT_EQ(algebra::choose_method(automatic, 3, 1'000'000), algebra::LinearMethod::iterative);
+  EXPECT_EQ(algebra::choose_method(automatic, 3, 5'000), algebra::LinearMethod::direct);
+  EXPECT_EQ(algebra::choose_method(automatic, 3, 5'001), algebra::LinearMethod::iterative);
   const algebra::SolverOptions told{.method = algebra::LinearMethod::iterative};
   EXPECT_EQ(algebra::choose_method(told, 2, 100), algebra::LinearMethod::iterative);
 }
