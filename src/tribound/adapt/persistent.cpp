@@ -86,19 +86,22 @@ std::optional<std::vector<double>> start_with_gamma(
   return solution_of(other, start, method, 0, record);
 }
 
-/// The solution with degree 1 on the same mesh, as far as a start needs it; nothing where Newton's method
-/// fails.
+/// The solution with half the degree, rounded up, on the same mesh, as far as a start needs it; it starts
+/// likewise. Nothing where Newton's method fails.
 template <int dim>
-std::optional<std::vector<double>> start_of_degree_one(
+std::optional<std::vector<double>> start_of_lower_degree(
     const contact::NitscheForm<dim>& form, const Method& method,
     const std::function<void(const solve::NewtonStep&)>& record)
 {
   constexpr double tolerance = 1e-4;
-  const fem::LagrangeSpace<dim> space(form.space().mesh(), 1);
-  const contact::NitscheForm<dim> other(form.problem(), space, contact::default_gamma0(1));
+  const int degree = (form.space().degree() + 1) / 2;
+  const fem::LagrangeSpace<dim> space(form.space().mesh(), degree);
+  const contact::NitscheForm<dim> other(form.problem(), space, contact::default_gamma0(degree));
   try
   {
-    const auto u = solution_of<dim>(other, {}, method, tolerance, record);
+    std::optional<std::vector<double>> start;
+    if (degree > 1) start = start_of_lower_degree(other, method, record);
+    const auto u = solution_of<dim>(other, start.value_or(std::vector<double>{}), method, tolerance, record);
     if (!u) return std::nullopt;
     std::vector<Index> itself(space.mesh().n_cells());
     std::iota(itself.begin(), itself.end(), 0);
@@ -119,9 +122,9 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
                                             const std::function<void(const solve::NewtonStep&)>& record)
 {
   const bool may_start_anew = method.newton.damping && !method.regularisation && form.problem().has_contact();
-  std::optional<std::vector<double>> of_degree_one;
+  std::optional<std::vector<double>> of_lower_degree;
   if (dim == 3 && form.space().degree() > 1 && start.empty() && may_start_anew)
-    of_degree_one = start_of_degree_one(form, method, record);
+    of_lower_degree = start_of_lower_degree(form, method, record);
 
   solve::NewtonResult<dim> first;
   const auto attempt = [&](std::span<const double> u)
@@ -129,7 +132,7 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   std::exception_ptr failure;
   try
   {
-    first = attempt(of_degree_one ? *of_degree_one : start);
+    first = attempt(of_lower_degree ? *of_lower_degree : start);
   }
   catch (const SolveError&)
   {
@@ -139,7 +142,7 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
 
   using Start = std::function<std::optional<std::vector<double>>()>;
   std::vector<Start> others;
-  if (of_degree_one) others.emplace_back([] { return std::vector<double>{}; });
+  if (of_lower_degree) others.emplace_back([] { return std::vector<double>{}; });
   if (may_start_anew)
     others.insert(others.end(), {[&] { return regularised_start(form, start, method, record); },
                                  [&] { return start_with_gamma(3, form, start, method, record); },

@@ -12,13 +12,13 @@
 namespace tribound::adapt
 {
 
-/// solve(), from scratch in 3D with degree 2 or more by way of the solution with degree 1 on the same mesh to
-/// a relative residual of 1e-4: most steps then cost a fraction. Where that fails, with damping and contact
-/// and without [regularisation], from other starts: from scratch, from solutions with T_delta in the place of
-/// T, which has no kinks, for smaller and smaller delta, then from those with three times and with a third of
-/// gamma. Near incompressibility Newton's method may go round in circles between contact states, and finds
-/// its way from there. The steps of these solutions go to `record`, those of all attempts to `observer`.
-/// Should all fail, it is the first one that is told of.
+/// solve(), from scratch in 3D with degree p >= 2 by way of the solution with degree p / 2, rounded up, on
+/// the same mesh, to a relative residual of 1e-4 and found likewise: most steps then cost a fraction. Where
+/// that fails, with damping and contact and without [regularisation], from other starts: from scratch, from
+/// solutions with T_delta in the place of T, which has no kinks, for smaller and smaller delta, then from
+/// those with three times and with a third of gamma. Near incompressibility Newton's method may go round in
+/// circles between contact states, and finds its way from there. The steps of these solutions go to `record`,
+/// those of all attempts to `observer`. Should all fail, it is the first one that is told of.
 template <int dim>
 [[nodiscard]] solve::NewtonResult<dim> solve_persistently(
     const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,

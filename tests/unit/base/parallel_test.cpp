@@ -60,9 +60,9 @@ TEST(ParallelSum, IsTheSameForAnyNumberOfThreads)
     const auto sum = [&](int n_threads)
     {
       omp_set_num_threads(n_threads);
-      return parallel_sum(n, 1.0, [](std::size_t i) { return 1 / (1.0 + static_cast<double>(i)); });
+      return parallel_sum(n, 0.0, [](std::size_t i) { return 1 / (1.0 + static_cast<double>(i)); });
     };
-    double expected = 1;
+    double expected = 0;
     for (std::size_t i = 0; i < n; ++i) expected += 1 / (1.0 + static_cast<double>(i));
     const double alone = sum(1);
     EXPECT_NEAR(alone, expected, 1e-12);
