@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <system_error>
 
@@ -165,6 +166,14 @@ double von_mises(const std::array<double, 6>& sigma)
 std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma)
 {
   const auto& [xx, yy, zz, xy, yz, xz] = sigma;
+  if (yz == 0 && xz == 0)  // as in 2D
+  {
+    const double middle = 0.5 * (xx + yy);
+    const double radius = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+    std::array<double, 3> values = {middle + radius, middle - radius, zz};
+    std::ranges::sort(values, std::greater());
+    return values;
+  }
   Eigen::Matrix3d matrix;
   matrix << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
