@@ -22,15 +22,26 @@ using Clock = std::chrono::steady_clock;
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+/// CPU time of the calling thread.
+[[nodiscard]] inline double thread_cpu_seconds()
+{
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// Adds the wall time and the CPU time of its life to two totals.
 class ScopedTimer
 {
  public:
-  ScopedTimer(double& wall, double& cpu) : wall_(wall), cpu_(cpu) {}
+  ScopedTimer(double& wall, double& cpu, double (*cpu_clock)() = cpu_seconds)
+      : wall_(wall), cpu_(cpu), cpu_clock_(cpu_clock)
+  {
+  }
   ~ScopedTimer()
   {
     wall_ += seconds_since(begin_);
-    cpu_ += cpu_seconds() - cpu_begin_;
+    cpu_ += cpu_clock_() - cpu_begin_;
   }
   ScopedTimer(const ScopedTimer&) = delete;
   ScopedTimer& operator=(const ScopedTimer&) = delete;
@@ -38,8 +49,9 @@ class ScopedTimer
  private:
   double& wall_;
   double& cpu_;
+  double (*cpu_clock_)();
   Clock::time_point begin_ = Clock::now();
-  double cpu_begin_ = cpu_seconds();
+  double cpu_begin_ = cpu_clock_();
 };
 
 }  // namespace tribound

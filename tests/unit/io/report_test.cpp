@@ -96,10 +96,12 @@ TEST(Report, TimesOfEveryStage)
   run.levels[0].times.stages.output = 0.0625;
   run.levels[0].times.solve_cpu = 1.75;
   run.levels[0].times.certify_cpu = 0.75;
+  run.levels[0].times.output_cpu = 0.375;
   run.levels[0].times.level_cpu = 3.0;
-  const json expected = {{"solve", 1.5},        {"certify", 0.25},  {"bisect", 0.5}, {"discretise", 0.25},
-                         {"transfer", 0.125},   {"output", 0.0625}, {"level", 2.0},  {"solve_cpu", 1.75},
-                         {"certify_cpu", 0.75}, {"level_cpu", 3.0}};
+  const json expected = {{"solve", 1.5},        {"certify", 0.25},   {"bisect", 0.5},
+                         {"discretise", 0.25},  {"transfer", 0.125}, {"output", 0.0625},
+                         {"level", 2.0},        {"solve_cpu", 1.75}, {"certify_cpu", 0.75},
+                         {"output_cpu", 0.375}, {"level_cpu", 3.0}};
   EXPECT_EQ(json::parse(io::certificate_json(run))["levels"][0]["times"], expected);
 }
 

@@ -41,9 +41,10 @@ inline constexpr std::array<std::pair<const char*, double StageTimes::*>, 6> sta
 struct LevelTimes
 {
   StageTimes stages;
-  double level = 0.0;      ///< wall time of everything, output included; s
+  double level = 0.0;      ///< wall time while it was in work; output may go on beside the next level; s
   double solve_cpu = 0.0;  ///< CPU time, all threads; s
   double certify_cpu = 0.0;
+  double output_cpu = 0.0;
   double level_cpu = 0.0;
 };
 

@@ -125,6 +125,7 @@ Json json(const LevelRecord& level)
   object["times"].update({{"level", level.times.level},
                           {"solve_cpu", level.times.solve_cpu},
                           {"certify_cpu", level.times.certify_cpu},
+                          {"output_cpu", level.times.output_cpu},
                           {"level_cpu", level.times.level_cpu}});
   return object;
 }
