@@ -41,7 +41,7 @@ ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<co
   profile.tag = tag;
   const std::vector<io::ChainLink> links = io::contact_chains(form, tag);
   if (links.empty()) return profile;
-  const std::size_t n = std::clamp<std::size_t>(n_points / links.size(), form.space().degree(), 24);
+  const std::size_t n = std::clamp<std::size_t>(n_points / links.size(), form.space().degree(), 16);
   const std::vector<Point<1>> points = even_points(n);
   const contact::SegmentTables<2> tables(form.space().basis(), form.segments(), points);
   for (const io::ChainLink& link : links)

@@ -34,6 +34,6 @@ struct ContactProfile
 /// The profile of every boundary with contact, of about `n_points` points each, at least p + 1 per facet.
 [[nodiscard]] std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form,
                                                            std::span<const double> u,
-                                                           std::size_t n_points = 3000);
+                                                           std::size_t n_points = 2000);
 
 }  // namespace tribound::app

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <utility>
 
 #include "app/machine.h"
 #include "tribound/certify/bound/components.h"
@@ -16,41 +17,41 @@ std::string script_safe(std::string_view json)
 {
   std::string safe;
   safe.reserve(json.size());
-  for (const char c : json)
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  return safe;
+  for (std::size_t less = json.find('<'); less != std::string_view::npos; less = json.find('<'))
+  {
+    safe.append(json.substr(0, less)).append("\\u003c");
+    json.remove_prefix(less + 1);
+  }
+  return safe.append(json);
 }
 
 PageTemplate::PageTemplate(const std::filesystem::path& path)
 {
-  const std::string text = read_text(path);
-  const std::size_t marker = text.find(page_data_marker);
-  if (marker == std::string::npos) return;
-  head_ = text.substr(0, marker);
-  tail_ = text.substr(marker + page_data_marker.size());
+  text_ = read_text(path);
+  marker_ = text_.find(page_data_marker);
 }
 
 void PageTemplate::write(const std::filesystem::path& page, std::string_view id, const io::Json& data) const
 {
   if (empty()) return;
   io::AtomicFile file(page);
-  file.write(head_);
+  const std::string_view text = text_;
+  file.write(text.substr(0, marker_));
   file.write(R"(<script type="application/json" id=")");
   file.write(id);
   file.write(R"(">)");
   file.write(script_safe(io::json_text(data, -1)));
   file.write("</script>");
-  file.write(tail_);
+  file.write(text.substr(marker_ + page_data_marker.size()));
   file.commit();
 }
 
 std::string read_text(const std::filesystem::path& path)
 {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  const std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
 }
 
 io::Json machine_json()

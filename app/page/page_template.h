@@ -26,15 +26,15 @@ class PageTemplate
   /// Empty where there is no such file, or no place for data in it.
   explicit PageTemplate(const std::filesystem::path& path);
 
-  [[nodiscard]] bool empty() const { return head_.empty(); }
+  [[nodiscard]] bool empty() const { return marker_ == std::string::npos; }
 
   /// Writes the page with the data in a script element with this id. Does nothing where the template is
   /// empty. Throws WriteError when the file cannot be written.
   void write(const std::filesystem::path& page, std::string_view id, const io::Json& data) const;
 
  private:
-  std::string head_;  ///< the template before the marker
-  std::string tail_;  ///< and behind it
+  std::string text_;
+  std::size_t marker_;  ///< its place in the text; npos where there is none
 };
 
 /// The text of a file; empty where it cannot be read.

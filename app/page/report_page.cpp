@@ -71,7 +71,8 @@ io::Json eta_json(const Surface& surface, const certify::Estimate& estimate)
   };
   add("tot", [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
   for (const certify::Component& c : certify::all_components)
-    add(c.name, [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
+    if (estimate.global.*c.value > 0)
+      add(c.name, [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
   return eta;
 }
 
@@ -250,6 +251,7 @@ void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
                      const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
+  std::erase_if(levels_, [number](const PageLevel& other) { return other.number == number; });
   // The last level will have as many triangles at least: this one would then be dropped.
   const PageLimits limits;
   if (!levels_.empty() && n_triangles(levels_) + 2 * n_triangles(form, limits) > limits.all_levels) return;
@@ -261,7 +263,7 @@ void ReportPage::add_last(int number, const contact::NitscheForm<dim>& form,
                           const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
-  levels_.push_back(page_level(number, form, level));
+  if (levels_.empty() || levels_.back().number != number) levels_.push_back(page_level(number, form, level));
   volume_ = page_volume(form, level);
   drop_levels(levels_, {});
 }
