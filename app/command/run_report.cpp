@@ -43,38 +43,6 @@ ExitCode exit_code(certify::RunStatus status)
 /// Seconds of work that a program which is killed may lose: the first levels take less time than files.
 constexpr double most_lost = 1.0;
 
-/// eta_tot and the components cell by cell, for the VTU file.
-class CellComponents
-{
- public:
-  CellComponents(const certify::Estimate& estimate, bool regularised)
-  {
-    add("eta_tot", estimate, [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
-    for (const certify::Component& c : certify::components_of_run(regularised))
-      if (c.is_of_cells())
-        add(std::string("eta_") + c.name, estimate,
-            [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
-  }
-
-  [[nodiscard]] std::vector<io::CellField> fields() const
-  {
-    std::vector<io::CellField> result;
-    for (const auto& [name, values] : columns_) result.push_back({name, values});
-    return result;
-  }
-
- private:
-  template <typename Value>
-  void add(std::string name, const certify::Estimate& estimate, const Value& value)
-  {
-    std::vector<double>& column = columns_.emplace_back(std::move(name), std::vector<double>{}).second;
-    column.reserve(estimate.cells.size());
-    for (const certify::BoundComponents& cell : estimate.cells) column.push_back(value(cell));
-  }
-
-  std::vector<std::pair<std::string, std::vector<double>>> columns_;
-};
-
 /// What writing throws, to be thrown again when the level is printed.
 template <typename Write>
 std::exception_ptr failure_of(const Write& write)
@@ -128,19 +96,6 @@ std::string describe_solver(std::span<const adapt::CertifiedStep> steps)
 }
 
 template <int dim>
-void write_level_fields(const std::filesystem::path& directory, int number,
-                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
-                        std::span<const io::CellField> further)
-{
-  const CellComponents components(level.estimate, level.delta_updates.has_value());
-  std::vector<io::CellField> fields = components.fields();
-  fields.insert(fields.end(), further.begin(), further.end());
-  const std::array tensors = {io::equilibrated_stress_field(discrete.space, level.stress)};
-  io::write_level_vtu<dim>(directory / io::level_file_name("level", number), number, discrete.form.problem(),
-                           discrete.space, level.u, fields, tensors);
-}
-
-template <int dim>
 RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
                           const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed)
     : output_(config.output),
@@ -173,25 +128,62 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
 }
 
 template <int dim>
-void RunReport<dim>::write_fields(const KeptLevel<dim>& last) const
+void RunReport<dim>::write_fields(const KeptLevel<dim>& level) const
 {
-  const contact::NitscheForm<dim>& form = last.discrete->form;
+  const contact::NitscheForm<dim>& form = level.discrete->form;
   if (output_.mesh)
-    io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(last.discrete->mesh, free_sides_));
-  io::write_contact_csv(output_.directory / "contact.csv", form, last.level.u, last.number);
+    io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(level.discrete->mesh, free_sides_));
+  io::write_contact_csv(output_.directory / "contact.csv", form, level.level.u, level.number);
   if (!output_.vtu) return;
-  write_level_fields<dim>(output_.directory, last.number, *last.discrete, last.level);
-  io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", last.number), last.number,
-                             form, last.level.u);
-  io::write_series(output_.directory, writes_all_levels() ? 0 : last.number, last.number);
+  write_level_fields<dim>(output_.directory, level.number, *level.discrete, level.level);
+  io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", level.number), level.number,
+                             form, level.level.u);
+  io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number);
 }
 
 template <int dim>
-void RunReport<dim>::take(const adapt::LevelView<dim>& view)
+void RunReport<dim>::start_writing()
 {
-  if (last_ && last_->number != view.number) page_.add(last_->number, last_->discrete->form, last_->level);
-  last_.emplace(view);
-  if (writes_all_levels()) write_fields(*last_);
+  std::optional<io::RunRecord> record;  // a copy, since this one goes on
+  if (writes_all_levels() || seconds_since(written_) > most_lost)
+  {
+    record = record_;
+    written_ = Clock::now();
+  }
+  background_.start(
+      [this, record = std::move(record), level = record_.levels.back().bound ? last_ : nullptr]
+      {
+        const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
+        if (level && writes_all_levels()) write_fields(*level);
+        if (record) io::write_report(output_.directory, *record);
+        if (level) page_.add(level->number, level->discrete->form, level->level);
+      });
+}
+
+template <int dim>
+std::exception_ptr RunReport<dim>::finish_writing()
+{
+  std::exception_ptr failure = failure_of([&] { background_.wait(); });
+  if (!record_.levels.empty())
+  {
+    io::LevelTimes& times = record_.levels.back().times;
+    times.stages.output += std::exchange(writing_, 0);
+    times.output_cpu += std::exchange(writing_cpu_, 0);
+  }
+  return failure;
+}
+
+template <int dim>
+void RunReport<dim>::judge(const adapt::LevelView<dim>& view)
+{
+  record_.status = view.verdict.status;
+  record_.reason = view.verdict.reason;
+  const io::LevelRecord& level = record_.levels.back();
+  record_.warnings =
+      view.level.solved()
+          ? doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
+                                 doctor::contact_outcomes<dim>(view.discrete.form, view.level.u))
+          : std::vector<doctor::Finding>{};
 }
 
 template <int dim>
@@ -221,58 +213,67 @@ io::LevelTimes RunReport<dim>::take_back(int number)
 }
 
 template <int dim>
-void RunReport<dim>::add(const adapt::LevelView<dim>& view)
+void RunReport<dim>::count_time(Clock::time_point& begin)
 {
-  const contact::NitscheForm<dim>& form = view.discrete.form;
-  const io::LevelTimes before = take_back(view.number);
-  const bool again = before.level > 0;
-  const Clock::time_point before_output = Clock::now();
-  io::LevelRecord& level = record_.levels.emplace_back(io::level_record<dim>(view, moment_about_));
-  std::exception_ptr failure;
-  if (level.bound) failure = failure_of([&] { take(view); });
-  const double output = seconds_since(before_output);
-  level.times.stages.output = before.stages.output + output;
-  level.times.level += level.times.stages.output;
+  const double held = seconds_since(std::exchange(begin, Clock::now()));
   const double cpu_now = cpu_seconds();
-  level.times.level_cpu = before.level_cpu + cpu_now - std::exchange(cpu_before_, cpu_now);
-  update_statements(view);
-  record_.status = view.verdict.status;
-  record_.reason = view.verdict.reason;
-  record_.warnings =
-      view.level.solved()
-          ? doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
-                                 doctor::contact_outcomes<dim>(form, view.level.u))
-          : std::vector<doctor::Finding>{};
-  if (!failure && (writes_all_levels() || seconds_since(written_) > most_lost))
-    failure = failure_of([&] { write_record(); });
-  if (printed_ != Printed::verdict && !again) print_level(level);
-  if (failure) std::rethrow_exception(failure);
+  io::LevelTimes& times = record_.levels.back().times;
+  held_ += held;
+  times.level += held;
+  times.level_cpu += cpu_now - std::exchange(cpu_before_, cpu_now);
 }
 
 template <int dim>
-void RunReport<dim>::write_record()
+void RunReport<dim>::add(const adapt::LevelView<dim>& view)
 {
-  io::write_report(output_.directory, record_);
-  written_ = Clock::now();
+  Clock::time_point begin = Clock::now();
+  io::LevelRecord level;
+  double output = 0;
+  double output_cpu = 0;
+  {
+    const ScopedTimer timer(output, output_cpu, thread_cpu_seconds);
+    level = io::level_record<dim>(view, moment_about_);
+  }
+  const std::exception_ptr failure = finish_writing();
+  const io::LevelTimes before = take_back(view.number);
+  const bool again = before.level > 0;
+  if (!again) held_ = 0;
+  level.times.stages.output = before.stages.output + output;
+  level.times.output_cpu = before.output_cpu + output_cpu;
+  level.times.level += held_;
+  level.times.level_cpu = before.level_cpu;
+  record_.levels.push_back(std::move(level));
+  if (record_.levels.back().bound)
+  {
+    last_.reset();  // makes room for this one
+    last_ = std::make_shared<const KeptLevel<dim>>(view);
+  }
+  update_statements(view);
+  judge(view);
+  count_time(begin);
+  if (printed_ != Printed::verdict && !again) print_level(record_.levels.back());
+  if (failure) std::rethrow_exception(failure);
+  start_writing();
+  count_time(begin);
 }
 
 template <int dim>
 void RunReport<dim>::write_what_holds()
 {
+  Clock::time_point begin = Clock::now();
   std::exception_ptr failure;
-  if (last_)
+  const auto timed = [this](const auto& work)
   {
-    const Clock::time_point before_output = Clock::now();
-    if (!writes_all_levels()) failure = failure_of([&] { write_fields(*last_); });
-    page_.add_last(last_->number, last_->discrete->form, last_->level);
-    const double output = seconds_since(before_output);
     io::LevelTimes& times = record_.levels.back().times;
-    times.stages.output += output;
-    times.level += output;
-    const double cpu_now = cpu_seconds();
-    times.level_cpu += cpu_now - std::exchange(cpu_before_, cpu_now);
-  }
-  write_record();
+    const ScopedTimer timer(times.stages.output, times.output_cpu, thread_cpu_seconds);
+    work();
+  };
+  if (last_ && !writes_all_levels())  // beside the page's data of this level
+    timed([&] { failure = failure_of([&] { write_fields(*last_); }); });
+  if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
+  if (last_) timed([&] { page_.add_last(last_->number, last_->discrete->form, last_->level); });
+  if (!record_.levels.empty()) count_time(begin);
+  io::write_report(output_.directory, record_);
   page_.write(output_.directory, record_);
   if (failure) std::rethrow_exception(failure);
 }
@@ -296,10 +297,6 @@ void RunReport<dim>::fail(const std::string& reason)
   write_what_holds();
 }
 
-template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<2>&,
-                                 const adapt::CertifiedLevel<2>&, std::span<const io::CellField>);
-template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<3>&,
-                                 const adapt::CertifiedLevel<3>&, std::span<const io::CellField>);
 template class RunReport<2>;
 template class RunReport<3>;
 

@@ -3,12 +3,15 @@
 /// @file run_report.h
 /// What a run tells and leaves behind, level by level.
 
-#include <filesystem>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "app/background.h"
+#include "app/command/level_files.h"
 #include "app/command/run.h"
 #include "app/output_directory.h"
 #include "app/page/report_page.h"
@@ -16,7 +19,6 @@
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/config.h"
-#include "tribound/io/fields/vtu.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/report.h"
 
@@ -31,27 +33,6 @@ namespace tribound::app
 /// The same of the steps on a mesh, at least one.
 [[nodiscard]] std::string describe_solver(std::span<const adapt::CertifiedStep> steps);
 
-/// Writes level_NNN.vtu: the fields of a level with the bound of every cell, and `further` numbers per cell.
-template <int dim>
-void write_level_fields(const std::filesystem::path& directory, int number,
-                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
-                        std::span<const io::CellField> further = {});
-
-/// A level that is still needed when the loop goes on.
-template <int dim>
-struct KeptLevel
-{
-  explicit KeptLevel(const adapt::LevelView<dim>& view)
-      : number(view.number), discrete(view.owner), level(view.level)
-  {
-    level.equilibrium.reset();  // factors are large, and no more steps are to come
-  }
-
-  int number;
-  std::shared_ptr<const adapt::Discretisation<dim>> discrete;
-  adapt::CertifiedLevel<dim> level;
-};
-
 /// What a run says on stdout.
 enum class Printed
 {
@@ -60,7 +41,8 @@ enum class Printed
   verdict  ///< status and warnings at the end
 };
 
-/// Keeps the record of a run and writes the files, level by level.
+/// Keeps the record of a run and writes the files, level by level: beside the computation of the next level
+/// where OpenMP offers a second thread. The files do not depend on that.
 template <int dim>
 class RunReport
 {
@@ -73,7 +55,8 @@ class RunReport
 
   /// After every level, and once more for the last one if Newton's method has converged on it later: tables
   /// and a certificate that holds should the program be killed, at most a second behind; fields where they
-  /// are asked for of all levels. Throws WriteError, the level being printed.
+  /// are asked for of all levels. Waits for the files of the level before. Throws WriteError, the level being
+  /// printed, for its own files or later for those of the level before.
   void add(const adapt::LevelView<dim>& view);
   /// Which level is the last is known only now: its fields, the page, and the last word.
   [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
@@ -86,15 +69,20 @@ class RunReport
 
  private:
   [[nodiscard]] bool writes_all_levels() const { return output_.levels == case_file::FieldLevels::all; }
-  void write_fields(const KeptLevel<dim>& last) const;
-  /// Keeps the level, the one before being for the page only, and writes its fields if they are due.
-  void take(const adapt::LevelView<dim>& view);
+  void write_fields(const KeptLevel<dim>& level) const;
+  /// Hands the files of the last level that are due to the background.
+  void start_writing();
+  /// Waits for them; their time goes to the last level. What writing has thrown.
+  [[nodiscard]] std::exception_ptr finish_writing();
   /// Removes the record of the level, if it is the last, and returns its times.
   io::LevelTimes take_back(int number);
-  /// Tables and certificate.
-  void write_record();
   /// What the certificate says about the level: its data, and how its systems were solved.
   void update_statements(const adapt::LevelView<dim>& view);
+  /// Its verdict, and warnings about it.
+  void judge(const adapt::LevelView<dim>& view);
+  /// The times of the last level get the wall time since `begin`, which begins anew, and the CPU time since
+  /// the last call.
+  void count_time(Clock::time_point& begin);
 
   const case_file::OutputConfig& output_;
   certify::ContactRule contact_rule_;
@@ -102,11 +90,15 @@ class RunReport
   std::optional<OutputDirectory> directory_;
   io::RunRecord record_;
   ReportPage page_;
-  std::optional<KeptLevel<dim>> last_;  ///< the last level that has a bound
+  std::shared_ptr<const KeptLevel<dim>> last_;  ///< the last level that has a bound
   Point<dim> moment_about_;
-  std::vector<std::string> free_sides_;  ///< boundaries that the case does not mention
-  Clock::time_point written_;            ///< when the record was; long ago: not yet
-  double cpu_before_ = cpu_seconds();    ///< CPU time up to the level in work
+  std::vector<std::string> free_sides_;       ///< boundaries that the case does not mention
+  Clock::time_point written_ = Clock::now();  ///< when the record was; at first when the run began
+  double held_ = 0;                    ///< wall time that the loop has been held up on the last level; s
+  double cpu_before_ = cpu_seconds();  ///< CPU time up to the level in work
+  double writing_ = 0;                 ///< wall time of what the background writes; s
+  double writing_cpu_ = 0;
+  Background background_;  ///< the last member: it ends before what its jobs use
 };
 
 }  // namespace tribound::app

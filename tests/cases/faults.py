@@ -41,6 +41,7 @@ max_levels = 2
 directory = "out"
 """
 LONG = ["--set", "mesh.box.cells=[300, 150]"]  # some seconds for the first level
+MANY_LEVELS = ["--set", "adapt.max_levels=60", "--set", "adapt.tolerance=1e-6", "--set", 'output.levels="all"']
 ENDLESS_GEO = "For i In {1:1000000000}\nEndFor\n"  # Gmsh counts
 
 
@@ -180,6 +181,39 @@ def a_page_that_cannot_be_written(directory):
     expect(certificate["status"] == "budget", certificate)
 
 
+def runs_in_threads(directory):
+    """A long run that has written its second level, in place and beside the computation."""
+    for threads in ("1", "2"):
+        process = start(directory, "run", "case.toml", *MANY_LEVELS, env=ENVIRONMENT | {"OMP_NUM_THREADS": threads})
+        wait_for((directory / "out/level_001.vtu").exists)
+        yield process
+        (directory / "out").rename(directory / f"out_{threads}")
+
+
+def the_output_directory_goes_away(directory):
+    out = directory / "out"
+    for process in runs_in_threads(directory):
+        out.rename(directory / "elsewhere")
+        out.write_text("not a directory")
+        _, errors = process.communicate(timeout=TIME_LIMIT)
+        expect(process.returncode == 2 and "out/" in errors and "cannot write this file" in errors, process.returncode, errors)
+        (directory / "elsewhere").rename(directory / f"elsewhere_{process.pid}")
+
+
+def an_interrupt_leaves_a_complete_level(directory):
+    out = directory / "out"
+    for process in runs_in_threads(directory):
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=TIME_LIMIT)
+        certificate = json.loads((out / "certificate.json").read_text())
+        expect(process.returncode == 3 and "interrupted" in certificate["reason"], process.returncode, errors)
+        numbers = [level["level"] for level in certificate["levels"]]
+        fields = sorted(out.glob("level_*.vtu"))
+        expect([f"level_{number:03}.vtu" for number in numbers] == [file.name for file in fields], numbers, fields)
+        expect((out / "series.pvd").read_text().count("<DataSet") == len(numbers) and not hidden(out), hidden(out))
+        expect(f'"level":{numbers[-1]},"dimension"' in (out / "report.html").read_text(), "the page lacks the last level")
+
+
 def check_tries_the_output_directory(directory):
     (directory / "taken").write_text("")
     code, _, errors = run(directory, "check", "case.toml", "--set", "output.directory=taken/out")
@@ -226,6 +260,8 @@ TESTS = (
     little_address_space,
     several_processes,
     a_page_that_cannot_be_written,
+    the_output_directory_goes_away,
+    an_interrupt_leaves_a_complete_level,
     check_tries_the_output_directory,
     a_mesh_that_the_run_would_remove,
     quiet,

@@ -1,0 +1,38 @@
+#pragma once
+
+/// @file level_files.h
+/// A level kept beyond its turn in the loop, and its fields as a file.
+
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "tribound/adapt/loop.h"
+#include "tribound/io/fields/vtu.h"
+
+namespace tribound::app
+{
+
+/// A level that is still needed when the loop goes on.
+template <int dim>
+struct KeptLevel
+{
+  explicit KeptLevel(const adapt::LevelView<dim>& view)
+      : number(view.number), discrete(view.owner), level(view.level)
+  {
+    level.equilibrium.reset();  // factors are large, and no more steps are to come
+  }
+
+  int number;
+  std::shared_ptr<const adapt::Discretisation<dim>> discrete;
+  adapt::CertifiedLevel<dim> level;
+};
+
+/// Writes level_NNN.vtu: the fields of a level with the bound of every cell, and `further` numbers per cell.
+/// Throws WriteError when the file cannot be written.
+template <int dim>
+void write_level_fields(const std::filesystem::path& directory, int number,
+                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
+                        std::span<const io::CellField> further = {});
+
+}  // namespace tribound::app
