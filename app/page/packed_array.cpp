@@ -74,7 +74,7 @@ io::Json packed(std::span<const std::uint32_t> numbers, std::size_t stride)
 /// x >= 0 rounded, halves up.
 std::uint32_t nearest(double x)
 {
-  return static_cast<std::uint32_t>(x + 0.5);
+  return static_cast<std::uint32_t>(std::floor(x + 0.5));
 }
 
 /// 2^bits - 1.
@@ -106,9 +106,10 @@ std::string base64(std::span<const unsigned char> bytes)
 io::Json pack_linear(std::span<const double> values, int bits, std::size_t stride)
 {
   assert(bits >= 1 && bits <= 31);
-  const auto [low, high] =
+  const auto range =
       values.empty() ? std::ranges::minmax_result<double>{0.0, 0.0} : std::ranges::minmax(values);
-  const double step = (high - low) / largest_code(bits);
+  const double low = range.min;
+  const double step = (range.max - low) / largest_code(bits);
   std::vector<std::uint32_t> codes(values.size());
   if (step > 0.0)
     std::ranges::transform(values, codes.begin(), [&](double x) { return nearest((x - low) / step); });
