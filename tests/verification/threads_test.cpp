@@ -88,7 +88,7 @@ TEST(Threads, TheSameInThePlane)
 
 TEST(Threads, TheSameInSpace)
 {
-  expect_the_same<3>(block<3>({84, 84, 1}), 1);
+  expect_the_same<3>(block<3>({90, 90, 1}), 1);
 }
 
 }  // namespace
