@@ -15,6 +15,11 @@ namespace
 
 constexpr const char* making = "making multigrid levels";
 
+/// Degrees of freedom of the coarsest space up to which it is solved by a factorisation: that costs little
+/// beside the finer levels, and aggregation of a few cells with very different materials trebles the
+/// iterations.
+constexpr std::size_t factorised = 5000;
+
 /// The degrees of freedom that nothing couples: whose row has one entry.
 std::vector<char> decoupled(Mat a)
 {
@@ -76,7 +81,7 @@ MatHandle interpolation_matrix(const NodeInterpolation& nodes, int dim, const st
   return result;
 }
 
-bool has_degrees(PC pc)
+bool has_levels(PC pc)
 {
   PetscBool result = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCMG, &result), making);
@@ -104,18 +109,25 @@ void Multigrid::configure(PC pc) const
     check(KSPGetPC(solver, &inner), making);
     check(PCSetType(inner, PCJACOBI), making);
   }
-  // Two cycles: as few iterations as with a factorisation on P^1.
   check(PCMGGetCoarseSolve(pc, &solver), making);
+  check(KSPGetPC(solver, &inner), making);
+  if (hierarchy_.coarsest_coordinates.size() <= factorised)
+  {
+    check(KSPSetType(solver, KSPPREONLY), making);
+    check(PCSetType(inner, PCLU), making);
+    check(PCFactorSetMatSolverType(inner, MATSOLVERMUMPS), making);
+    return;
+  }
+  // Two cycles: as few iterations as with a factorisation on P^1.
   check(KSPSetType(solver, KSPRICHARDSON), making);
   check(KSPSetNormType(solver, KSP_NORM_NONE), making);
   check(KSPSetTolerances(solver, 0, 0, PETSC_DEFAULT, 2), making);
-  check(KSPGetPC(solver, &inner), making);
   check(PCSetType(inner, PCGAMG), making);
 }
 
 void Multigrid::renew(PC pc, const SparseMatrix& a)
 {
-  if (!hierarchy_.steps.empty() && !has_degrees(pc)) return;  // options have made it something else
+  if (!hierarchy_.steps.empty() && !has_levels(pc)) return;  // options have made it something else
   if (!made_) return make_levels(pc, a.handle());
   Mat fine = a.handle();
   for (const Level& level : levels_)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file multigrid.h
-/// Multigrid as a preconditioner: down through the degrees, algebraic from P^1 on.
+/// Multigrid as a preconditioner: down through degrees and meshes, algebraic from there on.
 
 #include <utility>
 #include <vector>
@@ -16,9 +16,9 @@ namespace tribound::algebra
 
 /// V-cycles over a hierarchy of spaces. A step smooths by two Chebyshev iterations with the diagonal before
 /// and after, and leads to the matrix P^T A P of the coarser space, P the inclusion. On the coarsest space
-/// stands smoothed aggregation with rigid body modes (PETSc's GAMG): all there is if the hierarchy has no
-/// steps. Degrees of freedom whose row has the diagonal only, those that Gamma_D fixes, stay decoupled on all
-/// levels.
+/// stands a factorisation where it is small, otherwise smoothed aggregation with rigid body modes (PETSc's
+/// GAMG): all there is if the hierarchy has no steps. Degrees of freedom whose row has the diagonal only,
+/// those that Gamma_D fixes, stay decoupled on all levels.
 class Multigrid
 {
  public:

@@ -1,7 +1,9 @@
 #include "tribound/algebra/node_hierarchy.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <ranges>
 #include <utility>
 
 namespace tribound::algebra
@@ -46,6 +48,60 @@ NodeInterpolation inclusion(const fem::LagrangeSpace<dim>& coarse, const fem::La
   return result;
 }
 
+/// The value of a function at a vertex from those at the vertices of a cell of a coarser mesh.
+struct Row
+{
+  std::array<Index, 4> vertices{};
+  std::array<double, 4> weights{};
+  int size = 0;
+
+  void add(Index vertex, double weight)
+  {
+    const auto place = std::find(vertices.begin(), vertices.begin() + size, vertex) - vertices.begin();
+    if (place == size) vertices[size++] = vertex;
+    weights[place] += weight;
+  }
+};
+
+/// P^1 on the mesh with the first n_coarse vertices in P^1 on that with the first n_fine. A halved edge lies
+/// in one coarse cell, so that v(middle) = (v(a) + v(b)) / 2.
+NodeInterpolation inclusion(const mesh::Ancestry& ancestry, Index n_coarse, Index n_fine)
+{
+  std::vector<Row> rows(n_fine);
+  NodeInterpolation result{n_fine, n_coarse, {}};
+  for (Index v = 0; v < n_fine; ++v)
+  {
+    Row& row = rows[v];
+    if (v < n_coarse)
+      row.add(v, 1);
+    else
+      for (const Index end : ancestry.halved_edges[v - ancestry.n_vertices.front()])
+        for (int k = 0; k < rows[end].size; ++k) row.add(rows[end].vertices[k], 0.5 * rows[end].weights[k]);
+    for (int k = 0; k < row.size; ++k) result.weights.add(v, row.vertices[k], row.weights[k]);
+  }
+  return result;
+}
+
+/// P^1 on the mesh and on some of those before it. A step over several meshes has smoothers of one size for
+/// cells of many: to the corner of a square, with the same number of cells added each time, steps over 1, 2,
+/// 3, 4, 5 meshes take 12, 20, 33, 51, 76 iterations.
+std::vector<NodeInterpolation> inclusions(const mesh::Ancestry& ancestry, Index n_vertices)
+{
+  constexpr std::size_t most_meshes = 3;
+  const auto is_coarser = [&](Index n) { return 1.5 * n <= n_vertices; };
+  std::vector<NodeInterpolation> steps;
+  std::span<const Index> before(ancestry.n_vertices);
+  while (true)
+  {
+    const auto candidates = before.last(std::min(before.size(), most_meshes)) | std::views::reverse;
+    const auto next = std::ranges::find_if(candidates, is_coarser);
+    if (next == candidates.end()) return steps;
+    steps.push_back(inclusion(ancestry, *next, n_vertices));
+    n_vertices = *next;
+    before = before.first(before.size() - 1 - (next - candidates.begin()));
+  }
+}
+
 }  // namespace
 
 template <int dim>
@@ -60,7 +116,13 @@ NodeHierarchy node_hierarchy(std::span<const Point<dim>> nodes)
 template <int dim>
 NodeHierarchy node_hierarchy(const fem::LagrangeSpace<dim>& space)
 {
-  if (space.degree() == 1) return node_hierarchy<dim>(space.node_points());
+  if (space.degree() == 1)
+  {
+    NodeHierarchy result = node_hierarchy<dim>(space.node_points());
+    result.steps = inclusions(space.mesh().ancestry(), space.mesh().n_vertices());
+    if (!result.steps.empty()) result.coarsest_coordinates.resize(dim * result.steps.back().n_coarse);
+    return result;
+  }
   const fem::LagrangeSpace<dim> coarse(space.mesh(), (space.degree() + 1) / 2);
   NodeHierarchy result = node_hierarchy(coarse);
   result.steps.insert(result.steps.begin(), inclusion(coarse, space));

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file node_hierarchy.h
-/// Nested spaces on one mesh, as plain data for multigrid.
+/// Nested spaces on a mesh and those it comes from, as plain data for multigrid.
 
 #include <span>
 #include <vector>
@@ -21,7 +21,7 @@ struct NodeInterpolation
   Triplets weights;  ///< row: fine node, column: coarse node; each that is not 0, once
 };
 
-/// Spaces from the one of a matrix down to one that algebraic multigrid can take over. Degree of freedom
+/// Spaces from the one of a matrix down to one that is small or left to aggregation. Degree of freedom
 /// dim * node + component in all of them.
 struct NodeHierarchy
 {
@@ -34,7 +34,9 @@ struct NodeHierarchy
 template <int dim>
 [[nodiscard]] NodeHierarchy node_hierarchy(std::span<const Point<dim>> nodes);
 
-/// P^p, P^q, ..., P^1 on the mesh of `space`, with q = p / 2 rounded up.
+/// P^p, P^q, ..., P^1 on the mesh of `space`, with q = p / 2 rounded up, then P^1 on meshes before it
+/// (Mesh::ancestry): each time the next with at most two thirds of the vertices, as long as there is one
+/// among the three before. All of them together then cost at most three times the first.
 template <int dim>
 [[nodiscard]] NodeHierarchy node_hierarchy(const fem::LagrangeSpace<dim>& space);
 

@@ -72,6 +72,7 @@ Options::Options(bool multigrid)
       set_default(prefix + "pc_gamg_aggressive_coarsening", "20");  // forgotten if set by a call
       set_default(prefix + "pc_gamg_threshold", "0.02");
     }
+    set_default("-tribound_mg_coarse_mat_mumps_icntl_14", "40");  // see configure_mumps()
     // Products as R A P in place of a scalable algorithm, and rows one by one: both take up to a third off.
     // The matrices on the levels are made by PETSc, out of reach for anything but its options.
     set_default("-matptap_via", "rap");

@@ -64,9 +64,11 @@ class Forest
   explicit Forest(const Mesh<dim>& mesh)
       : mesh_(&mesh),
         points_(mesh.vertices().begin(), mesh.vertices().end()),
+        ancestry_(mesh.ancestry()),
         middles_(mesh.n_vertices()),
         queued_(mesh.n_cells(), 0)
   {
+    ancestry_.n_vertices.push_back(mesh.n_vertices());
     nodes_.reserve(mesh.n_cells());
     const auto types = mesh.bisection_types();
     for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -119,6 +121,7 @@ class Forest
     data.region_names.assign(mesh_->region_names().begin(), mesh_->region_names().end());
     data.boundary_names.assign(mesh_->boundary_names().begin(), mesh_->boundary_names().end());
     data.source = mesh_->source();
+    data.ancestry = ancestry_;
     return data;
   }
 
@@ -175,6 +178,7 @@ class Forest
   Index halve_edge(Index a, Index b)
   {
     points_.push_back(0.5 * (points_[a] + points_[b]));
+    ancestry_.halved_edges.push_back({a, b});
     common_.clear();
     std::ranges::set_intersection(roots_at(a), roots_at(b), std::back_inserter(common_));
     roots_.insert(roots_.end(), common_.begin(), common_.end());
@@ -231,6 +235,7 @@ class Forest
 
   const Mesh<dim>* mesh_;
   std::vector<Point<dim>> points_;
+  Ancestry ancestry_;  ///< of the bisected mesh
   std::vector<Node> nodes_;
   Middles middles_;
   std::vector<Index> roots_;            ///< that contain each middle, one middle behind the other

@@ -26,6 +26,7 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   boundary_names_ = std::move(data.boundary_names);
   source_ = std::move(data.source);
   bisection_types_ = std::move(data.bisection_types);
+  ancestry_ = std::move(data.ancestry);
   topology_ = std::make_unique<const Topology<dim>>(std::move(topology));
 }
 

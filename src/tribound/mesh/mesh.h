@@ -37,6 +37,14 @@ struct BoundaryFacet
   int tag;    ///< position in Mesh::boundary_names(), or -1 for a facet in no group
 };
 
+/// The meshes that bisect() has led through. Each has the vertices of the one before, with their numbers, and
+/// middles of edges behind them.
+struct Ancestry
+{
+  std::vector<Index> n_vertices;                   ///< of the meshes before this one, the given one first
+  std::vector<std::array<Index, 2>> halved_edges;  ///< ends, per vertex behind those of the given mesh
+};
+
 /// What a reader delivers, not yet verified. Messages about it count cells and vertices from 0.
 template <int dim>
 struct MeshData
@@ -51,6 +59,7 @@ struct MeshData
   /// Per cell: how bisect() goes on with it, see mesh/marked_cell.h. Empty for a mesh that does not come from
   /// bisect(), which then starts from the longest edges.
   std::vector<std::uint8_t> bisection_types{};
+  Ancestry ancestry{};  ///< empty for a mesh that does not come from bisect()
 };
 
 /// The vertices of a local facet: those of the cell but number `local`, in ascending local order.
@@ -115,6 +124,7 @@ class Mesh
   [[nodiscard]] const Where& source() const { return source_; }
   /// As in MeshData.
   [[nodiscard]] std::span<const std::uint8_t> bisection_types() const { return bisection_types_; }
+  [[nodiscard]] const Ancestry& ancestry() const { return ancestry_; }
 
   [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
 
@@ -127,6 +137,7 @@ class Mesh
   std::vector<std::string> boundary_names_;
   Where source_;
   std::vector<std::uint8_t> bisection_types_;
+  Ancestry ancestry_;
   std::unique_ptr<const Topology<dim>> topology_;
 };
 

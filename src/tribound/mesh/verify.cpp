@@ -92,6 +92,21 @@ std::size_t connected_cells(const MeshData<dim>& data, const Topology<dim>& topo
   return queue.size();
 }
 
+template <int dim>
+bool ancestry_fits(const MeshData<dim>& data)
+{
+  const auto& [n_vertices, halved_edges] = data.ancestry;
+  const auto n = static_cast<Index>(data.vertices.size());
+  const Index first = n_vertices.empty() ? n : n_vertices.front();
+  if (first < 0 || (!n_vertices.empty() && n_vertices.back() > n) || !std::ranges::is_sorted(n_vertices) ||
+      halved_edges.size() != static_cast<std::size_t>(n - first))
+    return false;
+  for (Index v = first; v < n; ++v)
+    for (const Index end : halved_edges[v - first])
+      if (end < 0 || end >= v) return false;
+  return true;
+}
+
 }  // namespace
 
 template <int dim>
@@ -108,6 +123,8 @@ void check_arrays(const MeshData<dim>& data)
   if (!data.bisection_types.empty() && data.bisection_types.size() != n_cells)
     throw InputError(data.source,
                      fmt::format("{} bisection types for {} cells", data.bisection_types.size(), n_cells));
+  if (!ancestry_fits(data))
+    throw InputError(data.source, "the ancestry of the mesh does not fit its vertices");
 
   const auto in_range = [](Index i, std::size_t n) { return i >= 0 && static_cast<std::size_t>(i) < n; };
   for (std::size_t v = 0; v < data.vertices.size(); ++v)

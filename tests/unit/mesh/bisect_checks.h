@@ -136,6 +136,26 @@ void expect_right_parents(const mesh::Bisected<dim>& bisected, const mesh::Mesh<
   for (const double share : filled) ASSERT_NEAR(share, 1.0, 1e-11);
 }
 
+/// The vertices are those of the original mesh and the middles of older ones; the ancestors of the original
+/// mesh stay, and it joins them.
+template <int dim>
+void expect_right_ancestry(const mesh::Mesh<dim>& bisected, const mesh::Mesh<dim>& original)
+{
+  const mesh::Ancestry& ancestry = bisected.ancestry();
+  std::vector<Index> sizes = original.ancestry().n_vertices;
+  sizes.push_back(original.n_vertices());
+  ASSERT_EQ(ancestry.n_vertices, sizes);
+  ASSERT_TRUE(std::ranges::equal(original.vertices(), bisected.vertices().first(original.n_vertices())));
+  const Index first = sizes.front();
+  ASSERT_EQ(ancestry.halved_edges.size(), static_cast<std::size_t>(bisected.n_vertices() - first));
+  for (Index v = first; v < bisected.n_vertices(); ++v)
+  {
+    const auto [a, b] = ancestry.halved_edges[v - first];
+    ASSERT_LT(std::max(a, b), v);
+    ASSERT_EQ(bisected.vertex(v), Point<dim>(0.5 * (bisected.vertex(a) + bisected.vertex(b))));
+  }
+}
+
 /// Every boundary group is where it was: the facets of the bisected mesh lie in facets of the original one
 /// with their tag. Facets on the boundary have one parent cell; its facet is the one that contains them.
 template <int dim>

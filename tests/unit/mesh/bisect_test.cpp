@@ -23,6 +23,7 @@ using testing_mesh::cells_by_coordinates;
 using testing_mesh::coordinates;
 using testing_mesh::Directory;
 using testing_mesh::expect_conforming;
+using testing_mesh::expect_right_ancestry;
 using testing_mesh::expect_right_parents;
 using testing_mesh::expect_same_parts;
 using testing_mesh::expect_tags_in_place;
@@ -95,6 +96,7 @@ mesh::Mesh<dim> bisect_and_check(mesh::Mesh<dim> mesh, int levels, const Choose&
     expect_same_parts(bisected.mesh, mesh);
     expect_right_parents(bisected, mesh);
     expect_tags_in_place(bisected, mesh);
+    expect_right_ancestry(bisected.mesh, mesh);
     mesh = std::move(bisected.mesh);
   }
   return mesh;

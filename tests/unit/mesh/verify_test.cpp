@@ -101,6 +101,16 @@ INSTANTIATE_TEST_SUITE_P(
         {"BisectionTypeOutOfRange",
          [](Plane& m) { m.bisection_types = {0, 0, 0, 0, 0, 1, 0, 0}; },
          {"cell 5", "bisection type 1", "1 types"}},
+        {"AncestryTooShort",
+         [](Plane& m) {
+           m.ancestry = {{4, 6}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+         },
+         {"ancestry", "does not fit"}},
+        {"AncestryOfYoungerVertices",
+         [](Plane& m) {
+           m.ancestry = {{7}, {{0, 1}, {2, 8}}};
+         },
+         {"ancestry", "does not fit"}},
         {"TagOutOfRange", [](Plane& m) { m.facets[0].tag = 4; }, {"boundary group number 4"}},
         {"FacetVertexOutOfRange",
          [](Plane& m) { m.facets[0].vertices[0] = 12; },
