@@ -1,8 +1,8 @@
 #include "app/background.h"
 
-#include <omp.h>
-
 #include <utility>
+
+#include "tribound/base/parallel.h"
 
 namespace tribound::app
 {
@@ -10,7 +10,7 @@ namespace tribound::app
 void Background::start(std::function<void()> job)
 {
   wait();
-  const bool beside = omp_get_max_threads() > 1;
+  const bool beside = max_threads() > 1;
   job_ = std::async(beside ? std::launch::async : std::launch::deferred, std::move(job));
   if (!beside) wait();
 }
