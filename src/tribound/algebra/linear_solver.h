@@ -63,8 +63,8 @@ enum class MatrixKind
   positive_definite
 };
 
-/// Whole Newton loops of a Tresca block from scratch, p = 1, 2, 3: multigrid takes 0.33, 0.29, 0.47 of the time
-/// of MUMPS at 3k to 6k degrees of freedom; on adaptive meshes of 4k to 9k, with few steps, 1.2 to 0.7
+/// Whole Newton loops of a Tresca block from scratch, p = 1, 2, 3: multigrid takes 0.33, 0.29, 0.47 of the
+/// time of MUMPS at 3k to 6k degrees of freedom; on adaptive meshes of 4k to 9k, with few steps, 1.2 to 0.7
 /// (bench/README.md).
 inline constexpr Index direct_limit_3d = 5'000;
 
@@ -80,7 +80,7 @@ inline constexpr Index direct_limit_3d = 5'000;
 class LinearSolver
 {
  public:
-  /// For matrices of this space: multigrid goes through the lower degrees.
+  /// For matrices of this space: multigrid goes through lower degrees and coarser meshes.
   template <int dim>
   LinearSolver(const SolverOptions& config, const fem::LagrangeSpace<dim>& space,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);

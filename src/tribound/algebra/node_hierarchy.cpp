@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <ranges>
 #include <utility>
+
+#include "tribound/mesh/mesh.h"
 
 namespace tribound::algebra
 {
@@ -82,23 +83,23 @@ NodeInterpolation inclusion(const mesh::Ancestry& ancestry, Index n_coarse, Inde
   return result;
 }
 
-/// P^1 on the mesh and on some of those before it. A step over several meshes has smoothers of one size for
-/// cells of many: to the corner of a square, with the same number of cells added each time, steps over 1, 2,
-/// 3, 4, 5 meshes take 12, 20, 33, 51, 76 iterations.
+/// P^1 on the mesh and on some of those before it. A step over several meshes leaves what is between their
+/// sizes to the smoother of the finest: towards the corner of a square, with as many cells added each time,
+/// steps over 1, 2, 3, 4, 5 meshes take 12, 20, 33, 51, 76 iterations.
 std::vector<NodeInterpolation> inclusions(const mesh::Ancestry& ancestry, Index n_vertices)
 {
-  constexpr std::size_t most_meshes = 3;
+  constexpr std::ptrdiff_t most_meshes = 3;
   const auto is_coarser = [&](Index n) { return 1.5 * n <= n_vertices; };
   std::vector<NodeInterpolation> steps;
-  std::span<const Index> before(ancestry.n_vertices);
+  auto before = ancestry.n_vertices.rbegin();
   while (true)
   {
-    const auto candidates = before.last(std::min(before.size(), most_meshes)) | std::views::reverse;
-    const auto next = std::ranges::find_if(candidates, is_coarser);
-    if (next == candidates.end()) return steps;
-    steps.push_back(inclusion(ancestry, *next, n_vertices));
-    n_vertices = *next;
-    before = before.first(before.size() - 1 - (next - candidates.begin()));
+    const auto end = before + std::min(ancestry.n_vertices.rend() - before, most_meshes);
+    const auto coarse = std::find_if(before, end, is_coarser);
+    if (coarse == end) return steps;
+    steps.push_back(inclusion(ancestry, *coarse, n_vertices));
+    n_vertices = *coarse;
+    before = coarse + 1;
   }
 }
 
