@@ -125,7 +125,7 @@ std::vector<std::vector<adapt::CertifiedStep>> steps_in_3d(adapt::Stopping crite
         EXPECT_EQ(level.steps.back().bound->total_sharp, eta.total_sharp);
       }};
   (void)run_adaptively<3>(block<3>({4, 2, 2}), pressed_block<3>(),
-                          {.stopping = {.criterion = criterion, .finish = false}},
+                          {.degree = 1, .stopping = {.criterion = criterion, .finish = false}},
                           {.marking = {.theta = 0.6}, .max_levels = 3}, observer);
   return steps;
 }
@@ -239,7 +239,8 @@ TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
   {
     adapt::Method stopped = method(1);
     stopped.stopping.criterion = stopping;
-    const History history = adapt_t2d(stopped, {.tolerance = 0.05, .max_levels = 60});
+    const History history =
+        adapt_t2d(stopped, {.tolerance = 0.05, .marking = {.theta = 0.5}, .max_levels = 60});
     EXPECT_EQ(history.verdict.status, certify::RunStatus::certified);
     std::size_t sum = 0;
     for (const Row& row : history.levels) sum += row.newton;

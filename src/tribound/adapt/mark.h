@@ -22,7 +22,7 @@ enum class Marking
 struct MarkingOptions
 {
   Marking strategy = Marking::doerfler;
-  double theta = 0.7;             ///< in (0, 1]
+  double theta = 0.6;             ///< in (0, 1]
   bool separate_contact = false;  ///< for the body and for the contact conditions apart, each by its share
 };
 

@@ -40,6 +40,7 @@ std::string valid_case(const std::string& table)
 std::vector<std::string> companions(const Row& row)
 {
   if (row.key == "threshold") return {"boundary.top.contact.friction=tresca"};
+  if (row.key == "reference_degree") return {"degree=1"};
   if (row.key == "coefficient") return {"boundary.top.contact.friction=coulomb"};
   return {};
 }

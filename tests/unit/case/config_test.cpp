@@ -197,7 +197,7 @@ TEST(Config, HasTheDefaultsOfTheHeader)
 {
   const case_file::Config config = case_file::parse_config(small_case);
   EXPECT_EQ(config.title, "");
-  EXPECT_EQ(config.method.degree, 1);
+  EXPECT_EQ(config.method.degree, 2);
   EXPECT_EQ(config.method.gamma_0(), 10.0);
   EXPECT_EQ(config.method.stopping.criterion, adapt::Stopping::adaptive);
   EXPECT_EQ(config.method.newton.tolerance, 1e-10);
