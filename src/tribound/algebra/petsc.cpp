@@ -107,7 +107,6 @@ void configure_mumps(Mat factors, int dim)
 }  // namespace detail
 
 using detail::check;
-using detail::wrap;
 
 namespace
 {
