@@ -10,9 +10,10 @@ namespace tribound::app
 void Background::start(std::function<void()> job)
 {
   wait();
-  const bool beside = max_threads() > 1;
-  job_ = std::async(beside ? std::launch::async : std::launch::deferred, std::move(job));
-  if (!beside) wait();
+  if (max_threads() > 1)
+    job_ = std::async(std::launch::async, std::move(job));
+  else
+    job();
 }
 
 void Background::wait()
