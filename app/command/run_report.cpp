@@ -67,8 +67,8 @@ io::BuildFacts library_facts()
   build.petsc = algebra.petsc;
   build.mumps = algebra.mumps;
   build.mpi = algebra.mpi;
-  build.blas = algebra.blas;
-  build.blas_threads = algebra.blas_threads;
+  build.blas = algebra.blas.library;
+  build.blas_threads = algebra.blas.threads;
   build.gmsh = mesh::gmsh_version();
   build.features = {"2D", "3D", "degrees 1-4", "friction: none, Tresca, Coulomb"};
   build.report_page = find_shared_file("report.html").string();
@@ -151,12 +151,13 @@ void RunReport<dim>::start_writing()
     written_ = Clock::now();
   }
   background_.start(
-      [this, record = std::move(record), level = record_.levels.back().bound ? last_ : nullptr]
+      [this, record = std::move(record), level = record_.levels.back().bound ? last_ : nullptr,
+       is_followed = record_.status == certify::RunStatus::budget]
       {
         const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
         if (level && writes_all_levels()) write_fields(*level);
         if (record) io::write_report(output_.directory, *record);
-        if (level) page_.add(level->number, level->discrete->form, level->level);
+        if (level && is_followed) page_.add(level->number, level->discrete->form, level->level);
       });
 }
 

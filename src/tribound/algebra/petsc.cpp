@@ -1,6 +1,5 @@
 #include "tribound/algebra/petsc.h"
 
-#include <dlfcn.h>
 #include <dmumps_c.h>
 #include <mpi.h>
 
@@ -162,6 +161,9 @@ bool start_mpi(bool alone, const std::filesystem::path& directory)
 
 Environment::Environment()
 {
+  PetscBool has_petsc = PETSC_FALSE;
+  check(PetscInitialized(&has_petsc), "starting");
+  if (!has_petsc) choose_blas_kernels();  // else BLAS may have been called
   int has_mpi = 0;
   MPI_Initialized(&has_mpi);
   if (has_mpi == 0)
@@ -171,8 +173,6 @@ Environment::Environment()
     started_mpi_ = start_mpi(alone, session_directory_);
     if (!started_mpi_) throw SolveError("MPI does not start");
   }
-  PetscBool has_petsc = PETSC_FALSE;
-  check(PetscInitialized(&has_petsc), "starting");
   if (!has_petsc)
   {
     check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"),
@@ -194,29 +194,6 @@ Environment::~Environment()
   if (!session_directory_.empty()) std::filesystem::remove_all(session_directory_, none);
 }
 
-namespace
-{
-
-/// The file that provides BLAS in this process, symbolic links resolved (Debian's alternatives are links).
-std::string blas_library()
-{
-  Dl_info info{};
-  void* dgemm = dlsym(RTLD_DEFAULT, "dgemm_");
-  if (!dgemm || dladdr(dgemm, &info) == 0) return "unknown";
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::canonical(info.dli_fname, error);
-  return error ? info.dli_fname : path.string();
-}
-
-/// Threads that OpenBLAS uses, or 0 where BLAS is another.
-int blas_threads()
-{
-  const auto count = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
-  return count ? count() : 0;
-}
-
-}  // namespace
-
 AlgebraVersions algebra_versions()
 {
   AlgebraVersions versions;
@@ -230,8 +207,7 @@ AlgebraVersions algebra_versions()
   char library[MPI_MAX_LIBRARY_VERSION_STRING];
   MPI_Get_library_version(library, &length);
   versions.mpi = std::string(library).substr(0, std::string(library).find(','));
-  versions.blas = blas_library();
-  versions.blas_threads = blas_threads();
+  versions.blas = blas_facts();
   return versions;
 }
 

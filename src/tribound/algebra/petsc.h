@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tribound/algebra/blas.h"
 #include "tribound/algebra/triplets.h"
 #include "tribound/base/types.h"
 
@@ -41,8 +42,7 @@ struct AlgebraVersions
   std::string petsc;
   std::string mumps;
   std::string mpi;
-  std::string blas;      ///< file of the library
-  int blas_threads = 0;  ///< 0: unknown
+  BlasFacts blas;
 };
 [[nodiscard]] AlgebraVersions algebra_versions();
 

@@ -3,9 +3,11 @@
 
 #include "tribound/algebra/petsc.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -34,6 +36,19 @@ std::vector<double> ramp(int n)
   std::vector<double> x(n);
   for (int i = 0; i < n; ++i) x[i] = 0.3 * i - 1;
   return x;
+}
+
+/// What OpenBLAS takes on a processor that it does not know is for those without AVX2.
+TEST(Blas, RunsTheKernelsOfTheProcessor)
+{
+  const std::string library = algebra::blas_facts().library;
+  EXPECT_THAT(library, ::testing::HasSubstr("blas"));
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2") && std::getenv("OPENBLAS_CORETYPE") == nullptr)
+  {
+    EXPECT_THAT(library, ::testing::Not(::testing::HasSubstr("Prescott")));
+  }
+#endif
 }
 
 TEST(SparseMatrix, SumsEntriesAndSkipsNegativePlaces)
@@ -97,7 +112,7 @@ TEST(SparseMatrix, SumHasBothPatterns)
 TEST(AlgebraVersions, AreKnown)
 {
   const algebra::AlgebraVersions versions = algebra::algebra_versions();
-  for (const std::string& text : {versions.petsc, versions.mumps, versions.mpi, versions.blas})
+  for (const std::string& text : {versions.petsc, versions.mumps, versions.mpi, versions.blas.library})
     EXPECT_FALSE(text.empty());
 }
 

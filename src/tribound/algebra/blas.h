@@ -1,0 +1,25 @@
+#pragma once
+
+/// @file blas.h
+/// The BLAS library of the process.
+
+#include <string>
+
+namespace tribound::algebra
+{
+
+/// OpenBLAS gives processors younger than itself the kernels of the oldest it knows, a third as fast in
+/// factorisations. Where it has done so, this makes it take those for the vector instructions that the
+/// processor has. Nothing changes with another library, a processor that it knows, or a choice by the
+/// environment variable OPENBLAS_CORETYPE. To be called before any other function of the library, on one
+/// thread.
+void choose_blas_kernels();
+
+struct BlasFacts
+{
+  std::string library;  ///< its file, symbolic links resolved, and OpenBLAS's kernels
+  int threads = 0;      ///< 0: unknown
+};
+[[nodiscard]] BlasFacts blas_facts();
+
+}  // namespace tribound::algebra
