@@ -1,16 +1,14 @@
 #include "app/page/packed_array.h"
-#include "tribound/io/file/json.h"
-
-#include <zlib.h>
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <new>
 #include <vector>
+
+#include "tribound/io/file/deflate.h"
+#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {
@@ -18,28 +16,13 @@ namespace tribound::app
 namespace
 {
 
-/// Runs of equal bytes only: a seventh more than at zlib's default in a quarter of the time
-/// (bench/README.md).
-constexpr int compression_strategy = Z_RLE;
-
 /// Compressed, in base64.
 std::string deflated(std::span<const unsigned char> bytes)
 {
-  // Most arrays are small: zlib would clear more memory than they have bytes.
-  const int window_bits = std::clamp(static_cast<int>(std::bit_width(bytes.size())), 9, MAX_WBITS);
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, window_bits, window_bits - 7, compression_strategy) !=
-      Z_OK)
-    throw std::bad_alloc();
-  std::vector<unsigned char> compressed(deflateBound(&stream, bytes.size()));
-  stream.next_in = const_cast<Bytef*>(bytes.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = compressed.data();
-  stream.avail_out = static_cast<uInt>(compressed.size());
-  [[maybe_unused]] const int end = deflate(&stream, Z_FINISH);
-  assert(end == Z_STREAM_END);  // there is room for deflateBound()
-  deflateEnd(&stream);
-  return base64(std::span(compressed).first(stream.total_out));
+  thread_local const io::Deflate deflate(io::Deflate::fastest);  // most arrays are small, and they are many
+  thread_local std::vector<std::byte> compressed;
+  compressed.resize(std::max(compressed.size(), deflate.bound(bytes.size())));
+  return base64(deflate(std::as_bytes(bytes), compressed));
 }
 
 /// The bytes of the numbers by significance, compressed, in base64.
@@ -85,7 +68,7 @@ double largest_code(int bits)
 
 }  // namespace
 
-std::string base64(std::span<const unsigned char> bytes)
+std::string base64(std::span<const std::byte> bytes)
 {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text((bytes.size() + 2) / 3 * 4, '=');
@@ -93,13 +76,11 @@ std::string base64(std::span<const unsigned char> bytes)
   {
     for (std::size_t j = 0; j <= n; ++j) text[i / 3 * 4 + j] = digits[group >> (18 - 6 * j) & 63U];
   };
+  const auto at = [&](std::size_t i, int shift) { return std::to_integer<std::uint32_t>(bytes[i]) << shift; };
   const std::size_t rest = bytes.size() % 3;
   const std::size_t whole = bytes.size() - rest;
-  for (std::size_t i = 0; i < whole; i += 3)
-    encode(i, std::uint32_t{bytes[i]} << 16 | std::uint32_t{bytes[i + 1]} << 8 | bytes[i + 2], 3);
-  if (rest > 0)
-    encode(whole, std::uint32_t{bytes[whole]} << 16 | (rest > 1 ? std::uint32_t{bytes[whole + 1]} << 8 : 0U),
-           rest);
+  for (std::size_t i = 0; i < whole; i += 3) encode(i, at(i, 16) | at(i + 1, 8) | at(i + 2, 0), 3);
+  if (rest > 0) encode(whole, at(whole, 16) | (rest > 1 ? at(whole + 1, 8) : 0U), rest);
   return text;
 }
 

@@ -18,7 +18,7 @@ namespace tribound::app
 {
 
 /// Base64 of RFC 4648, with padding.
-[[nodiscard]] std::string base64(std::span<const unsigned char> bytes);
+[[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
 /// value = offset + step q, q of `bits` bits (at most 31): off by at most (max - min) / 2^(bits + 1).
 /// `stride`, here and below: each q is stored as its difference from the one so many places before.

@@ -251,9 +251,8 @@ void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
                      const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
-  std::erase_if(levels_, [number](const PageLevel& other) { return other.number == number; });
+  constexpr PageLimits limits{.subdivided = 6000, .stresses = 6000};
   // The last level will have as many triangles at least: this one would then be dropped.
-  const PageLimits limits;
   if (!levels_.empty() && n_triangles(levels_) + 2 * n_triangles(form, limits) > limits.all_levels) return;
   levels_.push_back(page_level(number, form, level, limits));
 }
@@ -263,7 +262,8 @@ void ReportPage::add_last(int number, const contact::NitscheForm<dim>& form,
                           const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
-  if (levels_.empty() || levels_.back().number != number) levels_.push_back(page_level(number, form, level));
+  std::erase_if(levels_, [number](const PageLevel& other) { return other.number == number; });
+  levels_.push_back(page_level(number, form, level));
   volume_ = page_volume(form, level);
   drop_levels(levels_, {});
 }

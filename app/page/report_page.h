@@ -62,11 +62,11 @@ class ReportPage
   /// `page_template`: what report/ builds; where there is none nothing is collected or written.
   explicit ReportPage(const std::filesystem::path& page_template);
 
-  /// A level, unless it is too large to be shown beside the following ones. It takes the place of one with
-  /// the same number.
+  /// A level that is not the last, in less detail than that, unless it is too large to be shown beside the
+  /// following ones.
   template <int dim>
   void add(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
-  /// The last level, if add() has left it out, with the inside of the body; before write().
+  /// The last level, with the inside of the body; before write(). Takes the place of one with its number.
   template <int dim>
   void add_last(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
 

@@ -1,5 +1,6 @@
 #include "tribound/mesh/gmsh_text.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,9 +19,9 @@ constexpr std::array element_types = {1, 2, 4};
 template <std::size_t n>
 void add_element(std::string& text, long number, int group, const std::array<Index, n>& vertices)
 {
-  fmt::format_to(std::back_inserter(text), "{} {} 2 {} {}", number, element_types[n - 2], group + 1,
-                 group + 1);
-  for (const Index v : vertices) fmt::format_to(std::back_inserter(text), " {}", v + 1);
+  fmt::format_to(std::back_inserter(text), FMT_COMPILE("{} {} 2 {} {}"), number, element_types[n - 2],
+                 group + 1, group + 1);
+  for (const Index v : vertices) fmt::format_to(std::back_inserter(text), FMT_COMPILE(" {}"), v + 1);
   text += '\n';
 }
 
@@ -49,8 +50,8 @@ std::string gmsh_text(const Mesh<dim>& mesh, std::span<const std::string> left_o
       groups, mesh.n_vertices());
   for (Index v = 0; v < mesh.n_vertices(); ++v)
   {
-    fmt::format_to(std::back_inserter(text), "{}", v + 1);
-    for (const double x : mesh.vertex(v)) fmt::format_to(std::back_inserter(text), " {}", x);
+    fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), v + 1);
+    for (const double x : mesh.vertex(v)) fmt::format_to(std::back_inserter(text), FMT_COMPILE(" {}"), x);
     text += dim == 2 ? " 0\n" : "\n";
   }
   const long n_facets = std::ranges::count_if(mesh.boundary(), is_written);

@@ -16,7 +16,7 @@ using ::testing::ElementsAreArray;
 
 std::string base64_of(const std::string& text)
 {
-  return app::base64({reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+  return app::base64(std::as_bytes(std::span(text)));
 }
 
 TEST(PackedArray, Base64OfRfc4648)

@@ -1,12 +1,10 @@
 #include "tribound/io/file/vtu_file.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <new>
 #include <span>
 
 namespace tribound::io
@@ -18,26 +16,17 @@ namespace
 /// Uncompressed bytes of a block, a multiple of every number's size.
 constexpr std::size_t block_size = 1 << 18;
 
-/// Compresses a block in zlib's format; returns the number of bytes.
-std::size_t compress(std::span<const std::byte> block, int level, std::span<unsigned char> result)
-{
-  uLongf size = result.size();
-  if (compress2(result.data(), &size, reinterpret_cast<const Bytef*>(block.data()), block.size(), level) !=
-      Z_OK)
-    throw std::bad_alloc();
-  return size;
-}
-
-/// How an array is compressed that begins with this block: a sample tells. Zeros and repeated values are; the
-/// stresses of degree 2 shrink to 0.6, in more time than all the rest takes: they are stored
+/// Whether an array that begins with this block is compressed: a sample tells. Zeros and repeated values are;
+/// the stresses of degree 2 shrink to 0.6, in more time than all the rest takes: they are stored
 /// (bench/README.md).
-int choose_level(std::span<const std::byte> block, std::span<unsigned char> scratch)
+bool is_worth_compressing(std::span<const std::byte> block, const Deflate& deflate,
+                          std::span<std::byte> scratch)
 {
   constexpr std::size_t sample_size = 1 << 14;
   constexpr double worth_it = 0.2;
   const auto sample = block.first(std::min(block.size(), sample_size));
-  const auto size = static_cast<double>(compress(sample, Z_BEST_SPEED, scratch));
-  return size <= worth_it * static_cast<double>(sample.size()) ? Z_BEST_SPEED : Z_NO_COMPRESSION;
+  return static_cast<double>(deflate(sample, scratch).size()) <=
+         worth_it * static_cast<double>(sample.size());
 }
 
 /// An offset that is not known yet; replaced in place, so that the header need not be written last.
@@ -116,7 +105,7 @@ VtuStream::VtuStream(AtomicFile& file, std::uint64_t n_bytes)
       header_position_(file.position()),
       header_(3 + (n_bytes + block_size - 1) / block_size),
       block_(block_size),
-      compressed_(compressBound(block_size))
+      deflate_(Deflate::fastest)
 {
   header_[0] = header_.size() - 3;
   header_[1] = block_size;
@@ -128,10 +117,15 @@ void VtuStream::flush()
 {
   assert(n_flushed_ + 3 < header_.size());  // not longer than announced
   const auto block = std::span(block_).first(used_);
-  if (!level_) level_ = choose_level(block, compressed_);
-  const std::size_t size = compress(block, *level_, compressed_);
-  header_[3 + n_flushed_++] = size;
-  file_->write(std::as_bytes(std::span(compressed_).first(size)));
+  if (n_flushed_ == 0)
+  {
+    compressed_.resize(deflate_.bound(block_size));
+    if (!is_worth_compressing(block, deflate_, compressed_)) deflate_ = Deflate(Deflate::stored);
+    compressed_.resize(deflate_.bound(block_size));
+  }
+  const std::span<const std::byte> compressed = deflate_(block, compressed_);
+  header_[3 + n_flushed_++] = compressed.size();
+  file_->write(compressed);
   used_ = 0;
 }
 

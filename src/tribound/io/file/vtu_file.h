@@ -10,7 +10,6 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -18,6 +17,7 @@
 
 #include "tribound/base/types.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/deflate.h"
 
 namespace tribound::io
 {
@@ -45,11 +45,11 @@ class VtuStream
   void flush();
 
   AtomicFile* file_;
-  std::optional<int> level_;  ///< of compression, zlib's; decided with the first block
   std::uint64_t header_position_;
   std::vector<std::uint64_t> header_;  ///< number of blocks, block size, size of a last partial block, sizes
   std::vector<std::byte> block_;
-  std::vector<unsigned char> compressed_;
+  Deflate deflate_;  ///< whether it compresses or stores is decided with the first block
+  std::vector<std::byte> compressed_;
   std::size_t used_ = 0;
   std::size_t n_flushed_ = 0;
 };
