@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "support/meshes.h"
@@ -85,6 +86,30 @@ TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
   EXPECT_EQ(told.numbers.back(), told.numbers[told.numbers.size() - 2]);
   EXPECT_FALSE(told.levels[told.levels.size() - 2].converged);
   EXPECT_TRUE(told.levels.back().converged);
+}
+
+/// Where it is known that no mesh follows, the criterion need not be asked: what it would have said is told.
+TEST(Finish, OnTheLastMeshOfAllOneIterateIsBounded)
+{
+  for (const int p : {1, 2})
+  {
+    const adapt::AdaptOptions options{.tolerance = 1e-6, .max_levels = 2};
+    const Told early = run({.degree = p, .stopping = {.finish = false}}, options);
+    const Told late = run({.degree = p}, options);
+    EXPECT_EQ(late.numbers, (std::vector{0, 1, 2}));
+    const adapt::CertifiedLevel<2>& last = late.levels.back();
+    EXPECT_TRUE(last.converged);
+    EXPECT_EQ(std::ranges::count_if(last.steps, [](const auto& step) { return step.bound.has_value(); }), 1);
+    EXPECT_TRUE(last.steps.back().bound && last.steps.back().accepted);
+    EXPECT_GT(last.finishing_steps, 0);
+    // The criterion may take a step more, as it looks at a bound only where a guess of it lets the iterate
+    // pass.
+    EXPECT_NEAR(static_cast<int>(last.steps.size()) - last.finishing_steps,
+                static_cast<int>(early.levels.back().steps.size()), 1);
+    const double bound = early.levels.back().estimate.total_sharp;
+    EXPECT_NEAR(last.estimate.total_sharp, bound, 0.02 * bound);
+    EXPECT_LE(last.identities.largest(p), 1e-10);
+  }
 }
 
 /// The steps that are allowed are enough for the criterion, not for a residual of 1e-14.

@@ -66,8 +66,10 @@ class Certifier
   /// needed.
   [[nodiscard]] bool is_candidate(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
-    return method_.stopping.criterion == Stopping::tolerance || method_.regularisation ||
-           may_be_accepted(iterate, step);
+    const Stopping criterion = method_.stopping.criterion;
+    if (criterion == Stopping::tolerance || method_.regularisation) return true;
+    const bool may_be_accepted = linearisation_may_be_negligible(iterate, step);
+    return may_be_accepted && criterion != Stopping::last_bounded;
   }
 
   /// Whether the iterate whose bound the level has may be kept as the solution.
@@ -94,7 +96,7 @@ class Certifier
   /// Whether the linearisation error may be negligible, the discretisation error being that last known, or,
   /// before any is, at most as large as the stress of the first iterate. What is negligible on every cell is
   /// so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
-  bool may_be_accepted(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
+  bool linearisation_may_be_negligible(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
     const double factor = method_.stopping.criterion == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
     step.linearisation =
@@ -109,6 +111,17 @@ class Certifier
   certify::Equilibrator<dim> equilibrator_;
   certify::Estimator<dim> estimator_;
 };
+
+/// The steps after the one at which Stopping::adaptive would have ended, by the bound of the last.
+int steps_beyond_need(std::span<const CertifiedStep> steps, const certify::BoundComponents& eta,
+                      double gamma_lin)
+{
+  const double negligible = gamma_lin * (eta.discretisation() + eta.regularisation());
+  const auto needed = std::ranges::find_if(
+      steps, [&](const CertifiedStep& step)
+      { return step.linearisation && step.linearisation->linearisation() <= negligible; });
+  return std::max(0, static_cast<int>(steps.end() - needed) - 1);
+}
 
 /// The stress, the bound and the identities of the last step, whose iterate is kept.
 template <int dim>
@@ -265,6 +278,8 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
     keep_last(form, *certifier, level);
   }
+  if (method.stopping.criterion == Stopping::last_bounded)
+    level.finishing_steps = steps_beyond_need(level.steps, level.estimate.global, method.stopping.gamma_lin);
   if (!bound_holds(level, method.degree)) tighten(form, method, observer, level);
   return level;
 }

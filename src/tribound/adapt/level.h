@@ -69,7 +69,7 @@ struct CertifiedLevel
   std::vector<double> u;
   std::vector<Point<dim>> traction;  ///< t^k at the contact points, in equilibrium with the loads
   std::vector<CertifiedStep> steps;
-  int finishing_steps = 0;           ///< the last of them, which converge() has added
+  int finishing_steps = 0;           ///< the last of them, which the criterion did not ask for
   bool converged = false;            ///< to newton.tolerance, not only as far as the bound needs
   bool tightened = false;            ///< whether its systems were solved anew, see solve_and_certify()
   double delta = 0;                  ///< of the regularised variant, for the next mesh
@@ -94,7 +94,7 @@ struct CertifiedLevel
 /// eta_frc), where T is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
 [[nodiscard]] bool linearisation_is_negligible(const certify::BoundComponents& eta, double gamma_lin);
 
-/// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); false for tolerance.
+/// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); else false.
 [[nodiscard]] bool linearisation_is_negligible(const certify::Estimate& estimate,
                                                const StoppingOptions& stopping);
 
@@ -107,10 +107,12 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// goes on with smaller ones until the regularisation is negligible too.
 ///
 /// The iterate that is kept always has the complete bound of its own stress; so has every other with
-/// Stopping::tolerance and in the regularised variant. Otherwise sigma_lin comes first, which needs the
-/// patches around Gamma_C alone: an iterate whose linearisation error is not negligible beside osc + str +
-/// neu + cnt + frc + quad of the last complete bound, or at first beside what this sum is `expected` to be,
-/// or, if nothing is known of it, beside ||sigma(u^1)||, gets no complete bound, and Newton's method goes on.
+/// Stopping::tolerance and in the regularised variant, and none with Stopping::last_bounded, where
+/// finishing_steps tells how many were not needed by Stopping::adaptive. Otherwise sigma_lin comes first,
+/// which needs the patches around Gamma_C alone: an iterate whose linearisation error is not negligible
+/// beside osc + str + neu + cnt + frc + quad of the last complete bound, or at first beside what this sum is
+/// `expected` to be, or, if nothing is known of it, beside ||sigma(u^1)||, gets no complete bound, and
+/// Newton's method goes on.
 ///
 /// `friedrichs`: of a mesh of which this is a refinement, if it is known.
 ///

@@ -45,10 +45,10 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
 }
 
 template <int dim>
-std::string Levels<dim>::advance(const StepObserver& observer)
+std::string Levels<dim>::advance(const StepObserver& observer, bool is_last)
 {
   const Clock::time_point begin = Clock::now();
-  std::string why = try_to_advance(observer);
+  std::string why = try_to_advance(observer, is_last);
   if (!why.empty())
   {
     current_ = std::move(discrete_before_);
@@ -60,11 +60,11 @@ std::string Levels<dim>::advance(const StepObserver& observer)
 }
 
 template <int dim>
-std::string Levels<dim>::try_to_advance(const StepObserver& observer)
+std::string Levels<dim>::try_to_advance(const StepObserver& observer, bool is_last)
 {
   assert(number_ < 0 || discrete_before_);  // refine() comes first
   std::string why;
-  std::optional<CertifiedLevel<dim>> level = solve(observer, why);
+  std::optional<CertifiedLevel<dim>> level = solve(observer, is_last, why);
   if (!level) return why;
   certify::Verdict verdict = judge(*level);
   if (discrete_before_ && !certify::is_bound(verdict.status))
@@ -77,17 +77,40 @@ std::string Levels<dim>::try_to_advance(const StepObserver& observer)
 }
 
 template <int dim>
-std::optional<CertifiedLevel<dim>> Levels<dim>::solve(const StepObserver& observer, std::string& why) const
+std::optional<CertifiedLevel<dim>> Levels<dim>::solve_to_the_end(const StepObserver& observer) const
+{
+  if (!method_.stopping.finish || method_.stopping.criterion != Stopping::adaptive || method_.regularisation)
+    return std::nullopt;
+  Method method = method_;
+  method.stopping.criterion = Stopping::last_bounded;
+  try
+  {
+    CertifiedLevel<dim> level = solve_and_certify<dim>(current_->form, start_, method, observer, level_.delta,
+                                                       expected_, level_.friedrichs);
+    if (level.converged && bound_holds(level, method_.degree)) return level;
+  }
+  catch (const SolveError&)  // an iterate that the criterion accepts may come before that
+  {
+  }
+  return std::nullopt;
+}
+
+template <int dim>
+std::optional<CertifiedLevel<dim>> Levels<dim>::solve(const StepObserver& observer, bool is_last,
+                                                      std::string& why) const
 {
   const bool is_first = !discrete_before_;
   const auto failed = [&](const char* problem)
   { return fmt::format("this is level {}, level {} failed: {}", number_, number_ + 1, problem); };
   try
   {
-    CertifiedLevel<dim> level =
-        solve_and_certify<dim>(current_->form, start_, method_, watch(observer, !is_first), level_.delta,
-                               expected_, level_.friedrichs);
-    level.refinement = refinement_;
+    const StepObserver watching = watch(observer, !is_first);
+    std::optional<CertifiedLevel<dim>> level;
+    if (is_last) level = solve_to_the_end(watching);
+    if (!level)
+      level = solve_and_certify<dim>(current_->form, start_, method_, watching, level_.delta, expected_,
+                                     level_.friedrichs);
+    level->refinement = refinement_;
     return level;
   }
   catch (const Interrupted&)

@@ -64,8 +64,9 @@ class Levels
 
   /// Solves and certifies on the current mesh. Not empty: why this level was given up; the one before is the
   /// last again, without its stress and estimate: finish() may then be called, refine() may not. Throws
-  /// SolveError and bad_alloc for the first level.
-  [[nodiscard]] std::string advance(const StepObserver& observer = {});
+  /// SolveError and bad_alloc for the first level. `is_last`: no other level will follow, whatever its bound:
+  /// finish() is then made part of it, and bounds that only the stopping criterion needs are left out.
+  [[nodiscard]] std::string advance(const StepObserver& observer = {}, bool is_last = false);
 
   /// Lets Newton's method converge to newton.tolerance on the last level (newton.finish), as far as it does
   /// so without harm; whether it has changed anything.
@@ -89,10 +90,12 @@ class Levels
   /// Passes the steps on, and leaves Newton's method when the user wants it to end and it may.
   [[nodiscard]] StepObserver watch(const StepObserver& observer, bool interruptible) const;
   /// Nothing where the level did not end: `why` says it.
-  [[nodiscard]] std::optional<CertifiedLevel<dim>> solve(const StepObserver& observer,
+  [[nodiscard]] std::optional<CertifiedLevel<dim>> solve(const StepObserver& observer, bool is_last,
                                                          std::string& why) const;
+  /// Newton's method to its end with one bound; nothing where it does not get there.
+  [[nodiscard]] std::optional<CertifiedLevel<dim>> solve_to_the_end(const StepObserver& observer) const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
-  [[nodiscard]] std::string try_to_advance(const StepObserver& observer);
+  [[nodiscard]] std::string try_to_advance(const StepObserver& observer, bool is_last);
   [[nodiscard]] std::string try_to_refine(const Marker<dim>& mark, const MeshLimit& limit);
 
   const problem::Problem<dim>& problem_;

@@ -44,6 +44,7 @@ Strategy<dim> make_strategy(const AdaptOptions& options, const std::atomic<bool>
       return fmt::format("adapt.max_time = {:g} s is used up", *options.max_time);
     return {};
   };
+  strategy.last_level = options.max_levels;
   strategy.limit = [options, before = peak_memory()](const NextMesh& next) -> std::string
   {
     if (options.max_cells && next.cells > *options.max_cells)
@@ -81,9 +82,9 @@ certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy)
   };
   const auto finish = [&] { return levels.finish(strategy.observer.step); };
   std::string end;  // why the last level is the last
-  for (;;)
+  for (int number = 0;; ++number)
   {
-    end = levels.advance(strategy.observer.step);
+    end = levels.advance(strategy.observer.step, number == strategy.last_level);
     const bool told = !end.empty();
     if (end.empty() && strategy.stop) end = strategy.stop(levels.view());
     const bool is_last = !end.empty() || levels.verdict().status != certify::RunStatus::budget;

@@ -47,6 +47,7 @@ struct Strategy
   /// Why a level is the last though its bound is above the tolerance; empty: it is not.
   std::function<std::string(const LevelView<dim>&)> stop;
   MeshLimit limit;
+  std::optional<int> last_level{};  ///< after which `stop` ends the loop whatever the level holds
   LoopObserver<dim> observer{};
 };
 

@@ -18,7 +18,8 @@ enum class Stopping
 {
   adaptive,        ///< eta_lin is a fraction of the rest, summed over the mesh
   adaptive_local,  ///< the same on every cell
-  tolerance        ///< NewtonOptions::tolerance
+  tolerance,       ///< NewtonOptions::tolerance, and every iterate has its bound
+  last_bounded     ///< NewtonOptions::tolerance, and the last iterate alone has its bound
 };
 
 /// When Newton's method ends on a mesh.
