@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tribound/algebra/petsc_detail.h"
+#include "tribound/algebra/single_product.h"
 #include "tribound/base/norm.h"
 
 namespace tribound::algebra
@@ -207,14 +208,15 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
 }
 
 /// Makes a new preconditioner. Setting the operators again tells the KSP that its set-up is out of date.
-void LinearSolver::prepare(const SparseMatrix& a)
+void LinearSolver::prepare(const SparseMatrix& a, Mat product)
 {
   check_magnitude(a);
   const detail::Options options(method_ == LinearMethod::iterative);
-  check(KSPSetOperators(ksp_.get(), a.handle(), a.handle()), "factorising");
+  check(KSPSetOperators(ksp_.get(), product, a.handle()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
   if (multigrid_) multigrid_->renew(preconditioner(), a);
   check(KSPSetUp(ksp_.get()), "factorising");
+  if (multigrid_) Multigrid::smooth_in_single(preconditioner());
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_TRUE), "factorising");
 }
 
@@ -251,7 +253,10 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double>
                                   std::span<double> x)
 {
   if (!ksp_) configure(a);
-  check(KSPSetOperators(ksp_.get(), a.handle(), a.handle()), "setting up a solver");
+  std::optional<detail::SingleProduct> single;  // GMRES itself works in double precision
+  if (multigrid_) single.emplace(a.handle());
+  const Mat product = single ? single->exact() : a.handle();
+  check(KSPSetOperators(ksp_.get(), product, a.handle()), "setting up a solver");
   LinearSolve result;
   if (reuse_budget_ > 0)
   {
@@ -261,7 +266,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double>
     if (converged) return result;
   }
 
-  prepare(a);
+  prepare(a, product);
   const bool direct = method_ == LinearMethod::direct;
   StopRule rule{tolerance, direct ? 4 : patience(a.size()), false, {}};
   const bool converged = iterate(ksp_.get(), b, rule, x);

@@ -102,7 +102,7 @@ class LinearSolver
   void configure(const SparseMatrix& a);
   void configure_direct(const SparseMatrix& a);
   [[nodiscard]] _p_PC* preconditioner() const;
-  void prepare(const SparseMatrix& a);
+  void prepare(const SparseMatrix& a, _p_Mat* product);
 
   SolverOptions config_;
   LinearMethod method_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tribound/algebra/petsc_detail.h"
+#include "tribound/algebra/single_product.h"
 
 namespace tribound::algebra
 {
@@ -81,10 +82,10 @@ MatHandle interpolation_matrix(const NodeInterpolation& nodes, int dim, const st
   return result;
 }
 
-bool has_levels(PC pc)
+bool is(PC pc, PCType type)
 {
   PetscBool result = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCMG, &result), making);
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), type, &result), making);
   return result == PETSC_TRUE;
 }
 
@@ -95,10 +96,12 @@ void Multigrid::configure(PC pc) const
   if (hierarchy_.steps.empty())
   {
     check(PCSetType(pc, PCGAMG), making);
+    check(PCSetUseAmat(pc, PETSC_FALSE), making);  // the finest level, too, is smoothed in single precision
     return;
   }
   const auto n_steps = static_cast<PetscInt>(hierarchy_.steps.size());
   check(PCSetType(pc, PCMG), making);
+  check(PCSetUseAmat(pc, PETSC_FALSE), making);
   check(PCMGSetLevels(pc, n_steps + 1, nullptr), making);
   KSP solver = nullptr;
   PC inner = nullptr;
@@ -127,7 +130,7 @@ void Multigrid::configure(PC pc) const
 
 void Multigrid::renew(PC pc, const SparseMatrix& a)
 {
-  if (!hierarchy_.steps.empty() && !has_levels(pc)) return;  // options have made it something else
+  if (!hierarchy_.steps.empty() && !is(pc, PCMG)) return;  // options have made it something else
   if (!made_) return make_levels(pc, a.handle());
   Mat fine = a.handle();
   for (const Level& level : levels_)
@@ -136,6 +139,26 @@ void Multigrid::renew(PC pc, const SparseMatrix& a)
     check(MatPtAP(fine, level.interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse), making);
     fine = coarse;
   }
+}
+
+void Multigrid::smooth_in_single(PC pc)
+{
+  if (!is(pc, PCMG) && !is(pc, PCGAMG)) return;
+  PetscInt n_levels = 0;
+  check(PCMGGetLevels(pc, &n_levels), making);
+  KSP solver = nullptr;
+  for (PetscInt level = 0; level + 1 < n_levels; ++level)
+  {
+    Mat matrix = nullptr;
+    check(PCMGGetSmoother(pc, level, &solver), making);
+    check(KSPGetOperators(solver, nullptr, &matrix), making);
+    detail::multiply_in_single(matrix);
+  }
+  if (n_levels < 2) return;
+  PC inner = nullptr;
+  check(PCMGGetCoarseSolve(pc, &solver), making);
+  check(KSPGetPC(solver, &inner), making);
+  smooth_in_single(inner);
 }
 
 void Multigrid::make_levels(PC pc, Mat finest)
@@ -147,7 +170,6 @@ void Multigrid::make_levels(PC pc, Mat finest)
     Mat coarse = nullptr;
     check(MatPtAP(fine, level.interpolation.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse), making);
     level.matrix.reset(coarse);
-    detail::multiply_in_threads(coarse);
     const auto number = static_cast<PetscInt>(hierarchy_.steps.size() - levels_.size());
     check(PCMGSetInterpolation(pc, number, level.interpolation.get()), making);
     KSP solver = nullptr;

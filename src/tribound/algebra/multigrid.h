@@ -29,6 +29,8 @@ class Multigrid
   /// Gives `pc` the coarse matrices of `a`, before its set-up. Interpolations and patterns are made for the
   /// first `a`; later ones must have its pattern.
   void renew(_p_PC* pc, const SparseMatrix& a);
+  /// After its set-up: products on the coarser levels are in single precision from now on.
+  static void smooth_in_single(_p_PC* pc);
 
  private:
   struct Level

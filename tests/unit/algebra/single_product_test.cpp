@@ -1,0 +1,105 @@
+/// @file single_product_test.cpp
+/// Products in single precision against those in double precision.
+
+#include "tribound/algebra/single_product.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "support/fields.h"
+#include "tribound/algebra/linear_solver.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using algebra::detail::SingleProduct;
+
+/// Entries of every magnitude within eight decades; rows of a block have different patterns.
+algebra::Triplets scattered(int n, double unit, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> place(0, n - 1);
+  std::uniform_real_distribution<double> value(-1, 1);
+  algebra::Triplets entries;
+  for (int i = 0; i < n; ++i) entries.add(i, i, 3 * unit);
+  for (int k = 0; k < 7 * n; ++k)
+    entries.add(place(random), place(random), unit * value(random) * std::pow(10, 4 * value(random) - 4));
+  return entries;
+}
+
+std::vector<double> random_vector(int n, double unit, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> value(-unit, unit);
+  std::vector<double> x(n);
+  std::ranges::generate(x, [&] { return value(random); });
+  return x;
+}
+
+/// MatMult() as PETSc's solvers call it.
+std::vector<double> product(Mat a, const std::vector<double>& x)
+{
+  std::vector<double> y(x.size());
+  using algebra::detail::wrap;
+  EXPECT_EQ(MatMult(a, wrap(std::span<const double>(x)).get(), wrap(std::span(y)).get()), 0);
+  return y;
+}
+
+TEST(SingleProduct, IsThatInDoublePrecisionToSevenDigits)
+{
+  for (const int block_size : {1, 2, 3, 6})
+    for (const double unit : {1.0, 1e-60, 1e90})
+    {
+      const int n = 20 * 6;
+      const algebra::SparseMatrix a(n, block_size, scattered(n, unit, block_size));
+      const std::vector<double> x = random_vector(n, 1 / unit, 7);
+      const std::vector<double> y = a.multiply(x);
+      {
+        const SingleProduct single(a.handle());
+        EXPECT_LE(distance(product(a.handle(), x), y), 3e-7 * norm(y)) << block_size << ", " << unit;
+        EXPECT_GT(distance(product(a.handle(), x), y), 0.0);
+        EXPECT_EQ(product(single.exact(), x), y);
+        EXPECT_EQ(product(a.handle(), std::vector<double>(n, 0.0)), std::vector<double>(n, 0.0));
+      }
+      EXPECT_EQ(product(a.handle(), x), y);  // as before
+    }
+}
+
+TEST(SingleProduct, FollowsTheMatrix)
+{
+  const int n = 60;
+  algebra::Triplets entries = scattered(n, 1, 3);
+  algebra::SparseMatrix a(n, 3, entries);
+  const std::vector<double> x = random_vector(n, 1, 8);
+  algebra::detail::multiply_in_single(a.handle());
+  static_cast<void>(product(a.handle(), x));
+  std::ranges::reverse(entries.values);
+  a.set_values(entries.values);
+  algebra::detail::multiply_in_single(a.handle());
+  const std::vector<double> y = multiply(entries, x);
+  EXPECT_LE(distance(product(a.handle(), x), y), 3e-7 * norm(y));
+}
+
+TEST(SingleProduct, WhatIsNoNumberStaysNone)
+{
+  const int n = 60;
+  const algebra::SparseMatrix a(n, 3, scattered(n, 1, 4));
+  std::vector<double> x = random_vector(n, 1, 9);
+  const SingleProduct single(a.handle());
+  for (const double value : {std::nan(""), HUGE_VAL})
+  {
+    x[10] = value;
+    EXPECT_FALSE(std::isfinite(norm(product(a.handle(), x))));
+  }
+}
+
+}  // namespace
+
+}  // namespace tribound::test
