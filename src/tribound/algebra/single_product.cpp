@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <new>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,12 @@ namespace
 
 constexpr const char* making = "making a matrix in single precision";
 constexpr const char* key = "tribound_single";  // under which it is kept with the matrix
+
+/// 1 / x, and 0 where that is beyond the range of numbers.
+double inverse_of(double x)
+{
+  return x >= std::numeric_limits<double>::min() ? 1 / x : 0;
+}
 
 /// Rows and columns of a sparse matrix with their values.
 struct Rows
@@ -52,16 +60,16 @@ class SingleBlocks
     update(a);
     double largest = 0;
     for (const double value : x) largest = std::max(largest, std::abs(value));
-    const double inverse = largest > 0 ? 1 / largest : 1;
+    const double inverse = inverse_of(largest);
     std::ranges::transform(x, x_.begin(), [=](double value) { return static_cast<float>(inverse * value); });
     switch (width_)
     {
       case 3:
-        return multiply_blocks<3>(scale_ / inverse, y);
+        return multiply_blocks<3>(scale_ * largest, y);
       case 2:
-        return multiply_blocks<2>(scale_ / inverse, y);
+        return multiply_blocks<2>(scale_ * largest, y);
       default:
-        return multiply_blocks<1>(scale_ / inverse, y);
+        return multiply_blocks<1>(scale_ * largest, y);
     }
   }
 
@@ -103,8 +111,7 @@ class SingleBlocks
   {
     scale_ = 0;
     for (PetscInt k = 0; k < rows.begin[rows.n]; ++k) scale_ = std::max(scale_, std::abs(rows.entries[k]));
-    const double inverse = scale_ > 0 ? 1 / scale_ : 1;
-    scale_ = 1 / inverse;
+    const double inverse = inverse_of(scale_);
     const std::size_t block = std::size_t(width_) * width_;
     entries_.assign(block * columns_.size(), 0.0F);
     std::vector<PetscInt> place(begin_.size() - 1);  // of the block, by its column
@@ -188,10 +195,22 @@ PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
   PetscCall(MatGetSize(a, &n, nullptr));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(y, &out));
-  blocks_of(a).multiply(a, std::span(in, n), std::span(out, n));
+  PetscErrorCode error = 0;  // no exception may pass through PETSc
+  try
+  {
+    blocks_of(a).multiply(a, std::span(in, n), std::span(out, n));
+  }
+  catch (const std::bad_alloc&)
+  {
+    error = PETSC_ERR_MEM;
+  }
+  catch (const SolveError&)
+  {
+    error = PETSC_ERR_LIB;
+  }
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
-  PetscFunctionReturn(0);
+  PetscFunctionReturn(error);
 }
 
 /// The product that a matrix had.
