@@ -18,10 +18,10 @@ namespace tribound::app
 /// Sizes up to which the page shows a mesh as it is.
 struct PageLimits
 {
-  std::size_t subdivided = 24'000;   ///< triangles up to which faces are subdivided, to show degree p
-  std::size_t triangles = 240'000;   ///< triangles of a level; beyond, cells are merged
-  std::size_t stresses = 24'000;     ///< triangles up to which stresses are those of points, not of faces
-  std::size_t all_levels = 100'000;  ///< triangles of all levels together; beyond, levels are left out
+  std::size_t subdivided = 24'000;  ///< triangles up to which faces are subdivided, to show degree p
+  std::size_t triangles = 240'000;  ///< triangles of a level; beyond, cells are merged
+  std::size_t stresses = 24'000;    ///< triangles up to which stresses are those of points, not of faces
+  std::size_t earlier = 40'000;     ///< triangles of all levels before the last; beyond, they are left out
 };
 
 /// Values at the lattice points of the contact faces, see Surface.

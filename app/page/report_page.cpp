@@ -221,12 +221,6 @@ io::Json page_volume(const contact::NitscheForm<dim>& form, const adapt::Certifi
   return nullptr;
 }
 
-void drop_levels(std::vector<PageLevel>& levels, const PageLimits& limits)
-{
-  while (levels.size() > 2 && n_triangles(levels) > limits.all_levels)
-    levels.erase(std::ranges::max_element(levels.begin() + 1, levels.end() - 1, {}, &PageLevel::n_triangles));
-}
-
 void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors)
 {
   std::string text = read_text(page);
@@ -252,8 +246,7 @@ void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
 {
   if (template_.empty()) return;
   constexpr PageLimits limits{.subdivided = 6000, .stresses = 6000};
-  // The last level will have as many triangles at least: this one would then be dropped.
-  if (!levels_.empty() && n_triangles(levels_) + 2 * n_triangles(form, limits) > limits.all_levels) return;
+  if (!levels_.empty() && n_triangles(levels_) + n_triangles(form, limits) > limits.earlier) return;
   levels_.push_back(page_level(number, form, level, limits));
 }
 
@@ -265,7 +258,6 @@ void ReportPage::add_last(int number, const contact::NitscheForm<dim>& form,
   std::erase_if(levels_, [number](const PageLevel& other) { return other.number == number; });
   levels_.push_back(page_level(number, form, level));
   volume_ = page_volume(form, level);
-  drop_levels(levels_, {});
 }
 
 void ReportPage::write(const std::filesystem::path& directory, const io::RunRecord& run) const

@@ -36,10 +36,6 @@ template <int dim>
 [[nodiscard]] io::Json page_volume(const contact::NitscheForm<dim>& form,
                                    const adapt::CertifiedLevel<dim>& level);
 
-/// Leaves out levels between the first and the last, the largest first, until all have at most
-/// limits.all_levels triangles together.
-void drop_levels(std::vector<PageLevel>& levels, const PageLimits& limits);
-
 /// The comment in the template, and in a page without them, which add_true_errors() replaces.
 inline constexpr std::string_view true_errors_marker = "<!-- true errors -->";
 
@@ -62,8 +58,8 @@ class ReportPage
   /// `page_template`: what report/ builds; where there is none nothing is collected or written.
   explicit ReportPage(const std::filesystem::path& page_template);
 
-  /// A level that is not the last, in less detail than that, unless it is too large to be shown beside the
-  /// following ones.
+  /// A level that is not the last, in less detail than that; left out where it and those before it are more
+  /// than PageLimits::earlier.
   template <int dim>
   void add(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
   /// The last level, with the inside of the body; before write(). Takes the place of one with its number.

@@ -49,25 +49,13 @@ class ReportPageFile : public ::testing::Test
   const std::filesystem::path template_ = directory_ / "template.html";
 };
 
-TEST(ReportPage, LevelsInBetweenAreLeftOutFromTheLargestOn)
-{
-  std::vector<app::PageLevel> levels = {{0, 10, {}}, {1, 20, {}}, {2, 40, {}}, {3, 30, {}}, {4, 50, {}}};
-  app::drop_levels(levels, {.all_levels = 120});
-  std::vector<int> numbers;
-  numbers.reserve(levels.size());
-  for (const app::PageLevel& level : levels) numbers.push_back(level.number);
-  EXPECT_THAT(numbers, ::testing::ElementsAre(0, 1, 3, 4));
-  app::drop_levels(levels, {.all_levels = 0});
-  EXPECT_EQ(levels.size(), 2u);
-}
-
 TEST_F(ReportPageFile, LevelsAreSampledOnceAndThoseTooLargeAreNot)
 {
   const DiscreteProblem<2> small = constant_stress_problem<2>(1, 2);
-  const DiscreteProblem<2> large = constant_stress_problem<2>(1, 200);  // 80 000 triangles
+  const DiscreteProblem<2> large = constant_stress_problem<2>(1, 150);  // 45 000 triangles
   app::ReportPage page(template_);
   page.add(0, small.form, constant_stress_level(small));
-  page.add(1, large.form, constant_stress_level(large));  // two of them are too many
+  page.add(1, large.form, constant_stress_level(large));
   page.add_last(2, large.form, constant_stress_level(large));
   page.write(directory_, {});
   const json fields = data()["fields"];
