@@ -251,7 +251,8 @@ SingleProduct::SingleProduct(Mat a) : a_(a)
   check(MatGetOperation(a, MATOP_MULT, &product_), making);
   PetscInt n = 0;
   check(MatGetSize(a, &n, nullptr), making);
-  auto context = std::make_unique<Exact>(a, reinterpret_cast<PetscErrorCode (*)(Mat, Vec, Vec)>(product_));
+  auto context =
+      std::make_unique<Exact>(Exact{a, reinterpret_cast<PetscErrorCode (*)(Mat, Vec, Vec)>(product_)});
   Mat shell = nullptr;
   check(MatCreateShell(communicator(), n, n, n, n, context.get(), &shell), making);
   exact_.reset(shell);
