@@ -1,0 +1,127 @@
+#pragma once
+
+/// @file ranks.h
+/// The processes of one computation.
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace tribound
+{
+
+/// The processes (ranks) that compute together. All of them call a member together, in the same order; what
+/// decides over that must be a result of one or the same everywhere. On one rank each member is the identity.
+class Ranks
+{
+ public:
+  /// This process alone.
+  Ranks() = default;
+  /// All that were started together. MPI runs already, and longer than this and its copies are used.
+  [[nodiscard]] static Ranks world();
+
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] bool is_first() const { return rank_ == 0; }
+
+  /// Sums over the ranks, number by number, added in their order: the same bits everywhere.
+  void sum(std::span<double> x) const;
+  [[nodiscard]] double sum(double x) const;
+  [[nodiscard]] std::int64_t sum(std::int64_t x) const;
+  /// Over the ranks before this one.
+  [[nodiscard]] std::int64_t before(std::int64_t x) const;
+  [[nodiscard]] double max(double x) const;
+  [[nodiscard]] bool any(bool x) const;
+  /// What the first rank says: clocks, memory and signals differ.
+  [[nodiscard]] bool first_says(bool x) const;
+
+  /// out[r] goes to rank r, empty ones cost nothing; the result has what came from each.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  [[nodiscard]] std::vector<std::vector<T>> send(const std::vector<std::vector<T>>& out) const
+  {
+    if (size_ == 1) return out;
+    std::vector<std::span<const std::byte>> parcels;
+    for (const std::vector<T>& items : out) parcels.push_back(std::as_bytes(std::span(items)));
+    std::vector<std::vector<T>> in(size_);
+    send_bytes(parcels,
+               [&in](int r, std::size_t n_bytes)
+               {
+                 in[r].resize(n_bytes / sizeof(T));
+                 return std::as_writable_bytes(std::span(in[r]));
+               });
+    return in;
+  }
+
+  /// The items of all ranks, on the first; elsewhere nothing.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  [[nodiscard]] std::vector<std::vector<T>> gather(std::span<const T> items) const
+  {
+    std::vector<std::vector<T>> out(size_);
+    out[0].assign(items.begin(), items.end());
+    std::vector<std::vector<T>> in = send(out);
+    if (!is_first()) in.clear();
+    return in;
+  }
+
+  /// The bytes that the first rank has, everywhere.
+  void copy_from_first(std::vector<char>& bytes) const;
+
+  /// work(). If it throws on some ranks, all of them throw: those what they have thrown, the others what the
+  /// lowest of them has, with its number. For everything that may fail on a rank of its own.
+  template <class Work>
+  auto together(const Work& work) const
+  {
+    using Result = std::invoke_result_t<Work>;
+    std::exception_ptr failure;
+    if constexpr (std::is_void_v<Result>)
+    {
+      try
+      {
+        work();
+      }
+      catch (...)
+      {
+        failure = std::current_exception();
+      }
+      agree(failure);
+    }
+    else
+    {
+      std::optional<Result> result;
+      try
+      {
+        result.emplace(work());
+      }
+      catch (...)
+      {
+        failure = std::current_exception();
+      }
+      agree(failure);
+      return std::move(*result);
+    }
+  }
+
+ private:
+  struct Communicator;
+
+  /// Room for what comes from a rank.
+  using Receiver = std::function<std::span<std::byte>(int rank, std::size_t n_bytes)>;
+  void send_bytes(std::span<const std::span<const std::byte>> out, const Receiver& receiver) const;
+  void agree(const std::exception_ptr& failure) const;
+  void copy_from(int root, std::vector<char>& bytes) const;
+
+  std::shared_ptr<const Communicator> communicator_;  ///< null: one rank
+  int rank_ = 0;
+  int size_ = 1;
+};
+
+}  // namespace tribound
