@@ -14,9 +14,20 @@
 namespace tribound::adapt
 {
 
+namespace
+{
+
+/// The largest negligible eta_lin1 + eta_lin2n + eta_lin2t beside the other components.
+double negligible_linearisation(const certify::BoundComponents& eta, double gamma_lin)
+{
+  return gamma_lin * (eta.discretisation() + eta.regularisation());
+}
+
+}  // namespace
+
 bool linearisation_is_negligible(const certify::BoundComponents& eta, double gamma_lin)
 {
-  return eta.linearisation() <= gamma_lin * (eta.discretisation() + eta.regularisation());
+  return eta.linearisation() <= negligible_linearisation(eta, gamma_lin);
 }
 
 bool linearisation_is_negligible(const certify::Estimate& estimate, const StoppingOptions& stopping)
@@ -116,7 +127,7 @@ class Certifier
 int steps_beyond_need(std::span<const CertifiedStep> steps, const certify::BoundComponents& eta,
                       double gamma_lin)
 {
-  const double negligible = gamma_lin * (eta.discretisation() + eta.regularisation());
+  const double negligible = negligible_linearisation(eta, gamma_lin);
   const auto needed = std::ranges::find_if(
       steps, [&](const CertifiedStep& step)
       { return step.linearisation && step.linearisation->linearisation() <= negligible; });

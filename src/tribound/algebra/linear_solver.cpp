@@ -216,7 +216,7 @@ void LinearSolver::prepare(const SparseMatrix& a, Mat product)
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
   if (multigrid_) multigrid_->renew(preconditioner(), a);
   check(KSPSetUp(ksp_.get()), "factorising");
-  if (multigrid_) Multigrid::smooth_in_single(preconditioner());
+  if (multigrid_) Multigrid::aggregate_in_single(preconditioner());
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_TRUE), "factorising");
 }
 

@@ -137,16 +137,22 @@ void Multigrid::renew(PC pc, const SparseMatrix& a)
   {
     Mat coarse = level.matrix.get();
     check(MatPtAP(fine, level.interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse), making);
+    detail::multiply_in_single(coarse);
     fine = coarse;
   }
 }
 
-void Multigrid::smooth_in_single(PC pc)
+void Multigrid::aggregate_in_single(PC pc)
 {
-  if (!is(pc, PCMG) && !is(pc, PCGAMG)) return;
+  KSP solver = nullptr;
+  if (is(pc, PCMG))
+  {
+    check(PCMGGetCoarseSolve(pc, &solver), making);
+    check(KSPGetPC(solver, &pc), making);
+  }
+  if (!is(pc, PCGAMG)) return;
   PetscInt n_levels = 0;
   check(PCMGGetLevels(pc, &n_levels), making);
-  KSP solver = nullptr;
   for (PetscInt level = 0; level + 1 < n_levels; ++level)
   {
     Mat matrix = nullptr;
@@ -154,11 +160,6 @@ void Multigrid::smooth_in_single(PC pc)
     check(KSPGetOperators(solver, nullptr, &matrix), making);
     detail::multiply_in_single(matrix);
   }
-  if (n_levels < 2) return;
-  PC inner = nullptr;
-  check(PCMGGetCoarseSolve(pc, &solver), making);
-  check(KSPGetPC(solver, &inner), making);
-  smooth_in_single(inner);
 }
 
 void Multigrid::make_levels(PC pc, Mat finest)
@@ -170,6 +171,7 @@ void Multigrid::make_levels(PC pc, Mat finest)
     Mat coarse = nullptr;
     check(MatPtAP(fine, level.interpolation.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse), making);
     level.matrix.reset(coarse);
+    detail::multiply_in_single(coarse);
     const auto number = static_cast<PetscInt>(hierarchy_.steps.size() - levels_.size());
     check(PCMGSetInterpolation(pc, number, level.interpolation.get()), making);
     KSP solver = nullptr;

@@ -26,11 +26,11 @@ class Multigrid
 
   /// Makes `pc` this preconditioner, before its options are read.
   void configure(_p_PC* pc) const;
-  /// Gives `pc` the coarse matrices of `a`, before its set-up. Interpolations and patterns are made for the
-  /// first `a`; later ones must have its pattern.
+  /// Gives `pc` the coarse matrices of `a`, before its set-up; products with them are in single precision.
+  /// Interpolations and patterns are made for the first `a`; later ones must have its pattern.
   void renew(_p_PC* pc, const SparseMatrix& a);
-  /// After its set-up: products on the coarser levels are in single precision from now on.
-  static void smooth_in_single(_p_PC* pc);
+  /// After its set-up: products on the levels of aggregation, too, are in single precision from now on.
+  static void aggregate_in_single(_p_PC* pc);
 
  private:
   struct Level

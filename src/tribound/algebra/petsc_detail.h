@@ -33,10 +33,6 @@ using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 /// way.
 [[nodiscard]] MPI_Comm communicator();
 
-/// From now on products with this matrix use threads, if there are more than one and it is large; PETSc's own
-/// use one. The same result for any number of them.
-void multiply_in_threads(Mat a);
-
 /// PETSc's options while it is alive: those of the process, which stay as they are, and what the library sets
 /// beside them unless the process does. Around whatever reads options: setting up solvers.
 class Options

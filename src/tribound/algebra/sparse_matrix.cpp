@@ -43,9 +43,9 @@ PetscErrorCode multiply_rows(Mat a, Vec x, Vec y)
   PetscFunctionReturn(0);
 }
 
-}  // namespace
-
-void detail::multiply_in_threads(Mat a)
+/// From now on products with this matrix use threads, if there are more than one and it is large; PETSc's own
+/// use one. The same result for any number of them.
+void multiply_in_threads(Mat a)
 {
   constexpr PetscInt worth_threads = 10'000;
   PetscInt n = 0;
@@ -53,6 +53,8 @@ void detail::multiply_in_threads(Mat a)
   if (max_threads() > 1 && n >= worth_threads)
     check(MatSetOperation(a, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_rows)), "creating a matrix");
 }
+
+}  // namespace
 
 void SparseMatrix::create(int block_size)
 {
@@ -63,7 +65,7 @@ void SparseMatrix::create(int block_size)
   check(MatSetType(mat, MATSEQAIJ), "creating a matrix");
   check(MatSetBlockSize(mat, block_size), "creating a matrix");
   check(MatSetOption(mat, MAT_USE_INODES, PETSC_FALSE), "creating a matrix");  // slower than rows one by one
-  detail::multiply_in_threads(mat);
+  multiply_in_threads(mat);
 }
 
 SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries) : size_(n)
@@ -91,7 +93,7 @@ SparseMatrix SparseMatrix::duplicate() const
   Mat mat = nullptr;
   check(MatDuplicate(mat_.get(), MAT_COPY_VALUES, &mat), "copying a matrix");
   copy.mat_.reset(mat);
-  detail::multiply_in_threads(mat);
+  multiply_in_threads(mat);
   return copy;
 }
 
@@ -158,7 +160,7 @@ SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
                 result.has_more_ ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN),
         "adding matrices");
   check(MatSetOption(result.mat_.get(), MAT_USE_INODES, PETSC_FALSE), "adding matrices");
-  detail::multiply_in_threads(result.mat_.get());
+  multiply_in_threads(result.mat_.get());
   return result;
 }
 

@@ -120,8 +120,11 @@ void VtuStream::flush()
   if (n_flushed_ == 0)
   {
     compressed_.resize(deflate_.bound(block_size));
-    if (!is_worth_compressing(block, deflate_, compressed_)) deflate_ = Deflate(Deflate::stored);
-    compressed_.resize(deflate_.bound(block_size));
+    if (!is_worth_compressing(block, deflate_, compressed_))
+    {
+      deflate_ = Deflate(Deflate::stored);
+      compressed_.resize(deflate_.bound(block_size));
+    }
   }
   const std::span<const std::byte> compressed = deflate_(block, compressed_);
   header_[3 + n_flushed_++] = compressed.size();
