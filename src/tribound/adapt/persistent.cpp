@@ -1,7 +1,9 @@
 #include "tribound/adapt/persistent.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -18,11 +20,13 @@ namespace tribound::adapt
 namespace
 {
 
+using Record = std::function<void(const solve::NewtonStep&)>;
+
 /// The solution with a small delta, from larger ones; nothing where that fails, too.
 template <int dim>
-std::optional<std::vector<double>> regularised_start(
-    const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
-    const std::function<void(const solve::NewtonStep&)>& record)
+std::optional<std::vector<double>> regularised_start(const contact::NitscheForm<dim>& form,
+                                                     std::span<const double> start, const Method& method,
+                                                     const Record& record)
 {
   // In units of the mean contact traction of the first step.
   constexpr double first = 10;
@@ -57,55 +61,93 @@ std::optional<std::vector<double>> regularised_start(
   return std::move(result.u);
 }
 
-/// The solution of another form; nothing where Newton's method fails.
+/// The solution of another form, to start from, and what it was solved with; nothing where Newton's method
+/// fails.
 template <int dim>
-std::optional<std::vector<double>> solution_of(const contact::NitscheForm<dim>& other,
-                                               std::span<const double> start, const Method& method,
-                                               double tolerance,
-                                               const std::function<void(const solve::NewtonStep&)>& record)
+struct Start
+{
+  std::vector<double> u;
+  std::shared_ptr<solve::Equilibrium<dim>> equilibrium = {};
+};
+template <int dim>
+std::optional<Start<dim>> solution_of(const contact::NitscheForm<dim>& other, Start<dim> start,
+                                      const Method& method, double tolerance, const Record& record)
 {
   solve::NewtonOptions newton = method.newton;
   newton.tolerance = std::max(newton.tolerance, tolerance);
+  newton.balanced = false;
   const solve::NewtonObserver<dim> watch = [&](const solve::NewtonIterate<dim>& iterate)
   {
     record(iterate.step);
     return false;
   };
-  solve::NewtonResult<dim> result = solve::solve<dim>(other, start, newton, method.solver, watch);
+  solve::NewtonResult<dim> result =
+      solve::solve<dim>(other, start.u, newton, method.solver, watch, 0, std::move(start.equilibrium));
   if (!result.message.empty()) return std::nullopt;
-  return std::move(result.u);
+  return Start<dim>{std::move(result.u), std::move(result.equilibrium)};
 }
 
 /// The solution with gamma times `factor`; nothing where that fails, too.
 template <int dim>
-std::optional<std::vector<double>> start_with_gamma(
-    double factor, const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
-    const std::function<void(const solve::NewtonStep&)>& record)
+std::optional<std::vector<double>> start_with_gamma(double factor, const contact::NitscheForm<dim>& form,
+                                                    std::span<const double> start, const Method& method,
+                                                    const Record& record)
 {
-  const contact::NitscheForm<dim> other(form.problem(), form.space(), factor * form.gamma0());
-  return solution_of(other, start, method, 0, record);
+  const contact::NitscheForm<dim> other = form.with_gamma0(factor * form.gamma0());
+  std::optional<Start<dim>> found =
+      solution_of<dim>(other, {{start.begin(), start.end()}}, method, 0, record);
+  if (!found) return std::nullopt;
+  return std::move(found->u);
 }
 
-/// The solution with half the degree, rounded up, on the same mesh, as far as a start needs it; it starts
-/// likewise. Nothing where Newton's method fails.
+/// Stages of soft_start(): as many as there are factors 3 between a contact facet and the contact boundary.
 template <int dim>
-std::optional<std::vector<double>> start_of_lower_degree(
-    const contact::NitscheForm<dim>& form, const Method& method,
-    const std::function<void(const solve::NewtonStep&)>& record)
+int n_soft_stages(const contact::NitscheForm<dim>& form)
 {
+  const double n_across = std::pow(static_cast<double>(form.segments().size()), 1.0 / (dim - 1));
+  return static_cast<int>(std::lround(std::log(std::max(1.0, n_across)) / std::log(3.0)));
+}
+
+/// The solution with a third of gamma, found from that with a third of this, and so on up to the gamma of a
+/// mesh with a single facet on the contact boundary, all as far as a start needs it. The contact state then
+/// spreads by a share of the boundary in a step, not by a facet or two, as it does on a fine mesh.
+template <int dim>
+std::optional<Start<dim>> soft_start(const contact::NitscheForm<dim>& form, const Method& method,
+                                     const Record& record)
+{
+  constexpr double tolerance = 0.1;
+  std::optional<Start<dim>> found =
+      Start<dim>{{}, solve::make_equilibrium<dim>(form, method.solver, true)};  // of the form that stays
+  for (int stage = n_soft_stages(form); stage > 0 && found; --stage)
+    found = solution_of<dim>(form.with_gamma0(form.gamma0() * std::pow(3, -stage)), *std::move(found), method,
+                             tolerance, record);
+  return found;
+}
+
+/// A start for the first mesh in 3D: with degree 1 on a fine mesh as soft_start(), with another one the
+/// solution with half the degree, rounded up, on the same mesh, as far as a start needs it, which starts
+/// likewise. Nothing where there is none or Newton's method fails.
+template <int dim>
+std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& form, const Method& method,
+                                             const Record& record)
+{
+  // Of a coarser mesh, with some 16 facets across the contact boundary, steps are not worth saving.
+  constexpr int fewest_stages = 3;
   constexpr double tolerance = 1e-4;
-  const int degree = (form.space().degree() + 1) / 2;
-  const fem::LagrangeSpace<dim> space(form.space().mesh(), degree);
-  const contact::NitscheForm<dim> other(form.problem(), space, contact::default_gamma0(degree));
   try
   {
-    std::optional<std::vector<double>> start;
-    if (degree > 1) start = start_of_lower_degree(other, method, record);
-    const auto u = solution_of<dim>(other, start.value_or(std::vector<double>{}), method, tolerance, record);
-    if (!u) return std::nullopt;
+    if (form.space().degree() == 1)
+      return n_soft_stages(form) < fewest_stages ? std::nullopt : soft_start(form, method, record);
+    const int degree = (form.space().degree() + 1) / 2;
+    const fem::LagrangeSpace<dim> space(form.space().mesh(), degree);
+    const contact::NitscheForm<dim> other(form.problem(), space, contact::default_gamma0(degree));
+    std::optional<Start<dim>> start = start_from_scratch(other, method, record);
+    const auto found =
+        solution_of<dim>(other, std::move(start).value_or(Start<dim>{}), method, tolerance, record);
+    if (!found) return std::nullopt;
     std::vector<Index> itself(space.mesh().n_cells());
     std::iota(itself.begin(), itself.end(), 0);
-    return fem::nested_interpolant<dim>(space, *u, itself, form.space());
+    return Start<dim>{fem::nested_interpolant<dim>(space, found->u, itself, form.space())};
   }
   catch (const SolveError&)
   {
@@ -119,20 +161,20 @@ template <int dim>
 solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& form,
                                             std::span<const double> start, const Method& method,
                                             const solve::NewtonObserver<dim>& observer, double delta,
-                                            const std::function<void(const solve::NewtonStep&)>& record)
+                                            const Record& record)
 {
   const bool may_start_anew = method.newton.damping && !method.regularisation && form.problem().has_contact();
-  std::optional<std::vector<double>> of_lower_degree;
-  if (dim == 3 && form.space().degree() > 1 && start.empty() && may_start_anew)
-    of_lower_degree = start_of_lower_degree(form, method, record);
+  std::optional<Start<dim>> easier;
+  if (dim == 3 && start.empty() && may_start_anew) easier = start_from_scratch(form, method, record);
 
   solve::NewtonResult<dim> first;
+  if (easier) first.equilibrium = easier->equilibrium;
   const auto attempt = [&](std::span<const double> u)
   { return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta, first.equilibrium); };
   std::exception_ptr failure;
   try
   {
-    first = attempt(of_lower_degree ? *of_lower_degree : start);
+    first = attempt(easier ? easier->u : start);
   }
   catch (const SolveError&)
   {
@@ -140,14 +182,14 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   }
   if (!failure && first.message.empty()) return first;
 
-  using Start = std::function<std::optional<std::vector<double>>()>;
-  std::vector<Start> others;
-  if (of_lower_degree) others.emplace_back([] { return std::vector<double>{}; });
+  using FindStart = std::function<std::optional<std::vector<double>>()>;
+  std::vector<FindStart> others;
+  if (easier) others.emplace_back([] { return std::vector<double>{}; });
   if (may_start_anew)
     others.insert(others.end(), {[&] { return regularised_start(form, start, method, record); },
                                  [&] { return start_with_gamma(3, form, start, method, record); },
                                  [&] { return start_with_gamma(1. / 3, form, start, method, record); }});
-  for (const Start& other : others) try
+  for (const FindStart& other : others) try
     {
       if (const auto better = other())
         if (solve::NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;

@@ -281,8 +281,11 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && start.empty();
     const double before = residual_norm_;
-    report_ = {
-        .step = k, .delta = delta_, .method = equilibrium_->method(), .degree = form_.space().degree()};
+    report_ = {.step = k,
+               .delta = delta_,
+               .method = equilibrium_->method(),
+               .degree = form_.space().degree(),
+               .gamma0 = form_.gamma0()};
     if (!at_rest)
       step(from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
     report_.seconds = seconds_since(begin);
@@ -315,6 +318,7 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
   if (result.status == NewtonStatus::too_many_steps)
     result.message =
         fmt::format("step {} was the last of newton.max_steps; {}", config_.max_steps, describe_residual());
+  loose_ = loose_ && config_.balanced;
   result.u = std::move(displacement());
   if (!result.steps.empty()) result.steps.back() = report_;
   result.traction = std::move(traction_);

@@ -23,6 +23,8 @@ struct NewtonOptions
   double tolerance = 1e-10;  ///< relative residual
   int max_steps = 50;
   bool damping = true;  ///< false: always full steps (for comparisons; may cycle)
+  /// Whether t^k of the result is in equilibrium; a start for another solve has no use for it.
+  bool balanced = true;
 };
 
 struct NewtonStep
@@ -37,6 +39,7 @@ struct NewtonStep
   algebra::LinearMethod method = algebra::LinearMethod::direct;  ///< of the linear solver
   bool fell_back = false;  ///< whether multigrid failed and the direct solver took its place
   int degree = 0;          ///< of the space
+  double gamma0 = 0;       ///< of the form
 };
 
 enum class NewtonStatus
@@ -93,8 +96,9 @@ using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
 /// Solves the discrete problem, with T_delta in the place of T for delta > 0. `start` is a solution carried
 /// from a coarser mesh (then the first step linearises there), or empty (then the first step is closed and
 /// sticking). `observer` is called after each step and says what to do with its iterate. t^k is in
-/// equilibrium with u^k whatever delta is, and goes on when delta changes. `equilibrium` of the same form may
-/// be given to save its factors. Throws SolveError when a matrix is singular.
+/// equilibrium with u^k whatever delta is, and goes on when delta changes. `equilibrium` of the same form, or
+/// of one with another gamma_0, may be given to save its factors. Throws SolveError when a matrix is
+/// singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                       const NewtonOptions& newton, const algebra::SolverOptions& solver,

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "support/discrete_problem.h"
@@ -29,8 +30,9 @@ template <int dim>
 struct Found
 {
   solve::NewtonResult<dim> result;
-  std::vector<int> degrees_before;  ///< of the steps that led to the start
-  std::vector<int> degrees;         ///< of those from it
+  std::vector<int> degrees_before;    ///< of the steps that led to the start
+  std::vector<double> gamma0_before;  ///< likewise
+  std::vector<int> degrees;           ///< of those from it
 };
 
 template <int dim>
@@ -45,8 +47,49 @@ Found<dim> find(const DiscreteProblem<dim>& c, const adapt::Method& method,
   };
   found.result = adapt::solve_persistently<dim>(c.form, start, method, observe, 0,
                                                 [&](const solve::NewtonStep& step)
-                                                { found.degrees_before.push_back(step.degree); });
+                                                {
+                                                  found.degrees_before.push_back(step.degree);
+                                                  found.gamma0_before.push_back(step.gamma0);
+                                                });
   return found;
+}
+
+/// From gamma of a mesh with one facet on the contact boundary, here with 18 across, to the given one by
+/// factors 3, in fewer steps to the same solution.
+TEST(SoftStart, LeadsToTheSameSolutionInFewerSteps)
+{
+  const std::vector<problem::ContactLaw> laws = {Frictionless(), Tresca(0.02), Coulomb(0.3)};
+  const mesh::MeshData<3> mesh = block<3>({18, 9, 9});
+  std::size_t n_steps = 0;
+  std::size_t n_steps_from_scratch = 0;
+  for (const problem::ContactLaw& law : laws)
+  {
+    const DiscreteProblem<3> c(mesh, pulled_block<3>(law));
+    const solve::NewtonResult<3> from_scratch = c.solve();
+    const Found<3> found = find(c, c.method);
+    ASSERT_EQ(found.result.status, solve::NewtonStatus::converged) << found.result.message;
+    EXPECT_LE(norm(sum(found.result.u, -1, from_scratch.u)), 1e-8 * norm(from_scratch.u));
+
+    ASSERT_FALSE(found.gamma0_before.empty());
+    const double gamma0 = c.form.gamma0();
+    EXPECT_NEAR(found.gamma0_before.front(), gamma0 / 27, 1e-12 * gamma0);
+    EXPECT_NEAR(found.gamma0_before.back(), gamma0 / 3, 1e-12 * gamma0);
+    EXPECT_TRUE(std::ranges::is_sorted(found.gamma0_before));
+    n_steps += found.gamma0_before.size() + found.degrees.size();
+    n_steps_from_scratch += from_scratch.steps.size();
+  }
+  EXPECT_LT(n_steps, n_steps_from_scratch);
+}
+
+/// The start for degree 2 is the solution with degree 1, which starts likewise.
+TEST(SoftStart, ComesFirstForHigherDegrees)
+{
+  const adapt::Method method{.degree = 2};
+  const DiscreteProblem<3> c(block<3>({16, 8, 8}), pulled_block<3>(Tresca(0.02)), method);
+  const Found<3> found = find(c, method);
+  ASSERT_EQ(found.result.status, solve::NewtonStatus::converged) << found.result.message;
+  for (const int degree : found.degrees_before) EXPECT_EQ(degree, 1);
+  EXPECT_LT(found.gamma0_before.front(), found.gamma0_before.back());
 }
 
 TEST(LowerDegreeStart, LeadsToTheSameSolution)

@@ -208,6 +208,23 @@ TEST(LinearisedTraction, AgreesWithDifferences)
     }
 }
 
+TEST(NitscheForm, WithAnotherGammaIsThatMadeWithIt)
+{
+  const DiscreteProblem<3> c = held_block<3>(2, tresca.slipping, 7);
+  const std::vector<double> u = random_free_vector(c.form.constraints(), 0.02, 3);
+  const contact::NitscheForm<3> other = c.form.with_gamma0(0.7);
+  const contact::NitscheForm<3> made(c.problem, c.space, 0.7);
+  EXPECT_EQ(other.gamma0(), 0.7);
+  const std::vector<Point<3>> t = other.traction(u);
+  const std::vector<Point<3>> expected = made.traction(u);
+  ASSERT_EQ(t.size(), expected.size());
+  for (std::size_t i = 0; i < t.size(); ++i)
+    EXPECT_LE((t[i] - expected[i]).norm(), 1e-13 * (1 + expected[i].norm()));
+  const std::vector<double> tangent = other.contact_tangent(contact::Linearisation::newton, u).values;
+  const std::vector<double> expected_tangent = made.contact_tangent(contact::Linearisation::newton, u).values;
+  EXPECT_LE(norm(sum(tangent, -1, expected_tangent)), 1e-13 * norm(expected_tangent));
+}
+
 /// T_delta has no kinks: its tangent is its derivative wherever u is, on either side of them and between.
 template <int dim>
 void expect_regularised_tangent_agrees(const Law& law, double delta)

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/discrete_problem.h"
@@ -71,6 +72,27 @@ void expect_solved(int p, const problem::ContactLaw& law)
   expect_prescribed_displacements<dim>(c, result.u);
   for (std::size_t k = 0; k < result.steps.size(); ++k)
     EXPECT_EQ(result.steps[k].step, static_cast<int>(k) + 1);
+}
+
+/// A start for another solve is spared the tight solve at the end.
+TEST(Newton, LeavesTheTractionLooseWhereOnlyAStartIsWanted)
+{
+  const algebra::SolverOptions multigrid{.method = algebra::LinearMethod::iterative};
+  const auto solve = [&](bool balanced)
+  {
+    const DiscreteProblem<3> c(
+        renumbered_block<3>(), lifted_block<3>(Tresca(0.02)),
+        {.degree = 1, .solver = multigrid, .newton = {.tolerance = 0.02, .balanced = balanced}});
+    const solve::NewtonResult<3> result = c.solve();
+    EXPECT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
+    EXPECT_LE(imbalance<3>(c, result.u, c.form.traction(result.u)), 0.05);
+    return std::pair(imbalance<3>(c, result.u, result.traction), result.steps.back().linear_iterations);
+  };
+  const auto [tight, tight_iterations] = solve(true);
+  const auto [loose, loose_iterations] = solve(false);
+  EXPECT_LE(tight, 1e-9);
+  EXPECT_GT(loose, 1e-6);
+  EXPECT_LT(loose_iterations, tight_iterations);
 }
 
 TEST(Newton, SolvesEveryLaw)

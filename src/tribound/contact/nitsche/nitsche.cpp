@@ -33,6 +33,15 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
 }
 
 template <int dim>
+NitscheForm<dim> NitscheForm<dim>::with_gamma0(double gamma0) const
+{
+  NitscheForm other = *this;
+  for (ContactSegment<dim>& segment : other.segments_) segment.gamma *= gamma0 / gamma0_;
+  other.gamma0_ = gamma0;
+  return other;
+}
+
+template <int dim>
 std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
 {
   std::vector<ContactPoint<dim>> points;

@@ -68,6 +68,9 @@ class NitscheForm
   NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
               std::vector<ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
+  /// The same with another gamma_0; nothing is integrated again.
+  [[nodiscard]] NitscheForm with_gamma0(double gamma0) const;
+
   [[nodiscard]] const problem::Problem<dim>& problem() const { return *problem_; }
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
   [[nodiscard]] const DiscreteData<dim>& data() const { return data_; }

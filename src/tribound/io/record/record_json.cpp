@@ -56,6 +56,7 @@ Json json(const adapt::CertifiedStep& record, bool regularised)
 {
   Json object{{"step", record.step.step},
               {"degree", record.step.degree},
+              {"gamma0", record.step.gamma0},
               {"residual", record.step.residual},
               {"damping", record.step.damping},
               {"linear_iterations", record.step.linear_iterations},
