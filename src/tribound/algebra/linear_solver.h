@@ -93,6 +93,10 @@ class LinearSolver
   /// singular or the iteration stalls.
   LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x);
 
+  /// All matrices to come are a constant one plus this part, whose entries are among theirs and which has the
+  /// values of the matrix that is being solved with: multigrid is renewed at the cost of the part.
+  void set_changing_part(const SparseMatrix& part) { changing_ = part.handle(); }
+
   [[nodiscard]] LinearMethod method() const { return method_; }
 
  private:
@@ -110,6 +114,7 @@ class LinearSolver
   int dim_;
   std::optional<Multigrid> multigrid_;  ///< unless the method is direct
   std::unique_ptr<_p_KSP, KspDeleter> ksp_;
+  _p_Mat* changing_ = nullptr;  ///< see set_changing_part()
   int reuse_budget_ =
       0;  ///< iterations with the old preconditioner that cost less than a new one; 0: none yet
 };

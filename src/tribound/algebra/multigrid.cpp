@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tribound/algebra/galerkin_change.h"
 #include "tribound/algebra/petsc_detail.h"
 #include "tribound/algebra/single_product.h"
 
@@ -89,6 +90,24 @@ bool is(PC pc, PCType type)
   return result == PETSC_TRUE;
 }
 
+/// The levels of smoothed aggregation below the finest: see Multigrid::settle().
+void settle_aggregation(PC pc, Mat changing)
+{
+  KSP solver = nullptr;
+  PetscInt n_levels = 0;
+  check(PCMGGetLevels(pc, &n_levels), making);
+  for (PetscInt level = n_levels - 2; level >= 0; --level)
+  {
+    Mat matrix = nullptr;
+    Mat interpolation = nullptr;
+    check(PCMGGetSmoother(pc, level, &solver), making);
+    check(KSPGetOperators(solver, nullptr, &matrix), making);
+    check(PCMGGetInterpolation(pc, level + 1, &interpolation), making);
+    if (changing) changing = detail::renew_by_change(matrix, interpolation, changing);
+    detail::multiply_in_single(matrix);
+  }
+}
+
 }  // namespace
 
 void Multigrid::configure(PC pc) const
@@ -142,24 +161,18 @@ void Multigrid::renew(PC pc, const SparseMatrix& a)
   }
 }
 
-void Multigrid::aggregate_in_single(PC pc)
+void Multigrid::settle(PC pc, Mat changing) const
 {
+  if (changing && is(pc, hierarchy_.steps.empty() ? PCGAMG : PCMG))
+    for (const Level& level : levels_)
+      changing = detail::renew_by_change(level.matrix.get(), level.interpolation.get(), changing);
   KSP solver = nullptr;
   if (is(pc, PCMG))
   {
     check(PCMGGetCoarseSolve(pc, &solver), making);
     check(KSPGetPC(solver, &pc), making);
   }
-  if (!is(pc, PCGAMG)) return;
-  PetscInt n_levels = 0;
-  check(PCMGGetLevels(pc, &n_levels), making);
-  for (PetscInt level = 0; level + 1 < n_levels; ++level)
-  {
-    Mat matrix = nullptr;
-    check(PCMGGetSmoother(pc, level, &solver), making);
-    check(KSPGetOperators(solver, nullptr, &matrix), making);
-    detail::multiply_in_single(matrix);
-  }
+  if (is(pc, PCGAMG)) settle_aggregation(pc, changing);
 }
 
 void Multigrid::make_levels(PC pc, Mat finest)

@@ -33,6 +33,40 @@ using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 /// way.
 [[nodiscard]] MPI_Comm communicator();
 
+/// What attach() has left with a matrix under a key; null: nothing.
+template <class T>
+[[nodiscard]] T* find_attached(Mat a, const char* key)
+{
+  PetscContainer container = nullptr;
+  void* found = nullptr;
+  check(PetscObjectQuery(reinterpret_cast<PetscObject>(a), key, reinterpret_cast<PetscObject*>(&container)),
+        "using a matrix");
+  if (container) check(PetscContainerGetPointer(container, &found), "using a matrix");
+  return static_cast<T*>(found);
+}
+
+/// Leaves an object with a matrix, which destroys it in the end.
+template <class T>
+T& attach(Mat a, const char* key, std::unique_ptr<T> object)
+{
+  PetscContainer container = nullptr;
+  check(PetscContainerCreate(PETSC_COMM_SELF, &container), "using a matrix");
+  check(PetscContainerSetPointer(container, object.get()), "using a matrix");
+  check(PetscContainerSetUserDestroy(container,
+                                     [](void* owned) -> PetscErrorCode
+                                     {
+                                       delete static_cast<T*>(owned);  // NOLINT
+                                       return 0;
+                                     }),
+        "using a matrix");
+  T& result = *object.release();  // the container has it
+  const PetscErrorCode error =
+      PetscObjectCompose(reinterpret_cast<PetscObject>(a), key, reinterpret_cast<PetscObject>(container));
+  check(PetscContainerDestroy(&container), "using a matrix");  // the matrix has it
+  check(error, "using a matrix");
+  return result;
+}
+
 /// PETSc's options while it is alive: those of the process, which stay as they are, and what the library sets
 /// beside them unless the process does. Around whatever reads options: setting up solvers.
 class Options

@@ -159,31 +159,11 @@ class SingleBlocks
   std::vector<float> x_;  ///< working space
 };
 
-PetscErrorCode destroy_blocks(void* blocks)
-{
-  delete static_cast<SingleBlocks*>(blocks);  // NOLINT(cppcoreguidelines-owning-memory)
-  return 0;
-}
-
 /// Those kept with the matrix.
 SingleBlocks& blocks_of(Mat a)
 {
-  const auto object = reinterpret_cast<PetscObject>(a);
-  PetscContainer container = nullptr;
-  void* blocks = nullptr;
-  check(PetscObjectQuery(object, key, reinterpret_cast<PetscObject*>(&container)), making);
-  if (container)
-  {
-    check(PetscContainerGetPointer(container, &blocks), making);
-    return *static_cast<SingleBlocks*>(blocks);
-  }
-  auto made = std::make_unique<SingleBlocks>(a);
-  check(PetscContainerCreate(communicator(), &container), making);
-  check(PetscContainerSetPointer(container, made.get()), making);
-  check(PetscContainerSetUserDestroy(container, destroy_blocks), making);
-  check(PetscObjectCompose(object, key, reinterpret_cast<PetscObject>(container)), making);
-  check(PetscContainerDestroy(&container), making);  // the matrix has it
-  return *made.release();
+  if (auto* blocks = find_attached<SingleBlocks>(a, key)) return *blocks;
+  return attach(a, key, std::make_unique<SingleBlocks>(a));
 }
 
 PetscErrorCode multiply_single(Mat a, Vec x, Vec y)

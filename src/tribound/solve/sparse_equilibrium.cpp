@@ -27,6 +27,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
         forces_(std::move(forces)),
         linear_solver_(options, form.space())
   {
+    linear_solver_.set_changing_part(contact_);
   }
 
   std::vector<double> unknowns(std::span<const double> u) const override { return {u.begin(), u.end()}; }

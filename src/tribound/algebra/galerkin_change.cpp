@@ -1,0 +1,65 @@
+#include "tribound/algebra/galerkin_change.h"
+
+#include <memory>
+
+namespace tribound::algebra::detail
+{
+
+namespace
+{
+
+constexpr const char* making = "making multigrid levels";
+constexpr const char* key = "tribound_galerkin_change";
+
+MatHandle share(Mat a)
+{
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(a)), making);
+  return MatHandle(a);
+}
+
+/// What P^T A P is put together from.
+struct Change
+{
+  MatHandle interpolation;
+  MatHandle changing;  ///< part of A
+  MatHandle coarse;    ///< P^T changing P
+  MatHandle rest;      ///< P^T (A - changing) P
+};
+
+std::unique_ptr<Change> split(Mat coarse, Mat interpolation, Mat changing)
+{
+  auto change =
+      std::make_unique<Change>(Change{share(interpolation), share(changing), MatHandle(), MatHandle()});
+  Mat mat = nullptr;
+  check(MatPtAP(changing, interpolation, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &mat), making);
+  change->coarse.reset(mat);
+  check(MatDuplicate(coarse, MAT_COPY_VALUES, &mat), making);
+  change->rest.reset(mat);
+  check(MatAXPY(mat, -1.0, change->coarse.get(), SUBSET_NONZERO_PATTERN), making);
+  return change;
+}
+
+/// In the place of the numeric phase of the product.
+PetscErrorCode add_change(Mat coarse)
+{
+  PetscFunctionBegin;
+  const Change* change = find_attached<Change>(coarse, key);
+  Mat of_change = change->coarse.get();
+  PetscCall(MatPtAP(change->changing.get(), change->interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT,
+                    &of_change));
+  PetscCall(MatCopy(change->rest.get(), coarse, SAME_NONZERO_PATTERN));
+  PetscCall(MatAXPY(coarse, 1.0, of_change, SUBSET_NONZERO_PATTERN));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+Mat renew_by_change(Mat coarse, Mat interpolation, Mat changing)
+{
+  if (const Change* change = find_attached<Change>(coarse, key)) return change->coarse.get();
+  const Change& change = attach(coarse, key, split(coarse, interpolation, changing));
+  check(MatSetOperation(coarse, MATOP_PRODUCTNUMERIC, reinterpret_cast<void (*)()>(add_change)), making);
+  return change.coarse.get();
+}
+
+}  // namespace tribound::algebra::detail
