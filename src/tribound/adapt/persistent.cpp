@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -68,23 +69,32 @@ struct Start
 {
   std::vector<double> u;
   std::shared_ptr<solve::Equilibrium<dim>> equilibrium = {};
+  double residual = 0;  ///< relative
 };
+
+/// When it is near enough.
+struct Until
+{
+  double tolerance;                            ///< of the relative residual
+  int step = std::numeric_limits<int>::max();  ///< whatever the residual is
+};
+
 template <int dim>
 std::optional<Start<dim>> solution_of(const contact::NitscheForm<dim>& other, Start<dim> start,
-                                      const Method& method, double tolerance, const Record& record)
+                                      const Method& method, const Until& until, const Record& record)
 {
   solve::NewtonOptions newton = method.newton;
-  newton.tolerance = std::max(newton.tolerance, tolerance);
+  newton.tolerance = std::max(newton.tolerance, until.tolerance);
   newton.balanced = false;
   const solve::NewtonObserver<dim> watch = [&](const solve::NewtonIterate<dim>& iterate)
   {
     record(iterate.step);
-    return false;
+    return iterate.step.step == until.step;
   };
   solve::NewtonResult<dim> result =
       solve::solve<dim>(other, start.u, newton, method.solver, watch, 0, std::move(start.equilibrium));
   if (!result.message.empty()) return std::nullopt;
-  return Start<dim>{std::move(result.u), std::move(result.equilibrium)};
+  return Start<dim>{std::move(result.u), std::move(result.equilibrium), result.steps.back().residual};
 }
 
 /// The solution with gamma times `factor`; nothing where that fails, too.
@@ -95,7 +105,7 @@ std::optional<std::vector<double>> start_with_gamma(double factor, const contact
 {
   const contact::NitscheForm<dim> other = form.with_gamma0(factor * form.gamma0());
   std::optional<Start<dim>> found =
-      solution_of<dim>(other, {{start.begin(), start.end()}}, method, 0, record);
+      solution_of<dim>(other, {{start.begin(), start.end()}}, method, {.tolerance = 0}, record);
   if (!found) return std::nullopt;
   return std::move(found->u);
 }
@@ -108,19 +118,28 @@ int n_soft_stages(const contact::NitscheForm<dim>& form)
   return static_cast<int>(std::lround(std::log(std::max(1.0, n_across)) / std::log(3.0)));
 }
 
-/// The solution with a third of gamma, found from that with a third of this, and so on up to the gamma of a
-/// mesh with a single facet on the contact boundary, all as far as a start needs it. The contact state then
-/// spreads by a share of the boundary in a step, not by a facet or two, as it does on a fine mesh.
+/// The solution with a third of gamma, found from that with a third of this, and so on up from the gamma of a
+/// mesh with a single facet on the contact boundary, all as far as a start needs it: the contact state then
+/// spreads by a share of the boundary in a step, not by a facet or two, as it does on a fine mesh. No
+/// displacement where the first step is near enough: nearly all facets are closed and sticking, and there are
+/// few steps to be saved.
 template <int dim>
 std::optional<Start<dim>> soft_start(const contact::NitscheForm<dim>& form, const Method& method,
                                      const Record& record)
 {
   constexpr double tolerance = 0.1;
+  const auto soft = [&](int stage) { return form.with_gamma0(form.gamma0() * std::pow(3, -stage)); };
+  int stage = n_soft_stages(form);
+  Start<dim> nothing{{}, solve::make_equilibrium<dim>(form, method.solver, true)};
   std::optional<Start<dim>> found =
-      Start<dim>{{}, solve::make_equilibrium<dim>(form, method.solver, true)};  // of the form that stays
-  for (int stage = n_soft_stages(form); stage > 0 && found; --stage)
-    found = solution_of<dim>(form.with_gamma0(form.gamma0() * std::pow(3, -stage)), *std::move(found), method,
-                             tolerance, record);
+      solution_of<dim>(soft(stage), std::move(nothing), method, {.tolerance = tolerance, .step = 1}, record);
+  if (found && found->residual <= tolerance)
+  {
+    found->u.clear();
+    return found;
+  }
+  for (; stage > 0 && found; --stage)
+    found = solution_of<dim>(soft(stage), *std::move(found), method, {.tolerance = tolerance}, record);
   return found;
 }
 
@@ -142,8 +161,8 @@ std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& fo
     const fem::LagrangeSpace<dim> space(form.space().mesh(), degree);
     const contact::NitscheForm<dim> other(form.problem(), space, contact::default_gamma0(degree));
     std::optional<Start<dim>> start = start_from_scratch(other, method, record);
-    const auto found =
-        solution_of<dim>(other, std::move(start).value_or(Start<dim>{}), method, tolerance, record);
+    const auto found = solution_of<dim>(other, std::move(start).value_or(Start<dim>{}), method,
+                                        {.tolerance = tolerance}, record);
     if (!found) return std::nullopt;
     std::vector<Index> itself(space.mesh().n_cells());
     std::iota(itself.begin(), itself.end(), 0);
@@ -184,7 +203,7 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
 
   using FindStart = std::function<std::optional<std::vector<double>>()>;
   std::vector<FindStart> others;
-  if (easier) others.emplace_back([] { return std::vector<double>{}; });
+  if (easier && !easier->u.empty()) others.emplace_back([] { return std::vector<double>{}; });
   if (may_start_anew)
     others.insert(others.end(), {[&] { return regularised_start(form, start, method, record); },
                                  [&] { return start_with_gamma(3, form, start, method, record); },

@@ -54,38 +54,51 @@ Found<dim> find(const DiscreteProblem<dim>& c, const adapt::Method& method,
   return found;
 }
 
+/// The same pulled up, so that most of it leaves the floor.
+ProblemData<3> lifted_block(const problem::ContactLaw& law)
+{
+  return {.boundaries = {clamped<3>("left"), loaded<3>("top", 0, -0.1), loaded<3>("right", 0.04, 0.06, 0.02),
+                         obstacle<3>("bottom", law)}};
+}
+
 /// From gamma of a mesh with one facet on the contact boundary, here with 18 across, to the given one by
 /// factors 3, in fewer steps to the same solution.
 TEST(SoftStart, LeadsToTheSameSolutionInFewerSteps)
 {
-  const std::vector<problem::ContactLaw> laws = {Frictionless(), Tresca(0.02), Coulomb(0.3)};
   const mesh::MeshData<3> mesh = block<3>({18, 9, 9});
-  std::size_t n_steps = 0;
-  std::size_t n_steps_from_scratch = 0;
-  for (const problem::ContactLaw& law : laws)
+  for (const problem::ContactLaw& law :
+       std::vector<problem::ContactLaw>{Frictionless(), Tresca(0.03), Coulomb(0.3)})
   {
-    const DiscreteProblem<3> c(mesh, pulled_block<3>(law));
+    const DiscreteProblem<3> c(mesh, lifted_block(law));
     const solve::NewtonResult<3> from_scratch = c.solve();
     const Found<3> found = find(c, c.method);
     ASSERT_EQ(found.result.status, solve::NewtonStatus::converged) << found.result.message;
     EXPECT_LE(norm(sum(found.result.u, -1, from_scratch.u)), 1e-8 * norm(from_scratch.u));
+    EXPECT_LT(found.gamma0_before.size() + found.degrees.size(), from_scratch.steps.size());
 
     ASSERT_FALSE(found.gamma0_before.empty());
     const double gamma0 = c.form.gamma0();
     EXPECT_NEAR(found.gamma0_before.front(), gamma0 / 27, 1e-12 * gamma0);
     EXPECT_NEAR(found.gamma0_before.back(), gamma0 / 3, 1e-12 * gamma0);
     EXPECT_TRUE(std::ranges::is_sorted(found.gamma0_before));
-    n_steps += found.gamma0_before.size() + found.degrees.size();
-    n_steps_from_scratch += from_scratch.steps.size();
   }
-  EXPECT_LT(n_steps, n_steps_from_scratch);
+}
+
+TEST(SoftStart, EndsWhereNearlyAllIsClosedAndSticking)
+{
+  const DiscreteProblem<3> c(block<3>({18, 9, 9}), pulled_block<3>(Coulomb(0.3)));
+  const Found<3> found = find(c, c.method);
+  ASSERT_EQ(found.result.status, solve::NewtonStatus::converged) << found.result.message;
+  EXPECT_EQ(found.gamma0_before.size(), 1U);
+  const std::vector<double> expected = c.solve().u;
+  EXPECT_LE(norm(sum(found.result.u, -1, expected)), 1e-8 * norm(expected));
 }
 
 /// The start for degree 2 is the solution with degree 1, which starts likewise.
 TEST(SoftStart, ComesFirstForHigherDegrees)
 {
   const adapt::Method method{.degree = 2};
-  const DiscreteProblem<3> c(block<3>({16, 8, 8}), pulled_block<3>(Tresca(0.02)), method);
+  const DiscreteProblem<3> c(block<3>({16, 8, 8}), lifted_block(Tresca(0.03)), method);
   const Found<3> found = find(c, method);
   ASSERT_EQ(found.result.status, solve::NewtonStatus::converged) << found.result.message;
   for (const int degree : found.degrees_before) EXPECT_EQ(degree, 1);

@@ -82,7 +82,7 @@ TEST(Newton, LeavesTheTractionLooseWhereOnlyAStartIsWanted)
   {
     const DiscreteProblem<3> c(
         renumbered_block<3>(), lifted_block<3>(Tresca(0.02)),
-        {.degree = 1, .solver = multigrid, .newton = {.tolerance = 0.02, .balanced = balanced}});
+        {.degree = 1, .newton = {.tolerance = 0.02, .balanced = balanced}, .solver = multigrid});
     const solve::NewtonResult<3> result = c.solve();
     EXPECT_EQ(result.status, solve::NewtonStatus::converged) << result.message;
     EXPECT_LE(imbalance<3>(c, result.u, c.form.traction(result.u)), 0.05);
