@@ -145,9 +145,16 @@ double Ranks::sum(double x) const
   return x;
 }
 
+void Ranks::sum(std::span<std::int64_t> x) const
+{
+  if (size_ > 1)
+    MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(x.size()), MPI_INT64_T, MPI_SUM,
+                  communicator_->handle);
+}
+
 std::int64_t Ranks::sum(std::int64_t x) const
 {
-  if (size_ > 1) MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_INT64_T, MPI_SUM, communicator_->handle);
+  sum(std::span(&x, 1));
   return x;
 }
 
@@ -184,17 +191,29 @@ void Ranks::send_bytes(std::span<const std::span<const std::byte>> out, const Re
   for (const auto& parcel : out) n_out.push_back(static_cast<std::int64_t>(parcel.size()));
   std::vector<std::int64_t> n_in(size_);
   MPI_Alltoall(n_out.data(), 1, MPI_INT64_T, n_in.data(), 1, MPI_INT64_T, communicator_->handle);
+  std::vector<Incoming> incoming;
+  std::vector<Outgoing> outgoing;
+  for (int r = 0; r < size_; ++r)
+  {
+    incoming.push_back({r, receiver(r, n_in[r])});
+    outgoing.push_back({r, out[r]});
+  }
+  transfer(outgoing, incoming);
+}
+
+void Ranks::transfer(std::span<const Outgoing> out, std::span<const Incoming> in) const
+{
   std::vector<MPI_Request> requests;
   const auto in_messages = [](auto bytes, const auto& each)
   {
     for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), largest_message)))
       each(bytes.data(), static_cast<int>(std::min(bytes.size(), largest_message)));
   };
-  for (int r = 0; r < size_; ++r)
-    in_messages(receiver(r, n_in[r]), [&](std::byte* data, int n)
+  for (const auto& [rank, bytes] : in)
+    in_messages(bytes, [&, r = rank](std::byte* data, int n)
                 { MPI_Irecv(data, n, MPI_BYTE, r, 0, communicator_->handle, &requests.emplace_back()); });
-  for (int r = 0; r < size_; ++r)
-    in_messages(out[r], [&](const std::byte* data, int n)
+  for (const auto& [rank, bytes] : out)
+    in_messages(bytes, [&, r = rank](const std::byte* data, int n)
                 { MPI_Isend(data, n, MPI_BYTE, r, 0, communicator_->handle, &requests.emplace_back()); });
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }

@@ -34,6 +34,7 @@ class Ranks
   /// Sums over the ranks, number by number, added in their order: the same bits everywhere.
   void sum(std::span<double> x) const;
   [[nodiscard]] double sum(double x) const;
+  void sum(std::span<std::int64_t> x) const;
   [[nodiscard]] std::int64_t sum(std::int64_t x) const;
   /// Over the ranks before this one.
   [[nodiscard]] std::int64_t before(std::int64_t x) const;
@@ -59,6 +60,19 @@ class Ranks
                });
     return in;
   }
+
+  struct Outgoing
+  {
+    int rank;
+    std::span<const std::byte> bytes;
+  };
+  struct Incoming
+  {
+    int rank;
+    std::span<std::byte> bytes;
+  };
+  /// Between neighbours that know from and to whom, and how much; no other rank takes part.
+  void transfer(std::span<const Outgoing> out, std::span<const Incoming> in) const;
 
   /// The items of all ranks, on the first; elsewhere nothing.
   template <class T>

@@ -1,0 +1,95 @@
+#pragma once
+
+/// @file cell_name.h
+/// Names of cells and vertices, the same on every rank and for any number of them.
+
+#include <array>
+#include <bit>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+
+#include "tribound/base/types.h"
+
+namespace tribound::mesh
+{
+
+/// A well mixed 64-bit number (the last steps of MurmurHash3).
+[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t h)
+{
+  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdULL;
+  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ULL;
+  return h ^ (h >> 33);
+}
+
+/// A cell as a cell of the first mesh and the way down from there. The names of the cells of a mesh ascend in
+/// the order in which bisect() numbers them.
+struct CellName
+{
+  /// 42 halvings of h in 3D, 64 in 2D.
+  static constexpr int max_depth = 128;
+
+  std::int64_t root = 0;                ///< number in the first mesh
+  std::array<std::uint64_t, 2> path{};  ///< the first bisection in the highest bit; 0: the first child
+  std::int32_t depth = 0;               ///< bisections
+
+  friend auto operator<=>(const CellName&, const CellName&) = default;
+
+  /// Child 0 or 1 of a cell above max_depth.
+  [[nodiscard]] constexpr CellName child(int kept) const
+  {
+    CellName name = *this;
+    name.path[depth / 64] |= static_cast<std::uint64_t>(kept) << (63 - depth % 64);
+    ++name.depth;
+    return name;
+  }
+};
+
+/// A vertex as its position, to the bit, and for those that share theirs with others, as on the two sides of
+/// a joint, a number that tells them apart.
+template <int dim>
+struct VertexName
+{
+  std::array<double, dim> position{};
+  std::uint64_t sheet = 0;  ///< 0: alone in its place
+
+  friend auto operator<=>(const VertexName&, const VertexName&) = default;
+
+  [[nodiscard]] Point<dim> point() const { return Eigen::Map<const Point<dim>>(position.data()); }
+};
+
+/// The name at a point; -0 becomes 0, which has other bits.
+template <int dim>
+[[nodiscard]] VertexName<dim> vertex_name(const Point<dim>& x, std::uint64_t sheet = 0)
+{
+  VertexName<dim> name{{}, sheet};
+  for (int i = 0; i < dim; ++i) name.position[i] = x[i] + 0.0;
+  return name;
+}
+
+template <int dim>
+[[nodiscard]] constexpr std::uint64_t hash(const VertexName<dim>& name)
+{
+  std::uint64_t h = mix(name.sheet + 0x9e3779b97f4a7c15ULL);
+  for (const double x : name.position) h = mix(h ^ std::bit_cast<std::uint64_t>(x));
+  return h;
+}
+
+/// The vertex that bisection puts between two, in either order. Where one of them is not alone in its place
+/// the middle may not be: its sheet is a hash of their names, and a collision would matter only among the few
+/// vertices in one place.
+template <int dim>
+[[nodiscard]] VertexName<dim> middle(const VertexName<dim>& a, const VertexName<dim>& b)
+{
+  const std::uint64_t sheet = a.sheet == 0 && b.sheet == 0 ? 0 : mix(hash(a) + hash(b)) | 1;
+  return vertex_name<dim>(0.5 * (a.point() + b.point()), sheet);
+}
+
+/// For unordered containers.
+template <int dim>
+struct VertexHash
+{
+  std::size_t operator()(const VertexName<dim>& name) const { return hash(name); }
+};
+
+}  // namespace tribound::mesh

@@ -1,0 +1,108 @@
+#pragma once
+
+/// @file partition.h
+/// How a mesh is shared out between ranks: every rank has cells of its own and, as ghosts, one layer of the
+/// others' around them.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tribound/base/ghost_update.h"
+#include "tribound/base/ranks.h"
+#include "tribound/mesh/cell_name.h"
+#include "tribound/mesh/curve.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound::mesh
+{
+
+/// What a facet of a cell is: the position of its group in MeshData::boundary_names, or one of these.
+enum FacetTag : std::int32_t
+{
+  facet_inside = -2,    ///< between two cells
+  facet_ungrouped = -1  ///< of the boundary, in no group
+};
+
+/// A cell as it travels between ranks. The order of its vertices is part of it.
+template <int dim>
+struct CellRecord
+{
+  CellName name;
+  std::array<VertexName<dim>, dim + 1> vertices;
+  std::array<std::int32_t, dim + 1> tags;  ///< FacetTag of the facet opposite to each vertex
+  std::int32_t region;
+  std::int32_t bisection_type;
+
+  friend bool operator==(const CellRecord&, const CellRecord&) = default;
+};
+
+/// The cells of a first mesh as bisect() orders their vertices, so that they are bisected the same way
+/// whichever rank has them. `boundary`: as find_boundary() gives it. Vertices in one place have the sheets 1,
+/// 2, ... in the order of the first cells around them.
+template <int dim>
+[[nodiscard]] std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data,
+                                                         std::span<const BoundaryFacet> boundary);
+
+/// What a rank knows of how the mesh is shared out. Its own cells come first, in ascending order of their
+/// names, then ghosts likewise: every cell of others that has a vertex in common with one of its own. The
+/// vertices are in ascending order of (morton_key, name), which is the same on all ranks.
+template <int dim>
+struct Partition
+{
+  Ranks ranks;
+  Cube<dim> cube;  ///< around the first mesh
+  Index n_owned_cells = 0;
+  std::vector<CellName> names;            ///< per cell
+  std::vector<int> ghost_owners;          ///< per ghost cell
+  std::vector<VertexName<dim>> vertices;  ///< per vertex
+  std::vector<char> has_patch;  ///< per vertex, whether it has an own cell: then all its cells are here
+  std::vector<std::int32_t> sharers_begin;  ///< per vertex, into `sharers`; one more at the end
+  std::vector<int> sharers;     ///< other ranks with own cells around a vertex that has a patch, ascending
+  std::int64_t n_cells = 0;     ///< of the whole mesh
+  std::int64_t n_vertices = 0;  ///< of the whole mesh
+
+  [[nodiscard]] std::span<const int> sharers_of(Index v) const
+  {
+    return std::span(sharers).subspan(sharers_begin[v], sharers_begin[v + 1] - sharers_begin[v]);
+  }
+};
+
+/// The part of a mesh that a rank has.
+template <int dim>
+struct MeshPart
+{
+  std::vector<CellRecord<dim>> cells;  ///< its own and ghosts, as Partition orders them
+  std::vector<Cell<dim>> corners;      ///< their vertices, local numbers
+  Partition<dim> partition;
+};
+
+/// The part of a rank that owns the cells `owned`, in any order, with its ghosts. All ranks call it together.
+/// Cells around a vertex are connected through facets inside that contain it; between ranks nothing else is
+/// exchanged than what lies along their common surface.
+template <int dim>
+[[nodiscard]] MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube,
+                                        std::vector<CellRecord<dim>> owned);
+
+/// Every cell on the rank where it is to be; `rank_of[i]` is that of owned[i]. In no particular order.
+template <int dim>
+[[nodiscard]] std::vector<CellRecord<dim>> sent_to(const Ranks& ranks, std::span<const int> rank_of,
+                                                   std::span<const CellRecord<dim>> owned);
+
+/// Where cells should be for all ranks to have the same weight: stretches of the curve along which `keys`
+/// ascend. Nothing of the size of the mesh is exchanged, and where a cell goes does not depend on where it
+/// is.
+[[nodiscard]] std::vector<int> balanced_ranks(const Ranks& ranks, std::span<const std::uint64_t> keys,
+                                              std::span<const std::int64_t> weights);
+
+/// hilbert_key() of the centres.
+template <int dim>
+[[nodiscard]] std::vector<std::uint64_t> centre_keys(const Cube<dim>& cube,
+                                                     std::span<const CellRecord<dim>> cells);
+
+/// Values of ghost cells from their owners.
+template <int dim>
+[[nodiscard]] GhostUpdate cell_update(const Partition<dim>& partition);
+
+}  // namespace tribound::mesh

@@ -1,0 +1,349 @@
+/// @file partition_test.cpp
+/// Meshes shared out between ranks, against what every rank finds by looking at all cells.
+
+#include "tribound/mesh/partition.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "support/meshes.h"
+#include "tribound/mesh/verify.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+using mesh::CellName;
+using mesh::CellRecord;
+using mesh::MeshData;
+using mesh::VertexName;
+
+/// Gives every group of cells around a vertex that is connected through facets not in `opened` a vertex of
+/// its own.
+template <int dim, class Opened>
+void cut_open(MeshData<dim>& data, const Opened& opened)
+{
+  const auto topology = mesh::build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
+  const auto cells = data.cells;
+  const auto n_vertices = static_cast<Index>(data.vertices.size());
+  for (Index v = 0; v < n_vertices; ++v)
+  {
+    std::set<Index> left(topology.vertex_cells.begin() + topology.vertex_cells_begin[v],
+                         topology.vertex_cells.begin() + topology.vertex_cells_begin[v + 1]);
+    for (bool is_first = true; !left.empty(); is_first = false)
+    {
+      const Index name = is_first ? v : static_cast<Index>(data.vertices.size());
+      if (!is_first) data.vertices.push_back(data.vertices[v]);
+      std::vector<Index> group = {*left.begin()};
+      left.erase(left.begin());
+      for (std::size_t k = 0; k < group.size(); ++k)
+      {
+        std::ranges::replace(data.cells[group[k]], v, name);
+        for (int i = 0; i <= dim; ++i)
+        {
+          const Index facet = topology.cell_facets[group[k]][i];
+          if (cells[group[k]][i] == v || opened(topology.facets[facet])) continue;
+          for (const Index other : topology.facet_cells[facet])
+            if (left.erase(other) > 0) group.push_back(other);
+        }
+      }
+    }
+  }
+  data.facets.clear();
+}
+
+/// Two joints that cross, the second of which ends inside.
+template <int dim>
+MeshData<dim> crossing_joints()
+{
+  MeshData<dim> data = block<dim>({8, 6}, {6, 4, 2});
+  const auto points = data.vertices;
+  cut_open(data,
+           [&](const std::array<Index, dim>& facet)
+           {
+             const auto all = [&](const auto& is) { return std::ranges::all_of(facet, is); };
+             return all([&](Index v) { return std::abs(points[v][0] - 1) < 1e-9; }) ||
+                    all([&](Index v) { return std::abs(points[v][1] - 0.5) < 1e-9 && points[v][0] > 0.3; });
+           });
+  EXPECT_GT(data.vertices.size(), points.size());
+  return data;
+}
+
+/// Two boxes that touch, with as many cells along the contact or not.
+template <int dim>
+MeshData<dim> touching_boxes(int n_above)
+{
+  MeshData<dim> data = block<dim>({4, 2}, {4, 2, 2});
+  MeshData<dim> above = block<dim>({n_above, 3}, {n_above, 2, n_above / 2});
+  double top = 0;
+  for (const Point<dim>& x : data.vertices) top = std::max(top, x[1]);
+  const auto n = static_cast<Index>(data.vertices.size());
+  for (Point<dim> x : above.vertices)
+  {
+    x[1] += top;
+    data.vertices.push_back(x);
+  }
+  for (mesh::Cell<dim> cell : above.cells)
+  {
+    for (Index& v : cell) v += n;
+    data.cells.push_back(cell);
+  }
+  data.regions.resize(data.cells.size(), 0);
+  data.facets.clear();
+  return data;
+}
+
+template <int dim>
+std::vector<CellRecord<dim>> all_records(const MeshData<dim>& data)
+{
+  const auto topology = mesh::build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
+  return mesh::first_records<dim>(data, mesh::find_boundary(data, topology));
+}
+
+/// A rank for each cell, at random, the same everywhere.
+int anywhere(const CellName& name, int round, int n_ranks)
+{
+  return static_cast<int>(mesh::mix(mesh::mix(name.root + 1) ^ round) % n_ranks);
+}
+
+/// What every rank has if `rank_of` is where each of `all` is.
+template <int dim>
+void expect_part(const mesh::MeshPart<dim>& part, const std::vector<CellRecord<dim>>& all,
+                 const std::vector<int>& rank_of)
+{
+  const auto& partition = part.partition;
+  const int me = partition.ranks.rank();
+  std::map<VertexName<dim>, std::set<int>> ranks_around;
+  std::set<VertexName<dim>> own_vertices;
+  for (std::size_t c = 0; c < all.size(); ++c)
+    for (const VertexName<dim>& v : all[c].vertices)
+    {
+      ranks_around[v].insert(rank_of[c]);
+      if (rank_of[c] == me) own_vertices.insert(v);
+    }
+
+  std::vector<CellRecord<dim>> expected;
+  std::vector<int> owners;
+  for (const bool own : {true, false})
+    for (std::size_t c = 0; c < all.size(); ++c)
+    {
+      const bool here =
+          std::ranges::any_of(all[c].vertices, [&](const auto& v) { return own_vertices.contains(v); });
+      if (!here || (rank_of[c] == me) != own) continue;
+      expected.push_back(all[c]);
+      if (!own) owners.push_back(rank_of[c]);
+    }
+  EXPECT_EQ(part.cells, expected);
+  EXPECT_EQ(partition.ghost_owners, owners);
+  EXPECT_EQ(partition.n_owned_cells, static_cast<Index>(expected.size() - owners.size()));
+  EXPECT_EQ(partition.n_cells, static_cast<std::int64_t>(all.size()));
+  EXPECT_EQ(partition.n_vertices, static_cast<std::int64_t>(ranks_around.size()));
+
+  for (std::size_t c = 0; c < part.cells.size(); ++c)
+    for (int i = 0; i <= dim; ++i)
+      EXPECT_EQ(partition.vertices[part.corners[c][i]], part.cells[c].vertices[i]);
+  const auto key = [&](const VertexName<dim>& v)
+  { return std::pair(mesh::morton_key<dim>(partition.cube, v.point()), v); };
+  for (std::size_t v = 1; v < partition.vertices.size(); ++v)
+    EXPECT_LT(key(partition.vertices[v - 1]), key(partition.vertices[v]));
+  for (Index v = 0; v < static_cast<Index>(partition.vertices.size()); ++v)
+  {
+    std::set<int> others = ranks_around[partition.vertices[v]];
+    const bool has_patch = others.erase(me) > 0;
+    EXPECT_EQ(partition.has_patch[v] != 0, has_patch);
+    if (!has_patch) others.clear();
+    const std::span<const int> sharers = partition.sharers_of(v);
+    EXPECT_EQ(std::set<int>(sharers.begin(), sharers.end()), others);
+    EXPECT_EQ(sharers.size(), others.size());
+  }
+
+  const auto topology =
+      mesh::build_topology<dim>(static_cast<Index>(partition.vertices.size()), part.corners);
+  for (Index c = 0; c < partition.n_owned_cells; ++c)
+    for (int i = 0; i <= dim; ++i)
+      EXPECT_EQ(part.cells[c].tags[i] == mesh::facet_inside,
+                topology.facet_cells[topology.cell_facets[c][i]][1] >= 0);
+}
+
+/// The rank that each of `all` goes to along the curve. Tells `own` where its cells go, and checks that they
+/// would go there from the first rank, too.
+template <int dim>
+std::vector<int> along_the_curve(const mesh::Partition<dim>& partition,
+                                 const std::vector<CellRecord<dim>>& all,
+                                 std::span<const CellRecord<dim>> own, std::vector<int>& to)
+{
+  const Ranks& ranks = partition.ranks;
+  const auto shared_out = [&](std::span<const CellRecord<dim>> cells)
+  {
+    const std::vector<std::int64_t> weights(cells.size(), 1);
+    return mesh::balanced_ranks(ranks, mesh::centre_keys<dim>(partition.cube, cells), weights);
+  };
+  to = shared_out(own);
+  struct Told
+  {
+    std::int64_t cell;
+    int rank;
+  };
+  std::vector<Told> mine;
+  for (std::size_t c = 0; c < own.size(); ++c) mine.push_back({own[c].name.root, to[c]});
+  std::vector<int> rank_of(all.size(), -1);
+  for (const std::vector<Told>& told : ranks.send(std::vector<std::vector<Told>>(ranks.size(), mine)))
+    for (const auto& [cell, rank] : told) rank_of[cell] = rank;
+  const std::vector<int> from_the_first =
+      shared_out(ranks.is_first() ? std::span(all) : std::span(all).first(0));
+  if (ranks.is_first()) EXPECT_EQ(from_the_first, rank_of);
+  return rank_of;
+}
+
+/// Dealt out at random, then along the curve, then at random again.
+template <int dim>
+void expect_parts(const MeshData<dim>& data)
+{
+  const Ranks ranks = Ranks::world();
+  const std::vector<CellRecord<dim>> all = all_records(data);
+  const auto cube = mesh::cube_around<dim>(data.vertices);
+  const auto at_random = [&](std::span<const CellRecord<dim>> cells, int round)
+  {
+    std::vector<int> to;
+    for (const CellRecord<dim>& cell : cells) to.push_back(anywhere(cell.name, round, ranks.size()));
+    return to;
+  };
+  std::vector<int> rank_of = at_random(all, 0);
+  std::vector<CellRecord<dim>> owned;
+  for (std::size_t c = 0; c < all.size(); ++c)
+    if (rank_of[c] == ranks.rank()) owned.push_back(all[c]);
+
+  for (int round = 0; round < 3; ++round)
+  {
+    SCOPED_TRACE(round);
+    const mesh::MeshPart<dim> part = mesh::with_ghosts<dim>(ranks, cube, owned);
+    expect_part(part, all, rank_of);
+    const auto own = std::span(part.cells).first(part.partition.n_owned_cells);
+    std::vector<int> to = at_random(own, 1);
+    rank_of = round == 0 ? along_the_curve<dim>(part.partition, all, own, to) : at_random(all, 1);
+    owned = mesh::sent_to<dim>(ranks, to, own);
+  }
+}
+
+TEST(Partition, HasTheCellsAroundItsOwn)
+{
+  expect_parts(renumbered(block<2>({12, 6}), 1));
+  expect_parts(renumbered(block<3>({4, 3}, {4, 3, 3}), 1));
+}
+
+TEST(Partition, TellsVerticesInOnePlaceApart)
+{
+  expect_parts(crossing_joints<2>());
+  expect_parts(crossing_joints<3>());
+  expect_parts(touching_boxes<2>(4));
+  expect_parts(touching_boxes<2>(6));
+  expect_parts(touching_boxes<3>(4));
+  expect_parts(touching_boxes<3>(6));
+}
+
+TEST(Partition, SharesAreEqualAlongTheCurve)
+{
+  const Ranks ranks = Ranks::world();
+  const std::vector<CellRecord<2>> all = all_records(block<2>({64, 32}));
+  const auto cube = mesh::cube_around<2>(block<2>({64, 32}).vertices);
+  std::vector<CellRecord<2>> owned;  // all on the last rank
+  if (ranks.rank() == ranks.size() - 1) owned = all;
+  std::vector<std::int64_t> weights(owned.size());
+  for (std::size_t c = 0; c < owned.size(); ++c) weights[c] = 1 + 9 * (owned[c].name.root % 50 == 0 ? 1 : 0);
+  const std::vector<int> to = mesh::balanced_ranks(ranks, mesh::centre_keys<2>(cube, owned), weights);
+  std::vector<std::int64_t> loads(ranks.size(), 0);
+  for (std::size_t c = 0; c < owned.size(); ++c) loads[to[c]] += weights[c];
+  ranks.sum(std::span(loads));
+  std::int64_t all_weight = 0;
+  for (const std::int64_t load : loads) all_weight += load;
+  for (const std::int64_t load : loads) EXPECT_NEAR(load, double(all_weight) / ranks.size(), 10);
+}
+
+TEST(GhostUpdate, BringsTheValuesOfTheOwners)
+{
+  const Ranks ranks = Ranks::world();
+  const MeshData<3> data = block<3>({4, 3}, {4, 3, 3});
+  std::vector<CellRecord<3>> owned;
+  for (const CellRecord<3>& cell : all_records(data))
+    if (anywhere(cell.name, 5, ranks.size()) == ranks.rank()) owned.push_back(cell);
+  const auto part = mesh::with_ghosts<3>(ranks, mesh::cube_around<3>(data.vertices), owned);
+  const auto& partition = part.partition;
+  const GhostUpdate update = mesh::cell_update(partition);
+  std::vector<double> values(2 * part.cells.size(), -1.0);
+  for (Index c = 0; c < partition.n_owned_cells; ++c)
+    for (int i = 0; i < 2; ++i) values[2 * c + i] = 10.0 * partition.names[c].root + i;
+  update(std::span(values), 2);
+  for (std::size_t c = 0; c < part.cells.size(); ++c)
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(values[2 * c + i], 10.0 * partition.names[c].root + i);
+  std::vector<char> nothing;
+  GhostUpdate()(std::span(nothing));
+}
+
+TEST(CellName, AscendsAsTheLeavesOfTheForestDo)
+{
+  const CellName root{.root = 7};
+  std::vector<CellName> leaves = {root};
+  for (int depth = 0; depth < 70; ++depth)
+  {
+    const CellName last = leaves.back();
+    leaves.back() = last.child(0);
+    leaves.push_back(last.child(1));
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(leaves));
+  EXPECT_EQ(std::ranges::adjacent_find(leaves), leaves.end());
+  EXPECT_LT(leaves.back(), CellName{.root = 8});
+  CellName deepest = root;
+  while (deepest.depth < CellName::max_depth) deepest = deepest.child(1);
+  EXPECT_EQ(deepest.path[1], ~std::uint64_t{0});
+}
+
+TEST(VertexName, OfAMiddleIsThatOfBothSides)
+{
+  const VertexName<2> a = mesh::vertex_name<2>({0.1, -0.0});
+  const VertexName<2> b = mesh::vertex_name<2>({0.7, 0.2});
+  EXPECT_EQ(a, mesh::vertex_name<2>({0.1, 0.0}));
+  EXPECT_EQ(mesh::middle(a, b), mesh::middle(b, a));
+  EXPECT_EQ(mesh::middle(a, b).sheet, 0U);
+  VertexName<2> other = b;
+  other.sheet = 1;
+  VertexName<2> third = b;
+  third.sheet = 2;
+  EXPECT_EQ(mesh::middle(a, other), mesh::middle(other, a));
+  EXPECT_NE(mesh::middle(a, other).sheet, 0U);
+  EXPECT_NE(mesh::middle(a, other), mesh::middle(a, third));
+  EXPECT_NE(mesh::middle(other, other), mesh::middle(third, third));
+}
+
+/// Neighbours along Hilbert's curve are neighbours in space.
+template <int dim>
+void expect_continuous_curve(int n)
+{
+  const mesh::Cube<dim> cube{Point<dim>::Zero(), 1.0};
+  std::vector<std::pair<std::uint64_t, Point<dim>>> points;
+  const int n_points = dim == 2 ? n * n : n * n * n;
+  for (int k = 0; k < n_points; ++k)
+  {
+    Point<dim> x;
+    for (int i = 0, rest = k; i < dim; ++i, rest /= n) x[i] = (rest % n + 0.5) / n;
+    points.emplace_back(mesh::hilbert_key<dim>(cube, x), x);
+  }
+  std::ranges::sort(points, {}, [](const auto& p) { return p.first; });
+  for (std::size_t k = 1; k < points.size(); ++k)
+    EXPECT_NEAR((points[k].second - points[k - 1].second).norm(), 1.0 / n, 1e-12);
+}
+
+TEST(Curve, IsContinuous)
+{
+  expect_continuous_curve<2>(16);
+  expect_continuous_curve<3>(8);
+}
+
+}  // namespace
+}  // namespace tribound::test
