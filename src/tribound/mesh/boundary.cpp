@@ -73,6 +73,37 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
   return boundary;
 }
 
+template <int dim>
+std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topology<dim>& topology,
+                                         std::span<const CellRecord<dim>> cells, Index n_owned)
+{
+  const auto local_number = [&](Index cell, Index f)
+  {
+    const auto& facets = topology.cell_facets[cell];
+    return static_cast<int>(std::find(facets.begin(), facets.end(), f) - facets.begin());
+  };
+  std::vector<BoundaryFacet> boundary;
+  for (Index f = 0; f < static_cast<Index>(topology.facets.size()); ++f)
+  {
+    const auto [cell, other] = topology.facet_cells[f];
+    const int local = local_number(cell, f);
+    const std::int32_t tag = cells[cell].tags[local];
+    const bool is_inside = tag == facet_inside;
+    if (!is_inside) boundary.push_back({cell, local, tag});
+    if (other >= 0 && (!is_inside || cells[other].tags[local_number(other, f)] != facet_inside))
+      throw InputError(data.source, fmt::format("{} is on the boundary and has two cells",
+                                                describe_facet<dim>(data, topology.facets[f])));
+    if (other < 0 && is_inside && cell < n_owned)
+      throw InputError(data.source, fmt::format("{} is inside the domain and has one cell",
+                                                describe_facet<dim>(data, topology.facets[f])));
+  }
+  return boundary;
+}
+
+template std::vector<BoundaryFacet> find_boundary<2>(const MeshData<2>&, const Topology<2>&,
+                                                     std::span<const CellRecord<2>>, Index);
+template std::vector<BoundaryFacet> find_boundary<3>(const MeshData<3>&, const Topology<3>&,
+                                                     std::span<const CellRecord<3>>, Index);
 template std::vector<BoundaryFacet> find_boundary<2>(const MeshData<2>&, const Topology<2>&);
 template std::vector<BoundaryFacet> find_boundary<3>(const MeshData<3>&, const Topology<3>&);
 

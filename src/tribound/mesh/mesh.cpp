@@ -2,10 +2,37 @@
 
 #include <utility>
 
+#include "tribound/mesh/partition.h"
 #include "tribound/mesh/verify.h"
 
 namespace tribound::mesh
 {
+
+namespace
+{
+
+/// The arrays of a part.
+template <int dim>
+MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels labels)
+{
+  MeshData<dim> data;
+  data.vertices.reserve(part.partition.vertices.size());
+  for (const VertexName<dim>& name : part.partition.vertices) data.vertices.push_back(name.point());
+  data.cells = std::move(part.corners);
+  data.regions.reserve(part.cells.size());
+  data.bisection_types.reserve(part.cells.size());
+  for (const CellRecord<dim>& cell : part.cells)
+  {
+    data.regions.push_back(cell.region);
+    data.bisection_types.push_back(static_cast<std::uint8_t>(cell.bisection_type));
+  }
+  data.region_names = std::move(labels.region_names);
+  data.boundary_names = std::move(labels.boundary_names);
+  data.source = std::move(labels.source);
+  return data;
+}
+
+}  // namespace
 
 template <int dim>
 Mesh<dim>::Mesh(MeshData<dim> data)
@@ -18,7 +45,31 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   if (data.bisection_types.empty()) check_overlap(data, topology);  // bisection keeps the domain
   boundary_ = find_boundary(data, topology);
   check_vertices(data, topology);
+  n_owned_cells_ = static_cast<Index>(data.cells.size());
+  take(std::move(data), std::move(topology));
+}
 
+template <int dim>
+Mesh<dim>::Mesh(MeshPart<dim> part, MeshLabels labels)
+{
+  MeshData<dim> data = data_of(part, std::move(labels));
+  const std::vector<CellRecord<dim>> records = std::exchange(part.cells, {});
+  auto partition = std::make_shared<const Partition<dim>>(std::move(part.partition));
+  n_owned_cells_ = partition->n_owned_cells;
+  has_patch_ = partition->has_patch;
+  partition_ = std::move(partition);
+  if (!data.cells.empty()) check_arrays(data);  // there may be more ranks than cells
+  check_shapes(data);
+  Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
+  check_facets(data, topology);
+  boundary_ = find_boundary<dim>(data, topology, records, n_owned_cells_);
+  check_vertices(data, topology, has_patch_);
+  take(std::move(data), std::move(topology));
+}
+
+template <int dim>
+void Mesh<dim>::take(MeshData<dim> data, Topology<dim> topology)
+{
   vertices_ = std::move(data.vertices);
   cells_ = std::move(data.cells);
   regions_ = std::move(data.regions);

@@ -100,7 +100,21 @@ inline constexpr auto local_edges = []
   return edges;
 }();
 
-/// A conforming simplicial mesh of a polygon or polyhedron.
+template <int dim>
+struct MeshPart;
+template <int dim>
+struct Partition;
+
+/// What the parts of a mesh have in common.
+struct MeshLabels
+{
+  std::vector<std::string> region_names;
+  std::vector<std::string> boundary_names;
+  Where source;  ///< for messages
+};
+
+/// A conforming simplicial mesh of a polygon or polyhedron, or the part of one that a rank has: its own cells
+/// and, behind them, ghosts. The outer facets of ghosts are no boundary.
 template <int dim>
 class Mesh
 {
@@ -110,6 +124,8 @@ class Mesh
   /// cells that overlap across a facet, tagged facets that are not on the boundary or in two groups, a vertex
   /// whose cells are not connected through facets.
   explicit Mesh(MeshData<dim> data);
+  /// Verifies what can be seen from here. Throws InputError, on this rank alone.
+  Mesh(MeshPart<dim> part, MeshLabels labels);
 
   [[nodiscard]] Index n_vertices() const { return static_cast<Index>(vertices_.size()); }
   [[nodiscard]] Index n_cells() const { return static_cast<Index>(cells_.size()); }
@@ -128,7 +144,16 @@ class Mesh
 
   [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
 
+  /// The first cells are those of this rank; of a whole mesh all.
+  [[nodiscard]] Index n_owned_cells() const { return n_owned_cells_; }
+  /// Whether a vertex has an own cell; all its cells are then here.
+  [[nodiscard]] bool has_patch(Index v) const { return has_patch_.empty() || has_patch_[v] != 0; }
+  /// How the mesh is shared out; null for a whole mesh.
+  [[nodiscard]] const Partition<dim>* partition() const { return partition_.get(); }
+
  private:
+  void take(MeshData<dim> data, Topology<dim> topology);
+
   std::vector<Point<dim>> vertices_;
   std::vector<Cell<dim>> cells_;
   std::vector<int> regions_;
@@ -139,6 +164,9 @@ class Mesh
   std::vector<std::uint8_t> bisection_types_;
   Ancestry ancestry_;
   std::unique_ptr<const Topology<dim>> topology_;
+  std::shared_ptr<const Partition<dim>> partition_;
+  Index n_owned_cells_ = 0;
+  std::span<const char> has_patch_;  ///< of the partition
 };
 
 /// Facets, edges and incidence by counting sorts, O(n). The cells may be unverified: where more than two

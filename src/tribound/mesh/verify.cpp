@@ -219,12 +219,13 @@ void check_facets(const MeshData<dim>& data, const Topology<dim>& topology)
 }
 
 template <int dim>
-void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology)
+void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology, std::span<const char> which)
 {
   std::vector<Index> seen(data.cells.size(), -1);
   std::vector<Index> queue;
   for (Index v = 0; v < static_cast<Index>(data.vertices.size()); ++v)
   {
+    if (!which.empty() && which[v] == 0) continue;
     const auto n =
         static_cast<std::size_t>(topology.vertex_cells_begin[v + 1] - topology.vertex_cells_begin[v]);
     if (n == 0)
@@ -249,7 +250,7 @@ template void check_shapes<2>(const MeshData<2>&);
 template void check_shapes<3>(const MeshData<3>&);
 template void check_facets<2>(const MeshData<2>&, const Topology<2>&);
 template void check_facets<3>(const MeshData<3>&, const Topology<3>&);
-template void check_vertices<2>(const MeshData<2>&, const Topology<2>&);
-template void check_vertices<3>(const MeshData<3>&, const Topology<3>&);
+template void check_vertices<2>(const MeshData<2>&, const Topology<2>&, std::span<const char>);
+template void check_vertices<3>(const MeshData<3>&, const Topology<3>&, std::span<const char>);
 
 }  // namespace tribound::mesh

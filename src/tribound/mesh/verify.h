@@ -4,9 +4,11 @@
 /// The steps of the verification of a mesh, in the order in which Mesh's constructor takes them: each relies
 /// on what the ones before it found in order. All throw InputError naming the place with its coordinates.
 
+#include <span>
 #include <vector>
 
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/partition.h"
 
 namespace tribound::mesh
 {
@@ -41,8 +43,17 @@ template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology);
 
-/// Every vertex has cells, and they are connected through facets that contain the vertex.
+/// The same of a part of a mesh, by the tags of its cells. Of the first `n_owned` the facets inside must have
+/// two cells, and no others: else the mesh does not conform.
 template <int dim>
-void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology);
+[[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
+                                                       const Topology<dim>& topology,
+                                                       std::span<const CellRecord<dim>> cells, Index n_owned);
+
+/// Every vertex has cells, and they are connected through facets that contain the vertex. If `which` is not
+/// empty, only vertices where it is not 0 are looked at.
+template <int dim>
+void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology,
+                    std::span<const char> which = {});
 
 }  // namespace tribound::mesh
