@@ -50,6 +50,7 @@ class Ranks
   {
     if (size_ == 1) return out;
     std::vector<std::span<const std::byte>> parcels;
+    parcels.reserve(out.size());
     for (const std::vector<T>& items : out) parcels.push_back(std::as_bytes(std::span(items)));
     std::vector<std::vector<T>> in(size_);
     send_bytes(parcels,

@@ -13,7 +13,7 @@ namespace
 
 /// The arrays of a part.
 template <int dim>
-MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels labels)
+MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels&& labels)
 {
   MeshData<dim> data;
   data.vertices.reserve(part.partition.vertices.size());

@@ -19,8 +19,7 @@ template <class Items>
 void sort_and_unite(Items& items)
 {
   std::ranges::sort(items);
-  const auto rest = std::ranges::unique(items);
-  items.erase(rest.begin(), rest.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());  // clang 14 fails at std::ranges::unique
 }
 
 /// Numbers the vertices of the cells in ascending order of (morton_key, name).
