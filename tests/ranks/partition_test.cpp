@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "support/joined_meshes.h"
 #include "support/meshes.h"
 #include "tribound/base/error.h"
-#include "tribound/mesh/verify.h"
 
 namespace tribound::test
 {
@@ -25,88 +25,6 @@ using mesh::CellName;
 using mesh::CellRecord;
 using mesh::MeshData;
 using mesh::VertexName;
-
-/// Gives every group of cells around a vertex that is connected through facets not in `opened` a vertex of
-/// its own.
-template <int dim, class Opened>
-void cut_open(MeshData<dim>& data, const Opened& opened)
-{
-  const auto topology = mesh::build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
-  const auto cells = data.cells;
-  const auto n_vertices = static_cast<Index>(data.vertices.size());
-  for (Index v = 0; v < n_vertices; ++v)
-  {
-    std::set<Index> left(topology.vertex_cells.begin() + topology.vertex_cells_begin[v],
-                         topology.vertex_cells.begin() + topology.vertex_cells_begin[v + 1]);
-    for (bool is_first = true; !left.empty(); is_first = false)
-    {
-      const Index name = is_first ? v : static_cast<Index>(data.vertices.size());
-      if (!is_first) data.vertices.push_back(data.vertices[v]);
-      std::vector<Index> group = {*left.begin()};
-      left.erase(left.begin());
-      for (std::size_t k = 0; k < group.size(); ++k)
-      {
-        std::ranges::replace(data.cells[group[k]], v, name);
-        for (int i = 0; i <= dim; ++i)
-        {
-          const Index facet = topology.cell_facets[group[k]][i];
-          if (cells[group[k]][i] == v || opened(topology.facets[facet])) continue;
-          for (const Index other : topology.facet_cells[facet])
-            if (left.erase(other) > 0) group.push_back(other);
-        }
-      }
-    }
-  }
-  data.facets.clear();
-}
-
-/// Two joints that cross, the second of which ends inside.
-template <int dim>
-MeshData<dim> crossing_joints()
-{
-  MeshData<dim> data = block<dim>({8, 6}, {6, 4, 2});
-  const auto points = data.vertices;
-  cut_open(data,
-           [&](const std::array<Index, dim>& facet)
-           {
-             const auto all = [&](const auto& is) { return std::ranges::all_of(facet, is); };
-             return all([&](Index v) { return std::abs(points[v][0] - 1) < 1e-9; }) ||
-                    all([&](Index v) { return std::abs(points[v][1] - 0.5) < 1e-9 && points[v][0] > 0.3; });
-           });
-  EXPECT_GT(data.vertices.size(), points.size());
-  return data;
-}
-
-/// Two boxes that touch, with as many cells along the contact or not.
-template <int dim>
-MeshData<dim> touching_boxes(int n_above)
-{
-  MeshData<dim> data = block<dim>({4, 2}, {4, 2, 2});
-  MeshData<dim> above = block<dim>({n_above, 3}, {n_above, 2, n_above / 2});
-  double top = 0;
-  for (const Point<dim>& x : data.vertices) top = std::max(top, x[1]);
-  const auto n = static_cast<Index>(data.vertices.size());
-  for (Point<dim> x : above.vertices)
-  {
-    x[1] += top;
-    data.vertices.push_back(x);
-  }
-  for (mesh::Cell<dim> cell : above.cells)
-  {
-    for (Index& v : cell) v += n;
-    data.cells.push_back(cell);
-  }
-  data.regions.resize(data.cells.size(), 0);
-  data.facets.clear();
-  return data;
-}
-
-template <int dim>
-std::vector<CellRecord<dim>> all_records(const MeshData<dim>& data)
-{
-  const auto topology = mesh::build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
-  return mesh::first_records<dim>(data, mesh::find_boundary(data, topology));
-}
 
 /// A rank for each cell, at random, the same everywhere.
 int anywhere(const CellName& name, int round, int n_ranks)

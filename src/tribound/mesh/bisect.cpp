@@ -6,9 +6,12 @@
 #include <cassert>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "tribound/mesh/marked_cell.h"
+#include "tribound/mesh/middles.h"
+#include "tribound/mesh/shared_vertices.h"
 
 namespace tribound::mesh
 {
@@ -16,47 +19,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// The middles of edges, found by their ends. A list of edges at the end with the larger number: an edge that
-/// bisection makes has its newer end there, so that the lists stay short.
-class Middles
-{
- public:
-  explicit Middles(Index n_vertices) : first_(n_vertices, -1), n_vertices_(n_vertices) {}
-
-  /// The vertex in the middle of the edge, or -1 when it is whole.
-  [[nodiscard]] Index find(Index a, Index b) const
-  {
-    if (a < b) std::swap(a, b);
-    Index middle = first_[a];
-    while (middle >= 0 && edges_[middle - n_vertices_].lower_end != b)
-      middle = edges_[middle - n_vertices_].next;
-    return middle;
-  }
-
-  /// Gives the edge a middle: the vertex next in number.
-  Index add(Index a, Index b)
-  {
-    if (a < b) std::swap(a, b);
-    const auto middle = static_cast<Index>(first_.size());
-    edges_.push_back({b, first_[a]});
-    first_[a] = middle;
-    first_.push_back(-1);
-    return middle;
-  }
-
- private:
-  struct Edge
-  {
-    Index lower_end;
-    Index next;  ///< middle of the next edge with the same larger end, or -1
-  };
-
-  std::vector<Index> first_;  ///< per vertex: middle of an edge whose larger end it is, or -1
-  std::vector<Edge> edges_;   ///< by number of the middle
-  Index n_vertices_;          ///< without the middles
-};
-
-/// The cells of the original mesh as roots of binary trees; the leaves are the cells of the bisected mesh.
+/// The own cells of the original mesh as roots of binary trees; the leaves are those of the bisected mesh.
 template <int dim>
 class Forest
 {
@@ -66,12 +29,13 @@ class Forest
         points_(mesh.vertices().begin(), mesh.vertices().end()),
         ancestry_(mesh.ancestry()),
         middles_(mesh.n_vertices()),
-        queued_(mesh.n_cells(), 0)
+        queued_(mesh.n_owned_cells(), 0)
   {
+    if (mesh.partition()) shared_.emplace(*mesh.partition());
     ancestry_.n_vertices.push_back(mesh.n_vertices());
-    nodes_.reserve(mesh.n_cells());
+    nodes_.reserve(mesh.n_owned_cells());
     const auto types = mesh.bisection_types();
-    for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (Index c = 0; c < mesh.n_owned_cells(); ++c)
       nodes_.push_back({.cell = types.empty() ? longest_edges_marked<dim>(points_, mesh.cell(c))
                                               : MarkedCell<dim>{mesh.cell(c), types[c]}});
   }
@@ -84,14 +48,14 @@ class Forest
   /// gets below the next multiple of dim. The order does not change the result.
   void close()
   {
-    for (Index root = 0; root < mesh_->n_cells(); ++root)
+    for (Index root = 0; root < mesh_->n_owned_cells(); ++root)
       if (nodes_[root].due > 0) enqueue(root);
-    for (std::size_t next = 0; next < queue_.size(); ++next)
+    const auto halve_as_told = [this](Index a, Index b)
     {
-      const Index root = queue_[next];
-      queued_[root] = 0;
-      refine(root);
-    }
+      if (middles_.find(a, b) < 0) halve_edge(a, b, false);
+    };
+    do together([this] { refine_queued(); });
+    while (shared_ && shared_->exchange(halve_as_told));
   }
 
   /// The leaves as a mesh, and the root of each in `parent`.
@@ -125,7 +89,24 @@ class Forest
     return data;
   }
 
+  /// The leaves as cells that travel, and the root of each in `parent`.
+  [[nodiscard]] std::vector<CellRecord<dim>> records(std::vector<Index>& parent) const
+  {
+    std::vector<CellRecord<dim>> result;
+    std::vector<CellTags> tags(mesh_->n_cells());
+    for (CellTags& of_cell : tags) of_cell.fill(facet_inside);
+    for (const auto& [cell, local, tag] : mesh_->boundary()) tags[cell][local] = tag;
+    for (Index root = 0; root < mesh_->n_owned_cells(); ++root)
+    {
+      add_records(root, mesh_->partition()->names[root], tags[root], mesh_->region(root), result);
+      parent.resize(result.size(), root);
+    }
+    return result;
+  }
+
  private:
+  using CellTags = std::array<std::int32_t, dim + 1>;
+
   struct Node
   {
     MarkedCell<dim> cell;
@@ -137,6 +118,27 @@ class Forest
   {
     return std::ranges::any_of(
         local_edges<dim>, [&](const auto& edge) { return middles_.find(cell[edge[0]], cell[edge[1]]) >= 0; });
+  }
+
+  /// Work that may fail: on all ranks then.
+  template <class Work>
+  void together(const Work& work) const
+  {
+    if (shared_)
+      mesh_->partition()->ranks.together(work);
+    else
+      work();
+  }
+
+  void refine_queued()
+  {
+    for (std::size_t next = 0; next < queue_.size(); ++next)
+    {
+      const Index root = queue_[next];
+      queued_[root] = 0;
+      refine(root);
+    }
+    queue_.clear();
   }
 
   void enqueue(Index root)
@@ -167,20 +169,22 @@ class Forest
     const Index a = node.cell.vertices[0];
     const Index b = node.cell.vertices[1];
     Index middle = middles_.find(a, b);
-    if (middle < 0) middle = halve_edge(a, b);
+    if (middle < 0) middle = halve_edge(a, b, true);
     nodes_[n].first_child = static_cast<Index>(nodes_.size());
     for (int kept = 0; kept < 2; ++kept)
       nodes_.push_back({.cell = child(node.cell, kept, middle), .due = std::max(node.due - 1, 0)});
   }
 
   /// Makes the middle of an edge and queues the roots that contain the edge: those that contain both ends,
-  /// since they are convex.
-  Index halve_edge(Index a, Index b)
+  /// since they are convex. `is_news`: other ranks do not know.
+  Index halve_edge(Index a, Index b, bool is_news)
   {
+    if (shared_) shared_->add_middle(a, b, is_news);
     points_.push_back(0.5 * (points_[a] + points_[b]));
     ancestry_.halved_edges.push_back({a, b});
     common_.clear();
     std::ranges::set_intersection(roots_at(a), roots_at(b), std::back_inserter(common_));
+    while (!common_.empty() && common_.back() >= mesh_->n_owned_cells()) common_.pop_back();  // ghosts
     roots_.insert(roots_.end(), common_.begin(), common_.end());
     roots_end_.push_back(roots_.size());
     for (const Index root : common_) enqueue(root);
@@ -213,6 +217,44 @@ class Forest
     add_leaves(first_child + 1, data);
   }
 
+  void add_records(Index n, const CellName& name, const CellTags& tags, int region,
+                   std::vector<CellRecord<dim>>& records) const
+  {
+    const Node& node = nodes_[n];
+    if (node.first_child < 0)
+    {
+      CellRecord<dim>& record = records.emplace_back();
+      record.name = name;
+      record.tags = tags;
+      record.region = region;
+      record.bisection_type = node.cell.type;
+      for (int i = 0; i <= dim; ++i) record.vertices[i] = shared_->name(node.cell.vertices[i]);
+      return;
+    }
+    if (name.depth == CellName::max_depth)
+      throw InputError(mesh_->source(),
+                       fmt::format("a cell is bisected more than {} times", CellName::max_depth),
+                       "limit the refinement: adapt.max_levels, adapt.max_dofs");
+    for (int kept = 0; kept < 2; ++kept)
+    {
+      const Index child = node.first_child + kept;
+      add_records(child, name.child(kept),
+                  child_tags(node.cell.vertices, tags, kept, nodes_[child].cell.vertices), region, records);
+    }
+  }
+
+  /// A child has the facet opposite to the vertex that it has lost, opposite to its last one, halves of the
+  /// others, and one inside opposite to the vertex that it keeps.
+  static CellTags child_tags(const Cell<dim>& parent, const CellTags& tags, int kept, const Cell<dim>& child)
+  {
+    CellTags result;
+    for (int i = 0; i < dim; ++i)
+      result[i] = child[i] == parent[kept] ? facet_inside
+                                           : tags[std::ranges::find(parent, child[i]) - parent.begin()];
+    result[dim] = tags[1 - kept];
+    return result;
+  }
+
   /// The pieces of a facet with its marked edge in front: like cells, the halves of a face are marked
   /// opposite to the new vertex.
   void add_facets(const TaggedFacet<dim>& facet, std::vector<TaggedFacet<dim>>& pieces) const
@@ -238,26 +280,27 @@ class Forest
   Ancestry ancestry_;  ///< of the bisected mesh
   std::vector<Node> nodes_;
   Middles middles_;
-  std::vector<Index> roots_;            ///< that contain each middle, one middle behind the other
-  std::vector<std::size_t> roots_end_;  ///< per middle
-  std::vector<Index> common_;           ///< working space
-  std::vector<Index> queue_;            ///< roots to look at, in the order of their turns
-  std::vector<char> queued_;            ///< per root
+  std::vector<Index> roots_;                   ///< that contain each middle, one middle behind the other
+  std::vector<std::size_t> roots_end_;         ///< per middle
+  std::vector<Index> common_;                  ///< working space
+  std::vector<Index> queue_;                   ///< roots to look at, in the order of their turns
+  std::vector<char> queued_;                   ///< per root
+  std::optional<SharedVertices<dim>> shared_;  ///< of a mesh that is shared out
 };
 
-/// In a scope of its own, so that the forest is gone when the mesh is built.
+/// Given as a value, so that it is gone when the mesh is built.
 template <int dim>
-MeshData<dim> bisected_data(const Mesh<dim>& mesh, std::span<const Index> marked, int times,
-                            std::vector<Index>& parent)
+Forest<dim> closed_forest(const Mesh<dim>& mesh, std::span<const Index> marked, int times)
 {
+  assert(times >= 1);
   Forest<dim> forest(mesh);
   for (const Index c : marked)
   {
-    assert(c >= 0 && c < mesh.n_cells());
+    assert(c >= 0 && c < mesh.n_owned_cells());
     forest.demand(c, times);
   }
   forest.close();
-  return forest.leaves(parent);
+  return forest;
 }
 
 }  // namespace
@@ -265,13 +308,24 @@ MeshData<dim> bisected_data(const Mesh<dim>& mesh, std::span<const Index> marked
 template <int dim>
 Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times)
 {
-  assert(times >= 1);
   std::vector<Index> parent;
-  MeshData<dim> data = bisected_data(mesh, marked, times, parent);
+  MeshData<dim> data = closed_forest(mesh, marked, times).leaves(parent);
   return {Mesh<dim>(std::move(data)), std::move(parent)};
+}
+
+template <int dim>
+BisectedPart<dim> bisect_part(const Mesh<dim>& mesh, std::span<const Index> marked, int times)
+{
+  assert(mesh.partition());
+  const Forest<dim> forest = closed_forest(mesh, marked, times);
+  BisectedPart<dim> result;
+  mesh.partition()->ranks.together([&] { result.cells = forest.records(result.parent); });
+  return result;
 }
 
 template Bisected<2> bisect(const Mesh<2>&, std::span<const Index>, int);
 template Bisected<3> bisect(const Mesh<3>&, std::span<const Index>, int);
+template BisectedPart<2> bisect_part(const Mesh<2>&, std::span<const Index>, int);
+template BisectedPart<3> bisect_part(const Mesh<3>&, std::span<const Index>, int);
 
 }  // namespace tribound::mesh

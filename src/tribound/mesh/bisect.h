@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/partition.h"
 
 namespace tribound::mesh
 {
@@ -31,5 +32,21 @@ struct Bisected
 /// Throws InputError when the cells outgrow 32-bit numbers.
 template <int dim>
 [[nodiscard]] Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times = dim);
+
+/// The own cells of a rank in the bisected mesh, by their names in ascending order.
+template <int dim>
+struct BisectedPart
+{
+  std::vector<CellRecord<dim>> cells;
+  std::vector<Index> parent;  ///< per cell: the own cell of the original mesh that contains it
+};
+
+/// The same of a mesh that is shared out between ranks, each of which marks some of its own cells. All call
+/// it together; the cells of all are those of bisect(), to the bit. Ghosts come from with_ghosts(), on this
+/// rank or wherever the cells are sent to. Throws InputError, on all ranks, when cells outgrow 32-bit numbers
+/// or CellName::max_depth.
+template <int dim>
+[[nodiscard]] BisectedPart<dim> bisect_part(const Mesh<dim>& mesh, std::span<const Index> marked,
+                                            int times = dim);
 
 }  // namespace tribound::mesh

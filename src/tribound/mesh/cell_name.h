@@ -45,13 +45,13 @@ struct CellName
   }
 };
 
-/// A vertex as its position, to the bit, and for those that share theirs with others, as on the two sides of
-/// a joint, a number that tells them apart.
+/// A vertex as its position, to the bit, and what tells apart vertices in one place, as on the two sides of a
+/// joint or of a contact: now or after bisection, whether the meshes match or not.
 template <int dim>
 struct VertexName
 {
   std::array<double, dim> position{};
-  std::uint64_t sheet = 0;  ///< 0: alone in its place
+  std::uint64_t origin = 0;  ///< number in the first mesh, or hash of the vertices between which it is
 
   friend auto operator<=>(const VertexName&, const VertexName&) = default;
 
@@ -60,9 +60,9 @@ struct VertexName
 
 /// The name at a point; -0 becomes 0, which has other bits.
 template <int dim>
-[[nodiscard]] VertexName<dim> vertex_name(const Point<dim>& x, std::uint64_t sheet = 0)
+[[nodiscard]] VertexName<dim> vertex_name(const Point<dim>& x, std::uint64_t origin)
 {
-  VertexName<dim> name{{}, sheet};
+  VertexName<dim> name{{}, origin};
   for (int i = 0; i < dim; ++i) name.position[i] = x[i] + 0.0;
   return name;
 }
@@ -70,19 +70,17 @@ template <int dim>
 template <int dim>
 [[nodiscard]] constexpr std::uint64_t hash(const VertexName<dim>& name)
 {
-  std::uint64_t h = mix(name.sheet + 0x9e3779b97f4a7c15ULL);
+  std::uint64_t h = mix(name.origin + 0x9e3779b97f4a7c15ULL);
   for (const double x : name.position) h = mix(h ^ std::bit_cast<std::uint64_t>(x));
   return h;
 }
 
-/// The vertex that bisection puts between two, in either order. Where one of them is not alone in its place
-/// the middle may not be: its sheet is a hash of their names, and a collision would matter only among the few
-/// vertices in one place.
+/// The vertex that bisection puts between two, in either order. Hashes that are equal by chance would matter
+/// only among the few vertices in one place.
 template <int dim>
 [[nodiscard]] VertexName<dim> middle(const VertexName<dim>& a, const VertexName<dim>& b)
 {
-  const std::uint64_t sheet = a.sheet == 0 && b.sheet == 0 ? 0 : mix(hash(a) + hash(b)) | 1;
-  return vertex_name<dim>(0.5 * (a.point() + b.point()), sheet);
+  return vertex_name<dim>(0.5 * (a.point() + b.point()), mix(hash(a) + hash(b)));
 }
 
 /// For unordered containers.

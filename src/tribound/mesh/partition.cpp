@@ -186,27 +186,11 @@ void set_sharers(std::span<const Cell<dim>> corners, Partition<dim>& partition)
   partition.n_vertices = partition.ranks.sum(n_counted_here);
 }
 
-/// The sheets of the vertices: see first_records().
-template <int dim>
-std::vector<std::uint64_t> sheets(const MeshData<dim>& data)
-{
-  std::unordered_map<VertexName<dim>, std::vector<Index>, VertexHash<dim>> in_place;
-  std::vector<char> seen(data.vertices.size(), 0);
-  for (const Cell<dim>& cell : data.cells)
-    for (const Index v : cell)
-      if (!std::exchange(seen[v], 1)) in_place[vertex_name<dim>(data.vertices[v])].push_back(v);
-  std::vector<std::uint64_t> result(data.vertices.size(), 0);
-  for (const auto& [place, vertices] : in_place)
-    for (std::size_t k = 0; vertices.size() > 1 && k < vertices.size(); ++k) result[vertices[k]] = k + 1;
-  return result;
-}
-
 }  // namespace
 
 template <int dim>
 std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data, std::span<const BoundaryFacet> boundary)
 {
-  const std::vector<std::uint64_t> sheet = sheets(data);
   std::vector<std::array<std::int32_t, dim + 1>> tags(data.cells.size());
   for (auto& of_cell : tags) of_cell.fill(facet_inside);
   for (const auto& [cell, local, tag] : boundary) tags[cell][local] = tag;
@@ -224,7 +208,7 @@ std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data, std::span<
     for (int i = 0; i <= dim; ++i)
     {
       const Index v = marked.vertices[i];
-      record.vertices[i] = vertex_name<dim>(data.vertices[v], sheet[v]);
+      record.vertices[i] = vertex_name<dim>(data.vertices[v], v);
       record.tags[i] = tags[c][std::ranges::find(data.cells[c], v) - data.cells[c].begin()];
     }
   }

@@ -39,8 +39,7 @@ struct CellRecord
 };
 
 /// The cells of a first mesh as bisect() orders their vertices, so that they are bisected the same way
-/// whichever rank has them. `boundary`: as find_boundary() gives it. Vertices in one place have the sheets 1,
-/// 2, ... in the order of the first cells around them.
+/// whichever rank has them. `boundary`: as find_boundary() gives it.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data,
                                                          std::span<const BoundaryFacet> boundary);

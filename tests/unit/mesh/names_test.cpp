@@ -39,19 +39,16 @@ TEST(CellName, AscendsAsTheLeavesOfTheForestDo)
 
 TEST(VertexName, OfAMiddleIsThatOfBothSides)
 {
-  const VertexName<2> a = mesh::vertex_name<2>({0.1, -0.0});
-  const VertexName<2> b = mesh::vertex_name<2>({0.7, 0.2});
-  EXPECT_EQ(a, mesh::vertex_name<2>({0.1, 0.0}));
+  const VertexName<2> a = mesh::vertex_name<2>({0.1, -0.0}, 0);
+  const VertexName<2> b = mesh::vertex_name<2>({0.7, 0.2}, 1);
+  const VertexName<2> beside_b = mesh::vertex_name<2>({0.7, 0.2}, 2);
+  EXPECT_EQ(a, mesh::vertex_name<2>({0.1, 0.0}, 0));
   EXPECT_EQ(mesh::middle(a, b), mesh::middle(b, a));
-  EXPECT_EQ(mesh::middle(a, b).sheet, 0U);
-  VertexName<2> other = b;
-  other.sheet = 1;
-  VertexName<2> third = b;
-  third.sheet = 2;
-  EXPECT_EQ(mesh::middle(a, other), mesh::middle(other, a));
-  EXPECT_NE(mesh::middle(a, other).sheet, 0U);
-  EXPECT_NE(mesh::middle(a, other), mesh::middle(a, third));
-  EXPECT_NE(mesh::middle(other, other), mesh::middle(third, third));
+  EXPECT_NE(mesh::middle(a, b), mesh::middle(a, beside_b));
+  EXPECT_EQ(mesh::middle(a, b).position, mesh::middle(a, beside_b).position);
+  // A vertex of one body where the middle of an edge of another comes to lie.
+  EXPECT_NE(mesh::middle(a, b), mesh::vertex_name<2>(mesh::middle(a, b).point(), 3));
+  EXPECT_NE(mesh::middle(b, b), mesh::middle(beside_b, beside_b));
 }
 
 /// Neighbours along Hilbert's curve are neighbours in space.

@@ -1,0 +1,64 @@
+#include "tribound/mesh/shared_vertices.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+
+namespace tribound::mesh
+{
+
+template <int dim>
+SharedVertices<dim>::SharedVertices(const Partition<dim>& partition)
+    : ranks_(partition.ranks), names_(partition.vertices)
+{
+  for (Index v = 0; v < static_cast<Index>(names_.size()); ++v)
+  {
+    const std::span<const int> others = partition.sharers_of(v);
+    if (others.empty()) continue;
+    sharers_[v].assign(others.begin(), others.end());
+    shared_[names_[v]] = v;
+  }
+}
+
+template <int dim>
+std::span<const int> SharedVertices<dim>::sharers_of(Index v) const
+{
+  const auto found = sharers_.find(v);
+  return found == sharers_.end() ? std::span<const int>{} : found->second;
+}
+
+template <int dim>
+void SharedVertices<dim>::add_middle(Index a, Index b, bool is_news)
+{
+  const auto m = static_cast<Index>(names_.size());
+  names_.push_back(middle(names_[a], names_[b]));
+  std::vector<int> both;
+  std::ranges::set_intersection(sharers_of(a), sharers_of(b), std::back_inserter(both));
+  if (both.empty()) return;
+  sharers_[m] = std::move(both);
+  shared_[names_[m]] = m;
+  if (is_news) news_.push_back({a, b});
+}
+
+template <int dim>
+bool SharedVertices<dim>::exchange(const std::function<void(Index, Index)>& halve)
+{
+  using Edge = std::array<VertexName<dim>, 2>;
+  if (!ranks_.any(!news_.empty())) return false;
+  std::vector<std::vector<Edge>> out(ranks_.size());
+  for (const auto& [a, b] : news_)
+  {
+    std::vector<int> both;
+    std::ranges::set_intersection(sharers_of(a), sharers_of(b), std::back_inserter(both));
+    for (const int rank : both) out[rank].push_back({names_[a], names_[b]});
+  }
+  news_.clear();
+  for (const std::vector<Edge>& edges : ranks_.send(out))
+    for (const auto& [a, b] : edges) halve(shared_.at(a), shared_.at(b));
+  return true;
+}
+
+template class SharedVertices<2>;
+template class SharedVertices<3>;
+
+}  // namespace tribound::mesh

@@ -1,0 +1,43 @@
+#pragma once
+
+/// @file shared_vertices.h
+/// What bisection on several ranks has to tell: edges halved on the common surface of their cells.
+
+#include <array>
+#include <functional>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "tribound/mesh/partition.h"
+
+namespace tribound::mesh
+{
+
+/// The names of the vertices of a part and of the middles that bisection adds, and which other ranks have
+/// them: a middle those that have both ends. They know of it, or are told.
+template <int dim>
+class SharedVertices
+{
+ public:
+  explicit SharedVertices(const Partition<dim>& partition);
+
+  [[nodiscard]] const VertexName<dim>& name(Index v) const { return names_[v]; }
+  /// The next vertex is the middle of a and b. `is_news`: the other ranks that have it do not know.
+  void add_middle(Index a, Index b, bool is_news);
+  /// Tells the others of the middles that are news, and calls halve(a, b) for each edge that they have
+  /// halved. False if no rank had any. All ranks call it together.
+  bool exchange(const std::function<void(Index, Index)>& halve);
+
+ private:
+  [[nodiscard]] std::span<const int> sharers_of(Index v) const;
+
+  Ranks ranks_;
+  std::vector<VertexName<dim>> names_;
+  std::unordered_map<Index, std::vector<int>> sharers_;                 ///< of those that have any, ascending
+  std::unordered_map<VertexName<dim>, Index, VertexHash<dim>> shared_;  ///< the same by name
+  std::vector<std::array<Index, 2>> news_;                              ///< edges
+};
+
+}  // namespace tribound::mesh
