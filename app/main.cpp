@@ -21,6 +21,7 @@
 #include "app/command/init.h"
 #include "app/command/interrupt.h"
 #include "app/command/run.h"
+#include "app/command/run_on_ranks.h"
 #include "app/command/run_report.h"
 #include "app/command/study.h"
 #include "app/command/sweep.h"
@@ -205,21 +206,6 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
       ->capture_default_str();
 }
 
-/// Several processes would do the same work and write the same files. The variables are those of Open MPI,
-/// and of MPICH with its relatives.
-void require_one_process()
-{
-  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
-  {
-    const char* value = std::getenv(variable);
-    if (value == nullptr || std::atoi(value) <= 1) continue;
-    throw InputError(
-        {}, fmt::format("started as {} processes ({})", value, variable),
-        "Tribound runs as one process: start it without mpirun, or with -n 1; threads are set by "
-        "OMP_NUM_THREADS and OPENBLAS_NUM_THREADS");
-  }
-}
-
 /// With less address space OpenBLAS asks for its memory for ever.
 void require_address_space()
 {
@@ -233,9 +219,18 @@ void require_address_space()
 /// Does what the command line asks for.
 ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
 {
-  require_one_process();
   require_address_space();
   const std::string command = app.get_subcommands().front()->get_name();
+  if (n_processes() > 1)
+  {
+    if (command == "run") return run_on_all_ranks(arguments.case_file, arguments.overrides, arguments.quiet);
+    const bool needs_one = command == "verify" || command == "study" || command == "sweep";
+    if (!is_first_process()) return needs_one ? ExitCode::bad_input : ExitCode::success;
+    if (needs_one)
+      throw InputError(
+          {}, fmt::format("tribound {} runs as one process, but was started as {}", command, n_processes()),
+          "start it without mpirun, or with -n 1; tribound run takes any number of processes");
+  }
   if (command == "run") return run_command(arguments);
   if (command == "verify") return verify_command(arguments);
   if (command == "study") return study_command(arguments);
@@ -262,12 +257,6 @@ InputError usage_error(const CLI::App& app, const CLI::ParseError& error, std::s
           near.empty() ? hint : fmt::format("did you mean \"{}\"? {}", near, hint)};
 }
 
-int report(ExitCode code, const std::string& message)
-{
-  fmt::print(stderr, "tribound: {}\n", message);
-  return static_cast<int>(code);
-}
-
 }  // namespace
 
 int main(int argc, char** argv)
@@ -290,20 +279,9 @@ int main(int argc, char** argv)
   {
     return static_cast<int>(dispatch(app, arguments));
   }
-  catch (const InputError& error)
+  catch (...)
   {
-    return report(ExitCode::bad_input, error.what());
-  }
-  catch (const SolveError& error)
-  {
-    return report(ExitCode::failed, error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    return report(ExitCode::failed, "out of memory: take a coarser mesh or a lower degree");
-  }
-  catch (const std::exception& error)
-  {
-    return report(ExitCode::failed, error.what());
+    const auto [code, message] = describe(std::current_exception());
+    return report(code, message);
   }
 }

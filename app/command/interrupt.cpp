@@ -16,7 +16,7 @@ namespace
 
 std::atomic<bool> stop_requested = false;
 
-constexpr std::array stop_signals = {SIGINT, SIGTERM};
+constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGUSR1};  // the last by way of mpirun
 
 void request_stop(int)
 {

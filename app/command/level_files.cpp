@@ -54,8 +54,8 @@ void write_level_fields(const std::filesystem::path& directory, int number,
   std::vector<io::CellField> fields = components.fields();
   fields.insert(fields.end(), further.begin(), further.end());
   const std::array tensors = {io::equilibrated_stress_field(discrete.space, level.stress)};
-  io::write_level_vtu<dim>(directory / io::level_file_name("level", number), number, discrete.form.problem(),
-                           discrete.space, level.u, fields, tensors);
+  io::write_level_vtu<dim>(io::level_files(directory, number, discrete.mesh.ranks()), number,
+                           discrete.form.problem(), discrete.space, level.u, fields, tensors);
 }
 
 template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<2>&,

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <utility>
 
+#include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/io/fields/vtu.h"
 
@@ -22,14 +24,18 @@ struct KeptLevel
   {
     level.equilibrium.reset();  // factors are large, and no more steps are to come
   }
+  KeptLevel(int n, adapt::Excerpt<dim> excerpt)
+      : number(n), discrete(std::move(excerpt.discrete)), level(std::move(excerpt.level))
+  {
+  }
 
   int number;
   std::shared_ptr<const adapt::Discretisation<dim>> discrete;
   adapt::CertifiedLevel<dim> level;
 };
 
-/// Writes level_NNN.vtu: the fields of a level with the bound of every cell, and `further` numbers per cell.
-/// Throws WriteError when the file cannot be written.
+/// Writes level_NNN.vtu, or the files of several ranks: the fields of a level with the bound of every cell,
+/// and `further` numbers per cell. Throws WriteError when the file cannot be written.
 template <int dim>
 void write_level_fields(const std::filesystem::path& directory, int number,
                         const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,

@@ -99,6 +99,8 @@ template <int dim>
 RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
                           const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed)
     : output_(config.output),
+      method_(config.method),
+      ranks_(first.mesh.ranks()),
       contact_rule_(config.method.contact_rule),
       printed_(printed),
       page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
@@ -106,11 +108,15 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
 {
   const fem::LagrangeSpace<dim>& space = first.space;
   const contact::NitscheForm<dim>& form = first.form;
-  require_mesh_elsewhere(config);
-  directory_.emplace(output_.directory);
-  remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
-                                     "contact.csv", "adapted.msh"});
-  io::remove_series(output_.directory);
+  ranks_.on_first(
+      [&]
+      {
+        require_mesh_elsewhere(config);
+        directory_.emplace(output_.directory);
+        remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
+                                           "contact.csv", "adapted.msh"});
+        io::remove_series(output_.directory);
+      });
   record_.facts = case_file::case_facts(config, dim);
   record_.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   record_.build = library_facts();
@@ -122,23 +128,49 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   record_.tolerance = config.adapt.tolerance;
   record_.statements = certify::statements(form, config.method.contact_rule);
   record_.statements.assumptions.emplace_back(
-      "linear_solver", describe_solver(algebra::choose_method(config.method.solver, dim, space.n_dofs())));
+      "linear_solver",
+      describe_solver(algebra::choose_method(config.method.solver, dim, space.n_global_dofs())));
   record_.setup = seconds_since(begin);
+  if (!ranks_.is_first()) printed_ = Printed::nothing;
   if (printed_ == Printed::everything) print_header(record_.facts, record_.mesh);
 }
 
 template <int dim>
-void RunReport<dim>::write_fields(const KeptLevel<dim>& level) const
+std::shared_ptr<const KeptLevel<dim>> RunReport<dim>::gather(const adapt::LevelView<dim>& view) const
 {
-  const contact::NitscheForm<dim>& form = level.discrete->form;
-  if (output_.mesh)
-    io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(level.discrete->mesh, free_sides_));
-  io::write_contact_csv(output_.directory / "contact.csv", form, level.level.u, level.number);
-  if (!output_.vtu) return;
-  write_level_fields<dim>(output_.directory, level.number, *level.discrete, level.level);
-  io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", level.number), level.number,
-                             form, level.level.u);
-  io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number);
+  if (!view.discrete.mesh.partition()) return last_;
+  // Of more cells in 3D what lies inside is not shown; an adapted mesh is one file.
+  constexpr std::int64_t few = 200'000;
+  const mesh::Mesh<dim>& mesh = view.discrete.mesh;
+  std::vector<Index> cells;
+  if (dim == 2 || output_.mesh || mesh.n_global_cells() <= few)
+    for (Index c = 0; c < mesh.n_owned_cells(); ++c) cells.push_back(c);
+  else
+    for (const mesh::BoundaryFacet& facet : mesh.owned_boundary()) cells.push_back(facet.cell);
+  std::ranges::sort(cells);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::optional<adapt::Excerpt<dim>> excerpt = adapt::excerpt<dim>(view, method_, cells);
+  if (!excerpt) return nullptr;
+  return std::make_shared<const KeptLevel<dim>>(view.number, *std::move(excerpt));
+}
+
+template <int dim>
+void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const
+{
+  if (shown)
+  {
+    const contact::NitscheForm<dim>& form = shown->discrete->form;
+    if (output_.mesh)
+      io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(shown->discrete->mesh, free_sides_));
+    io::write_contact_csv(output_.directory / "contact.csv", form, shown->level.u, level.number);
+    if (output_.vtu)
+    {
+      io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", level.number),
+                                 level.number, form, shown->level.u);
+      io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number, ranks_);
+    }
+  }
+  if (output_.vtu) write_level_fields<dim>(output_.directory, level.number, *level.discrete, level.level);
 }
 
 template <int dim>
@@ -152,12 +184,13 @@ void RunReport<dim>::start_writing()
   }
   background_.start(
       [this, record = std::move(record), level = record_.levels.back().bound ? last_ : nullptr,
+       shown = record_.levels.back().bound ? shown_ : nullptr,
        is_followed = record_.status == certify::RunStatus::budget]
       {
         const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
-        if (level && writes_all_levels()) write_fields(*level);
-        if (record) io::write_report(output_.directory, *record);
-        if (level && is_followed) page_.add(level->number, level->discrete->form, level->level);
+        if (level && writes_all_levels()) write_fields(*level, shown.get());
+        if (record && ranks_.is_first()) io::write_report(output_.directory, *record);
+        if (shown && is_followed) page_.add(shown->number, shown->discrete->form, shown->level);
       });
 }
 
@@ -180,11 +213,14 @@ void RunReport<dim>::judge(const adapt::LevelView<dim>& view)
   record_.status = view.verdict.status;
   record_.reason = view.verdict.reason;
   const io::LevelRecord& level = record_.levels.back();
+  record_.warnings.clear();
+  const bool is_shared = view.discrete.mesh.partition() != nullptr;
+  if (!view.level.solved() || (is_shared && (!shown_ || shown_->number != view.number))) return;
+  const std::vector<doctor::ContactOutcome> outcomes =
+      is_shared ? doctor::contact_outcomes<dim>(shown_->discrete->form, shown_->level.u)
+                : doctor::contact_outcomes<dim>(view.discrete.form, view.level.u);
   record_.warnings =
-      view.level.solved()
-          ? doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
-                                 doctor::contact_outcomes<dim>(view.discrete.form, view.level.u))
-          : std::vector<doctor::Finding>{};
+      doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement}, outcomes);
 }
 
 template <int dim>
@@ -246,15 +282,22 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   record_.levels.push_back(std::move(level));
   if (record_.levels.back().bound)
   {
-    last_.reset();  // makes room for this one
+    shown_.reset();  // makes room for this one
+    last_.reset();
     last_ = std::make_shared<const KeptLevel<dim>>(view);
+    shown_ = gather(view);
   }
   update_statements(view);
   judge(view);
   count_time(begin);
-  if (printed_ != Printed::verdict && !again) print_level(record_.levels.back());
-  if (failure) std::rethrow_exception(failure);
-  start_writing();
+  if ((printed_ == Printed::everything || printed_ == Printed::levels) && !again)
+    print_level(record_.levels.back());
+  ranks_.together(
+      [&]
+      {
+        if (failure) std::rethrow_exception(failure);
+        start_writing();
+      });
   count_time(begin);
 }
 
@@ -270,13 +313,20 @@ void RunReport<dim>::write_what_holds()
     work();
   };
   if (last_ && !writes_all_levels())  // beside the page's data of this level
-    timed([&] { failure = failure_of([&] { write_fields(*last_); }); });
+    timed([&] { failure = failure_of([&] { write_fields(*last_, shown_.get()); }); });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
-  if (last_) timed([&] { page_.add_last(last_->number, last_->discrete->form, last_->level); });
+  if (shown_) timed([&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); });
   if (!record_.levels.empty()) count_time(begin);
-  io::write_report(output_.directory, record_);
-  page_.write(output_.directory, record_);
-  if (failure) std::rethrow_exception(failure);
+  ranks_.together(
+      [&]
+      {
+        if (ranks_.is_first())
+        {
+          io::write_report(output_.directory, record_);
+          page_.write(output_.directory, record_);
+        }
+        if (failure) std::rethrow_exception(failure);
+      });
 }
 
 template <int dim>

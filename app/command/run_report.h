@@ -37,12 +37,17 @@ namespace tribound::app
 enum class Printed
 {
   everything,
-  levels,  ///< a line per level, as a part of something larger
-  verdict  ///< status and warnings at the end
+  levels,   ///< a line per level, as a part of something larger
+  verdict,  ///< status and warnings at the end
+  nothing
 };
 
 /// Keeps the record of a run and writes the files, level by level: beside the computation of the next level
 /// where OpenMP offers a second thread. The files do not depend on that.
+///
+/// On several ranks, which call the members together, the first prints and writes, and each writes the fields
+/// on its own cells. What is shown of the solution as one, contact and the page, comes from cells that are
+/// gathered on the first: all, or of large meshes those at the boundary.
 template <int dim>
 class RunReport
 {
@@ -69,7 +74,9 @@ class RunReport
 
  private:
   [[nodiscard]] bool writes_all_levels() const { return output_.levels == case_file::FieldLevels::all; }
-  void write_fields(const KeptLevel<dim>& level) const;
+  /// What the first rank shows of a level; null elsewhere.
+  [[nodiscard]] std::shared_ptr<const KeptLevel<dim>> gather(const adapt::LevelView<dim>& view) const;
+  void write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const;
   /// Hands the files of the last level that are due to the background.
   void start_writing();
   /// Waits for them; their time goes to the last level. What writing has thrown.
@@ -85,12 +92,15 @@ class RunReport
   void count_time(Clock::time_point& begin);
 
   const case_file::OutputConfig& output_;
+  const adapt::Method& method_;
+  Ranks ranks_;
   certify::ContactRule contact_rule_;
   Printed printed_;
   std::optional<OutputDirectory> directory_;
   io::RunRecord record_;
   ReportPage page_;
-  std::shared_ptr<const KeptLevel<dim>> last_;  ///< the last level that has a bound
+  std::shared_ptr<const KeptLevel<dim>> last_;   ///< the last level that has a bound
+  std::shared_ptr<const KeptLevel<dim>> shown_;  ///< what the first rank shows of it
   Point<dim> moment_about_;
   std::vector<std::string> free_sides_;       ///< boundaries that the case does not mention
   Clock::time_point written_ = Clock::now();  ///< when the record was; at first when the run began

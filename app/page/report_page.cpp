@@ -170,7 +170,11 @@ std::vector<std::string> run_files(const io::RunRecord& run)
   std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv", "newton.csv",
                                     "contact.csv",      "adapted.msh", "series.pvd"};
   for (const io::LevelRecord& level : run.levels)
-    for (const char* stem : {"level", "contact"}) names.push_back(io::level_file_name(stem, level.level));
+    for (const std::string stem : {"level", "contact"})
+    {
+      names.push_back(io::level_file_name(stem, level.level));
+      names.push_back(fmt::format("{}_{:03}.pvtu", stem, level.level));
+    }
   return names;
 }
 
@@ -186,7 +190,7 @@ PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
                    surface.n_triangles(),
                    {{"level", number},
                     {"dimension", dim},
-                    {"cells", mesh.n_cells()},
+                    {"cells", mesh.n_global_cells()},
                     {"subdivision", surface.subdivision},
                     {"merged_below", surface.merged_below},
                     {"points", pack_linear(surface.points, point_bits, dim)},
@@ -210,7 +214,7 @@ template <int dim>
 io::Json page_volume(const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level)
 {
   if constexpr (dim == 3)
-    if (std::cmp_less_equal(form.space().mesh().n_cells(), max_volume_cells))
+    if (std::cmp_less_equal(form.space().mesh().n_global_cells(), max_volume_cells))
     {
       const Volume volume = sample_volume(form, level.u, level.stress);
       return {{"points", pack_linear(volume.points, point_bits, 3)},

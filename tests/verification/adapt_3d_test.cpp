@@ -36,7 +36,7 @@ std::vector<Level> run(int p, double theta, int max_dofs)
       {},
       [&](const adapt::LevelView<3>& view)
       {
-        const int free = view.discrete.space.n_dofs() - view.discrete.form.constraints().n_fixed();
+        const auto free = fem::n_free_dofs(view.discrete.space, view.discrete.form.constraints());
         levels.push_back({double(free), view.level.estimate.total_sharp});
         std::cout << fmt::format("p = {} theta = {:<3} {:6} dofs  bound {:.4e}", p, theta, free,
                                  levels.back().bound)

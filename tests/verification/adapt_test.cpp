@@ -60,10 +60,10 @@ History adapt_t2d(const adapt::Method& method, const adapt::AdaptOptions& option
         const adapt::Discretisation<2>& discrete = view.discrete;
         const adapt::CertifiedLevel<2>& level = view.level;
         EXPECT_EQ(view.number, history.levels.size());
-        const int fixed = discrete.form.constraints().n_fixed();
-        history.levels.push_back({discrete.mesh.n_cells(), double(discrete.space.n_dofs() - fixed),
-                                  level.estimate.total_sharp, level.steps.size(), view.verdict.status,
-                                  level.estimate.global, level.delta_updates, level.steps.back().step.delta});
+        const auto free = fem::n_free_dofs(discrete.space, discrete.form.constraints());
+        history.levels.push_back({discrete.mesh.n_cells(), double(free), level.estimate.total_sharp,
+                                  level.steps.size(), view.verdict.status, level.estimate.global,
+                                  level.delta_updates, level.steps.back().step.delta});
         EXPECT_LE(level.identities.largest(method.degree), 1e-10);
       }};
   history.verdict = run_adaptively<2>(block<2>({4, 2}), pressed_block<2>(), method, options, observer, stop);

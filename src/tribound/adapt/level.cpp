@@ -30,7 +30,8 @@ bool linearisation_is_negligible(const certify::BoundComponents& eta, double gam
   return eta.linearisation() <= negligible_linearisation(eta, gamma_lin);
 }
 
-bool linearisation_is_negligible(const certify::Estimate& estimate, const StoppingOptions& stopping)
+bool linearisation_is_negligible(const certify::Estimate& estimate, const StoppingOptions& stopping,
+                                 const Ranks& ranks)
 {
   const auto negligible = [&](const certify::BoundComponents& eta)
   { return linearisation_is_negligible(eta, stopping.gamma_lin); };
@@ -39,7 +40,7 @@ bool linearisation_is_negligible(const certify::Estimate& estimate, const Stoppi
     case Stopping::adaptive:
       return negligible(estimate.global);
     case Stopping::adaptive_local:
-      return std::ranges::all_of(estimate.cells, negligible);
+      return !ranks.any(!std::ranges::all_of(estimate.cells, negligible));
     default:
       return false;
   }
@@ -86,7 +87,7 @@ class Certifier
   /// Whether the iterate whose bound the level has may be kept as the solution.
   [[nodiscard]] bool accepts(const CertifiedLevel<dim>& level) const
   {
-    return linearisation_is_negligible(level.estimate, method_.stopping);
+    return linearisation_is_negligible(level.estimate, method_.stopping, form_.space().mesh().ranks());
   }
 
   /// The stress of the iterate and its bound.

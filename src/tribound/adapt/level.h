@@ -94,9 +94,10 @@ struct CertifiedLevel
 /// eta_frc), where T is regularised with eta_reg1 + eta_reg2n + eta_reg2t among the others.
 [[nodiscard]] bool linearisation_is_negligible(const certify::BoundComponents& eta, double gamma_lin);
 
-/// The same of the whole bound (Stopping::adaptive), or on every cell (adaptive_local); else false.
+/// The same of the whole bound (Stopping::adaptive), or on every cell of all ranks (adaptive_local); else
+/// false.
 [[nodiscard]] bool linearisation_is_negligible(const certify::Estimate& estimate,
-                                               const StoppingOptions& stopping);
+                                               const StoppingOptions& stopping, const Ranks& ranks = {});
 
 /// Called after every Newton step; may throw to leave the level.
 using StepObserver = std::function<void(const CertifiedStep&)>;

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "tribound/base/clock.h"
@@ -13,6 +17,7 @@
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/nested.h"
 #include "tribound/mesh/bisect.h"
+#include "tribound/mesh/share_out.h"
 
 namespace tribound::adapt
 {
@@ -29,9 +34,49 @@ struct Interrupted
 };
 
 template <int dim>
-long free_dofs(const Discretisation<dim>& discrete)
+std::int64_t free_dofs(const Discretisation<dim>& discrete)
 {
-  return discrete.space.n_dofs() - discrete.form.constraints().n_fixed();
+  return fem::n_free_dofs(discrete.space, discrete.form.constraints());
+}
+
+/// The next mesh, and how the solution gets there.
+template <int dim>
+struct Finer
+{
+  std::int64_t n_cells;
+  std::function<mesh::Mesh<dim>()> mesh;                                     ///< makes it, once
+  std::function<std::vector<double>(const fem::LagrangeSpace<dim>&)> carry;  ///< onto a space on it
+};
+
+template <int dim>
+Finer<dim> bisected(const Discretisation<dim>& discrete, std::span<const double> u,
+                    std::span<const Index> marked)
+{
+  auto finer = std::make_shared<mesh::Bisected<dim>>(mesh::bisect<dim>(discrete.mesh, marked));
+  return {finer->mesh.n_cells(), [finer] { return std::move(finer->mesh); },
+          [finer, &discrete, u](const fem::LagrangeSpace<dim>& space)
+          { return fem::nested_interpolant<dim>(discrete.space, u, finer->parent, space); }};
+}
+
+/// The same of a mesh that is shared out: its cells take the values at their nodes with them.
+template <int dim>
+Finer<dim> bisected_part(const Discretisation<dim>& discrete, std::span<const double> u,
+                         std::span<const Index> marked)
+{
+  auto part = std::make_shared<mesh::BisectedPart<dim>>(mesh::bisect_part<dim>(discrete.mesh, marked));
+  const std::int64_t n_cells = discrete.mesh.ranks().sum(static_cast<std::int64_t>(part->cells.size()));
+  auto balanced = std::make_shared<std::optional<mesh::Balanced<dim>>>();
+  return {n_cells,
+          [=, &discrete]
+          {
+            const std::vector<double> values =
+                fem::nested_values<dim>(discrete.space, u, part->cells, part->parent);
+            *balanced = mesh::balance<dim>(discrete.mesh, std::move(part->cells), values,
+                                           dim * discrete.space.basis().n_nodes());
+            return std::move((*balanced)->mesh);
+          },
+          [balanced](const fem::LagrangeSpace<dim>& space)
+          { return fem::from_cell_values<dim>(space, (*balanced)->cells, (*balanced)->values); }};
 }
 
 }  // namespace
@@ -149,7 +194,7 @@ StepObserver Levels<dim>::watch(const StepObserver& observer, bool interruptible
   return [this, &observer, interruptible](const CertifiedStep& step)
   {
     if (observer) observer(step);
-    if (interrupted() && interruptible) throw Interrupted{};
+    if (interruptible && interrupted()) throw Interrupted{};
   };
 }
 
@@ -210,20 +255,25 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
 {
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
-  mesh::Bisected<dim> finer = mesh::bisect<dim>(current_->mesh, mark(view()));
+  const std::vector<Index> marked = mark(view());
+  const Finer<dim> finer = current_->mesh.partition() ? bisected_part<dim>(*current_, level_.u, marked)
+                                                      : bisected<dim>(*current_, level_.u, marked);
   RefinementSeconds seconds{.bisect = lap()};
-  NextMesh is_next{.cells = finer.mesh.n_cells()};
+  NextMesh is_next{.cells = finer.n_cells, .ranks = current_->mesh.ranks()};
   if (limit)
     if (std::string why = limit(is_next); !why.empty()) return why;
+  mesh::Mesh<dim> mesh = finer.mesh();
+  seconds.bisect += lap();
   auto next = std::make_shared<const Discretisation<dim>>(
-      std::move(finer.mesh), problem_, method_,
+      std::move(mesh), problem_, method_,
       contact::DataAccuracy{.absolute = share_of_data * level_.estimate.total_sharp});
   seconds.discretise = lap();
   is_next.dofs = free_dofs(*next);
-  is_next.growth = static_cast<double>(*is_next.dofs) / std::max(1L, free_dofs(*current_));
+  is_next.growth = static_cast<double>(*is_next.dofs) /
+                   static_cast<double>(std::max(std::int64_t{1}, free_dofs(*current_)));
   if (limit)
     if (std::string why = limit(is_next); !why.empty()) return why;
-  start_ = fem::nested_interpolant<dim>(current_->space, level_.u, finer.parent, next->space);
+  start_ = finer.carry(next->space);
   seconds.transfer = lap();
   refinement_ = seconds;
   expected_ = level_.estimate.global.discretisation() * std::pow(is_next.growth, -1.0 * method_.degree / dim);

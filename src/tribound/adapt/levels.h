@@ -4,6 +4,7 @@
 /// One mesh after another: what the adaptive algorithm keeps, and the steps it is made of.
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -30,12 +31,13 @@ struct LevelView
 /// The next mesh, before anything is solved on it.
 struct NextMesh
 {
-  Index cells;
-  std::optional<long> dofs{};  ///< free ones; absent while only the mesh is there
-  double growth = 1;           ///< of the free ones against the mesh before, where they are known
+  std::int64_t cells;                  ///< of all ranks
+  std::optional<std::int64_t> dofs{};  ///< free ones; absent while only the mesh is there
+  double growth = 1;                   ///< of the free ones against the mesh before, where they are known
+  Ranks ranks{};                       ///< which decide together
 };
 
-/// The cells of a level to bisect, ascending.
+/// The cells of a level to bisect, ascending; on several ranks own ones.
 template <int dim>
 using Marker = std::function<std::vector<Index>(const LevelView<dim>&)>;
 
@@ -49,6 +51,9 @@ using MeshLimit = std::function<std::string(const NextMesh&)>;
 ///     adapt::Levels<2> levels(problem, method, 0.01, std::move(first));
 ///     while (levels.advance().empty() && levels.verdict().status == certify::RunStatus::budget)
 ///       if (!levels.refine(my_marking).empty()) break;
+///
+/// On a mesh that is shared out all ranks call its members together; what the caller adds has to be the same
+/// on all of them. `stop` may become true on any.
 ///
 /// Keeps references to problem, method and stop.
 template <int dim>
@@ -86,7 +91,7 @@ class Levels
   [[nodiscard]] const certify::Verdict& verdict() const { return verdict_; }
 
  private:
-  [[nodiscard]] bool interrupted() const { return stop_ && *stop_; }
+  [[nodiscard]] bool interrupted() const { return current_->mesh.ranks().any(stop_ && *stop_); }
   /// Passes the steps on, and leaves Newton's method when the user wants it to end and it may.
   [[nodiscard]] StepObserver watch(const StepObserver& observer, bool interruptible) const;
   /// Nothing where the level did not end: `why` says it.

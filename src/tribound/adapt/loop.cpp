@@ -7,6 +7,7 @@
 
 #include "tribound/base/clock.h"
 #include "tribound/base/memory.h"
+#include "tribound/mesh/partition.h"
 
 namespace tribound::adapt
 {
@@ -17,10 +18,12 @@ namespace
 constexpr double gigabyte = 1e9;
 
 /// The limit that a mesh with `growth` times as many unknowns would exceed, or nothing.
-std::string memory_limit_reached(const AdaptOptions& options, double before, double growth, int dim)
+std::string memory_limit_reached(const AdaptOptions& options, double before, const NextMesh& next, int dim)
 {
-  const MemoryLimit limit = memory_limit(options);
-  const double expected = expected_memory(before, peak_memory(), growth, dim);
+  MemoryLimit limit = memory_limit(options);
+  limit.bytes = -next.ranks.max(-limit.bytes);  // the smallest machine, and the one with most to hold
+  const double expected =
+      next.ranks.max(next.ranks.sum_on_machine(expected_memory(before, peak_memory(), next.growth, dim)));
   if (limit.bytes == 0 || expected <= limit.bytes) return {};
   return fmt::format("the next mesh is expected to take {:.3g} GB, more than {} = {:.3g} GB",
                      expected / gigabyte, limit.from_case ? "adapt.max_memory" : "nine tenths of the machine",
@@ -34,13 +37,19 @@ Strategy<dim> make_strategy(const AdaptOptions& options, const std::atomic<bool>
 {
   Strategy<dim> strategy;
   strategy.mark = [options](const LevelView<dim>& view)
-  { return mark(view.level.estimate.cells, options.marking); };
+  {
+    const mesh::Mesh<dim>& mesh = view.discrete.mesh;
+    Markers markers{mesh.ranks(), {}};
+    if (mesh.partition()) markers.names = mesh.partition()->names;
+    return mark(view.level.estimate.cells, options.marking, markers);
+  };
   strategy.stop = [options, interrupt, begin = Clock::now()](const LevelView<dim>& view) -> std::string
   {
-    if (interrupt && *interrupt) return "interrupted";
+    const Ranks& ranks = view.discrete.mesh.ranks();
+    if (ranks.any(interrupt && *interrupt)) return "interrupted";
     if (view.number >= options.max_levels)
       return fmt::format("adapt.max_levels = {} is reached", options.max_levels);
-    if (options.max_time && seconds_since(begin) >= *options.max_time)
+    if (options.max_time && ranks.first_says(seconds_since(begin) >= *options.max_time))
       return fmt::format("adapt.max_time = {:g} s is used up", *options.max_time);
     return {};
   };
@@ -54,7 +63,7 @@ Strategy<dim> make_strategy(const AdaptOptions& options, const std::atomic<bool>
     if (*next.dofs > options.max_dofs)
       return fmt::format("the next mesh has {} degrees of freedom, more than adapt.max_dofs = {}", *next.dofs,
                          options.max_dofs);
-    return memory_limit_reached(options, before, next.growth, dim);
+    return memory_limit_reached(options, before, next, dim);
   };
   return strategy;
 }

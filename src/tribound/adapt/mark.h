@@ -6,8 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "tribound/base/ranks.h"
 #include "tribound/base/types.h"
 #include "tribound/certify/bound/estimate.h"
+#include "tribound/mesh/cell_name.h"
 
 namespace tribound::adapt
 {
@@ -26,13 +28,25 @@ struct MarkingOptions
   bool separate_contact = false;  ///< for the body and for the contact conditions apart, each by its share
 };
 
-/// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96]; of cells with equal
-/// eta_T those with the lower numbers. Ascending; empty where every eta_T is 0. `eta`: per cell, finite and
-/// not negative; 0 < theta <= 1. O(n) on average.
-[[nodiscard]] std::vector<Index> mark_doerfler(std::span<const double> eta, double theta);
+/// The ranks that mark together, each some of its own cells. `names` of these ascend; on one rank they may be
+/// missing, as the numbers of the cells ascend alike.
+struct Markers
+{
+  Ranks ranks{};
+  std::span<const mesh::CellName> names{};
+};
 
-/// The cells with eta_T >= theta max eta_T, ascending; empty where every eta_T is 0. Arguments as above.
-[[nodiscard]] std::vector<Index> mark_maximum(std::span<const double> eta, double theta);
+/// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96], over all ranks; of
+/// cells whose eta_T agree to 1e-9, and hence up to the rounding of another number of ranks, those with the
+/// lower names. Ascending; empty where every eta_T is 0. `eta`: per own cell, finite and not negative; 0 <
+/// theta <= 1. O(n log n).
+[[nodiscard]] std::vector<Index> mark_doerfler(std::span<const double> eta, double theta,
+                                               const Markers& markers = {});
+
+/// The cells with eta_T >= theta max eta_T, up to 1e-9 of it, ascending; empty where every eta_T is 0.
+/// Arguments as above.
+[[nodiscard]] std::vector<Index> mark_maximum(std::span<const double> eta, double theta,
+                                              const Markers& markers = {});
 
 /// All cells 0, ..., n_cells - 1, whatever their share: uniform refinement.
 [[nodiscard]] std::vector<Index> mark_all(std::size_t n_cells);
@@ -41,6 +55,6 @@ struct MarkingOptions
 /// adapt.separate_contact the union of what body() and contact() mark, each for itself; a part whose square
 /// is below a hundredth of the bound's is left to the other.
 [[nodiscard]] std::vector<Index> mark(std::span<const certify::BoundComponents> cells,
-                                      const MarkingOptions& options);
+                                      const MarkingOptions& options, const Markers& markers = {});
 
 }  // namespace tribound::adapt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -35,6 +36,7 @@ std::optional<std::vector<double>> regularised_start(const contact::NitscheForm<
   constexpr double factor = 0.25;
   solve::NewtonOptions newton = method.newton;
   newton.tolerance = std::max(newton.tolerance, 1e-4);
+  newton.balanced = false;
   double scale = 0;
   double delta = 0;
   const solve::NewtonObserver<dim> shrink = [&](const solve::NewtonIterate<dim>& iterate)
@@ -114,7 +116,8 @@ std::optional<std::vector<double>> start_with_gamma(double factor, const contact
 template <int dim>
 int n_soft_stages(const contact::NitscheForm<dim>& form)
 {
-  const double n_across = std::pow(static_cast<double>(form.segments().size()), 1.0 / (dim - 1));
+  const auto n_segments = form.space().mesh().ranks().sum(static_cast<std::int64_t>(form.n_owned_segments()));
+  const double n_across = std::pow(static_cast<double>(n_segments), 1.0 / (dim - 1));
   return static_cast<int>(std::lround(std::log(std::max(1.0, n_across)) / std::log(3.0)));
 }
 

@@ -1,5 +1,6 @@
 #include "tribound/adapt/regularisation.h"
 
+#include <array>
 #include <cmath>
 
 namespace tribound::adapt
@@ -13,14 +14,15 @@ bool regularisation_is_negligible(const certify::BoundComponents& eta, double ga
 template <int dim>
 double mean_contact_traction(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t)
 {
-  double square = 0;
-  double measure = 0;
-  for (std::size_t i = 0; i < t.size(); ++i)
+  std::array<double, 2> sums{};
+  auto& [square, measure] = sums;
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
   {
     const double weight = form.contact_points()[i].weight;
     square += weight * t[i].squaredNorm();
     measure += weight;
   }
+  form.space().mesh().ranks().sum(std::span(sums));
   return measure > 0 ? std::sqrt(square / measure) : 0;
 }
 

@@ -50,7 +50,7 @@ bool detail::factorise_cholesky(const SparseMatrix& a, Mat factors)
 
 SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
 {
-  const detail::Options options(false);
+  const detail::Options options(false, a.sharing());
   factors_ = detail::start_cholesky(a, dim);
   if (!detail::factorise_cholesky(a, factors_.get())) return;
 

@@ -77,7 +77,7 @@ Condensation::Condensation(int dim, SparseRows k, std::vector<Index> layer, std:
 
 void Condensation::factorise(const SparseMatrix& k, int dim)
 {
-  const detail::Options options(false);
+  const detail::Options options(false, {});
   factors_ = detail::start_cholesky(k, dim);
   std::vector<PetscInt> kept(layer_.begin(), layer_.end());
   kept.insert(kept.end(), trace_.begin(), trace_.end());

@@ -1,5 +1,6 @@
 #include "tribound/algebra/galerkin_change.h"
 
+#include <cassert>
 #include <memory>
 
 namespace tribound::algebra::detail
@@ -56,7 +57,11 @@ PetscErrorCode add_change(Mat coarse)
 
 Mat renew_by_change(Mat coarse, Mat interpolation, Mat changing)
 {
-  if (const Change* change = find_attached<Change>(coarse, key)) return change->coarse.get();
+  if (const Change* change = find_attached<Change>(coarse, key))
+  {
+    assert(change->interpolation.get() == interpolation && change->changing.get() == changing);
+    return change->coarse.get();
+  }
   const Change& change = attach(coarse, key, split(coarse, interpolation, changing));
   check(MatSetOperation(coarse, MATOP_PRODUCTNUMERIC, reinterpret_cast<void (*)()>(add_change)), making);
   return change.coarse.get();

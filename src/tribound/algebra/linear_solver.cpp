@@ -7,7 +7,6 @@
 
 #include "tribound/algebra/petsc_detail.h"
 #include "tribound/algebra/single_product.h"
-#include "tribound/base/norm.h"
 
 namespace tribound::algebra
 {
@@ -61,11 +60,11 @@ enum class From
 };
 
 /// Runs FGMRES under the rule; returns whether the target was met.
-bool iterate(KSP ksp, std::span<const double> b, StopRule& rule, std::span<double> x, From from)
+bool iterate(KSP ksp, Vec b, StopRule& rule, Vec x, From from)
 {
   check(KSPSetInitialGuessNonzero(ksp, from == From::x ? PETSC_TRUE : PETSC_FALSE), "setting up a solver");
   check(KSPSetConvergenceTest(ksp, stop, &rule, nullptr), "setting up a solver");
-  check(KSPSolve(ksp, wrap(b).get(), wrap(x).get()), "solving a linear system");
+  check(KSPSolve(ksp, b, x), "solving a linear system");
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp, &reason), "solving a linear system");
   return reason > 0;
@@ -111,6 +110,11 @@ void check_magnitude(const SparseMatrix& a)
     largest = std::max(largest, std::abs(entry));
     finite = finite && std::isfinite(entry);
   }
+  if (a.sharing())
+  {
+    largest = a.sharing()->ranks.max(largest);
+    finite = !a.sharing()->ranks.any(!finite);
+  }
   if (!finite || largest < std::numeric_limits<double>::min())
     throw SolveError(
         "the matrix leaves the range of numbers: look at the magnitude of material.E, of the mesh and of "
@@ -140,7 +144,7 @@ const char* to_string(LinearMethod method)
   return "";
 }
 
-LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs, Index direct_limit)
+LinearMethod choose_method(const SolverOptions& config, int dim, std::int64_t n_dofs, Index direct_limit)
 {
   if (config.method == LinearMethod::direct || config.method == LinearMethod::iterative) return config.method;
   return dim == 2 || n_dofs <= direct_limit ? LinearMethod::direct : LinearMethod::iterative;
@@ -150,7 +154,7 @@ template <int dim>
 LinearSolver::LinearSolver(const SolverOptions& config, const fem::LagrangeSpace<dim>& space, MatrixKind kind,
                            Index direct_limit)
     : config_(config),
-      method_(choose_method(config, dim, space.n_dofs(), direct_limit)),
+      method_(choose_method(config, dim, space.n_global_dofs(), direct_limit)),
       kind_(kind),
       dim_(dim)
 {
@@ -161,7 +165,7 @@ template <int dim>
 LinearSolver::LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes, MatrixKind kind,
                            Index direct_limit)
     : config_(config),
-      method_(choose_method(config, dim, static_cast<Index>(dim * nodes.size()), direct_limit)),
+      method_(choose_method(config, dim, static_cast<std::int64_t>(dim * nodes.size()), direct_limit)),
       kind_(kind),
       dim_(dim)
 {
@@ -175,9 +179,9 @@ template LinearSolver::LinearSolver(const SolverOptions&, std::span<const Point<
 
 void LinearSolver::configure(const SparseMatrix& a)
 {
-  const detail::Options options(method_ == LinearMethod::iterative);
+  const detail::Options options(method_ == LinearMethod::iterative, a.sharing());
   KSP ksp = nullptr;
-  check(KSPCreate(detail::communicator(), &ksp), "creating a solver");
+  check(KSPCreate(detail::communicator(a.sharing()), &ksp), "creating a solver");
   ksp_.reset(ksp);
   check(KSPSetType(ksp, KSPFGMRES), "creating a solver");
   check(KSPGMRESSetRestart(ksp, 60), "creating a solver");
@@ -204,8 +208,8 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
   if (symmetric) check(MatSetOption(a.handle(), MAT_SPD, PETSC_TRUE), "creating a solver");
   check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU), "creating a solver");
   // UMFPACK saves milliseconds below 10k degrees of freedom in 2D and costs 20 % more in 3D: only when asked
-  // for. It has no factorisation of symmetric matrices.
-  const bool umfpack = config_.package == DirectPackage::umfpack && !symmetric;
+  // for. It has no factorisation of symmetric matrices, nor on several ranks.
+  const bool umfpack = config_.package == DirectPackage::umfpack && !symmetric && !a.sharing();
   check(PCFactorSetMatSolverType(pc, umfpack ? MATSOLVERUMFPACK : MATSOLVERMUMPS), "creating a solver");
   if (umfpack) return;
   check(PCFactorSetUpMatSolverType(pc), "creating a solver");
@@ -218,7 +222,7 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
 void LinearSolver::prepare(const SparseMatrix& a, Mat product)
 {
   check_magnitude(a);
-  const detail::Options options(method_ == LinearMethod::iterative);
+  const detail::Options options(method_ == LinearMethod::iterative, a.sharing());
   check(KSPSetOperators(ksp_.get(), product, a.handle()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
   if (multigrid_) multigrid_->renew(preconditioner(), a);
@@ -229,14 +233,29 @@ void LinearSolver::prepare(const SparseMatrix& a, Mat product)
 
 /// Iterations after which a factorisation is the better choice, where there is one: as many as cost three of
 /// them in 3D (measured with p = 2: 90 take as long as one at 13k degrees of freedom, 130 at 28k).
-int LinearSolver::patience(Index n) const
+int LinearSolver::patience(std::int64_t n) const
 {
-  return config_.method == LinearMethod::iterative ? config_.max_iterations
-                                                   : std::min(config_.max_iterations, 200 + n / 150);
+  return config_.method == LinearMethod::iterative
+             ? config_.max_iterations
+             : static_cast<int>(std::min<std::int64_t>(config_.max_iterations, 200 + n / 150));
 }
 
 LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b, double tolerance,
                                 std::span<double> x)
+{
+  if (!a.sharing()) return solve_owned(a, wrap(b).get(), tolerance, wrap(x).get());
+  const fem::NodeNumbers& nodes = *a.sharing();
+  const MPI_Comm processes = detail::communicator(a.sharing());
+  const std::vector<double> own_b = detail::owned_entries(nodes, a.block_size(), b);
+  std::vector<double> own_x(own_b.size(), 0.0);
+  const LinearSolve result =
+      solve_owned(a, wrap(own_b, processes).get(), tolerance, wrap(std::span(own_x), processes).get());
+  detail::put_owned_entries<double>(nodes, a.block_size(), own_x, x);
+  nodes.update(x, a.block_size());
+  return result;
+}
+
+LinearSolve LinearSolver::solve_owned(const SparseMatrix& a, Vec b, double tolerance, Vec x)
 {
   if (method_ == LinearMethod::direct || config_.method == LinearMethod::iterative)
     return attempt(a, b, tolerance, x);
@@ -256,12 +275,11 @@ LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b
   return result;
 }
 
-LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double> b, double tolerance,
-                                  std::span<double> x)
+LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance, Vec x)
 {
   if (!ksp_) configure(a);
   std::optional<detail::SingleProduct> single;  // GMRES itself works in double precision
-  if (multigrid_) single.emplace(a.handle());
+  if (multigrid_ && !a.sharing()) single.emplace(a.handle());
   const Mat product = single ? single->exact() : a.handle();
   check(KSPSetOperators(ksp_.get(), product, a.handle()), "setting up a solver");
   LinearSolve result;
@@ -277,11 +295,13 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, std::span<const double>
 
   prepare(a, product);
   const bool direct = method_ == LinearMethod::direct;
-  StopRule rule{tolerance, direct ? 4 : patience(a.size()), false, {}};
+  StopRule rule{tolerance, direct ? 4 : patience(a.global_size()), false, {}};
   const bool converged = iterate(ksp_.get(), b, rule, x, from);
   const int iterations = std::max(0, static_cast<int>(rule.history.size()) - 1);
   constexpr double useless = 1e-6;
-  if (!converged && !(!rule.history.empty() && rule.history.back() <= useless * norm(b)))
+  PetscReal norm_b = 0;
+  check(VecNorm(b, NORM_2, &norm_b), "solving a linear system");
+  if (!converged && !(!rule.history.empty() && rule.history.back() <= useless * norm_b))
     throw SolveError(direct
                          ? detail::singular_tangent
                          : "GMRES with multigrid did not converge in " + std::to_string(iterations) +

@@ -3,6 +3,7 @@
 /// @file linear_solver.h
 /// Linear systems of a Newton loop: factorisations kept as preconditioners, or multigrid.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "tribound/fem/space.h"
 
 struct _p_KSP;
+struct _p_Vec;
 
 namespace tribound::algebra
 {
@@ -70,7 +72,7 @@ inline constexpr Index direct_limit_3d = 5'000;
 
 /// Direct or iterative for a whole matrix, as configured or by dimension and size: factorisations in 2D at
 /// every size that fits, in 3D up to `direct_limit` degrees of freedom. `condensed` is taken for automatic.
-[[nodiscard]] LinearMethod choose_method(const SolverOptions& config, int dim, Index n_dofs,
+[[nodiscard]] LinearMethod choose_method(const SolverOptions& config, int dim, std::int64_t n_dofs,
                                          Index direct_limit = direct_limit_3d);
 
 /// Solves the linear systems of one Newton loop by flexible GMRES, preconditioned by a factorisation (then
@@ -80,7 +82,8 @@ inline constexpr Index direct_limit_3d = 5'000;
 class LinearSolver
 {
  public:
-  /// For matrices of this space: multigrid goes through lower degrees and coarser meshes.
+  /// For matrices of this space: multigrid goes through lower degrees and coarser meshes. All ranks call it
+  /// together, as solve().
   template <int dim>
   LinearSolver(const SolverOptions& config, const fem::LagrangeSpace<dim>& space,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
@@ -89,8 +92,8 @@ class LinearSolver
   LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
 
-  /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off. Throws SolveError when A is
-  /// singular or the iteration stalls.
+  /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off, on several ranks with the values of
+  /// ghosts. Throws SolveError when A is singular or the iteration stalls.
   LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x);
 
   /// All matrices to come are a constant one plus this part, whose entries are among theirs and which has the
@@ -100,9 +103,9 @@ class LinearSolver
   [[nodiscard]] LinearMethod method() const { return method_; }
 
  private:
-  [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, std::span<const double> b, double tolerance,
-                                    std::span<double> x);
-  [[nodiscard]] int patience(Index n) const;
+  [[nodiscard]] LinearSolve solve_owned(const SparseMatrix& a, _p_Vec* b, double tolerance, _p_Vec* x);
+  [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, _p_Vec* b, double tolerance, _p_Vec* x);
+  [[nodiscard]] int patience(std::int64_t n) const;
   void configure(const SparseMatrix& a);
   void configure_direct(const SparseMatrix& a);
   [[nodiscard]] _p_PC* preconditioner() const;

@@ -20,21 +20,26 @@ constexpr const char* making = "making multigrid levels";
 /// Degrees of freedom of the coarsest space up to which it is solved by a factorisation: that costs little
 /// beside the finer levels, and aggregation of a few cells with very different materials trebles the
 /// iterations.
-constexpr std::size_t factorised = 5000;
+constexpr std::int64_t factorised = 5000;
 
-/// The degrees of freedom that nothing couples: whose row has one entry.
-std::vector<char> decoupled(Mat a)
+/// The degrees of freedom that nothing couples: whose row has one entry. Those of ghosts, too.
+std::vector<char> decoupled(Mat a, int dim, const Sharing& sharing)
 {
-  PetscInt n = 0;
-  check(MatGetSize(a, &n, nullptr), making);
-  std::vector<char> result(n);
-  for (PetscInt i = 0; i < n; ++i)
+  PetscInt begin = 0;
+  PetscInt end = 0;
+  check(MatGetOwnershipRange(a, &begin, &end), making);
+  std::vector<char> own(end - begin);
+  for (PetscInt i = begin; i < end; ++i)
   {
     PetscInt n_entries = 0;
     check(MatGetRow(a, i, &n_entries, nullptr, nullptr), making);
-    result[i] = n_entries == 1 ? 1 : 0;
+    own[i - begin] = n_entries == 1 ? 1 : 0;
     check(MatRestoreRow(a, i, &n_entries, nullptr, nullptr), making);
   }
+  if (!sharing) return own;
+  std::vector<char> result(dim * sharing->global.size());
+  detail::put_owned_entries<char>(*sharing, dim, own, result);
+  sharing->update(std::span(result), dim);
   return result;
 }
 
@@ -53,6 +58,9 @@ Triplets free_weights(const NodeInterpolation& nodes, int dim, const std::vector
       if (fixed[dim * all.rows[k] + a] != 0 && (kept == none || all.values[k] > all.values[kept]))
         kept = static_cast<int>(k);
     }
+  std::vector<char> is_anchored(anchor.size());
+  std::ranges::transform(anchor, is_anchored.begin(), [](int kept) { return kept == none ? 0 : 1; });
+  if (nodes.coarse) nodes.coarse->update(std::span(is_anchored), dim);  // a ghost's cells are not all here
 
   Triplets result;
   for (std::size_t k = 0; k < all.values.size(); ++k)
@@ -60,7 +68,7 @@ Triplets free_weights(const NodeInterpolation& nodes, int dim, const std::vector
     {
       const int row = dim * all.rows[k] + a;
       const int col = dim * all.cols[k] + a;
-      if (anchor[col] == none || anchor[col] == static_cast<int>(k)) result.add(row, col, all.values[k]);
+      if (is_anchored[col] == 0 || anchor[col] == static_cast<int>(k)) result.add(row, col, all.values[k]);
     }
   return result;
 }
@@ -68,19 +76,34 @@ Triplets free_weights(const NodeInterpolation& nodes, int dim, const std::vector
 MatHandle interpolation_matrix(const NodeInterpolation& nodes, int dim, const std::vector<char>& fixed)
 {
   Triplets weights = free_weights(nodes, dim, fixed);
+  if (nodes.fine)
+    for (std::size_t k = 0; k < weights.rows.size(); ++k)
+    {
+      int& row = weights.rows[k];
+      row = detail::is_owned(*nodes.fine, dim, row) ? detail::global_unknown(*nodes.fine, dim, row) : -1;
+      weights.cols[k] = detail::global_unknown(*nodes.coarse, dim, weights.cols[k]);
+    }
+  const auto n_own = [dim](const Sharing& sharing, Index n) -> PetscInt
+  { return dim * (sharing ? static_cast<Index>(sharing->owned.size()) : n); };
   Mat mat = nullptr;
-  check(MatCreate(detail::communicator(), &mat), making);
+  check(MatCreate(detail::communicator(nodes.fine), &mat), making);
   MatHandle result(mat);
-  const PetscInt n_rows = dim * nodes.n_fine;
-  const PetscInt n_cols = dim * nodes.n_coarse;
-  check(MatSetSizes(mat, n_rows, n_cols, n_rows, n_cols), making);
-  check(MatSetType(mat, MATSEQAIJ), making);
+  check(MatSetSizes(mat, n_own(nodes.fine, nodes.n_fine), n_own(nodes.coarse, nodes.n_coarse),
+                    PETSC_DETERMINE, PETSC_DETERMINE),
+        making);
+  check(MatSetType(mat, nodes.fine ? MATMPIAIJ : MATSEQAIJ), making);
   check(MatSetBlockSize(mat, dim), making);
   check(MatSetPreallocationCOO(mat, static_cast<PetscCount>(weights.rows.size()), weights.rows.data(),
                                weights.cols.data()),
         making);
   check(MatSetValuesCOO(mat, weights.values.data(), INSERT_VALUES), making);
   return result;
+}
+
+/// Products of a sequential matrix, in single precision from now on.
+void smooth_in_single(Mat a, const Sharing& sharing)
+{
+  if (!sharing) detail::multiply_in_single(a);
 }
 
 bool is(PC pc, PCType type)
@@ -133,7 +156,7 @@ void Multigrid::configure(PC pc) const
   }
   check(PCMGGetCoarseSolve(pc, &solver), making);
   check(KSPGetPC(solver, &inner), making);
-  if (hierarchy_.coarsest_coordinates.size() <= factorised)
+  if (hierarchy_.n_coarsest <= factorised)
   {
     check(KSPSetType(solver, KSPPREONLY), making);
     check(PCSetType(inner, PCLU), making);
@@ -149,20 +172,22 @@ void Multigrid::configure(PC pc) const
 
 void Multigrid::renew(PC pc, const SparseMatrix& a)
 {
+  sharing_ = a.sharing();
   if (!hierarchy_.steps.empty() && !is(pc, PCMG)) return;  // options have made it something else
-  if (!made_) return make_levels(pc, a.handle());
+  if (!made_) return make_levels(pc, a);
   Mat fine = a.handle();
   for (const Level& level : levels_)
   {
     Mat coarse = level.matrix.get();
     check(MatPtAP(fine, level.interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse), making);
-    detail::multiply_in_single(coarse);
+    smooth_in_single(coarse, sharing_);
     fine = coarse;
   }
 }
 
 void Multigrid::settle(PC pc, Mat changing) const
 {
+  if (sharing_) return;
   if (changing && is(pc, hierarchy_.steps.empty() ? PCGAMG : PCMG))
     for (const Level& level : levels_)
       changing = detail::renew_by_change(level.matrix.get(), level.interpolation.get(), changing);
@@ -175,16 +200,17 @@ void Multigrid::settle(PC pc, Mat changing) const
   if (is(pc, PCGAMG)) settle_aggregation(pc, changing);
 }
 
-void Multigrid::make_levels(PC pc, Mat finest)
+void Multigrid::make_levels(PC pc, const SparseMatrix& finest)
 {
-  Mat fine = finest;
+  Mat fine = finest.handle();
   for (const NodeInterpolation& step : hierarchy_.steps)
   {
-    Level level{interpolation_matrix(step, hierarchy_.dim, decoupled(fine)), nullptr};
+    const std::vector<char> fixed = decoupled(fine, hierarchy_.dim, step.fine);
+    Level level{interpolation_matrix(step, hierarchy_.dim, fixed), nullptr};
     Mat coarse = nullptr;
     check(MatPtAP(fine, level.interpolation.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse), making);
     level.matrix.reset(coarse);
-    detail::multiply_in_single(coarse);
+    smooth_in_single(coarse, sharing_);
     const auto number = static_cast<PetscInt>(hierarchy_.steps.size() - levels_.size());
     check(PCMGSetInterpolation(pc, number, level.interpolation.get()), making);
     KSP solver = nullptr;
@@ -200,13 +226,10 @@ void Multigrid::make_levels(PC pc, Mat finest)
 void Multigrid::set_rigid_body_modes(Mat coarsest)
 {
   std::vector<double>& x = hierarchy_.coarsest_coordinates;
-  Vec coordinates = nullptr;
-  check(VecCreateSeqWithArray(detail::communicator(), hierarchy_.dim, static_cast<PetscInt>(x.size()),
-                              x.data(), &coordinates),
-        making);
-  const VecHandle owner(coordinates);
+  const VecHandle coordinates = detail::wrap(std::span(x), detail::communicator(sharing_));
+  check(VecSetBlockSize(coordinates.get(), hierarchy_.dim), making);
   MatNullSpace modes = nullptr;
-  check(MatNullSpaceCreateRigidBody(coordinates, &modes), making);
+  check(MatNullSpaceCreateRigidBody(coordinates.get(), &modes), making);
   check(MatSetNearNullSpace(coarsest, modes), making);
   check(MatNullSpaceDestroy(&modes), making);
 }

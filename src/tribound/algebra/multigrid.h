@@ -29,9 +29,9 @@ class Multigrid
   /// Gives `pc` the coarse matrices of `a`, before its set-up; products with them are in single precision.
   /// Interpolations and patterns are made for the first `a`; later ones must have its pattern.
   void renew(_p_PC* pc, const SparseMatrix& a);
-  /// After its set-up: products on the levels of aggregation, too, are in single precision from now on. If
-  /// `changing` is not null, the next matrices will differ from this one in that part alone, whose entries
-  /// are among theirs: renewing the levels then costs what it costs for the part.
+  /// After its set-up, on one rank: products on the levels of aggregation, too, are in single precision from
+  /// now on. If `changing` is not null, the next matrices will differ from this one in that part alone, whose
+  /// entries are among theirs: renewing the levels then costs what it costs for the part.
   void settle(_p_PC* pc, _p_Mat* changing) const;
 
  private:
@@ -41,11 +41,12 @@ class Multigrid
     MatHandle matrix;         ///< P^T A P
   };
 
-  void make_levels(_p_PC* pc, _p_Mat* finest);
+  void make_levels(_p_PC* pc, const SparseMatrix& finest);
   void set_rigid_body_modes(_p_Mat* coarsest);
 
   NodeHierarchy hierarchy_;
   std::vector<Level> levels_;  ///< as hierarchy_.steps
+  Sharing sharing_;            ///< of the matrices; null on one rank, where products are in single precision
   bool made_ = false;
 };
 

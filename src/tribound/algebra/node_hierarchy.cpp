@@ -33,7 +33,7 @@ double weight(const std::array<int, n>& node, int q, const std::array<int, n>& x
 template <int dim>
 NodeInterpolation inclusion(const fem::LagrangeSpace<dim>& coarse, const fem::LagrangeSpace<dim>& fine)
 {
-  NodeInterpolation result{fine.n_nodes(), coarse.n_nodes(), {}};
+  NodeInterpolation result{fine.n_nodes(), coarse.n_nodes(), {}, fine.numbers(), coarse.numbers()};
   std::vector<char> done(fine.n_nodes(), 0);  // the cells that share a node agree on its weights
   for (Index c = 0; c < fine.mesh().n_cells(); ++c)
     for (int i = 0; i < fine.basis().n_nodes(); ++i)
@@ -69,7 +69,7 @@ struct Row
 NodeInterpolation inclusion(const mesh::Ancestry& ancestry, Index n_coarse, Index n_fine)
 {
   std::vector<Row> rows(n_fine);
-  NodeInterpolation result{n_fine, n_coarse, {}};
+  NodeInterpolation result{n_fine, n_coarse, {}, {}, {}};
   for (Index v = 0; v < n_fine; ++v)
   {
     Row& row = rows[v];
@@ -108,9 +108,10 @@ std::vector<NodeInterpolation> inclusions(const mesh::Ancestry& ancestry, Index 
 template <int dim>
 NodeHierarchy node_hierarchy(std::span<const Point<dim>> nodes)
 {
-  NodeHierarchy result{.dim = dim, .steps = {}, .coarsest_coordinates = {}};
+  NodeHierarchy result{.dim = dim, .steps = {}, .coarsest_coordinates = {}, .n_coarsest = 0};
   for (const Point<dim>& x : nodes)
     result.coarsest_coordinates.insert(result.coarsest_coordinates.end(), x.data(), x.data() + dim);
+  result.n_coarsest = static_cast<std::int64_t>(result.coarsest_coordinates.size());
   return result;
 }
 
@@ -119,9 +120,14 @@ NodeHierarchy node_hierarchy(const fem::LagrangeSpace<dim>& space)
 {
   if (space.degree() == 1)
   {
-    NodeHierarchy result = node_hierarchy<dim>(space.node_points());
+    const std::vector<Point<dim>> points = space.node_points();
+    std::vector<Point<dim>> own(space.n_owned_nodes());
+    for (Index k = 0; k < space.n_owned_nodes(); ++k) own[k] = points[space.owned_node(k)];
+    NodeHierarchy result = node_hierarchy<dim>(own);
     result.steps = inclusions(space.mesh().ancestry(), space.mesh().n_vertices());
     if (!result.steps.empty()) result.coarsest_coordinates.resize(dim * result.steps.back().n_coarse);
+    result.n_coarsest = space.numbers() ? space.n_global_dofs()
+                                        : static_cast<std::int64_t>(result.coarsest_coordinates.size());
     return result;
   }
   const fem::LagrangeSpace<dim> coarse(space.mesh(), (space.degree() + 1) / 2);

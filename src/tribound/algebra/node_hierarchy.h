@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/algebra/petsc.h"
 #include "tribound/algebra/triplets.h"
 #include "tribound/base/types.h"
 #include "tribound/fem/space.h"
@@ -19,6 +20,8 @@ struct NodeInterpolation
   Index n_fine = 0;
   Index n_coarse = 0;
   Triplets weights;  ///< row: fine node, column: coarse node; each that is not 0, once
+  Sharing fine;      ///< on several ranks; numbers of nodes are local
+  Sharing coarse;
 };
 
 /// Spaces from the one of a matrix down to one that is small or left to aggregation. Degree of freedom
@@ -26,8 +29,10 @@ struct NodeInterpolation
 struct NodeHierarchy
 {
   int dim = 0;
-  std::vector<NodeInterpolation> steps;      ///< to each space from the next coarser one, the finest first
-  std::vector<double> coarsest_coordinates;  ///< of the nodes of the coarsest space, [dim * node + component]
+  std::vector<NodeInterpolation> steps;  ///< to each space from the next coarser one, the finest first
+  /// Of the nodes of the coarsest space, on several ranks the own ones, [dim * node + component].
+  std::vector<double> coarsest_coordinates;
+  std::int64_t n_coarsest = 0;  ///< degrees of freedom of the coarsest space, of all ranks
 };
 
 /// One space, of which nothing is known but where its nodes are.
@@ -36,7 +41,8 @@ template <int dim>
 
 /// P^p, P^q, ..., P^1 on the mesh of `space`, with q = p / 2 rounded up, then P^1 on meshes before it
 /// (Mesh::ancestry): each time the next with at most two thirds of the vertices, as long as there is one
-/// among the three before. All of them together then cost at most three times the first.
+/// among the three before. All of them together then cost at most three times the first. A mesh that is
+/// shared out has none before it. All ranks call it together.
 template <int dim>
 [[nodiscard]] NodeHierarchy node_hierarchy(const fem::LagrangeSpace<dim>& space);
 

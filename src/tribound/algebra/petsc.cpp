@@ -20,7 +20,8 @@ namespace detail
 {
 
 /// Set while there is an Environment.
-MPI_Comm own_communicator = MPI_COMM_NULL;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+MPI_Comm own_communicator = MPI_COMM_NULL;     // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+MPI_Comm common_communicator = MPI_COMM_NULL;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 void check(PetscErrorCode error, const char* doing)
 {
@@ -33,17 +34,20 @@ void check(PetscErrorCode error, const char* doing)
   throw SolveError(message);
 }
 
-VecHandle wrap(std::span<double> values)
+VecHandle wrap(std::span<double> values, MPI_Comm processes)
 {
+  const auto n = static_cast<PetscInt>(values.size());
   Vec vec = nullptr;
-  check(VecCreateSeqWithArray(communicator(), 1, static_cast<PetscInt>(values.size()), values.data(), &vec),
-        "wrapping a vector");
+  if (processes == communicator())
+    check(VecCreateSeqWithArray(processes, 1, n, values.data(), &vec), "wrapping a vector");
+  else
+    check(VecCreateMPIWithArray(processes, 1, n, PETSC_DECIDE, values.data(), &vec), "wrapping a vector");
   return VecHandle(vec);
 }
 
-VecHandle wrap(std::span<const double> values)
+VecHandle wrap(std::span<const double> values, MPI_Comm processes)
 {
-  return wrap(std::span(const_cast<double*>(values.data()), values.size()));  // NOLINT
+  return wrap(std::span(const_cast<double*>(values.data()), values.size()), processes);  // NOLINT
 }
 
 MPI_Comm communicator()
@@ -52,7 +56,12 @@ MPI_Comm communicator()
   return own_communicator;
 }
 
-Options::Options(bool multigrid)
+MPI_Comm communicator(const Sharing& sharing)
+{
+  return sharing ? common_communicator : communicator();
+}
+
+Options::Options(bool multigrid, const Sharing& sharing)
 {
   check(PetscOptionsCreate(&own_), "setting solver options");
   char* of_process = nullptr;
@@ -74,7 +83,7 @@ Options::Options(bool multigrid)
     set_default("-tribound_mg_coarse_mat_mumps_icntl_14", "40");  // see configure_mumps()
     // Products as R A P in place of a scalable algorithm, and rows one by one: both take up to a third off.
     // The matrices on the levels are made by PETSc, out of reach for anything but its options.
-    set_default("-matptap_via", "rap");
+    if (!sharing) set_default("-matptap_via", "rap");  // several ranks do not have it
     set_default("-mat_no_inode", "true");
   }
   check(PetscOptionsPush(own_), "setting solver options");
@@ -182,10 +191,12 @@ Environment::Environment()
   }
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
   MPI_Comm_dup(MPI_COMM_SELF, &detail::own_communicator);
+  MPI_Comm_dup(MPI_COMM_WORLD, &detail::common_communicator);
 }
 
 Environment::~Environment()
 {
+  MPI_Comm_free(&detail::common_communicator);
   MPI_Comm_free(&detail::own_communicator);
   PetscPopErrorHandler();
   if (started_petsc_) PetscFinalize();

@@ -3,6 +3,7 @@
 /// @file petsc.h
 /// PETSc behind values and RAII. Only the .cpp files of this folder touch Mat, Vec and KSP.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -12,6 +13,7 @@
 #include "tribound/algebra/blas.h"
 #include "tribound/algebra/triplets.h"
 #include "tribound/base/types.h"
+#include "tribound/fem/node_numbers.h"
 
 struct _p_Mat;
 
@@ -52,20 +54,30 @@ struct MatDeleter
 };
 using MatHandle = std::unique_ptr<_p_Mat, MatDeleter>;
 
-/// A square sparse matrix, in PETSc.
+/// How nodes are shared out between ranks; null: they are this process's alone.
+using Sharing = std::shared_ptr<const fem::NodeNumbers>;
+
+/// A square sparse matrix, in PETSc. On several ranks each has the rows of its own nodes. Vectors then have
+/// entries for all unknowns of the rank; those of ghosts are not read, and 0 in results.
 class SparseMatrix
 {
  public:
-  /// Sums the entries; block_size is the number of components per node.
-  SparseMatrix(Index n, int block_size, Triplets entries);
-  /// From its rows.
-  SparseMatrix(int block_size, const SparseRows& rows);
+  /// Sums the entries; block_size is the number of components per node. Rows and columns are local; rows of
+  /// ghosts are left out.
+  SparseMatrix(Index n, int block_size, Triplets entries, Sharing sharing = {});
+  /// From its rows, on several ranks those of the own nodes; columns are local.
+  SparseMatrix(int block_size, SparseRows rows, Sharing sharing = {});
 
   /// A matrix of the same pattern and values.
   [[nodiscard]] SparseMatrix duplicate() const;
   /// a + b, whose pattern is the union of theirs.
   [[nodiscard]] static SparseMatrix sum(const SparseMatrix& a, const SparseMatrix& b);
+  /// Unknowns of this rank, ghosts included.
   [[nodiscard]] Index size() const { return size_; }
+  /// Of all ranks, without ghosts.
+  [[nodiscard]] std::int64_t global_size() const;
+  [[nodiscard]] const Sharing& sharing() const { return sharing_; }
+  [[nodiscard]] int block_size() const { return block_size_; }
   /// A x.
   [[nodiscard]] std::vector<double> multiply(std::span<const double> x) const;
   [[nodiscard]] std::vector<double> diagonal() const;
@@ -78,9 +90,12 @@ class SparseMatrix
 
  private:
   SparseMatrix() = default;
-  void create(int block_size);
+  void create();
+  void settle();
 
   Index size_ = 0;
+  int block_size_ = 1;
+  Sharing sharing_;
   bool has_more_ = false;  ///< a sum whose second pattern is not within the first
   MatHandle mat_;
 };

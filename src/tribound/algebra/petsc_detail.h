@@ -24,14 +24,47 @@ struct VecDeleter
 };
 using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 
-/// A PETSc vector on the caller's memory.
-[[nodiscard]] VecHandle wrap(std::span<double> values);
-/// The same for reading: PETSc has no vectors of const.
-[[nodiscard]] VecHandle wrap(std::span<const double> values);
-
 /// Of this process alone, and of the library alone: what other parts of the program send gets in nobody's
 /// way.
 [[nodiscard]] MPI_Comm communicator();
+/// The same of the ranks that share nodes.
+[[nodiscard]] MPI_Comm communicator(const Sharing& sharing);
+
+/// A PETSc vector on the caller's memory: the entries that this process has.
+[[nodiscard]] VecHandle wrap(std::span<double> values, MPI_Comm processes = communicator());
+/// The same for reading: PETSc has no vectors of const.
+[[nodiscard]] VecHandle wrap(std::span<const double> values, MPI_Comm processes = communicator());
+
+/// The entries of a rank's own nodes, in their order, and back; `block_size` of each.
+template <class T>
+[[nodiscard]] std::vector<T> owned_entries(const fem::NodeNumbers& nodes, int block_size,
+                                           std::span<const T> values)
+{
+  std::vector<T> result;
+  result.reserve(nodes.owned.size() * block_size);
+  for (const Index node : nodes.owned)
+    for (int a = 0; a < block_size; ++a) result.push_back(values[block_size * node + a]);
+  return result;
+}
+template <class T>
+void put_owned_entries(const fem::NodeNumbers& nodes, int block_size, std::span<const T> owned,
+                       std::span<T> values)
+{
+  auto next = owned.begin();
+  for (const Index node : nodes.owned)
+    for (int a = 0; a < block_size; ++a) values[block_size * node + a] = *next++;
+}
+/// The number of an unknown in PETSc's rows.
+[[nodiscard]] inline PetscInt global_unknown(const fem::NodeNumbers& nodes, int block_size, int unknown)
+{
+  return static_cast<PetscInt>(block_size * nodes.global[unknown / block_size] + unknown % block_size);
+}
+/// Whether this process owns it.
+[[nodiscard]] inline bool is_owned(const fem::NodeNumbers& nodes, int block_size, int unknown)
+{
+  const std::int64_t own = nodes.global[unknown / block_size] - nodes.first;
+  return own >= 0 && own < static_cast<std::int64_t>(nodes.owned.size());
+}
 
 /// What attach() has left with a matrix under a key; null: nothing.
 template <class T>
@@ -72,7 +105,7 @@ T& attach(Mat a, const char* key, std::unique_ptr<T> object)
 class Options
 {
  public:
-  explicit Options(bool multigrid);
+  Options(bool multigrid, const Sharing& sharing);
   ~Options();
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;

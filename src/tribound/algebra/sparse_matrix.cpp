@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "tribound/algebra/petsc_detail.h"
 #include "tribound/base/parallel.h"
@@ -56,58 +58,110 @@ void multiply_in_threads(Mat a)
 
 }  // namespace
 
-void SparseMatrix::create(int block_size)
+void SparseMatrix::create()
 {
+  if (sharing_ && block_size_ * sharing_->n > std::numeric_limits<PetscInt>::max())
+    throw SolveError("the matrix has more rows than PETSc can number: it needs libpetsc64-real-dev");
+  const auto n = static_cast<PetscInt>(sharing_ ? sharing_->owned.size() * block_size_ : size_);
   Mat mat = nullptr;
-  check(MatCreate(detail::communicator(), &mat), "creating a matrix");
+  check(MatCreate(detail::communicator(sharing_), &mat), "creating a matrix");
   mat_.reset(mat);
-  check(MatSetSizes(mat, size_, size_, size_, size_), "creating a matrix");
-  check(MatSetType(mat, MATSEQAIJ), "creating a matrix");
-  check(MatSetBlockSize(mat, block_size), "creating a matrix");
-  check(MatSetOption(mat, MAT_USE_INODES, PETSC_FALSE), "creating a matrix");  // slower than rows one by one
-  multiply_in_threads(mat);
+  check(MatSetSizes(mat, n, n, PETSC_DETERMINE, PETSC_DETERMINE), "creating a matrix");
+  check(MatSetType(mat, sharing_ ? MATMPIAIJ : MATSEQAIJ), "creating a matrix");
+  check(MatSetBlockSize(mat, block_size_), "creating a matrix");
 }
 
-SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries) : size_(n)
+/// Once it has entries: on several ranks PETSc 3.18 crashes where the first option comes earlier.
+void SparseMatrix::settle()
 {
-  create(block_size);
+  check(MatSetOption(mat_.get(), MAT_USE_INODES, PETSC_FALSE),
+        "creating a matrix");  // slower than rows one by one
+  if (!sharing_) multiply_in_threads(mat_.get());
+}
+
+SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries, Sharing sharing)
+    : size_(n), block_size_(block_size), sharing_(std::move(sharing))
+{
+  create();
+  if (sharing_)
+    for (std::size_t k = 0; k < entries.rows.size(); ++k)
+    {
+      int& row = entries.rows[k];
+      int& col = entries.cols[k];
+      const bool counts = row >= 0 && col >= 0 && detail::is_owned(*sharing_, block_size_, row);
+      row = counts ? detail::global_unknown(*sharing_, block_size_, row) : -1;
+      col = counts ? detail::global_unknown(*sharing_, block_size_, col) : -1;
+    }
   check(MatSetPreallocationCOO(mat_.get(), static_cast<PetscCount>(entries.rows.size()), entries.rows.data(),
                                entries.cols.data()),
         "building the pattern of a matrix");
   set_values(entries.values);
+  settle();
 }
 
-SparseMatrix::SparseMatrix(int block_size, const SparseRows& rows)
-    : size_(static_cast<Index>(rows.begin.size()) - 1)
+SparseMatrix::SparseMatrix(int block_size, SparseRows rows, Sharing sharing)
+    : size_(static_cast<Index>(rows.begin.size()) - 1), block_size_(block_size), sharing_(std::move(sharing))
 {
-  create(block_size);
-  check(MatSeqAIJSetPreallocationCSR(mat_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()),
+  create();
+  if (sharing_)
+  {
+    size_ = static_cast<Index>(sharing_->global.size()) * block_size;
+    for (int& column : rows.columns) column = detail::global_unknown(*sharing_, block_size_, column);
+    check(
+        MatMPIAIJSetPreallocationCSR(mat_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()),
         "assembling a matrix");
+  }
+  else
+    check(
+        MatSeqAIJSetPreallocationCSR(mat_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()),
+        "assembling a matrix");
+  settle();
+}
+
+std::int64_t SparseMatrix::global_size() const
+{
+  return sharing_ ? block_size_ * sharing_->n : size_;
 }
 
 SparseMatrix SparseMatrix::duplicate() const
 {
   SparseMatrix copy;
   copy.size_ = size_;
+  copy.block_size_ = block_size_;
+  copy.sharing_ = sharing_;
   copy.has_more_ = has_more_;
   Mat mat = nullptr;
   check(MatDuplicate(mat_.get(), MAT_COPY_VALUES, &mat), "copying a matrix");
   copy.mat_.reset(mat);
-  multiply_in_threads(mat);
+  copy.settle();
   return copy;
 }
 
 std::vector<double> SparseMatrix::multiply(std::span<const double> x) const
 {
   std::vector<double> y(size_);
-  check(MatMult(mat_.get(), wrap(x).get(), wrap(std::span(y)).get()), "multiplying a matrix");
+  if (!sharing_)
+  {
+    check(MatMult(mat_.get(), wrap(x).get(), wrap(std::span(y)).get()), "multiplying a matrix");
+    return y;
+  }
+  const std::vector<double> own_x = detail::owned_entries(*sharing_, block_size_, x);
+  std::vector<double> own_y(own_x.size());
+  const MPI_Comm processes = detail::communicator(sharing_);
+  check(MatMult(mat_.get(), wrap(own_x, processes).get(), wrap(std::span(own_y), processes).get()),
+        "multiplying a matrix");
+  detail::put_owned_entries<double>(*sharing_, block_size_, own_y, y);
   return y;
 }
 
 std::vector<double> SparseMatrix::diagonal() const
 {
+  std::vector<double> own(sharing_ ? sharing_->owned.size() * block_size_ : size_);
+  check(MatGetDiagonal(mat_.get(), wrap(std::span(own), detail::communicator(sharing_)).get()),
+        "reading a matrix");
+  if (!sharing_) return own;
   std::vector<double> d(size_);
-  check(MatGetDiagonal(mat_.get(), wrap(std::span(d)).get()), "reading a matrix");
+  detail::put_owned_entries<double>(*sharing_, block_size_, own, d);
   return d;
 }
 
@@ -155,12 +209,12 @@ class Pattern
 SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
 {
   SparseMatrix result = a.duplicate();
-  result.has_more_ = !Pattern(a.mat_.get()).contains(Pattern(b.mat_.get()));
+  // The pattern of a matrix on several ranks is not to be had.
+  result.has_more_ = a.sharing_ || !Pattern(a.mat_.get()).contains(Pattern(b.mat_.get()));
   check(MatAXPY(result.mat_.get(), 1.0, b.mat_.get(),
                 result.has_more_ ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN),
         "adding matrices");
-  check(MatSetOption(result.mat_.get(), MAT_USE_INODES, PETSC_FALSE), "adding matrices");
-  multiply_in_threads(result.mat_.get());
+  result.settle();
   return result;
 }
 

@@ -3,10 +3,14 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <new>
 #include <numeric>
 #include <string>
+#include <thread>
 
+#include "tribound/base/clock.h"
 #include "tribound/base/error.h"
 
 namespace tribound
@@ -14,17 +18,27 @@ namespace tribound
 
 struct Ranks::Communicator
 {
-  Communicator() { MPI_Comm_dup(MPI_COMM_WORLD, &handle); }
+  Communicator()
+  {
+    MPI_Comm_dup(MPI_COMM_WORLD, &handle);
+    MPI_Comm_dup(MPI_COMM_WORLD, &ending);
+    MPI_Comm_split_type(handle, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  }
   ~Communicator()
   {
     int is_over = 0;
     MPI_Finalized(&is_over);
-    if (is_over == 0) MPI_Comm_free(&handle);
+    if (is_over != 0) return;
+    MPI_Comm_free(&machine);
+    MPI_Comm_free(&ending);
+    MPI_Comm_free(&handle);
   }
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
   MPI_Comm handle = MPI_COMM_NULL;
+  MPI_Comm ending = MPI_COMM_NULL;   ///< for all_arrive()
+  MPI_Comm machine = MPI_COMM_NULL;  ///< of the ranks on one
 };
 
 namespace
@@ -165,9 +179,22 @@ std::int64_t Ranks::before(std::int64_t x) const
   return is_first() ? 0 : sum;
 }
 
+void Ranks::max(std::span<double> x) const
+{
+  if (size_ > 1)
+    MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(x.size()), MPI_DOUBLE, MPI_MAX,
+                  communicator_->handle);
+}
+
 double Ranks::max(double x) const
 {
   if (size_ > 1) MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_MAX, communicator_->handle);
+  return x;
+}
+
+double Ranks::sum_on_machine(double x) const
+{
+  if (size_ > 1) MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_SUM, communicator_->machine);
   return x;
 }
 
@@ -251,6 +278,27 @@ void Ranks::agree(const std::exception_ptr& failure) const
     if (!failure) report.rethrow(*failed, from);
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+bool Ranks::all_arrive(double seconds) const
+{
+  if (size_ == 1) return true;
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibarrier(communicator_->ending, &request);
+  const Clock::time_point begin = Clock::now();
+  int is_done = 0;
+  while (true)
+  {
+    MPI_Test(&request, &is_done, MPI_STATUS_IGNORE);
+    if (is_done != 0 || seconds_since(begin) > seconds) return is_done != 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+void Ranks::end_all(int exit_code)
+{
+  MPI_Abort(MPI_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
 }
 
 }  // namespace tribound

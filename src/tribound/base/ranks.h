@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -38,7 +39,11 @@ class Ranks
   [[nodiscard]] std::int64_t sum(std::int64_t x) const;
   /// Over the ranks before this one.
   [[nodiscard]] std::int64_t before(std::int64_t x) const;
+  /// The largest over the ranks, number by number.
+  void max(std::span<double> x) const;
   [[nodiscard]] double max(double x) const;
+  /// Over the ranks on the same machine as this one.
+  [[nodiscard]] double sum_on_machine(double x) const;
   [[nodiscard]] bool any(bool x) const;
   /// What the first rank says: clocks, memory and signals differ.
   [[nodiscard]] bool first_says(bool x) const;
@@ -124,6 +129,41 @@ class Ranks
       return std::move(*result);
     }
   }
+
+  /// What work() gives on the first rank, which alone does it, on all of them: plain data. What it throws
+  /// there all of them throw.
+  template <class Work>
+  auto on_first(const Work& work) const
+  {
+    using Result = std::invoke_result_t<Work>;
+    if constexpr (std::is_void_v<Result>)
+      together(
+          [&]
+          {
+            if (is_first()) work();
+          });
+    else
+    {
+      static_assert(std::is_trivially_copyable_v<Result>);
+      Result result{};
+      together(
+          [&]
+          {
+            if (is_first()) result = work();
+          });
+      std::vector<char> bytes(sizeof(Result));
+      std::memcpy(bytes.data(), &result, sizeof(Result));
+      copy_from_first(bytes);
+      std::memcpy(&result, bytes.data(), sizeof(Result));
+      return result;
+    }
+  }
+
+  /// For a rank that gives up: whether all ranks call this within so many seconds. If not, they wait for this
+  /// one somewhere else, for ever, unless it calls end_all().
+  [[nodiscard]] bool all_arrive(double seconds) const;
+  /// Ends the processes of all ranks with this exit code.
+  [[noreturn]] static void end_all(int exit_code);
 
  private:
   struct Communicator;

@@ -42,6 +42,68 @@ std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::sp
   return result;
 }
 
+namespace
+{
+
+/// From the reference coordinates of a cell to its points.
+template <int dim>
+Point<dim> point_in(const mesh::CellRecord<dim>& cell, const Point<dim>& xhat)
+{
+  const Point<dim> origin = cell.vertices[0].point();
+  Point<dim> x = origin;
+  for (int j = 0; j < dim; ++j) x += xhat[j] * (cell.vertices[j + 1].point() - origin);
+  return x;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<const double> u,
+                                  std::span<const mesh::CellRecord<dim>> cells, std::span<const Index> parent)
+{
+  const int n = coarse.basis().n_nodes();
+  const std::vector<Point<dim>> reference = coarse.basis().node_points();
+  std::vector<Point<dim>> in_parent(n);
+  std::vector<double> values(cells.size() * n * dim);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+  {
+    const std::span<const Index> nodes = coarse.cell_nodes(parent[c]);
+    const auto of_cell = std::span(values).subspan(c * n * dim, static_cast<std::size_t>(n) * dim);
+    if (cells[c].name == coarse.mesh().partition()->names[parent[c]])  // the same cell
+    {
+      for (int i = 0; i < n; ++i)
+        for (int a = 0; a < dim; ++a) of_cell[i * dim + a] = u[dim * nodes[i] + a];
+      continue;
+    }
+    const mesh::CellMap<dim> map = mesh::cell_map(coarse.mesh(), parent[c]);
+    for (int i = 0; i < n; ++i) in_parent[i] = reference_point(map, point_in<dim>(cells[c], reference[i]));
+    const Tabulation<dim> table = coarse.basis().tabulate(in_parent);
+    for (int i = 0; i < n; ++i)
+      for (int a = 0; a < dim; ++a)
+      {
+        double value = 0;
+        for (int j = 0; j < n; ++j) value += table.values_at(i)[j] * u[dim * nodes[j] + a];
+        of_cell[i * dim + a] = value;
+      }
+  }
+  return values;
+}
+
+template <int dim>
+std::vector<double> from_cell_values(const LagrangeSpace<dim>& space, std::span<const Index> cells,
+                                     std::span<const double> values)
+{
+  const std::size_t n = space.basis().n_nodes();
+  assert(values.size() == cells.size() * n * dim);
+  std::vector<double> result(space.n_dofs(), 0.0);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (std::size_t i = 0; i < n; ++i)
+      for (int a = 0; a < dim; ++a)
+        result[dim * space.cell_nodes(cells[c])[i] + a] = values[(c * n + i) * dim + a];
+  space.update(std::span(result));
+  return result;
+}
+
 template <int dim>
 std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
                                        const mesh::Refined<dim>& refined, const LagrangeSpace<dim>& fine)
@@ -55,8 +117,16 @@ template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::sp
                                                 std::span<const Index>, const LagrangeSpace<2>&);
 template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
                                                 std::span<const Index>, const LagrangeSpace<3>&);
+template std::vector<double> nested_values(const LagrangeSpace<2>&, std::span<const double>,
+                                           std::span<const mesh::CellRecord<2>>, std::span<const Index>);
+template std::vector<double> from_cell_values(const LagrangeSpace<2>&, std::span<const Index>,
+                                              std::span<const double>);
 template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
                                                 const mesh::Refined<2>&, const LagrangeSpace<2>&);
+template std::vector<double> nested_values(const LagrangeSpace<3>&, std::span<const double>,
+                                           std::span<const mesh::CellRecord<3>>, std::span<const Index>);
+template std::vector<double> from_cell_values(const LagrangeSpace<3>&, std::span<const Index>,
+                                              std::span<const double>);
 template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,
                                                 const mesh::Refined<3>&, const LagrangeSpace<3>&);
 

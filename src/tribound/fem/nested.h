@@ -8,6 +8,7 @@
 
 #include "tribound/fem/space.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/partition.h"
 #include "tribound/mesh/refine.h"
 
 namespace tribound::fem
@@ -28,7 +29,22 @@ template <int dim>
                                                      std::span<const double> u, std::span<const Index> parent,
                                                      const LagrangeSpace<dim>& fine);
 
-/// The same for a mesh refined uniformly.
+/// The values of u at the nodes of cells nested in own cells of a mesh that is shared out, cell by cell,
+/// [(cell n_nodes + i) dim + component], the nodes as the basis of the space has them; cells[c] lies in cell
+/// parent[c]. They go where the cells go.
+template <int dim>
+[[nodiscard]] std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<const double> u,
+                                                std::span<const mesh::CellRecord<dim>> cells,
+                                                std::span<const Index> parent);
+
+/// The function with such values on own cells cells[0], cells[1], ..., all that there are. All ranks call it
+/// together, and agree on the values at common nodes.
+template <int dim>
+[[nodiscard]] std::vector<double> from_cell_values(const LagrangeSpace<dim>& space,
+                                                   std::span<const Index> cells,
+                                                   std::span<const double> values);
+
+/// nested_interpolant() for a mesh refined uniformly.
 template <int dim>
 [[nodiscard]] std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse,
                                                      std::span<const double> u,

@@ -8,6 +8,7 @@
 
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/partition.h"
 
 namespace tribound::fem
 {
@@ -121,6 +122,16 @@ LagrangeSpace<dim>::LagrangeSpace(const mesh::Mesh<dim>& mesh, int degree) : mes
           cell_nodes_.push_back(cell_base + per_cell * c + place.number);
           break;
       }
+  numbers_ = number_nodes<dim>(mesh, n_nodes_, cell_nodes_, basis_.n_nodes());
+}
+
+template <int dim>
+double LagrangeSpace<dim>::norm(std::span<const double> values) const
+{
+  double sum = 0;
+  for (Index k = 0; k < n_owned_nodes(); ++k)
+    for (int a = 0; a < dim; ++a) sum += std::pow(values[dim * owned_node(k) + a], 2);
+  return std::sqrt(mesh_->ranks().sum(sum));
 }
 
 template <int dim>
@@ -138,9 +149,13 @@ std::vector<Point<dim>> LagrangeSpace<dim>::node_points() const
   return points;
 }
 
-Index Constraints::n_fixed() const
+template <int dim>
+std::int64_t n_free_dofs(const LagrangeSpace<dim>& space, const Constraints& constraints)
 {
-  return static_cast<Index>(std::ranges::count(fixed, 1));
+  std::int64_t n = 0;
+  for (Index k = 0; k < space.n_owned_nodes(); ++k)
+    for (int a = 0; a < dim; ++a) n += constraints.fixed[dim * space.owned_node(k) + a] == 0 ? 1 : 0;
+  return space.mesh().ranks().sum(n);
 }
 
 namespace
@@ -169,7 +184,9 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const LagrangeBasis<dim>& basis = space.basis();
-  const double tolerance = 1e-12 * mesh::bounding_box(mesh.vertices()).longest_edge();
+  const double size =
+      mesh.partition() ? mesh.partition()->cube.size : mesh::bounding_box(mesh.vertices()).longest_edge();
+  const double tolerance = 1e-12 * size;
   Constraints constraints{std::vector<char>(space.n_dofs(), 0), std::vector<double>(space.n_dofs(), 0.0)};
 
   const auto fix =
@@ -189,10 +206,10 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
     constraints.fixed[dof] = 1;
   };
 
-  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  const auto fix_on = [&](const mesh::BoundaryFacet& facet)
   {
     const problem::BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
-    if (!boundary.fixes_any()) continue;
+    if (!boundary.fixes_any()) return;
     const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
     const std::span<const Index> nodes = space.cell_nodes(facet.cell);
     for (int i = 0; i < basis.n_nodes(); ++i)
@@ -204,12 +221,18 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
       for (int a = 0; a < dim; ++a)
         if (boundary.fixes(a)) fix(boundary, a, nodes[i], x);
     }
-  }
+  };
+  mesh.ranks().together([&] { std::ranges::for_each(mesh.boundary(), fix_on); });
+  // A node of ghosts may be on Gamma_D through a cell that is not here.
+  space.update(std::span(constraints.fixed));
+  space.update(std::span(constraints.values));
   return constraints;
 }
 
 template class LagrangeSpace<2>;
 template class LagrangeSpace<3>;
+template std::int64_t n_free_dofs(const LagrangeSpace<2>&, const Constraints&);
+template std::int64_t n_free_dofs(const LagrangeSpace<3>&, const Constraints&);
 template Constraints dirichlet(const problem::Problem<2>&, const LagrangeSpace<2>&);
 template Constraints dirichlet(const problem::Problem<3>&, const LagrangeSpace<3>&);
 

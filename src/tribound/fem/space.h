@@ -3,11 +3,14 @@
 /// @file space.h
 /// Continuous vector-valued P^p Lagrange spaces on a mesh.
 
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "tribound/base/types.h"
 #include "tribound/fem/lagrange.h"
+#include "tribound/fem/node_numbers.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
@@ -36,11 +39,35 @@ class LagrangeSpace
   /// Positions of all nodes.
   [[nodiscard]] std::vector<Point<dim>> node_points() const;
 
+  /// How the nodes are shared out between ranks; null on a whole mesh.
+  [[nodiscard]] const std::shared_ptr<const NodeNumbers>& numbers() const { return numbers_; }
+  [[nodiscard]] Index n_owned_nodes() const
+  {
+    return numbers_ ? static_cast<Index>(numbers_->owned.size()) : n_nodes_;
+  }
+  /// Ascending local numbers, k = 0, ..., n_owned_nodes() - 1.
+  [[nodiscard]] Index owned_node(Index k) const { return numbers_ ? numbers_->owned[k] : k; }
+  /// Of all ranks.
+  [[nodiscard]] std::int64_t n_global_dofs() const
+  {
+    return dim * (numbers_ ? numbers_->n : std::int64_t{n_nodes_});
+  }
+  /// Euclidean length of values at the degrees of freedom of all ranks; ghosts' do not matter. All ranks call
+  /// it together, as update().
+  [[nodiscard]] double norm(std::span<const double> values) const;
+  /// Values at nodes of other ranks become those that the owners have.
+  template <class T>
+  void update(std::span<T> values) const
+  {
+    if (numbers_) numbers_->update(values, dim);
+  }
+
  private:
   const mesh::Mesh<dim>* mesh_;
   LagrangeBasis<dim> basis_;
   Index n_nodes_ = 0;
   std::vector<Index> cell_nodes_;
+  std::shared_ptr<const NodeNumbers> numbers_;
 };
 
 /// The degrees of freedom that Gamma_D fixes.
@@ -48,12 +75,14 @@ struct Constraints
 {
   std::vector<char> fixed;     ///< per degree of freedom
   std::vector<double> values;  ///< u_D at fixed degrees of freedom, else 0
-
-  [[nodiscard]] Index n_fixed() const;
 };
 
+/// The degrees of freedom of all ranks that are not fixed.
+template <int dim>
+[[nodiscard]] std::int64_t n_free_dofs(const LagrangeSpace<dim>& space, const Constraints& constraints);
+
 /// Nodal interpolation of u_D. Throws InputError where two boundaries prescribe different values for one
-/// component at a common node.
+/// component at a common node. All ranks call it together.
 template <int dim>
 [[nodiscard]] Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space);
 

@@ -34,10 +34,8 @@ class Forest
     if (mesh.partition()) shared_.emplace(*mesh.partition());
     ancestry_.n_vertices.push_back(mesh.n_vertices());
     nodes_.reserve(mesh.n_owned_cells());
-    const auto types = mesh.bisection_types();
     for (Index c = 0; c < mesh.n_owned_cells(); ++c)
-      nodes_.push_back({.cell = types.empty() ? longest_edges_marked<dim>(points_, mesh.cell(c))
-                                              : MarkedCell<dim>{mesh.cell(c), types[c]}});
+      nodes_.push_back({.cell = marked_cell<dim>(points_, mesh.cells(), mesh.bisection_types(), c)});
   }
 
   /// Asks for `times` bisections of a root.
@@ -93,9 +91,7 @@ class Forest
   [[nodiscard]] std::vector<CellRecord<dim>> records(std::vector<Index>& parent) const
   {
     std::vector<CellRecord<dim>> result;
-    std::vector<CellTags> tags(mesh_->n_cells());
-    for (CellTags& of_cell : tags) of_cell.fill(facet_inside);
-    for (const auto& [cell, local, tag] : mesh_->boundary()) tags[cell][local] = tag;
+    const std::vector<CellTags<dim>> tags = cell_tags<dim>(mesh_->n_cells(), mesh_->boundary());
     for (Index root = 0; root < mesh_->n_owned_cells(); ++root)
     {
       add_records(root, mesh_->partition()->names[root], tags[root], mesh_->region(root), result);
@@ -105,8 +101,6 @@ class Forest
   }
 
  private:
-  using CellTags = std::array<std::int32_t, dim + 1>;
-
   struct Node
   {
     MarkedCell<dim> cell;
@@ -217,7 +211,7 @@ class Forest
     add_leaves(first_child + 1, data);
   }
 
-  void add_records(Index n, const CellName& name, const CellTags& tags, int region,
+  void add_records(Index n, const CellName& name, const CellTags<dim>& tags, int region,
                    std::vector<CellRecord<dim>>& records) const
   {
     const Node& node = nodes_[n];
@@ -245,9 +239,10 @@ class Forest
 
   /// A child has the facet opposite to the vertex that it has lost, opposite to its last one, halves of the
   /// others, and one inside opposite to the vertex that it keeps.
-  static CellTags child_tags(const Cell<dim>& parent, const CellTags& tags, int kept, const Cell<dim>& child)
+  static CellTags<dim> child_tags(const Cell<dim>& parent, const CellTags<dim>& tags, int kept,
+                                  const Cell<dim>& child)
   {
-    CellTags result;
+    CellTags<dim> result;
     for (int i = 0; i < dim; ++i)
       result[i] = child[i] == parent[kept] ? facet_inside
                                            : tags[std::ranges::find(parent, child[i]) - parent.begin()];

@@ -66,9 +66,7 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
   {
     const auto [cell, other] = topology.facet_cells[f];
     if (other >= 0) continue;
-    const auto& facets = topology.cell_facets[cell];
-    const auto local = static_cast<int>(std::find(facets.begin(), facets.end(), f) - facets.begin());
-    boundary.push_back({cell, local, tags[f]});
+    boundary.push_back({cell, topology.local_facet(cell, f), tags[f]});
   }
   return boundary;
 }
@@ -77,26 +75,28 @@ template <int dim>
 std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topology<dim>& topology,
                                          std::span<const CellRecord<dim>> cells, Index n_owned)
 {
-  const auto local_number = [&](Index cell, Index f)
-  {
-    const auto& facets = topology.cell_facets[cell];
-    return static_cast<int>(std::find(facets.begin(), facets.end(), f) - facets.begin());
-  };
+  constexpr const char* hint = "the cells of the first mesh, or how they were bisected, have been changed";
   std::vector<BoundaryFacet> boundary;
   for (Index f = 0; f < static_cast<Index>(topology.facets.size()); ++f)
   {
     const auto [cell, other] = topology.facet_cells[f];
-    const int local = local_number(cell, f);
+    const int local = topology.local_facet(cell, f);
     const std::int32_t tag = cells[cell].tags[local];
     const bool is_inside = tag == facet_inside;
     if (!is_inside) boundary.push_back({cell, local, tag});
-    if (other >= 0 && (!is_inside || cells[other].tags[local_number(other, f)] != facet_inside))
-      throw InputError(data.source, fmt::format("{} is on the boundary and has two cells",
-                                                describe_facet<dim>(data, topology.facets[f])));
+    if (other >= 0 && (!is_inside || cells[other].tags[topology.local_facet(other, f)] != facet_inside))
+      throw InputError(data.source,
+                       fmt::format("{} is on the boundary and has two cells",
+                                   describe_facet<dim>(data, topology.facets[f])),
+                       hint);
     if (other < 0 && is_inside && cell < n_owned)
-      throw InputError(data.source, fmt::format("{} is inside the domain and has one cell",
-                                                describe_facet<dim>(data, topology.facets[f])));
+      throw InputError(data.source,
+                       fmt::format("{} is inside the domain and has one cell",
+                                   describe_facet<dim>(data, topology.facets[f])),
+                       hint);
   }
+  std::ranges::stable_partition(boundary,
+                                [n_owned](const BoundaryFacet& facet) { return facet.cell < n_owned; });
   return boundary;
 }
 

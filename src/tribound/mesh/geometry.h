@@ -84,6 +84,26 @@ template <int dim>
   return box;
 }
 
+/// Around a mesh, on several ranks around all its parts. They call it together.
+template <int dim>
+[[nodiscard]] BoundingBox<dim> box_around(const Mesh<dim>& mesh)
+{
+  BoundingBox<dim> box = bounding_box(mesh.vertices());
+  std::array<double, 2 * dim> ends;  // all to be made as large as can be
+  for (int i = 0; i < dim; ++i)
+  {
+    ends[i] = -box.lower[i];
+    ends[dim + i] = box.upper[i];
+  }
+  mesh.ranks().max(std::span(ends));
+  for (int i = 0; i < dim; ++i)
+  {
+    box.lower[i] = -ends[i];
+    box.upper[i] = ends[dim + i];
+  }
+  return box;
+}
+
 /// a x b.
 [[nodiscard]] inline Point<3> cross(const Point<3>& a, const Point<3>& b)
 {

@@ -48,4 +48,15 @@ template <int dim>
 template <int dim>
 [[nodiscard]] MarkedCell<dim> longest_edges_marked(std::span<const Point<dim>> points, const Cell<dim>& cell);
 
+/// Cell c of `cells` as bisection goes on with it: with the type that it has, or, where `types` is empty,
+/// with its longest edges marked.
+template <int dim>
+[[nodiscard]] MarkedCell<dim> marked_cell(std::span<const Point<dim>> points,
+                                          std::span<const Cell<dim>> cells,
+                                          std::span<const std::uint8_t> types, Index c)
+{
+  if (types.empty()) return longest_edges_marked<dim>(points, cells[c]);
+  return {cells[c], types[c]};
+}
+
 }  // namespace tribound::mesh

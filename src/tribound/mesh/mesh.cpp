@@ -1,5 +1,6 @@
 #include "tribound/mesh/mesh.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tribound/mesh/partition.h"
@@ -46,6 +47,7 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   boundary_ = find_boundary(data, topology);
   check_vertices(data, topology);
   n_owned_cells_ = static_cast<Index>(data.cells.size());
+  n_owned_boundary_ = boundary_.size();
   take(std::move(data), std::move(topology));
 }
 
@@ -53,8 +55,8 @@ template <int dim>
 Mesh<dim>::Mesh(MeshPart<dim> part, MeshLabels labels)
 {
   MeshData<dim> data = data_of(part, std::move(labels));
-  const std::vector<CellRecord<dim>> records = std::exchange(part.cells, {});
   auto partition = std::make_shared<const Partition<dim>>(std::move(part.partition));
+  ranks_ = partition->ranks;
   n_owned_cells_ = partition->n_owned_cells;
   has_patch_ = partition->has_patch;
   partition_ = std::move(partition);
@@ -62,9 +64,24 @@ Mesh<dim>::Mesh(MeshPart<dim> part, MeshLabels labels)
   check_shapes(data);
   Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
   check_facets(data, topology);
-  boundary_ = find_boundary<dim>(data, topology, records, n_owned_cells_);
+  boundary_ = find_boundary<dim>(data, topology, part.cells, partition_->is_excerpt ? 0 : n_owned_cells_);
+  n_owned_boundary_ = std::ranges::partition_point(boundary_, [this](const BoundaryFacet& facet)
+                                                   { return facet.cell < n_owned_cells_; }) -
+                      boundary_.begin();
   check_vertices(data, topology, has_patch_);
   take(std::move(data), std::move(topology));
+}
+
+template <int dim>
+std::int64_t Mesh<dim>::n_global_cells() const
+{
+  return partition_ ? partition_->n_cells : n_cells();
+}
+
+template <int dim>
+std::int64_t Mesh<dim>::n_global_vertices() const
+{
+  return partition_ ? partition_->n_vertices : n_vertices();
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 /// @file mesh.h
 /// Simplicial meshes in flat arrays.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "tribound/base/error.h"
+#include "tribound/base/ranks.h"
 #include "tribound/base/types.h"
 
 namespace tribound::mesh
@@ -87,6 +89,13 @@ struct Topology
   std::vector<std::array<Index, n_cell_edges>> cell_edges;
   std::vector<Index> vertex_cells_begin;  ///< CSR offsets, size n_vertices + 1
   std::vector<Index> vertex_cells;        ///< cells around each vertex, ascending
+
+  /// The local number of a facet of a cell.
+  [[nodiscard]] int local_facet(Index cell, Index facet) const
+  {
+    const auto& facets_of_cell = cell_facets[cell];
+    return static_cast<int>(std::ranges::find(facets_of_cell, facet) - facets_of_cell.begin());
+  }
 };
 
 /// The vertices of each local edge, see Topology::cell_edges.
@@ -150,6 +159,17 @@ class Mesh
   [[nodiscard]] bool has_patch(Index v) const { return has_patch_.empty() || has_patch_[v] != 0; }
   /// How the mesh is shared out; null for a whole mesh.
   [[nodiscard]] const Partition<dim>* partition() const { return partition_.get(); }
+  /// Of the whole mesh.
+  [[nodiscard]] std::int64_t n_global_cells() const;
+  [[nodiscard]] std::int64_t n_global_vertices() const;
+  /// The ranks that have a part; of a whole mesh this one alone.
+  [[nodiscard]] const Ranks& ranks() const { return ranks_; }
+  /// The facets of own cells come first in boundary().
+  [[nodiscard]] std::size_t n_owned_boundary() const { return n_owned_boundary_; }
+  [[nodiscard]] std::span<const BoundaryFacet> owned_boundary() const
+  {
+    return boundary().first(n_owned_boundary_);
+  }
 
  private:
   void take(MeshData<dim> data, Topology<dim> topology);
@@ -165,7 +185,9 @@ class Mesh
   Ancestry ancestry_;
   std::unique_ptr<const Topology<dim>> topology_;
   std::shared_ptr<const Partition<dim>> partition_;
+  Ranks ranks_;
   Index n_owned_cells_ = 0;
+  std::size_t n_owned_boundary_ = 0;
   std::span<const char> has_patch_;  ///< of the partition
 };
 

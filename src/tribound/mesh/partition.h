@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,13 +26,22 @@ enum FacetTag : std::int32_t
   facet_ungrouped = -1  ///< of the boundary, in no group
 };
 
+/// A FacetTag per local facet.
+template <int dim>
+using CellTags = std::array<std::int32_t, dim + 1>;
+
+/// Those of all cells. `boundary`: as find_boundary() gives it.
+template <int dim>
+[[nodiscard]] std::vector<CellTags<dim>> cell_tags(std::size_t n_cells,
+                                                   std::span<const BoundaryFacet> boundary);
+
 /// A cell as it travels between ranks. The order of its vertices is part of it.
 template <int dim>
 struct CellRecord
 {
   CellName name;
   std::array<VertexName<dim>, dim + 1> vertices;
-  std::array<std::int32_t, dim + 1> tags;  ///< FacetTag of the facet opposite to each vertex
+  CellTags<dim> tags;  ///< of the facet opposite to each vertex
   std::int32_t region;
   std::int32_t bisection_type;
 
@@ -43,6 +53,8 @@ struct CellRecord
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data,
                                                          std::span<const BoundaryFacet> boundary);
+template <int dim>
+[[nodiscard]] std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh);
 
 /// What a rank knows of how the mesh is shared out. Its own cells come first, in ascending order of their
 /// names, then ghosts likewise: every cell of others that has a vertex in common with one of its own. The
@@ -51,7 +63,10 @@ template <int dim>
 struct Partition
 {
   Ranks ranks;
-  Cube<dim> cube;  ///< around the first mesh
+  Cube<dim> cube;                               ///< around the first mesh
+  std::shared_ptr<const Mesh<dim>> first_mesh;  ///< whole, on the first rank; elsewhere null
+  /// Whether the cells are picked out of a mesh: facets inside may then have one cell, and no vertex a patch.
+  bool is_excerpt = false;
   Index n_owned_cells = 0;
   std::vector<CellName> names;            ///< per cell
   std::vector<int> ghost_owners;          ///< per ghost cell

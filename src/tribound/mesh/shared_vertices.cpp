@@ -37,7 +37,7 @@ void SharedVertices<dim>::add_middle(Index a, Index b, bool is_news)
   if (both.empty()) return;
   sharers_[m] = std::move(both);
   shared_[names_[m]] = m;
-  if (is_news) news_.push_back({a, b});
+  if (is_news) news_.push_back({a, b, m});
 }
 
 template <int dim>
@@ -46,12 +46,8 @@ bool SharedVertices<dim>::exchange(const std::function<void(Index, Index)>& halv
   using Edge = std::array<VertexName<dim>, 2>;
   if (!ranks_.any(!news_.empty())) return false;
   std::vector<std::vector<Edge>> out(ranks_.size());
-  for (const auto& [a, b] : news_)
-  {
-    std::vector<int> both;
-    std::ranges::set_intersection(sharers_of(a), sharers_of(b), std::back_inserter(both));
-    for (const int rank : both) out[rank].push_back({names_[a], names_[b]});
-  }
+  for (const auto& [a, b, m] : news_)
+    for (const int rank : sharers_of(m)) out[rank].push_back({names_[a], names_[b]});
   news_.clear();
   for (const std::vector<Edge>& edges : ranks_.send(out))
     for (const auto& [a, b] : edges) halve(shared_.at(a), shared_.at(b));

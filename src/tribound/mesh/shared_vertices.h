@@ -37,7 +37,7 @@ class SharedVertices
   std::vector<VertexName<dim>> names_;
   std::unordered_map<Index, std::vector<int>> sharers_;                 ///< of those that have any, ascending
   std::unordered_map<VertexName<dim>, Index, VertexHash<dim>> shared_;  ///< the same by name
-  std::vector<std::array<Index, 2>> news_;                              ///< edges
+  std::vector<std::array<Index, 3>> news_;                              ///< ends of an edge, its middle
 };
 
 }  // namespace tribound::mesh

@@ -43,8 +43,8 @@ template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology);
 
-/// The same of a part of a mesh, by the tags of its cells. Of the first `n_owned` the facets inside must have
-/// two cells, and no others: else the mesh does not conform.
+/// The same of a part of a mesh, by the tags of its cells, those of the first `n_owned` cells in front. Of
+/// these the facets inside must have two cells, and no others: else the mesh does not conform.
 template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology,

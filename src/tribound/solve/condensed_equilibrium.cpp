@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "tribound/algebra/condensation.h"
+#include "tribound/base/norm.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/solve/equilibrium.h"
 
@@ -90,11 +91,12 @@ class CondensedEquilibrium final : public Equilibrium<dim>
     return r;
   }
 
+  double norm(std::span<const double> x) const override { return tribound::norm(x); }
   double round_off(std::span<const double> x) const override
   {
     std::vector<double> u = condensed_.on_layer(x);
     u.insert(u.end(), x.begin(), x.end());
-    return solve::round_off(diagonal_, u);
+    return norm(solve::round_off(diagonal_, u));
   }
 
   algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,

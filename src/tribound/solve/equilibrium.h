@@ -44,6 +44,8 @@ class Equilibrium
   /// load - K x + (t, [phi_i])_C for t at the contact points of the form, 0 at fixed degrees of freedom.
   [[nodiscard]] virtual std::vector<double> residual(std::span<const double> internal_forces,
                                                      std::span<const Point<dim>> traction) const = 0;
+  /// Euclidean length of entries of the unknowns: of a residual, say. All ranks call it together, as solve().
+  [[nodiscard]] virtual double norm(std::span<const double> x) const = 0;
   /// What a residual cannot resolve: round-off in K x, estimated through the diagonal of the stiffness.
   [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
 
@@ -56,8 +58,8 @@ class Equilibrium
   [[nodiscard]] virtual double force_scale() const = 0;
 };
 
-/// 10 eps |D u|: round-off in K u, with the diagonal D of K; entries of the same unknowns.
-[[nodiscard]] double round_off(std::span<const double> diagonal, std::span<const double> u);
+/// 10 eps D u: round-off in K u, with the diagonal D of K; entries of the same unknowns.
+[[nodiscard]] std::vector<double> round_off(std::span<const double> diagonal, std::span<const double> u);
 
 /// All of u, with sparse matrices.
 template <int dim>

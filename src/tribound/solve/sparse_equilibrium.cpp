@@ -18,10 +18,12 @@ class SparseEquilibrium final : public Equilibrium<dim>
   SparseEquilibrium(const contact::NitscheForm<dim>& form, ExternalForces forces,
                     const algebra::SolverOptions& options)
       : form_(form),
-        stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints())),
+        stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints()),
+                   form.space().numbers()),
         contact_(form.space().n_dofs(), dim,
                  form.contact_tangent(contact::Linearisation::closed_sticking,
-                                      std::vector<double>(form.space().n_dofs(), 0.0))),
+                                      std::vector<double>(form.space().n_dofs(), 0.0)),
+                 form.space().numbers()),
         tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
         diagonal_(stiffness_.diagonal()),
         forces_(std::move(forces)),
@@ -52,7 +54,8 @@ class SparseEquilibrium final : public Equilibrium<dim>
     return r;
   }
 
-  double round_off(std::span<const double> x) const override { return solve::round_off(diagonal_, x); }
+  double norm(std::span<const double> x) const override { return form_.space().norm(x); }
+  double round_off(std::span<const double> x) const override { return norm(solve::round_off(diagonal_, x)); }
 
   algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
                              std::span<double> d) override

@@ -65,7 +65,7 @@ void write(const std::filesystem::path& directory, int degree, nlohmann::json& m
   const std::vector<io::CellField> cell_fields{{"eta_tot", eta}};
 
   const std::string name = std::to_string(dim) + "d_p" + std::to_string(degree) + ".vtu";
-  io::write_level_vtu<dim>(directory / ("level_" + name), degree, box.problem, box.space, u, cell_fields,
+  io::write_level_vtu<dim>({directory / ("level_" + name)}, degree, box.problem, box.space, u, cell_fields,
                            tensors);
   io::write_contact_vtu<dim>(directory / ("contact_" + name), degree, box.form, u);
   manifest["files"].push_back({{"level", "level_" + name},

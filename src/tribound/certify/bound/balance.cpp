@@ -33,6 +33,26 @@ struct Resultant
   }
 };
 
+/// Over all ranks.
+template <int dim>
+void add_up(const Ranks& ranks, std::span<Resultant<dim>> resultants)
+{
+  std::vector<double> sums;
+  for (const Resultant<dim>& r : resultants)
+  {
+    sums.insert(sums.end(), r.force.begin(), r.force.end());
+    sums.insert(sums.end(), r.moment.begin(), r.moment.end());
+  }
+  ranks.sum(std::span(sums));
+  const double* next = sums.data();
+  for (Resultant<dim>& r : resultants)
+  {
+    std::copy_n(next, r.force.size(), r.force.data());
+    std::copy_n(next + r.force.size(), r.moment.size(), r.moment.data());
+    next += r.force.size() + r.moment.size();
+  }
+}
+
 template <int dim>
 struct Loads
 {
@@ -51,7 +71,7 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   loads.boundaries.resize(problem.boundaries().size());
   const fem::Quadrature<dim>& rule = form.data().cell_rule();
   std::vector<Point<dim>> f(rule.size());
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     if (!form.data().has_body_force(c)) continue;
     form.data().body_force(c, f);
@@ -60,7 +80,7 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   }
   const fem::Quadrature<dim - 1>& facet_rule = form.facet_rule();
   std::vector<Point<dim>> g(facet_rule.size());
-  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
@@ -68,6 +88,8 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
       loads.boundaries[facet.tag].add(x - about, dx * g[q]);
   }
+  add_up<dim>(mesh.ranks(), loads.regions);
+  add_up<dim>(mesh.ranks(), loads.boundaries);
   return loads;
 }
 
@@ -96,7 +118,7 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
   std::vector<Resultant<dim>> result(form.problem().boundaries().size());
   std::vector<double> block(stress.block_size());
   std::vector<double> sigma(static_cast<std::size_t>(dim) * dim * n);
-  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     const problem::BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
     if (facet.tag < 0 || (!condition.contact && !condition.fixes_any())) continue;
@@ -114,6 +136,7 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
       result[facet.tag].add(x - about, dx * t);
     }
   }
+  add_up<dim>(mesh.ranks(), result);
   return result;
 }
 
@@ -167,15 +190,15 @@ std::string moment_note(const Balance& balance)
 template <int dim>
 Point<dim> centroid(const mesh::Mesh<dim>& mesh)
 {
-  Point<dim> sum = Point<dim>::Zero();
-  double volume = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  Point<dim + 1> sum = Point<dim + 1>::Zero();  // the last: the volume
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    sum += map.det * map(Point<dim>::Constant(1.0 / (dim + 1)));
-    volume += map.det;
+    sum.template head<dim>() += map.det * map(Point<dim>::Constant(1.0 / (dim + 1)));
+    sum[dim] += map.det;
   }
-  return sum / volume;
+  mesh.ranks().sum(std::span(sum.data(), sum.size()));
+  return sum.template head<dim>() / sum[dim];
 }
 
 template <int dim>

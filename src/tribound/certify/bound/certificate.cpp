@@ -122,7 +122,7 @@ double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form)
   const fem::FacetTabulation<dim> table =
       fem::tabulate_on_facets<dim>(space.basis(), form.facet_rule().points);
   double largest = 0;
-  for (const mesh::BoundaryFacet& facet : space.mesh().boundary())
+  for (const mesh::BoundaryFacet& facet : space.mesh().owned_boundary())
   {
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     if (!boundary.fixes_any()) continue;
@@ -135,7 +135,7 @@ double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form)
           largest = std::max(largest, std::abs((*boundary.displacement[c])(x)-interpolant[c]));
     }
   }
-  return largest;
+  return space.mesh().ranks().max(largest);
 }
 
 namespace
@@ -195,14 +195,14 @@ template <int dim>
 double dirichlet_interpolation_bound(const contact::NitscheForm<dim>& form)
 {
   double largest = 0;
-  for (const mesh::BoundaryFacet& facet : form.space().mesh().boundary())
+  for (const mesh::BoundaryFacet& facet : form.space().mesh().owned_boundary())
   {
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     for (int c = 0; c < dim; ++c)
       if (boundary.fixes(c) && boundary.displacement[c]->degree() > form.space().degree())
         largest = std::max(largest, interpolation_bound(form, facet, c));
   }
-  return largest;
+  return form.space().mesh().ranks().max(largest);
 }
 
 template <int dim>
@@ -225,6 +225,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
 
   double largest = 0;
   for (const double value : form.constraints().values) largest = std::max(largest, std::abs(value));
+  largest = form.space().mesh().ranks().max(largest);
   const double interpolation = dirichlet_interpolation_bound(form);
   const bool exact = interpolation <= 1e-12 * largest;
   result.assumptions = {

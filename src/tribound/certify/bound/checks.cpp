@@ -1,12 +1,14 @@
 #include "tribound/certify/bound/checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "tribound/base/parallel.h"
 #include "tribound/certify/bound/checked_stress.h"
 #include "tribound/fem/evaluation.h"
+#include "tribound/mesh/shared_facets.h"
 
 namespace tribound::certify
 {
@@ -62,46 +64,84 @@ double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& str
         std::pow(mesh::cell_diameter(mesh, c), 2) *
             squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c)));
   };
-  const Eigen::Array3d sums = parallel_sum<Eigen::Array3d>(mesh.n_cells(), Eigen::Array3d::Zero(), of_cell);
+  const Eigen::Array3d sums =
+      parallel_sum<Eigen::Array3d>(mesh.n_owned_cells(), Eigen::Array3d::Zero(), of_cell);
   squares.symmetry = sums[1];
   squares.divergence = sums[2];
   return sums[0];
 }
 
-/// sum h_F ||[sigma_h n]||_F^2 over the facets between two cells. Seen from both, the vertices of the facet
-/// come in the same, ascending order.
+/// sigma_h n at the points of the rule for jumps, n outward from the cell. Seen from both cells of a facet,
+/// its vertices come in the same, ascending order, also on different ranks.
+template <int dim>
+void normal_traces(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const CheckTables<dim>& tables,
+                   Index cell, int local, std::span<Point<dim>> traces)
+{
+  const CheckedStress<dim> sigma(mesh, stress, cell);
+  const Point<dim> normal = mesh::facet_geometry(mesh, cell, local).normal;
+  const double* const phi = tables.on_facet[sigma.facet_opposite(mesh.cell(cell)[local])].data();
+  for (int q = 0; q < tables.jump_rule.size(); ++q)
+    traces[q] = sigma.normal_trace(phi + q * tables.n, normal);
+}
+
+/// h_F ||sum of the traces from both sides||_F^2.
+template <int dim>
+double squared_jump(const mesh::FacetGeometry<dim>& facet, const CheckTables<dim>& tables,
+                    std::span<const Point<dim>> here, std::span<const Point<dim>> there)
+{
+  double sum = 0;
+  for (int q = 0; q < tables.jump_rule.size(); ++q)
+    sum += tables.jump_rule.weights[q] * (here[q] + there[q]).squaredNorm();
+  return facet.diameter * facet.det() * sum;
+}
+
+/// sum h_F ||[sigma_h n]||_F^2 over the facets between two own cells.
 template <int dim>
 double check_jumps(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const CheckTables<dim>& tables)
 {
   const mesh::Topology<dim>& topology = mesh.topology();
-  const auto opposite = [&](Index cell, Index facet)
-  {
-    const auto& facets = topology.cell_facets[cell];
-    return mesh.cell(cell)[std::ranges::find(facets, facet) - facets.begin()];
-  };
   const auto of_cell = [&](std::size_t cell)
   {
     const auto c = static_cast<Index>(cell);
+    std::vector<Point<dim>> here(tables.jump_rule.size());
+    std::vector<Point<dim>> there(here.size());
     double sum = 0;
     for (int local = 0; local <= dim; ++local)
     {
       const Index facet = topology.cell_facets[c][local];
       const auto& [first, second] = topology.facet_cells[facet];
-      if (first != c || second < 0) continue;
-      const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, c, local);
-      const CheckedStress<dim> here(mesh, stress, first);
-      const CheckedStress<dim> there(mesh, stress, second);
-      const double* const phi_here = tables.on_facet[here.facet_opposite(opposite(first, facet))].data();
-      const double* const phi_there = tables.on_facet[there.facet_opposite(opposite(second, facet))].data();
-      for (int q = 0; q < tables.jump_rule.size(); ++q)
-        sum += geometry.diameter * tables.jump_rule.weights[q] * geometry.det() *
-               (here.normal_trace(phi_here + q * tables.n, geometry.normal) -
-                there.normal_trace(phi_there + q * tables.n, geometry.normal))
-                   .squaredNorm();
+      if (first != c || second < 0 || second >= mesh.n_owned_cells()) continue;
+      normal_traces<dim>(mesh, stress, tables, first, local, here);
+      normal_traces<dim>(mesh, stress, tables, second, topology.local_facet(second, facet), there);
+      sum += squared_jump<dim>(mesh::facet_geometry(mesh, c, local), tables, here, there);
     }
     return sum;
   };
-  return parallel_sum(mesh.n_cells(), 0.0, of_cell);
+  return parallel_sum(mesh.n_owned_cells(), 0.0, of_cell);
+}
+
+/// The same over the facets between own cells and those of lower ranks.
+template <int dim>
+double check_jumps_between_ranks(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress,
+                                 const CheckTables<dim>& tables)
+{
+  if (!mesh.partition()) return 0;
+  const mesh::SharedFacets shared = mesh::shared_facets(mesh);
+  const int n_points = tables.jump_rule.size();
+  std::vector<Point<dim>> here(shared.own.size() * n_points);
+  const auto of_facet = [n_points](std::vector<Point<dim>>& traces, std::size_t k)
+  { return std::span(traces).subspan(k * n_points, n_points); };
+  for (std::size_t k = 0; k < shared.own.size(); ++k)
+    normal_traces<dim>(mesh, stress, tables, shared.own[k].cell, shared.own[k].local, of_facet(here, k));
+  std::vector<Point<dim>> there = here;
+  shared.update(std::span(there.empty() ? nullptr : there.front().data(), there.size() * dim),
+                n_points * dim);
+  double sum = 0;
+  for (std::size_t k = 0; k < shared.own.size(); ++k)
+    if (shared.is_of_lower[k] != 0)
+      sum += squared_jump<dim>(mesh::facet_geometry(mesh, shared.own[k].cell, shared.own[k].local), tables,
+                               of_facet(here, k), of_facet(there, k));
+  return sum;
 }
 
 /// Moments (t, theta_i)_F of tractions in the orthonormal basis theta of one boundary facet.
@@ -173,7 +213,7 @@ void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point
   std::vector<char> in_contact(mesh.boundary().size(), 0);
   for (const contact::ContactSegment<dim>& segment : form.segments())
     segment.for_each_side([&](const contact::SegmentSide<dim>& side) { in_contact[side.number] = 1; });
-  for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
+  for (std::size_t number = 0; number < mesh.n_owned_boundary(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
@@ -199,10 +239,15 @@ IdentityDefects check_identities(const contact::NitscheForm<dim>& form, std::spa
 {
   const CheckTables<dim> tables(stress.degree);
   IdentityDefects squares;
-  const double norm_squared = check_cells(form, stress, tables, squares);
-  squares.jump = check_jumps(form.space().mesh(), stress, tables);
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const double own_norm_squared = check_cells(form, stress, tables, squares);
+  squares.jump = check_jumps(mesh, stress, tables) + check_jumps_between_ranks(mesh, stress, tables);
   check_boundary(form, t, stress, squares);
-  const auto relative = [&](double sum) { return sum == 0 ? 0 : std::sqrt(sum / norm_squared); };
+  std::array sums{own_norm_squared, squares.divergence, squares.jump,
+                  squares.neumann,  squares.contact,    squares.symmetry};
+  mesh.ranks().sum(std::span(sums));
+  squares = {sums[1], sums[2], sums[3], sums[4], sums[5]};
+  const auto relative = [&](double sum) { return sum == 0 ? 0 : std::sqrt(sum / sums[0]); };
   return {relative(squares.divergence), relative(squares.jump), relative(squares.neumann),
           relative(squares.contact), relative(squares.symmetry)};
 }

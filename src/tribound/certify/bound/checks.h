@@ -26,7 +26,8 @@ struct IdentityDefects
   [[nodiscard]] double largest(int degree) const;
 };
 
-/// t: the running traction t^k at the contact points of the form.
+/// t: the running traction t^k at the contact points of the form. All ranks call it together: facets between
+/// them count, too.
 template <int dim>
 [[nodiscard]] IdentityDefects check_identities(const contact::NitscheForm<dim>& form,
                                                std::span<const Point<dim>> t, const Stress<dim>& stress);

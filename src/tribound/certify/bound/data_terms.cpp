@@ -15,15 +15,16 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const contact::DiscreteData<dim>& data = form.data();
-  std::vector<double> missed(mesh.n_cells(), 0.0);  // of the integrals of loads on the cell and its facets
-  DataTerms terms{std::vector<double>(mesh.n_cells(), 0.0), std::vector<double>(mesh.n_cells(), 0.0), 0};
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  const Index n_cells = mesh.n_owned_cells();
+  std::vector<double> missed(n_cells, 0.0);  // of the integrals of loads on the cell and its facets
+  DataTerms terms{std::vector<double>(n_cells, 0.0), std::vector<double>(n_cells, 0.0), 0};
+  for (Index c = 0; c < n_cells; ++c)
   {
     const auto [oscillation, mean] = data.body_remainder(c);
     missed[c] = mean;
     if (oscillation > 0) terms.osc[c] = poincare_constant(mesh::cell_diameter(mesh, c)) * oscillation;
   }
-  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
     const auto [oscillation, mean] = data.traction_remainder(k);
     if (oscillation == 0 && mean == 0) continue;
@@ -36,9 +37,9 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form)
         trace_constant<dim>(h, measure, volume) * oscillation + h / dim * mean / std::sqrt(volume);
   }
   double squares = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  for (Index c = 0; c < n_cells; ++c)
     if (missed[c] > 0) squares += missed[c] * missed[c] / mesh::cell_map(mesh, c).measure();
-  terms.missed = std::sqrt(squares);
+  terms.missed = std::sqrt(mesh.ranks().sum(squares));
   return terms;
 }
 

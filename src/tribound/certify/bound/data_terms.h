@@ -10,12 +10,13 @@
 namespace tribound::certify
 {
 
-/// Per cell osc and neu; stress units times length^(dim/2).
+/// Per own cell osc and neu; stress units times length^(dim/2).
 struct DataTerms
 {
   std::vector<double> osc;  ///< (h_T / pi) ||f - Pi^{p-1} f||_T
   std::vector<double> neu;  ///< sum over the Neumann facets of T of C_{T,F} ||g_N - Pi^p_F g_N||_F
-  /// ||rho||, rho the cell means of what quadrature may miss of the loads: C_F ||rho|| bounds its effect.
+  /// ||rho|| over all ranks, rho the cell means of what quadrature may miss of the loads: C_F ||rho|| bounds
+  /// its effect.
   double missed = 0;
 };
 

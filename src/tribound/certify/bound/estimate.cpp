@@ -1,6 +1,8 @@
 #include "tribound/certify/bound/estimate.h"
 
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "tribound/base/norm.h"
 #include "tribound/base/parallel.h"
@@ -12,20 +14,24 @@ namespace tribound::certify
 namespace
 {
 
-/// Component by component the root of the sum of squares, and both totals with what no cell has.
-void add_up(Estimate& estimate, double quad)
+/// Component by component the root of the sum of squares over all ranks, and both totals with what no cell
+/// has.
+void add_up(Estimate& estimate, double quad, const Ranks& ranks)
 {
-  double total = 0;
-  double total_sharp = 0;
-  BoundComponents& global = estimate.global;
+  std::array<double, std::size(all_components) + 2> sums{};
+  auto& total = sums[std::size(all_components)];
+  auto& total_sharp = sums[std::size(all_components) + 1];
   for (const BoundComponents& cell : estimate.cells)
   {
-    for (const Component& c : all_components) global.*c.value += std::pow(cell.*c.value, 2);
+    for (std::size_t i = 0; i < std::size(all_components); ++i)
+      sums[i] += std::pow(cell.*all_components[i].value, 2);
     total += std::pow(cell.total(), 2);
     total_sharp += std::pow(cell.total_sharp(), 2);
   }
-  for (const Component& c : all_components) global.*c.value = std::sqrt(global.*c.value);
-  global.quad = quad;
+  ranks.sum(std::span(sums));
+  for (std::size_t i = 0; i < std::size(all_components); ++i)
+    estimate.global.*all_components[i].value = std::sqrt(sums[i]);
+  estimate.global.quad = quad;
   estimate.total = std::sqrt(total) + quad;
   estimate.total_sharp = std::sqrt(total_sharp) + quad;
 }
@@ -57,31 +63,40 @@ template <int dim>
 Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>& stress, int n_threads) const
 {
   Estimate result;
-  result.cells.resize(form_.space().mesh().n_cells());
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
+  result.cells.resize(mesh.n_owned_cells());
   for (std::size_t c = 0; c < result.cells.size(); ++c)
   {
     result.cells[c].osc = data_.osc[c];
     result.cells[c].neu = data_.neu[c];
   }
-  stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
-  contact_terms(u, stress, result);
-  add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0);
+  mesh.ranks().together(
+      [&]
+      {
+        stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
+        contact_terms(u, stress, result);
+      });
+  add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0, mesh.ranks());
   return result;
 }
 
 template <int dim>
 BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
 {
-  BoundComponents squares;
-  for (const double x : stress.lin) squares.lin1 += x * x;
-  for (std::size_t k = 0; k < form_.segments().size(); ++k)
+  std::array<double, 3> sums{};
+  auto& [lin1, lin2n, lin2t] = sums;
+  for (const double x : stress.lin) lin1 += x * x;
+  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
   {
     const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress);
-    squares.lin2n += facet.lin2n;
-    squares.lin2t += facet.lin2t;
+    lin2n += facet.lin2n;
+    lin2t += facet.lin2t;
   }
+  form_.space().mesh().ranks().sum(std::span(sums));
   BoundComponents result;
-  for (const Component& c : all_components) result.*c.value = std::sqrt(squares.*c.value);
+  result.lin1 = std::sqrt(lin1);
+  result.lin2n = std::sqrt(lin2n);
+  result.lin2t = std::sqrt(lin2t);
   return result;
 }
 
@@ -99,7 +114,7 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
     std::vector<double> dis(static_cast<std::size_t>(dim) * dim * n_points);
     std::vector<double> derivative(dis.size());  // [(a dim + k) n_points + q]: d_k u_a, reference coordinates
     const auto first = [&](int i)
-    { return static_cast<Index>(std::int64_t{mesh.n_cells()} * i / n_threads); };
+    { return static_cast<Index>(std::int64_t{mesh.n_owned_cells()} * i / n_threads); };
     for (Index c = first(thread); c < first(thread + 1); ++c)
     {
       stress_table_.evaluate(make_sorted_cell(mesh, c), stress.dis_in(c), dis);
@@ -146,7 +161,7 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
 {
   const auto segments = form_.segments();
   std::vector<Index> touched;
-  for (std::size_t k = 0; k < segments.size(); ++k)  // squares first: a cell may have several
+  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)  // squares first: a cell may have several
   {
     const ContactSquares squares = contact_(static_cast<int>(k), u, stress);
     BoundComponents& cell = result.cells[segments[k].slave.facet.cell];

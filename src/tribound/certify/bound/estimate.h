@@ -25,13 +25,14 @@ struct Bound
 
 struct Estimate : Bound
 {
-  std::vector<BoundComponents> cells;
+  std::vector<BoundComponents> cells;  ///< that the rank owns
 
   /// Without the cells.
   [[nodiscard]] const Bound& bound() const { return *this; }
 };
 
-/// Evaluates every component on every cell, for the iterates on one mesh.
+/// Evaluates every component on every cell, for the iterates on one mesh. All ranks construct and call it
+/// together.
 template <int dim>
 class Estimator
 {

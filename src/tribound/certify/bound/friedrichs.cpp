@@ -12,6 +12,7 @@
 #include "tribound/contact/support/body.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/partition.h"
 #include "tribound/mesh/refine.h"
 
 namespace tribound::certify
@@ -311,6 +312,9 @@ template <int dim>
 FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                        Index most_cells_factorised)
 {
+  if (mesh.partition())
+    return mesh.ranks().on_first(
+        [&] { return friedrichs_constant(problem, *mesh.partition()->first_mesh, most_cells_factorised); });
   if (!holds_every_component(problem, mesh))
     return {std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
   if (mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);

@@ -8,9 +8,14 @@ namespace tribound::certify
 
 template <int dim>
 Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_threads)
+    : ranks_(form.space().mesh().ranks())
 {
-  fem::with_degree(form.space().degree(),
-                   [&](auto p) { implementation_ = make_mesh_equilibrator<dim, p>(form, n_threads); });
+  ranks_.together(
+      [&]
+      {
+        fem::with_degree(form.space().degree(),
+                         [&](auto p) { implementation_ = make_mesh_equilibrator<dim, p>(form, n_threads); });
+      });
 }
 
 template <int dim>
@@ -20,13 +25,13 @@ template <int dim>
 Stress<dim> Equilibrator<dim>::operator()(std::span<const double> u, std::span<const Point<dim>> t,
                                           double delta)
 {
-  return implementation_->run(u, t, delta, true);
+  return ranks_.together([&] { return implementation_->run(u, t, delta, true); });
 }
 
 template <int dim>
 Stress<dim> Equilibrator<dim>::linearisation(std::span<const double> u, std::span<const Point<dim>> t)
 {
-  return implementation_->run(u, t, 0, false);
+  return ranks_.together([&] { return implementation_->run(u, t, 0, false); });
 }
 
 template class Equilibrator<2>;

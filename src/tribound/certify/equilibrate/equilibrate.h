@@ -17,7 +17,9 @@ namespace tribound::certify
 ///
 /// Arguments of its members are the iterate u^k and its running traction t^k (at the contact points of the
 /// form). All run on `n_threads` threads (0: as many as OpenMP offers); the result does not depend on their
-/// number. All throw SolveError where a patch has no equilibrated stress.
+/// number. All throw SolveError where a patch has no equilibrated stress. On several ranks, which call them
+/// together, each gets the stress of its own cells and tells the others nothing: it solves the patches of all
+/// their vertices.
 template <int dim>
 class Equilibrator
 {
@@ -42,6 +44,7 @@ class Equilibrator
   class Implementation;
 
  private:
+  Ranks ranks_;
   std::unique_ptr<Implementation> implementation_;
 };
 

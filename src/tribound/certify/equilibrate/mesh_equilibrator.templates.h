@@ -72,10 +72,10 @@ void Equilibration<dim, p>::prepare_stress()
 {
   stress_.degree = p;
   stress_.n = S::stress;
-  if (with_dis_) stress_.dis.resize(mesh_.n_cells() * stress_.block_size());
-  stress_.lin_block.assign(mesh_.n_cells(), -1);
+  if (with_dis_) stress_.dis.resize(mesh_.n_owned_cells() * stress_.block_size());
+  stress_.lin_block.assign(mesh_.n_owned_cells(), -1);
   int n_lin = 0;
-  for (Index c = 0; c < mesh_.n_cells(); ++c)
+  for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
     if (std::ranges::any_of(mesh_.cell(c), [&](Index v) { return data_.on_contact(v); }))
       stress_.lin_block[c] = n_lin++;
   stress_.lin.resize(n_lin * stress_.block_size());
@@ -128,9 +128,11 @@ void Equilibration<dim, p>::recover_shared_cells(int part)
 }
 
 /// sigma = sum of the patch stresses of the cell's vertices: the data of the cell problem add up, psi_a to 1.
+/// Not of ghosts, whose other patches are elsewhere.
 template <int dim, int p>
 void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares)
 {
+  if (cell >= mesh_.n_owned_cells()) return;
   constexpr int m = S::multiplier;
   const SortedCell<dim>& sorted = prepared.sorted;
   const std::size_t size = stress_.block_size();
@@ -182,7 +184,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
     {
       std::vector<Index> vertices;
       for (Index v = 0; v < mesh_.n_vertices(); ++v)
-        if (with_dis || data.on_contact(v)) vertices.push_back(v);
+        if (mesh_.has_patch(v) && (with_dis || data.on_contact(v))) vertices.push_back(v);
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
     const CellSource<dim, p> source{form_, u, body_, shapes_};

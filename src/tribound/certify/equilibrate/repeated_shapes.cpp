@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "tribound/mesh/partition.h"
+
 namespace tribound::certify
 {
 
@@ -25,6 +27,20 @@ std::size_t hash(const Tensor<dim>& jacobian, double quantum)
   return (key >> 40) % table_size;
 }
 
+/// Of all ranks, which do not have to talk about it.
+template <int dim>
+double largest_coordinate(const mesh::Mesh<dim>& mesh)
+{
+  if (mesh.partition())
+  {
+    const auto& [lower, size] = mesh.partition()->cube;
+    return std::max(lower.cwiseAbs().maxCoeff(), (lower.array() + size).abs().maxCoeff());
+  }
+  double largest = 0;
+  for (const Point<dim>& x : mesh.vertices()) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+  return largest;
+}
+
 }  // namespace
 
 template <int dim>
@@ -32,8 +48,7 @@ ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh)
 {
   ShapeClasses result;
   result.number.assign(mesh.n_cells(), -1);
-  double largest = 0;
-  for (const Point<dim>& x : mesh.vertices()) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+  const double largest = largest_coordinate(mesh);
   // of differences of coordinates
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * largest;
   std::vector<int> table(table_size, -1);

@@ -20,7 +20,7 @@ struct Stress
 {
   int degree = 0;
   int n = 0;                   ///< dim P^p
-  std::vector<double> dis;     ///< all cells
+  std::vector<double> dis;     ///< all cells that the rank owns
   std::vector<int> lin_block;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
   std::vector<double> lin;     ///< the cells with a vertex on Gamma_C
   std::vector<double> reg;     ///< the same cells; empty unless T was regularised

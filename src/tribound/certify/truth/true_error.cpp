@@ -63,7 +63,7 @@ RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form, std::s
 
   RicherSolution result;
   result.cells = refined.mesh.n_cells();
-  result.dofs = space.n_dofs() - richer_form.constraints().n_fixed();
+  result.dofs = static_cast<long>(fem::n_free_dofs(space, richer_form.constraints()));
   result.newton_steps = static_cast<int>(solution.steps.size());
   result.failure = solution.message;
   if (solution.status != solve::NewtonStatus::converged) return result;

@@ -1,6 +1,7 @@
 #include "tribound/contact/nitsche/discrete_data.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tribound/base/parallel.h"
@@ -62,7 +63,7 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
       gamma0_(gamma0),
       cell_moments_(degree, degree - 1),
       facet_moments_(degree, degree),
-      size_(mesh::bounding_box(mesh.vertices()).diagonal())
+      size_(mesh::box_around(mesh).diagonal())
 {
   count_formulas();
   double allowed = 0;
@@ -70,11 +71,35 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
     allowed = accuracy.absolute ? *accuracy.absolute : accuracy.share * largest_effect();
   const double of_each = static_cast<double>(cell_rule().size()) *
                          fem::polynomial_dimension(dim, degree + 1) *
-                         static_cast<double>(std::max<std::size_t>(effort_.formulas, 1));
+                         static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
   max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts));
-  represent_body_forces(allowed);
-  represent_tractions(allowed);
-  represent_contact(allowed);
+  const Measures all = measures();
+  mesh.ranks().together(
+      [&]
+      {
+        represent_body_forces(allowed / std::sqrt(all.body));
+        represent_tractions(allowed / std::sqrt(all.boundary));
+        represent_contact(allowed / std::sqrt(all.contact));
+      });
+  std::array<std::int64_t, 2> cut{effort_.subdivided, effort_.parts};
+  mesh.ranks().sum(std::span(cut));
+  effort_.subdivided = cut[0];
+  effort_.parts = cut[1];
+}
+
+template <int dim>
+auto DiscreteData<dim>::measures() const -> Measures
+{
+  std::array<double, 3> sums{};
+  for (Index c = 0; c < mesh_.n_owned_cells(); ++c) sums[0] += simplex_map(mesh_, c).measure;
+  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
+  {
+    const double area = simplex_map(mesh_, facet).measure;
+    sums[1] += area;
+    if (problem_.boundary(facet.tag).contact) sums[2] += area;
+  }
+  mesh_.ranks().sum(std::span(sums));
+  return {sums[0], sums[1], sums[2]};
 }
 
 template <int dim>
@@ -125,10 +150,14 @@ void DiscreteData<dim>::count_formulas()
     ++effort_.formulas;
     if (!datum.is_enclosed()) ++effort_.unenclosed;
   };
-  for (Index c = 0; c < mesh_.n_cells(); ++c)
+  for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c));
-  for (const mesh::BoundaryFacet& facet : mesh_.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
     count(problem_.boundary(facet.tag).contact ? contact_datum(facet, 1) : traction_datum(facet));
+  std::array<std::int64_t, 2> sums{effort_.formulas, effort_.unenclosed};
+  mesh_.ranks().sum(std::span(sums));
+  effort_.formulas = sums[0];
+  effort_.unenclosed = sums[1];
 }
 
 /// Of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; of prescribed displacements: the stress that
@@ -136,10 +165,11 @@ void DiscreteData<dim>::count_formulas()
 template <int dim>
 double DiscreteData<dim>::largest_effect() const
 {
-  double body = 0;
-  double volume = 0;
-  double stiffest = 0;
-  for (Index c = 0; c < mesh_.n_cells(); ++c)
+  std::array<double, 3> sums{};
+  auto& [body, volume, traction] = sums;
+  std::array<double, 2> most{};
+  auto& [stiffest, displacement] = most;
+  for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
   {
     const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
     body += map.measure * std::pow(largest_value(body_datum(c), map), 2);
@@ -147,9 +177,7 @@ double DiscreteData<dim>::largest_effect() const
     const problem::Material& material = problem_.material(mesh_.region(c));
     stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
   }
-  double traction = 0;
-  double displacement = 0;
-  for (const mesh::BoundaryFacet& facet : mesh_.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
   {
     const problem::BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
@@ -159,6 +187,8 @@ double DiscreteData<dim>::largest_effect() const
       if (boundary.fixes(i)) prescribed.terms.push_back({&*boundary.displacement[i], Point<dim>::Unit(i)});
     displacement = std::max(displacement, largest_value(prescribed, map));
   }
+  mesh_.ranks().sum(std::span(sums));
+  mesh_.ranks().max(std::span(most));
   return size_ * std::sqrt(body) + std::sqrt(size_ * traction) +
          stiffest * displacement / size_ * std::sqrt(volume);
 }
@@ -169,23 +199,22 @@ void DiscreteData<dim>::keep(Represented& represented, std::size_t index, DatumO
 {
   if (!represented.remainders.empty()) represented.remainders[index] = {found.oscillation, found.mean};
   if (found.moments.empty()) return;
+  const bool is_owned = index < (k == dim ? mesh_.n_owned_cells() : mesh_.n_owned_boundary());
 #pragma omp critical(tribound_discrete_data)
   {
-    ++effort_.subdivided;
-    effort_.parts += found.parts.size();
+    effort_.subdivided += is_owned ? 1 : 0;
+    effort_.parts += is_owned ? static_cast<std::int64_t>(found.parts.size()) : 0;
     represented.moments.emplace(index, std::move(found.moments));
   }
 }
 
 template <int dim>
-void DiscreteData<dim>::represent_body_forces(double accuracy)
+void DiscreteData<dim>::represent_body_forces(double density)
 {
   bool varies = false;
   for (std::size_t r = 0; r < problem_.regions().size(); ++r)
     varies = varies || !problem_.body_force_is_constant(static_cast<int>(r));
   if (!varies) return;
-  double volume = 0;
-  for (Index c = 0; c < mesh_.n_cells(); ++c) volume += simplex_map(mesh_, c).measure;
   body_.remainders.resize(mesh_.n_cells());
   parallel_for(
       body_.remainders.size(),
@@ -196,46 +225,36 @@ void DiscreteData<dim>::represent_body_forces(double accuracy)
         const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
         const DatumWeights weights{mesh::cell_diameter(mesh_, c) / 3, size_ / std::sqrt(map.measure)};
         keep(body_, i,
-             cell_moments_(body_datum(c), map, weights, accuracy * std::sqrt(map.measure / volume),
-                           max_parts_));
+             cell_moments_(body_datum(c), map, weights, density * std::sqrt(map.measure), max_parts_));
       });
 }
 
 template <int dim>
-void DiscreteData<dim>::represent_tractions(double accuracy)
+void DiscreteData<dim>::represent_tractions(double density)
 {
   const std::span<const mesh::BoundaryFacet> facets = mesh_.boundary();
-  double area = 0;
-  bool varies = false;
-  for (const mesh::BoundaryFacet& facet : facets)
-  {
-    area += simplex_map(mesh_, facet).measure;
-    varies = varies || traction_datum(facet).degree() > 0;
-  }
-  if (!varies) return;
+  if (std::ranges::all_of(
+          facets, [this](const mesh::BoundaryFacet& facet) { return traction_datum(facet).degree() == 0; }))
+    return;
   traction_.remainders.resize(facets.size());
-  parallel_for(
-      facets.size(),
-      [&](std::size_t i)
-      {
-        if (problem_.boundary(facets[i].tag).contact) return;
-        const Datum<dim> datum = traction_datum(facets[i]);
-        if (datum.degree() == 0) return;
-        const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
-        const DatumWeights weights{std::sqrt(mesh::cell_diameter(mesh_, facets[i].cell)),
-                                   size_ / std::sqrt(simplex_map(mesh_, facets[i].cell).measure)};
-        keep(traction_, i,
-             facet_moments_(datum, map, weights, accuracy * std::sqrt(map.measure / area), max_parts_));
-      });
+  parallel_for(facets.size(),
+               [&](std::size_t i)
+               {
+                 if (problem_.boundary(facets[i].tag).contact) return;
+                 const Datum<dim> datum = traction_datum(facets[i]);
+                 if (datum.degree() == 0) return;
+                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
+                 const DatumWeights weights{std::sqrt(mesh::cell_diameter(mesh_, facets[i].cell)),
+                                            size_ / std::sqrt(simplex_map(mesh_, facets[i].cell).measure)};
+                 keep(traction_, i,
+                      facet_moments_(datum, map, weights, density * std::sqrt(map.measure), max_parts_));
+               });
 }
 
 template <int dim>
-void DiscreteData<dim>::represent_contact(double accuracy)
+void DiscreteData<dim>::represent_contact(double density)
 {
   const std::span<const mesh::BoundaryFacet> facets = mesh_.boundary();
-  double area = 0;
-  for (const mesh::BoundaryFacet& facet : facets)
-    if (problem_.boundary(facet.tag).contact) area += simplex_map(mesh_, facet).measure;
   parallel_for(facets.size(),
                [&](std::size_t i)
                {
@@ -247,7 +266,7 @@ void DiscreteData<dim>::represent_contact(double accuracy)
                  const Datum<dim> datum = contact_datum(facet, stiffness);
                  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
                  DatumOnSimplex<dim - 1, dim> found = facet_moments_(
-                     datum, map, {std::sqrt(h), 0}, accuracy * std::sqrt(map.measure / area), max_parts_);
+                     datum, map, {std::sqrt(h), 0}, density * std::sqrt(map.measure), max_parts_);
                  for (auto& moment : found.moments) moment[0] /= stiffness;
                  for (auto& part : found.parts) part.remainder[0] /= stiffness;
                  check_signs(facet, found);

@@ -5,6 +5,7 @@
 /// points of the reference rules, the same for form, residual, patches and estimators, with bounds of what
 /// that leaves out.
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -44,16 +45,16 @@ struct DataAccuracy
 /// How far the data were looked into.
 struct DataEffort
 {
-  std::size_t formulas = 0;  ///< cells and boundary facets with data that are no polynomials of degree p + 2
-  std::size_t subdivided = 0;  ///< of these
-  std::size_t parts = 0;       ///< into which these were cut
-  std::size_t unenclosed = 0;  ///< cells and facets with functions of which only values at points are known
+  std::int64_t formulas = 0;  ///< cells and boundary facets with data that are no polynomials of degree p + 2
+  std::int64_t subdivided = 0;  ///< of these
+  std::int64_t parts = 0;       ///< into which these were cut
+  std::int64_t unenclosed = 0;  ///< cells and facets with functions of which only values at points are known
 };
 
 /// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
 /// in the reference coordinates of Mesh::cell. Where a formula is subdivided they are those of the polynomial
 /// of degree p + 1 with the same moments. Boundary facets have their numbers in Mesh::boundary(). Keeps
-/// references to problem and mesh.
+/// references to problem and mesh. On several ranks, which construct it together, ghosts have data, too.
 template <int dim>
 class DiscreteData
 {
@@ -107,11 +108,21 @@ class DiscreteData
   /// g in direction 0, as the stress `stiffness` g, and s in direction 1.
   [[nodiscard]] Datum<dim> contact_datum(const mesh::BoundaryFacet& facet, double stiffness) const;
 
+  /// Of the body, its boundary and the contact boundary.
+  struct Measures
+  {
+    double body;
+    double boundary;
+    double contact;
+  };
+
+  [[nodiscard]] Measures measures() const;
   void count_formulas();
   [[nodiscard]] double largest_effect() const;
-  void represent_body_forces(double accuracy);
-  void represent_tractions(double accuracy);
-  void represent_contact(double accuracy);
+  // A cell or facet may leave out `density` times the root of its measure.
+  void represent_body_forces(double density);
+  void represent_tractions(double density);
+  void represent_contact(double density);
   void check_signs(const mesh::BoundaryFacet& facet, const DatumOnSimplex<dim - 1, dim>& found) const;
   template <int k>
   void keep(Represented& represented, std::size_t index, DatumOnSimplex<k, dim>&& found);

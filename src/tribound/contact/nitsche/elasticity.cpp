@@ -1,6 +1,7 @@
 #include "tribound/contact/nitsche/elasticity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -75,25 +76,25 @@ double sum_of_terms(std::span<const Index> nodes, std::span<const double> u,
   return sum;
 }
 
-/// The norm of 2 mu max |u| / size over the body, mu the smallest and size the distance of two vertices.
+/// The norm of 2 mu max |u| / size over the body, mu the smallest and size that of the box around it.
 template <int dim>
 double stress_that_matters(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                            std::span<const double> u)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   double volume = 0;
-  double mu = std::numeric_limits<double>::infinity();
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  std::array<double, 2> largest{-std::numeric_limits<double>::infinity(), 0};
+  auto& [minus_mu, displacement] = largest;
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     volume += mesh::cell_map(mesh, c).measure();
-    mu = std::min(mu, problem.material(mesh.region(c)).mu);
+    minus_mu = std::max(minus_mu, -problem.material(mesh.region(c)).mu);
   }
-  double size = 0;
-  for (const Point<dim>& x : mesh.vertices()) size = std::max(size, (x - mesh.vertex(0)).norm());
-  double displacement = 0;
   for (std::size_t i = 0; i < u.size(); i += dim)
     displacement = std::max(displacement, Point<dim>(u.data() + i).norm());
-  return 2 * mu * displacement / size * std::sqrt(volume);
+  mesh.ranks().max(std::span(largest));
+  return -2 * minus_mu * displacement / mesh::box_around(mesh).diagonal() *
+         std::sqrt(mesh.ranks().sum(volume));
 }
 
 }  // namespace
@@ -127,14 +128,15 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
     }
     return sums;
   };
-  const Eigen::Array3d sums = parallel_sum<Eigen::Array3d>(mesh.n_cells(), Eigen::Array3d::Zero(), of_cell);
+  Eigen::Array3d sums = parallel_sum<Eigen::Array3d>(mesh.n_owned_cells(), Eigen::Array3d::Zero(), of_cell);
+  mesh.ranks().sum(std::span(sums.data(), sums.size()));
   StressNorms norms{.energy = sums[0], .sigma = std::sqrt(sums[1])};
   const double round_off = unit_round_offs * std::numeric_limits<double>::epsilon() * std::sqrt(sums[2]);
   const auto is_loaded = [&]
   {
     const std::vector<double> load =
         assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), 1.0), space);
-    return std::ranges::any_of(load, [](double force) { return force != 0; });
+    return mesh.ranks().any(std::ranges::any_of(load, [](double force) { return force != 0; }));
   };
   if (norms.sigma <= round_off && round_off <= negligible * stress_that_matters(problem, space, u) &&
       !is_loaded())

@@ -27,13 +27,13 @@ template <int dim>
 }
 
 /// a(phi_j, phi_i) over free i and j. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal
-/// alone, which decouples it without spoiling the scaling.
+/// alone, which decouples it without spoiling the scaling. On several ranks the rows of the own nodes.
 template <int dim>
 [[nodiscard]] algebra::SparseRows stiffness(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space,
                                             const fem::Constraints& constraints);
 
-/// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell.
+/// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell; not for all of ghosts.
 template <int dim>
 [[nodiscard]] std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
                                                   const fem::LagrangeSpace<dim>& space,
@@ -56,8 +56,8 @@ template <int dim>
 [[nodiscard]] StressNorms stress_norms(const problem::Problem<dim>& problem,
                                        const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
-/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included. The data are
-/// those for the degree of the space.
+/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included; not for all of
+/// ghosts. The data are those for the degree of the space.
 template <int dim>
 [[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,
                                                 const fem::LagrangeSpace<dim>& space);

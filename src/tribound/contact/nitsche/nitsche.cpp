@@ -1,5 +1,7 @@
 #include "tribound/contact/nitsche/nitsche.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <utility>
 
@@ -27,6 +29,9 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       data_(problem, space.mesh(), space.degree(), gamma0, accuracy),
       load_(assemble_load(data_, space)),
       segments_(std::move(segments)),
+      n_owned_segments_(
+          std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
+                                { return segment.slave.facet.cell < space.mesh().n_owned_cells(); })),
       points_(make_points()),
       tables_(space.basis(), segments_, facet_rule().points)
 {
@@ -265,7 +270,7 @@ ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form, std::spa
 {
   ContactResultants<dim> sum;
   Point<dim> tangential = Point<dim>::Zero();
-  for (std::size_t i = 0; i < t.size(); ++i)
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
   {
     if (tag >= 0 && form.segments()[i / form.n_segment_points()].slave.facet.tag != tag) continue;
     const auto& [x, weight, n, gap, strength] = form.contact_points()[i];
@@ -276,6 +281,15 @@ ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form, std::spa
     tangential += weight * t_t;
     if constexpr (dim == 2) sum.tangential += weight * (-n[1] * t[i][0] + n[0] * t[i][1]);
   }
+  std::array<double, 2 * dim + 3> sums{sum.normal, sum.tangential, sum.abs_tangential};
+  std::ranges::copy(sum.force, sums.begin() + 3);
+  std::ranges::copy(tangential, sums.begin() + 3 + dim);
+  form.space().mesh().ranks().sum(std::span(sums));
+  sum.normal = sums[0];
+  sum.tangential = sums[1];
+  sum.abs_tangential = sums[2];
+  std::copy_n(sums.begin() + 3, dim, sum.force.data());
+  std::copy_n(sums.begin() + 3 + dim, dim, tangential.data());
   if constexpr (dim == 3) sum.tangential = tangential.norm();
   return sum;
 }

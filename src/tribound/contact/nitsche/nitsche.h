@@ -56,6 +56,9 @@ enum class Linearisation
 /// at the quadrature points of the contact segments: point q of segment k has number k * n_segment_points()
 /// + q. Keeps references to problem and space. Where delta > 0 (a stress) is given, the projections of T are
 /// the regularised ones of method section 7: T_delta.
+///
+/// On a mesh that is shared out, what has a value per degree of freedom has it for ghosts as well, but sums
+/// over cells lack those that are not here; all ranks construct it together.
 template <int dim>
 class NitscheForm
 {
@@ -80,6 +83,12 @@ class NitscheForm
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
   [[nodiscard]] std::span<const ContactSegment<dim>> segments() const { return segments_; }
+  /// On several ranks: the first of them, whose slaves are facets of own cells.
+  [[nodiscard]] std::size_t n_owned_segments() const { return n_owned_segments_; }
+  [[nodiscard]] std::size_t n_owned_contact_points() const
+  {
+    return n_owned_segments_ * static_cast<std::size_t>(n_segment_points());
+  }
   /// The rule on segments, and on boundary facets in general.
   [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return data_.facet_rule(); }
   [[nodiscard]] int n_segment_points() const { return facet_rule().size(); }
@@ -147,11 +156,12 @@ class NitscheForm
   DiscreteData<dim> data_;
   std::vector<double> load_;
   std::vector<ContactSegment<dim>> segments_;
+  std::size_t n_owned_segments_;
   std::vector<ContactPoint<dim>> points_;
   SegmentTables<dim> tables_;  ///< at the contact points
 };
 
-/// Resultants of a contact traction t given at the contact points.
+/// Resultants of a contact traction t given at the contact points, over all ranks.
 template <int dim>
 struct ContactResultants
 {

@@ -115,14 +115,16 @@ class BlockRow
   std::vector<Tensor<dim>> blocks_;
 };
 
-/// The rows of the nodes first, ..., last - 1.
+/// The rows of the own nodes number first, ..., last - 1.
 template <int dim>
-algebra::SparseRows stiffness_rows(BlockRow<dim> row, const NodeCells& cells,
-                                   const fem::Constraints& constraints, Index first, Index last)
+algebra::SparseRows stiffness_rows(BlockRow<dim> row, const fem::LagrangeSpace<dim>& space,
+                                   const NodeCells& cells, const fem::Constraints& constraints, Index first,
+                                   Index last)
 {
   algebra::SparseRows rows;
-  for (Index i = first; i < last; ++i)
+  for (Index k_row = first; k_row < last; ++k_row)
   {
+    const Index i = space.owned_node(k_row);
     row.assemble(cells.around(i));
     for (int a = 0; a < dim; ++a)
     {
@@ -148,14 +150,14 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
 {
   constexpr Index worth_a_thread = 5000;
   const NodeCells cells = cells_around_nodes(space);
-  const Index n = space.n_nodes();
+  const Index n = space.n_owned_nodes();
   const int n_parts = std::clamp<int>(n / worth_a_thread, 1, max_threads());
   std::vector<algebra::SparseRows> parts(n_parts);
   const auto begin = [&](int part) { return static_cast<Index>(static_cast<long>(n) * part / n_parts); };
   in_threads(n_parts,
              [&](int part)
              {
-               parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space), cells, constraints,
+               parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space), space, cells, constraints,
                                                  begin(part), begin(part + 1));
              });
   algebra::SparseRows rows = std::move(parts.front());

@@ -2,8 +2,11 @@
 
 #include <vector>
 
+#include "tribound/contact/nitsche/discrete_data.h"
+#include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/support/body.h"
 #include "tribound/contact/support/body_check.h"
+#include "tribound/mesh/partition.h"
 
 namespace tribound::contact
 {
@@ -12,6 +15,17 @@ template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          const DiscreteData<dim>& data, std::span<const double> load)
 {
+  if (space.mesh().partition())
+  {
+    const auto check_first = [&]
+    {
+      const mesh::Mesh<dim>& first = *space.mesh().partition()->first_mesh;
+      const fem::LagrangeSpace<dim> on_first(first, space.degree());
+      const DiscreteData<dim> of_first(problem, first, space.degree(), 1.0);
+      check_rigid_motions<dim>(problem, on_first, of_first, assemble_load<dim>(of_first, on_first));
+    };
+    return space.mesh().ranks().on_first(check_first);
+  }
   constexpr double relative_round_off = 1e-11;
   const std::vector<Body<dim>> bodies = find_bodies(space);
   const std::vector<Point<dim>> points = space.node_points();

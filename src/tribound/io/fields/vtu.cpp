@@ -36,7 +36,7 @@ struct Level
   std::vector<int> order = vtk_order<dim>(space.basis());
   std::vector<Point<dim>> points = vtk_points<dim>(space.degree());
 
-  [[nodiscard]] Index n_cells() const { return space.mesh().n_cells(); }
+  [[nodiscard]] Index n_cells() const { return space.mesh().n_owned_cells(); }
   [[nodiscard]] std::uint64_t n_points() const { return order.size() * n_cells(); }
 
   /// Calls use(sigma) for the nodes of all cells in turn, sigma in the order of symmetric_part().
@@ -123,19 +123,43 @@ struct Level
   }
 };
 
-/// Whether the name is series.pvd, or one that level_file_name() gives.
+/// Whether a name is `stem`, at least `least` digits and `extension`.
+bool is_numbered(std::string_view name, std::string_view stem, std::size_t least, std::string_view extension)
+{
+  if (!name.starts_with(stem) || !name.ends_with(extension)) return false;
+  name.remove_prefix(stem.size());
+  if (name.size() < least + extension.size()) return false;
+  name.remove_suffix(extension.size());
+  return std::ranges::all_of(name, [](char c) { return '0' <= c && c <= '9'; });
+}
+
+/// Whether the name is series.pvd, or one that level_file_name() or level_files() give.
 bool is_series_file(std::string_view name)
 {
-  constexpr std::string_view extension = ".vtu";
-  if (name == "series.pvd") return true;
-  for (const std::string_view stem : {"level_", "contact_"})
+  return name == "series.pvd" || is_numbered(name, "contact_", 3, ".vtu") ||
+         is_numbered(name, "level_", 3, ".vtu") || is_numbered(name, "level_", 3, ".pvtu");
+}
+
+/// The files of a series in a directory, those in directories of several ranks first, and then these.
+std::vector<std::filesystem::path> series_files(const std::filesystem::path& directory)
+{
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error))
   {
-    if (!name.starts_with(stem) || !name.ends_with(extension)) continue;
-    name.remove_prefix(stem.size());
-    name.remove_suffix(extension.size());
-    return name.size() >= 3 && std::ranges::all_of(name, [](char c) { return '0' <= c && c <= '9'; });
+    const std::string name = entry.path().filename().string();
+    const bool is_directory = entry.is_directory(error);
+    if (is_series_file(name) && !is_directory) files.push_back(entry.path());
+    if (!is_numbered(name, "level_", 3, "") || !is_directory) continue;
+    bool has_others = false;
+    for (const auto& piece : std::filesystem::directory_iterator(entry.path(), error))
+      if (is_numbered(piece.path().filename().string(), "part_", 1, ".vtu"))
+        files.push_back(piece.path());
+      else
+        has_others = true;
+    if (!has_others) files.push_back(entry.path());
   }
-  return false;
+  return files;
 }
 
 }  // namespace
@@ -223,7 +247,7 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
 }
 
 template <int dim>
-void write_level_vtu(const std::filesystem::path& path, int level, const problem::Problem<dim>& problem,
+void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<dim>& problem,
                      const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                      std::span<const CellField> cell_fields, std::span<const TensorField<dim>> tensors)
 {
@@ -249,7 +273,23 @@ void write_level_vtu(const std::filesystem::path& path, int level, const problem
                                                  for (const double value : field.values) put(value);
                                                }));
   }
-  write_vtu(path, grid);
+  write_vtu(files.own, grid);
+  if (!files.list.empty()) write_vtu_list(files.list, grid, files.pieces);
+}
+
+LevelFiles level_files(const std::filesystem::path& directory, int level, const Ranks& ranks)
+{
+  if (ranks.size() == 1) return {directory / level_file_name("level", level)};
+  const std::string stem = fmt::format("level_{:03}", level);
+  const auto piece = [&stem](int rank) { return fmt::format("{}/part_{:04}.vtu", stem, rank); };
+  std::error_code error;
+  std::filesystem::create_directories(directory / stem, error);
+  if (error) throw WriteError(directory / stem, "cannot be made: " + error.message(), "a place to write to");
+  LevelFiles files{directory / piece(ranks.rank())};
+  if (!ranks.is_first()) return files;
+  files.list = directory / (stem + ".pvtu");
+  for (int rank = 0; rank < ranks.size(); ++rank) files.pieces.push_back(piece(rank));
+  return files;
 }
 
 std::string level_file_name(std::string_view stem, int level)
@@ -257,12 +297,12 @@ std::string level_file_name(std::string_view stem, int level)
   return fmt::format("{}_{:03}.vtu", stem, level);
 }
 
-void write_series(const std::filesystem::path& directory, int first, int last)
+void write_series(const std::filesystem::path& directory, int first, int last, const Ranks& ranks)
 {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (int level = first; level <= last; ++level)
-    text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level,
-                        level_file_name("level", level));
+    text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"level_{:03}.{}\"/>\n", level, level,
+                        ranks.size() == 1 ? "vtu" : "pvtu");
   text += "</Collection>\n</VTKFile>\n";
   write_file(directory / "series.pvd", text);
 }
@@ -270,11 +310,7 @@ void write_series(const std::filesystem::path& directory, int first, int last)
 void remove_series(const std::filesystem::path& directory)
 {
   std::error_code error;
-  std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error))
-    if (is_series_file(entry.path().filename().string()) && !entry.is_directory(error))
-      old.push_back(entry.path());
-  for (const std::filesystem::path& file : old)
+  for (const std::filesystem::path& file : series_files(directory))
   {
     std::filesystem::remove(file, error);
     if (error)
@@ -292,10 +328,10 @@ template TensorField<3> stress_field(const problem::Problem<3>&, const fem::Lagr
                                      std::span<const double>);
 template TensorField<2> equilibrated_stress_field(const fem::LagrangeSpace<2>&, const certify::Stress<2>&);
 template TensorField<3> equilibrated_stress_field(const fem::LagrangeSpace<3>&, const certify::Stress<3>&);
-template void write_level_vtu(const std::filesystem::path&, int, const problem::Problem<2>&,
+template void write_level_vtu(const LevelFiles&, int, const problem::Problem<2>&,
                               const fem::LagrangeSpace<2>&, std::span<const double>,
                               std::span<const CellField>, std::span<const TensorField<2>>);
-template void write_level_vtu(const std::filesystem::path&, int, const problem::Problem<3>&,
+template void write_level_vtu(const LevelFiles&, int, const problem::Problem<3>&,
                               const fem::LagrangeSpace<3>&, std::span<const double>,
                               std::span<const CellField>, std::span<const TensorField<3>>);
 }  // namespace tribound::io

@@ -61,13 +61,25 @@ template <int dim>
 /// Its eigenvalues, the largest first; tension positive.
 [[nodiscard]] std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma);
 
-/// Writes the cells of degree p with their own points each: points and `displacement` (3 components, z = 0 in
-/// 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz), `principal_stresses`
-/// and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz of every tensor
-/// follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws WriteError when
-/// the file cannot be written.
+/// The files of one level. On several ranks each writes its own cells, and the first a list of all files.
+struct LevelFiles
+{
+  std::filesystem::path own;
+  std::filesystem::path list{};       ///< empty: none
+  std::vector<std::string> pieces{};  ///< in the list, relative to it
+};
+
+/// level_NNN.vtu, or level_NNN.pvtu with level_NNN/part_RRRR.vtu on several ranks. Makes the directory.
+/// Throws WriteError where that fails.
+[[nodiscard]] LevelFiles level_files(const std::filesystem::path& directory, int level, const Ranks& ranks);
+
+/// Writes the own cells of degree p with their own points each: points and `displacement` (3 components, z =
+/// 0 in 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz),
+/// `principal_stresses` and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz
+/// of every tensor follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws
+/// WriteError when the file cannot be written.
 template <int dim>
-void write_level_vtu(const std::filesystem::path& path, int level, const problem::Problem<dim>& problem,
+void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<dim>& problem,
                      const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                      std::span<const CellField> cell_fields = {},
                      std::span<const TensorField<dim>> tensors = {});
@@ -83,12 +95,13 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const conta
 /// The name of a numbered file, such as "level_003.vtu".
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
-/// Writes series.pvd, which lists level_NNN.vtu from `first` to `last` with the level as time.
-/// Throws WriteError when the file cannot be written.
-void write_series(const std::filesystem::path& directory, int first, int last);
+/// Writes series.pvd, which lists level_NNN.vtu, or level_NNN.pvtu of several ranks, from `first` to `last`
+/// with the level as time. Throws WriteError when the file cannot be written.
+void write_series(const std::filesystem::path& directory, int first, int last, const Ranks& ranks = {});
 
-/// Removes what an earlier run left of such a series: level_NNN.vtu and contact_NNN.vtu, N a digit, at least
-/// three, and series.pvd. Other files stay. Throws InputError when one cannot be removed.
+/// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu and
+/// contact_NNN.vtu, N a digit, at least three of NNN, and series.pvd. Other files stay. Throws InputError
+/// when one cannot be removed.
 void remove_series(const std::filesystem::path& directory);
 
 }  // namespace tribound::io

@@ -16,6 +16,8 @@ namespace
 /// Uncompressed bytes of a block, a multiple of every number's size.
 constexpr std::size_t block_size = 1 << 18;
 
+constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+
 /// Whether an array that begins with this block is compressed: a sample tells. Zeros and repeated values are;
 /// the stresses of degree 2 shrink to 0.6, in more time than all the rest takes: they are stored
 /// (bench/README.md).
@@ -51,8 +53,7 @@ class VtuWriter
         "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"
         "</DataArray></FieldData>\n"
         "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-        std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", grid.time, grid.n_points,
-        grid.n_cells));
+        byte_order, grid.time, grid.n_points, grid.n_cells));
     declare("PointData", grid.point_data);
     declare("CellData", grid.cell_data);
     declare("Points", grid.points);
@@ -163,6 +164,28 @@ std::vector<VtuArray> disjoint_cells(std::uint64_t n_cells, std::uint64_t n_node
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid)
 {
   VtuWriter(path).run(grid);
+}
+
+void write_vtu_list(const std::filesystem::path& path, const VtuGrid& grid,
+                    std::span<const std::string> pieces)
+{
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
+      "header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n",
+      byte_order);
+  const auto add = [&text](const char* element, std::span<const VtuArray> arrays)
+  {
+    text += fmt::format("<{}>\n", element);
+    for (const VtuArray& array : arrays)
+      text += fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", array.type,
+                          array.name, array.n_components);
+    text += fmt::format("</{}>\n", element);
+  };
+  add("PPointData", grid.point_data);
+  add("PCellData", grid.cell_data);
+  add("PPoints", grid.points);
+  for (const std::string& piece : pieces) text += fmt::format("<Piece Source=\"{}\"/>\n", piece);
+  write_file(path, text + "</PUnstructuredGrid>\n</VTKFile>\n");
 }
 
 }  // namespace tribound::io

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -110,5 +111,10 @@ struct VtuGrid
 /// Writes the grid array by array; needs no more memory than a block. Throws WriteError when the file cannot
 /// be written.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
+
+/// Writes a list (.pvtu) of the files `pieces` with such grids, by their paths from where the list is. Throws
+/// WriteError when the file cannot be written.
+void write_vtu_list(const std::filesystem::path& path, const VtuGrid& grid,
+                    std::span<const std::string> pieces);
 
 }  // namespace tribound::io

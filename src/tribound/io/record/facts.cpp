@@ -29,11 +29,16 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   std::vector<RegionFacts> regions;
   for (std::size_t r = 0; r < mesh.region_names().size(); ++r)
     regions.push_back({mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dim)});
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     RegionFacts& region = regions[mesh.region(c)];
     ++region.cells;
     region.measure += mesh::cell_map(mesh, c).measure();
+  }
+  for (RegionFacts& region : regions)
+  {
+    region.cells = static_cast<long>(mesh.ranks().sum(std::int64_t{region.cells}));
+    region.measure = mesh.ranks().sum(region.measure);
   }
   return regions;
 }
@@ -44,14 +49,19 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
   std::vector<BoundaryFacts> boundaries;
   for (const problem::BoundaryCondition<dim>& condition : problem.boundaries())
     boundaries.push_back({condition.name, 0, 0.0, describe(condition)});
-  BoundaryFacts unnamed{"(no group)", 0, 0.0, describe(problem.boundary(-1))};
-  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  boundaries.push_back({"(no group)", 0, 0.0, describe(problem.boundary(-1))});
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
-    BoundaryFacts& boundary = facet.tag < 0 ? unnamed : boundaries[facet.tag];
+    BoundaryFacts& boundary = facet.tag < 0 ? boundaries.back() : boundaries[facet.tag];
     ++boundary.facets;
     boundary.measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
-  if (unnamed.facets > 0) boundaries.push_back(unnamed);
+  for (BoundaryFacts& boundary : boundaries)
+  {
+    boundary.facets = static_cast<long>(mesh.ranks().sum(std::int64_t{boundary.facets}));
+    boundary.measure = mesh.ranks().sum(boundary.measure);
+  }
+  if (boundaries.back().facets == 0) boundaries.pop_back();
   return boundaries;
 }
 
@@ -93,16 +103,18 @@ MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSp
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   MeshFacts facts;
-  facts.vertices = mesh.n_vertices();
-  facts.cells = mesh.n_cells();
-  facts.free_dofs = space.n_dofs() - constraints.n_fixed();
+  facts.vertices = mesh.n_global_vertices();
+  facts.cells = mesh.n_global_cells();
+  facts.free_dofs = fem::n_free_dofs(space, constraints);
   facts.smallest_cell = std::numeric_limits<double>::infinity();
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     const double h = mesh::cell_diameter(mesh, c);
     facts.smallest_cell = std::min(facts.smallest_cell, h);
     facts.largest_cell = std::max(facts.largest_cell, h);
   }
+  facts.smallest_cell = -mesh.ranks().max(-facts.smallest_cell);
+  facts.largest_cell = mesh.ranks().max(facts.largest_cell);
   facts.regions = region_facts(problem, mesh);
   facts.boundaries = boundary_facts(problem, mesh);
   return facts;

@@ -16,8 +16,8 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   const adapt::CertifiedLevel<dim>& level = view.level;
   LevelRecord record;
   record.level = view.number;
-  record.cells = view.discrete.mesh.n_cells();
-  record.dofs = view.discrete.space.n_dofs() - form.constraints().n_fixed();
+  record.cells = view.discrete.mesh.n_global_cells();
+  record.dofs = fem::n_free_dofs(view.discrete.space, form.constraints());
   record.newton = level.steps;
   record.finishing_steps = level.finishing_steps;
   record.delta_updates = level.delta_updates;

@@ -72,6 +72,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   }
   for (std::size_t node = 0; node < level.u.size(); node += dim)
     figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
+  figures.max_displacement = form.space().mesh().ranks().max(figures.max_displacement);
   const std::vector<Point<dim>> t = form.traction(level.u);
   figures.contact = resultants<dim>(form, t, level.traction);
   const auto boundaries = form.problem().boundaries();

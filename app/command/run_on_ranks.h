@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file run_on_ranks.h
+/// `tribound run` by several processes that mpirun or a batch system has started together.
+
+#include <exception>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "app/command/run.h"
+
+namespace tribound::app
+{
+
+/// As many as the environment says; 1 where it says nothing.
+[[nodiscard]] int n_processes();
+/// Whether it says that this is the first of them.
+[[nodiscard]] bool is_first_process();
+
+/// The exit code of a failure, and what to tell of it.
+[[nodiscard]] std::pair<ExitCode, std::string> describe(const std::exception_ptr& failure);
+/// Tells it on stderr.
+int report(ExitCode code, const std::string& message);
+
+/// Runs the case on all of them. The first reads the mesh, prints and writes what is not of each. What fails
+/// on all of them the first one tells; what fails on one alone ends all.
+[[nodiscard]] ExitCode run_on_all_ranks(const std::string& case_file, std::span<const std::string> overrides,
+                                        bool quiet);
+
+}  // namespace tribound::app

@@ -1,0 +1,198 @@
+#include "tribound/mesh/share_out.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace tribound::mesh
+{
+
+namespace
+{
+
+template <int dim>
+MeshLabels labels_of(const Mesh<dim>& mesh)
+{
+  return {{mesh.region_names().begin(), mesh.region_names().end()},
+          {mesh.boundary_names().begin(), mesh.boundary_names().end()},
+          mesh.source()};
+}
+
+/// Texts of the first rank, on all.
+void copy_texts(const Ranks& ranks, std::vector<std::string>& texts)
+{
+  std::vector<char> bytes;
+  for (const std::string& text : texts)
+    bytes.insert(bytes.end(), text.c_str(), text.c_str() + text.size() + 1);
+  ranks.copy_from_first(bytes);
+  texts.clear();
+  for (auto begin = bytes.begin(); begin != bytes.end();)
+  {
+    const auto end = std::find(begin, bytes.end(), '\0');
+    texts.emplace_back(begin, end);
+    begin = end + 1;
+  }
+}
+
+void copy_labels(const Ranks& ranks, MeshLabels& labels)
+{
+  copy_texts(ranks, labels.region_names);
+  copy_texts(ranks, labels.boundary_names);
+  Where& source = labels.source;
+  std::vector<std::string> place = {source.file, source.key, std::to_string(source.line),
+                                    std::to_string(source.column)};
+  copy_texts(ranks, place);
+  source = {place[0], place[1], std::stoi(place[2]), std::stoi(place[3])};
+}
+
+/// Where each cell is to be.
+template <int dim>
+std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
+                              std::span<const CellRecord<dim>> cells)
+{
+  constexpr double much = 1.05;  // of the mean: what goes on a rank for itself is too short to gain more
+  const auto n = static_cast<double>(cells.size());
+  if (ranks.max(n) * ranks.size() <= much * ranks.sum(n)) return std::vector<int>(cells.size(), ranks.rank());
+  const std::vector<std::int64_t> weights(cells.size(), 1);
+  return balanced_ranks(ranks, centre_keys<dim>(cube, cells), weights);
+}
+
+/// What comes from all ranks in their order, as sent_to() has it of cells.
+std::vector<double> values_sent_to(const Ranks& ranks, std::span<const int> rank_of,
+                                   std::span<const double> values, int n_values)
+{
+  std::vector<std::vector<double>> out(ranks.size());
+  for (std::size_t c = 0; c < rank_of.size(); ++c)
+  {
+    const auto of_cell = values.subspan(c * n_values, n_values);
+    out[rank_of[c]].insert(out[rank_of[c]].end(), of_cell.begin(), of_cell.end());
+  }
+  std::vector<double> result;
+  for (const std::vector<double>& from : ranks.send(out))
+    result.insert(result.end(), from.begin(), from.end());
+  return result;
+}
+
+/// The numbers of own cells in a mesh.
+template <int dim>
+std::vector<Index> numbers_of(const Mesh<dim>& mesh, std::span<const CellName> names)
+{
+  const auto own = std::span(mesh.partition()->names).first(mesh.n_owned_cells());
+  std::vector<Index> numbers;
+  numbers.reserve(names.size());
+  for (const CellName& name : names)
+    numbers.push_back(static_cast<Index>(std::ranges::lower_bound(own, name) - own.begin()));
+  return numbers;
+}
+
+template <int dim>
+std::vector<CellName> names_of(std::span<const CellRecord<dim>> cells)
+{
+  std::vector<CellName> names;
+  names.reserve(cells.size());
+  for (const CellRecord<dim>& cell : cells) names.push_back(cell.name);
+  return names;
+}
+
+template <int dim>
+Mesh<dim> make_part(const Ranks& ranks, const Cube<dim>& cube, std::shared_ptr<const Mesh<dim>> first,
+                    std::vector<CellRecord<dim>> cells, MeshLabels labels)
+{
+  MeshPart<dim> part = with_ghosts<dim>(ranks, cube, std::move(cells));
+  part.partition.first_mesh = std::move(first);
+  return ranks.together([&] { return Mesh<dim>(std::move(part), std::move(labels)); });
+}
+
+}  // namespace
+
+template <int dim>
+Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole)
+{
+  assert(ranks.is_first() == (whole != nullptr));
+  std::vector<CellRecord<dim>> cells;
+  MeshLabels labels;
+  if (whole)
+  {
+    cells = first_records(*whole);
+    labels = labels_of(*whole);
+  }
+  copy_labels(ranks, labels);
+  std::array<double, dim + 1> ends = ranks.on_first(
+      [&]
+      {
+        const Cube<dim> around = cube_around<dim>(whole->vertices());
+        std::array<double, dim + 1> numbers{};
+        std::ranges::copy(around.lower, numbers.begin());
+        numbers[dim] = around.size;
+        return numbers;
+      });
+  const Cube<dim> cube{Point<dim>(ends.data()), ends[dim]};
+  const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells);
+  return make_part<dim>(ranks, cube, std::move(whole), sent_to<dim>(ranks, rank_of, cells),
+                        std::move(labels));
+}
+
+template <int dim>
+Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
+                      std::span<const double> values, int n_values)
+{
+  assert(values.size() == cells.size() * n_values);
+  const Partition<dim>& partition = *before.partition();
+  const Ranks& ranks = partition.ranks;
+  const std::vector<int> rank_of = destinations<dim>(ranks, partition.cube, cells);
+  std::vector<double> arrived = values_sent_to(ranks, rank_of, values, n_values);
+  cells = sent_to<dim>(ranks, rank_of, cells);
+  const std::vector<CellName> names = names_of<dim>(cells);
+  Balanced<dim> result{
+      make_part<dim>(ranks, partition.cube, partition.first_mesh, std::move(cells), labels_of(before)),
+      {},
+      std::move(arrived)};
+  result.cells = numbers_of<dim>(result.mesh, names);
+  return result;
+}
+
+template <int dim>
+std::vector<CellRecord<dim>> records_of(const Mesh<dim>& mesh, std::span<const Index> cells)
+{
+  const Partition<dim>& partition = *mesh.partition();
+  const std::vector<CellTags<dim>> tags = cell_tags<dim>(mesh.n_cells(), mesh.boundary());
+  std::vector<CellRecord<dim>> records;
+  records.reserve(cells.size());
+  for (const Index c : cells)
+  {
+    CellRecord<dim>& record = records.emplace_back();
+    record.name = partition.names[c];
+    for (int i = 0; i <= dim; ++i) record.vertices[i] = partition.vertices[mesh.cell(c)[i]];
+    record.tags = tags[c];
+    record.region = mesh.region(c);
+    record.bisection_type = mesh.bisection_types()[c];
+  }
+  return records;
+}
+
+template <int dim>
+PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells)
+{
+  MeshPart<dim> part = with_ghosts<dim>(Ranks(), from.partition()->cube, {cells.begin(), cells.end()});
+  part.partition.is_excerpt = true;
+  part.partition.n_cells = from.n_global_cells();
+  part.partition.n_vertices = from.n_global_vertices();
+  std::ranges::fill(part.partition.has_patch, 0);
+  Mesh<dim> mesh(std::move(part), labels_of(from));
+  std::vector<Index> number = numbers_of<dim>(mesh, names_of<dim>(cells));
+  return {std::move(mesh), std::move(number)};
+}
+
+template Mesh<2> share_out(const Ranks&, std::shared_ptr<const Mesh<2>>);
+template Mesh<3> share_out(const Ranks&, std::shared_ptr<const Mesh<3>>);
+template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
+template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
+template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
+template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
+template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
+template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);
+
+}  // namespace tribound::mesh

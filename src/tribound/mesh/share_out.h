@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file share_out.h
+/// Meshes on several ranks: the first one from the rank that has it, and each later one where its cells
+/// balance.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tribound/base/ranks.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/mesh/partition.h"
+
+namespace tribound::mesh
+{
+
+/// The part of each rank of a mesh that the first one has; elsewhere `whole` is null. All ranks have as many
+/// cells, up to one. Cells have their vertices in the order in which bisect() takes them.
+template <int dim>
+[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole);
+
+/// The part of a rank, and values that have come with the cells.
+template <int dim>
+struct Balanced
+{
+  Mesh<dim> mesh;
+  std::vector<Index> cells;    ///< own cells in the order of their values
+  std::vector<double> values;  ///< as many for each of them
+};
+
+/// A mesh of these cells, on each rank those that it has now, with `n_values` values each, which may be 0.
+/// Cells go where all ranks have as many, unless none has much more than the mean already. `before`: an
+/// earlier mesh that they come from. All ranks call it together. Throws InputError, on all ranks, where the
+/// cells do not make a mesh.
+template <int dim>
+[[nodiscard]] Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
+                                    std::span<const double> values, int n_values);
+
+/// Own cells as they travel.
+template <int dim>
+[[nodiscard]] std::vector<CellRecord<dim>> records_of(const Mesh<dim>& mesh, std::span<const Index> cells);
+
+/// Cells of all ranks on this one alone, in ascending order of their names.
+template <int dim>
+struct PickedOut
+{
+  Mesh<dim> mesh;
+  std::vector<Index> number;  ///< in the mesh, per cell given
+};
+
+/// A mesh of cells that have been picked out of another: see Partition::is_excerpt.
+template <int dim>
+[[nodiscard]] PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells);
+
+}  // namespace tribound::mesh
