@@ -279,7 +279,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance
 {
   if (!ksp_) configure(a);
   std::optional<detail::SingleProduct> single;  // GMRES itself works in double precision
-  if (multigrid_ && !a.sharing()) single.emplace(a.handle());
+  if (multigrid_) single.emplace(a.handle());
   const Mat product = single ? single->exact() : a.handle();
   check(KSPSetOperators(ksp_.get(), product, a.handle()), "setting up a solver");
   LinearSolve result;

@@ -100,12 +100,6 @@ MatHandle interpolation_matrix(const NodeInterpolation& nodes, int dim, const st
   return result;
 }
 
-/// Products of a sequential matrix, in single precision from now on.
-void smooth_in_single(Mat a, const Sharing& sharing)
-{
-  if (!sharing) detail::multiply_in_single(a);
-}
-
 bool is(PC pc, PCType type)
 {
   PetscBool result = PETSC_FALSE;
@@ -180,14 +174,13 @@ void Multigrid::renew(PC pc, const SparseMatrix& a)
   {
     Mat coarse = level.matrix.get();
     check(MatPtAP(fine, level.interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT, &coarse), making);
-    smooth_in_single(coarse, sharing_);
+    detail::multiply_in_single(coarse);
     fine = coarse;
   }
 }
 
 void Multigrid::settle(PC pc, Mat changing) const
 {
-  if (sharing_) return;
   if (changing && is(pc, hierarchy_.steps.empty() ? PCGAMG : PCMG))
     for (const Level& level : levels_)
       changing = detail::renew_by_change(level.matrix.get(), level.interpolation.get(), changing);
@@ -210,7 +203,7 @@ void Multigrid::make_levels(PC pc, const SparseMatrix& finest)
     Mat coarse = nullptr;
     check(MatPtAP(fine, level.interpolation.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, &coarse), making);
     level.matrix.reset(coarse);
-    smooth_in_single(coarse, sharing_);
+    detail::multiply_in_single(coarse);
     const auto number = static_cast<PetscInt>(hierarchy_.steps.size() - levels_.size());
     check(PCMGSetInterpolation(pc, number, level.interpolation.get()), making);
     KSP solver = nullptr;

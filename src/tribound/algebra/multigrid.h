@@ -29,7 +29,7 @@ class Multigrid
   /// Gives `pc` the coarse matrices of `a`, before its set-up; products with them are in single precision.
   /// Interpolations and patterns are made for the first `a`; later ones must have its pattern.
   void renew(_p_PC* pc, const SparseMatrix& a);
-  /// After its set-up, on one rank: products on the levels of aggregation, too, are in single precision from
+  /// After its set-up: products on the levels of aggregation, too, are in single precision from
   /// now on. If `changing` is not null, the next matrices will differ from this one in that part alone, whose
   /// entries are among theirs: renewing the levels then costs what it costs for the part.
   void settle(_p_PC* pc, _p_Mat* changing) const;
@@ -46,7 +46,7 @@ class Multigrid
 
   NodeHierarchy hierarchy_;
   std::vector<Level> levels_;  ///< as hierarchy_.steps
-  Sharing sharing_;            ///< of the matrices; null on one rank, where products are in single precision
+  Sharing sharing_;            ///< of the finest matrix
   bool made_ = false;
 };
 

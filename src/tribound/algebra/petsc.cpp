@@ -50,6 +50,17 @@ VecHandle wrap(std::span<const double> values, MPI_Comm processes)
   return wrap(std::span(const_cast<double*>(values.data()), values.size()), processes);  // NOLINT
 }
 
+LocalBlocks local_blocks(Mat a)
+{
+  PetscBool is_sequential = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(a), MATSEQAIJ, &is_sequential),
+        "reading a matrix");
+  if (is_sequential) return {a};
+  LocalBlocks blocks;
+  check(MatMPIAIJGetSeqAIJ(a, &blocks.own, &blocks.others, &blocks.columns), "reading a matrix");
+  return blocks;
+}
+
 MPI_Comm communicator()
 {
   assert(own_communicator != MPI_COMM_NULL);

@@ -66,6 +66,16 @@ void put_owned_entries(const fem::NodeNumbers& nodes, int block_size, std::span<
   return own >= 0 && own < static_cast<std::int64_t>(nodes.owned.size());
 }
 
+/// What a process has of a matrix: its rows, with the columns of own unknowns and, apart, with those of
+/// others.
+struct LocalBlocks
+{
+  Mat own = nullptr;
+  Mat others = nullptr;               ///< null: of a sequential matrix
+  const PetscInt* columns = nullptr;  ///< of `others`, as the whole matrix numbers them, ascending
+};
+[[nodiscard]] LocalBlocks local_blocks(Mat a);
+
 /// What attach() has left with a matrix under a key; null: nothing.
 template <class T>
 [[nodiscard]] T* find_attached(Mat a, const char* key)

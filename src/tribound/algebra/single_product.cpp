@@ -193,10 +193,11 @@ PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
   PetscFunctionReturn(error);
 }
 
-/// The product that a matrix had.
+/// The product that a matrix had, or that of its own columns where others are with other processes.
 struct Exact
 {
   Mat a;
+  Mat own;
   PetscErrorCode (*product)(Mat, Vec, Vec);
 };
 
@@ -205,8 +206,10 @@ PetscErrorCode multiply_exactly(Mat shell, Vec x, Vec y)
   PetscFunctionBegin;
   Exact* exact = nullptr;
   PetscCall(MatShellGetContext(shell, &exact));
-  PetscCall(exact->product(exact->a, x, y));
-  PetscFunctionReturn(0);
+  PetscCall(MatSetOperation(exact->own, MATOP_MULT, reinterpret_cast<void (*)()>(exact->product)));
+  const PetscErrorCode error = MatMult(exact->a, x, y);
+  PetscCall(MatSetOperation(exact->own, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_single)));
+  PetscFunctionReturn(error);
 }
 
 PetscErrorCode destroy_exact(Mat shell)
@@ -222,19 +225,22 @@ PetscErrorCode destroy_exact(Mat shell)
 
 void multiply_in_single(Mat a)
 {
-  blocks_of(a).set_stale();
-  check(MatSetOperation(a, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_single)), making);
+  const Mat own = local_blocks(a).own;
+  blocks_of(own).set_stale();
+  check(MatSetOperation(own, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_single)), making);
 }
 
-SingleProduct::SingleProduct(Mat a) : a_(a)
+SingleProduct::SingleProduct(Mat a) : own_(local_blocks(a).own)
 {
-  check(MatGetOperation(a, MATOP_MULT, &product_), making);
+  check(MatGetOperation(own_, MATOP_MULT, &product_), making);
   PetscInt n = 0;
-  check(MatGetSize(a, &n, nullptr), making);
+  MPI_Comm processes = MPI_COMM_NULL;
+  check(MatGetLocalSize(a, &n, nullptr), making);
+  check(PetscObjectGetComm(reinterpret_cast<PetscObject>(a), &processes), making);
   auto context =
-      std::make_unique<Exact>(Exact{a, reinterpret_cast<PetscErrorCode (*)(Mat, Vec, Vec)>(product_)});
+      std::make_unique<Exact>(Exact{a, own_, reinterpret_cast<PetscErrorCode (*)(Mat, Vec, Vec)>(product_)});
   Mat shell = nullptr;
-  check(MatCreateShell(communicator(), n, n, n, n, context.get(), &shell), making);
+  check(MatCreateShell(processes, n, n, PETSC_DETERMINE, PETSC_DETERMINE, context.get(), &shell), making);
   exact_.reset(shell);
   check(MatShellSetOperation(shell, MATOP_DESTROY, reinterpret_cast<void (*)()>(destroy_exact)), making);
   (void)context.release();  // the shell has it
@@ -244,7 +250,7 @@ SingleProduct::SingleProduct(Mat a) : a_(a)
 
 SingleProduct::~SingleProduct()
 {
-  MatSetOperation(a_, MATOP_MULT, product_);
+  MatSetOperation(own_, MATOP_MULT, product_);
 }
 
 }  // namespace tribound::algebra::detail

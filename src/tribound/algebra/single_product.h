@@ -10,7 +10,7 @@ namespace tribound::algebra::detail
 {
 
 /// From now on MatMult() with this matrix is in single precision: to some 1e-7 of |A| |x|, whatever their
-/// units. To be called again when the matrix has changed.
+/// units; on several ranks the columns of own unknowns are. To be called again when the matrix has changed.
 void multiply_in_single(Mat a);
 
 /// The same for one that is needed exactly as well, while this is alive.
@@ -26,8 +26,8 @@ class SingleProduct
   [[nodiscard]] Mat exact() const { return exact_.get(); }
 
  private:
-  Mat a_;
-  void (*product_)() = nullptr;  ///< that of `a`
+  Mat own_;
+  void (*product_)() = nullptr;  ///< that of own_
   MatHandle exact_;
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "tribound/algebra/petsc_detail.h"
@@ -177,7 +178,8 @@ namespace
 class Pattern
 {
  public:
-  explicit Pattern(Mat mat) : mat_(mat)
+  /// `names`: of the columns, ascending; null: their numbers.
+  explicit Pattern(Mat mat, const PetscInt* names = nullptr) : mat_(mat), names_(names)
   {
     check(MatGetRowIJ(mat_, 0, PETSC_FALSE, PETSC_FALSE, &n_, &rows_, &columns_, &done_), "reading a matrix");
     if (!done_) throw SolveError("PETSc does not give the pattern of a matrix");
@@ -189,28 +191,43 @@ class Pattern
   /// Whether all entries of the other are among its own; columns are sorted.
   [[nodiscard]] bool contains(const Pattern& other) const
   {
+    const auto name = [](const Pattern& pattern)
+    { return [names = pattern.names_](PetscInt column) { return names ? names[column] : column; }; };
     for (PetscInt i = 0; i < n_; ++i)
-      if (!std::includes(columns_ + rows_[i], columns_ + rows_[i + 1], other.columns_ + other.rows_[i],
-                         other.columns_ + other.rows_[i + 1]))
-        return false;
+      if (!std::ranges::includes(row(i), other.row(i), {}, name(*this), name(other))) return false;
     return true;
   }
 
  private:
+  [[nodiscard]] std::span<const PetscInt> row(PetscInt i) const
+  {
+    return {columns_ + rows_[i], columns_ + rows_[i + 1]};
+  }
+
   Mat mat_;
+  const PetscInt* names_;
   PetscInt n_ = 0;
   const PetscInt* rows_ = nullptr;
   const PetscInt* columns_ = nullptr;
   PetscBool done_ = PETSC_FALSE;
 };
 
+/// As far as this process has them.
+bool contains_pattern(Mat a, Mat b)
+{
+  const detail::LocalBlocks of_a = detail::local_blocks(a);
+  const detail::LocalBlocks of_b = detail::local_blocks(b);
+  if (!Pattern(of_a.own).contains(Pattern(of_b.own))) return false;
+  return !of_a.others || Pattern(of_a.others, of_a.columns).contains(Pattern(of_b.others, of_b.columns));
+}
+
 }  // namespace
 
 SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
 {
   SparseMatrix result = a.duplicate();
-  // The pattern of a matrix on several ranks is not to be had.
-  result.has_more_ = a.sharing_ || !Pattern(a.mat_.get()).contains(Pattern(b.mat_.get()));
+  const bool has_more = !contains_pattern(a.mat_.get(), b.mat_.get());
+  result.has_more_ = a.sharing_ ? a.sharing_->ranks.any(has_more) : has_more;
   check(MatAXPY(result.mat_.get(), 1.0, b.mat_.get(),
                 result.has_more_ ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN),
         "adding matrices");
