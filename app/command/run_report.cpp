@@ -9,6 +9,7 @@
 
 #include "app/console/balance_text.h"
 #include "app/console/console.h"
+#include "app/page/page_volume.h"
 #include "app/shared_file.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
@@ -42,6 +43,15 @@ ExitCode exit_code(certify::RunStatus status)
 
 /// Seconds of work that a program which is killed may lose: the first levels take less time than files.
 constexpr double most_lost = 1.0;
+
+/// Cells of several ranks that are gathered on one.
+constexpr std::int64_t most_in_one = 1'000'000;
+
+template <int dim>
+bool is_complete(const mesh::Mesh<dim>& mesh)
+{
+  return mesh.n_cells() == mesh.n_global_cells();
+}
 
 /// What writing throws, to be thrown again when the level is printed.
 template <typename Write>
@@ -139,11 +149,12 @@ template <int dim>
 std::shared_ptr<const KeptLevel<dim>> RunReport<dim>::gather(const adapt::LevelView<dim>& view) const
 {
   if (!view.discrete.mesh.partition()) return last_;
-  // Of more cells in 3D what lies inside is not shown; an adapted mesh is one file.
-  constexpr std::int64_t few = 200'000;
+  // Of more cells the page shows the surface in 3D, and there is no page in 2D and no adapted mesh as one
+  // file.
+  const std::int64_t few = dim == 2 || output_.mesh ? most_in_one : std::int64_t{max_volume_cells};
   const mesh::Mesh<dim>& mesh = view.discrete.mesh;
   std::vector<Index> cells;
-  if (dim == 2 || output_.mesh || mesh.n_global_cells() <= few)
+  if (mesh.n_global_cells() <= few)
     for (Index c = 0; c < mesh.n_owned_cells(); ++c) cells.push_back(c);
   else
     for (const mesh::BoundaryFacet& facet : mesh.owned_boundary()) cells.push_back(facet.cell);
@@ -160,7 +171,7 @@ void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<d
   if (shown)
   {
     const contact::NitscheForm<dim>& form = shown->discrete->form;
-    if (output_.mesh)
+    if (output_.mesh && is_complete(shown->discrete->mesh))
       io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(shown->discrete->mesh, free_sides_));
     io::write_contact_csv(output_.directory / "contact.csv", form, shown->level.u, level.number);
     if (output_.vtu)
@@ -190,7 +201,8 @@ void RunReport<dim>::start_writing()
         const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
         if (level && writes_all_levels()) write_fields(*level, shown.get());
         if (record && ranks_.is_first()) io::write_report(output_.directory, *record);
-        if (shown && is_followed) page_.add(shown->number, shown->discrete->form, shown->level);
+        if (shown && is_followed && (dim == 3 || is_complete(shown->discrete->mesh)))
+          page_.add(shown->number, shown->discrete->form, shown->level);
       });
 }
 
@@ -315,7 +327,8 @@ void RunReport<dim>::write_what_holds()
   if (last_ && !writes_all_levels())  // beside the page's data of this level
     timed([&] { failure = failure_of([&] { write_fields(*last_, shown_.get()); }); });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
-  if (shown_) timed([&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); });
+  if (shown_ && (dim == 3 || is_complete(shown_->discrete->mesh)))
+    timed([&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); });
   if (!record_.levels.empty()) count_time(begin);
   ranks_.together(
       [&]

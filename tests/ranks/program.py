@@ -1,0 +1,136 @@
+"""Whole runs by several processes against one process, and what happens when something goes wrong.
+
+Usage: program.py MPIRUN PROGRAM FAULT EXAMPLES DIRECTORY
+"""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+MPIRUN, PROGRAM, FAULT, EXAMPLES, DIRECTORY = sys.argv[1:6]
+ENVIRONMENT = os.environ | {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+}
+TIME_LIMIT = 100  # seconds
+COUNTS = ("level", "cells", "dofs", "newton_steps")
+failures = []
+
+
+def command(n, program, *arguments):
+    return [MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", str(n), program, *arguments]
+
+
+def run(n, program, *arguments):
+    start = [program, *arguments] if n == 1 else command(n, program, *arguments)
+    return subprocess.run(start, capture_output=True, text=True, timeout=TIME_LIMIT, env=ENVIRONMENT)
+
+
+def expect(what, holds, *shown):
+    if not holds:
+        failures.append(f"{what}: {shown}")
+
+
+def out(name, n):
+    return pathlib.Path(DIRECTORY) / f"{name}_{n}"
+
+
+def run_case(name, n, *arguments):
+    return run(n, PROGRAM, "run", "-q", *arguments, "--set", f"output.directory='{out(name, n)}'")
+
+
+def table(name, n):
+    with open(out(name, n) / "convergence.csv", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def expect_same_tables(name, n):
+    one, several = table(name, 1), table(name, n)
+    expect(f"{name} {n}", len(one) == len(several), len(one), len(several))
+    for expected, found in zip(one, several):
+        scale = float(expected["energy"]) ** 0.5 + float(expected["total_sharp"])
+        for key, value in expected.items():
+            if key.startswith("t_") or value == found[key]:
+                continue
+            difference = abs(float(value) - float(found[key]))
+            expect(f"{name} {n} level {expected['level']} {key}", key not in COUNTS and difference <= 1e-8 * scale,
+                   value, found[key])
+
+
+def the_same_as_one(name, *arguments):
+    for n in (1, 2, 3):
+        code = run_case(name, n, *arguments)
+        expect(f"{name} {n}", code.returncode in (0, 3), code.returncode, code.stderr)
+        if n == 1:
+            continue
+        expect_same_tables(name, n)
+        number = len(table(name, n)) - 1
+        pieces = [out(name, n) / f"level_{number:03}" / f"part_{rank:04}.vtu" for rank in range(n)]
+        expect(f"{name} {n}", all(piece.is_file() for piece in pieces), pieces)
+        for file in (f"level_{number:03}.pvtu", f"contact_{number:03}.vtu", "adapted.msh", "newton.csv"):
+            expect(f"{name} {n}", (out(name, n) / file).is_file(), file)
+        certificates = [json.loads((out(name, k) / "certificate.json").read_text()) for k in (1, n)]
+        for key in ("status", "reason", "warnings"):
+            expect(f"{name} {n} {key}", certificates[0].get(key) == certificates[1].get(key), certificates[1].get(key))
+        lines = [sorted(len(row) for row in csv.reader(open(out(name, k) / "contact.csv"))) for k in (1, n)]
+        expect(f"{name} {n}", lines[0] == lines[1], "contact.csv", len(lines[0]), len(lines[1]))
+
+
+def bad_input_is_told_once():
+    result = run_case("bad", 2, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "nitsche.gamma0=-1")
+    expect("bad input", result.returncode == 1 and result.stderr.count("tribound:") == 1, result.returncode, result.stderr)
+    result = run_case("bad", 2, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "boundary.top.traction=[0, '-sqrt(1.99 - x)']")
+    expect("bad formula", result.returncode == 1 and result.stderr.count("tribound:") == 1 and "boundary.top" in result.stderr,
+           result.returncode, result.stderr)
+
+
+def commands_for_one_process():
+    case = f"{EXAMPLES}/01_tresca_block/case.toml"
+    for name in ("verify", "study"):
+        result = run(2, PROGRAM, name, case)
+        expect(name, result.returncode == 1 and "started as 2" in result.stderr, result.returncode, result.stderr)
+    result = run(2, PROGRAM, "check", case)
+    expect("check", result.returncode == 0 and result.stdout.count("Tresca block") <= 1, result.returncode, result.stdout)
+
+
+def interrupted():
+    arguments = ["run", f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "adapt.tolerance=1e-9", "--set",
+                 f"output.directory='{out('stopped', 2)}'"]
+    process = subprocess.Popen(command(2, PROGRAM, *arguments), env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True)
+    end = time.monotonic() + TIME_LIMIT
+    while not (out("stopped", 2) / "certificate.json").exists() and time.monotonic() < end:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGUSR1)
+    _, errors = process.communicate(timeout=TIME_LIMIT)
+    certificate = json.loads((out("stopped", 2) / "certificate.json").read_text())
+    expect("interrupted", process.returncode == 3 and "interrupted" in certificate["reason"], process.returncode, certificate["reason"],
+           errors)
+
+
+def faults():
+    for name, code, words in (("throw_together", 1, "all: "), ("throw_alone", 2, "process 1: alone"), ("die", None, "")):
+        begin = time.monotonic()
+        result = run(3, FAULT, name)
+        good = result.returncode == code if code is not None else result.returncode != 0
+        expect(name, good and words in result.stdout and time.monotonic() - begin < 30, result.returncode, result.stdout, result.stderr)
+
+
+the_same_as_one("tresca", f"{EXAMPLES}/01_tresca_block/case.toml")
+the_same_as_one("coulomb", f"{EXAMPLES}/02_coulomb_block/case.toml", "--set", "degree=3")
+the_same_as_one("dam", f"{EXAMPLES}/05_dam/case.toml")
+the_same_as_one("dam3d", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=direct")
+bad_input_is_told_once()
+commands_for_one_process()
+interrupted()
+faults()
+print("\n".join(failures) or "as by one process")
+sys.exit(1 if failures else 0)
