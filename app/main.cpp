@@ -27,6 +27,7 @@
 #include "app/command/sweep.h"
 #include "app/command/verify.h"
 #include "app/console/console.h"
+#include "app/program_facts.h"
 #include "app/shared_file.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
@@ -53,6 +54,7 @@ struct Arguments
   bool json = false;               ///< of check
   std::string start = "block";     ///< of init: the case to start from
   std::string directory;           ///< of init
+  std::string restart;             ///< of run: the directory of results of another one
 };
 
 /// The text of a file that the user names.
@@ -72,15 +74,21 @@ void add_set_option(CLI::App& command, Arguments& arguments)
       ->allow_extra_args(false);
 }
 
-void add_case_arguments(CLI::App& command, Arguments& arguments)
+CLI::Option* add_case_arguments(CLI::App& command, Arguments& arguments)
 {
-  command.add_option("case", arguments.case_file, "The case file (TOML)")->required();
+  CLI::Option* file = command.add_option("case", arguments.case_file, "The case file (TOML)");
   add_set_option(command, arguments);
   command.add_flag("-q,--quiet", arguments.quiet, "No progress; of a run only warnings and status");
+  return file;
 }
 
 ExitCode run_command(const Arguments& arguments)
 {
+  if (arguments.case_file.empty() == arguments.restart.empty())
+    throw InputError({}, "tribound run takes either a case file or --restart with a directory",
+                     "tribound run case.toml, or tribound run --restart out/case");
+  if (n_processes() > 1 || !arguments.restart.empty())
+    return run_on_ranks({arguments.case_file, arguments.restart, arguments.overrides, arguments.quiet});
   const Progress progress(arguments.quiet);
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
   mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, &stop_on_signals());
@@ -189,8 +197,11 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   for (CLI::App* command : {check, run, verify, study})
   {
     command->group(case_commands);
-    add_case_arguments(*command, arguments);
+    add_case_arguments(*command, arguments)->required(command != run);
   }
+  run->add_option("--restart", arguments.restart,
+                  "Go on with a run from the checkpoint in its directory of results, in place of a case")
+      ->type_name("DIRECTORY");
   CLI::App* sweep = app.add_subcommand("sweep", "Solve a case with other values of some of its keys");
   sweep->group(case_commands);
   describe_sweep(*sweep, arguments);
@@ -223,7 +234,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   const std::string command = app.get_subcommands().front()->get_name();
   if (n_processes() > 1)
   {
-    if (command == "run") return run_on_all_ranks(arguments.case_file, arguments.overrides, arguments.quiet);
+    if (command == "run") return run_command(arguments);
     const bool needs_one = command == "verify" || command == "study" || command == "sweep";
     if (!is_first_process()) return needs_one ? ExitCode::bad_input : ExitCode::success;
     if (needs_one)

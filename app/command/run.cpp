@@ -9,6 +9,7 @@
 #include "app/console/balance_text.h"
 #include "app/console/forecast.h"
 #include "app/output_directory.h"
+#include "app/program_facts.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/base/clock.h"
@@ -16,21 +17,48 @@
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
+#include "tribound/fem/nested.h"
 
 namespace tribound::app
 {
 
+namespace
+{
+
 template <int dim>
-ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
+std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
+                                                const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
+                                                const std::optional<Restart>& restart,
+                                                const std::atomic<bool>& stop)
+{
+  contact::DataAccuracy accuracy;
+  if (restart) accuracy.absolute = restart->start.accuracy;
+  auto first =
+      std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method, accuracy);
+  if (first->mesh.ranks().any(stop))
+    throw SolveError("interrupted before anything was solved; nothing is written");
+  if (!restart)
+    return std::make_unique<adapt::Levels<dim>>(problem, config.method, config.adapt.tolerance,
+                                                std::move(first), &stop);
+  std::vector<double> u = fem::from_cell_values<dim>(first->space, restart->cells, restart->values);
+  return std::make_unique<adapt::Levels<dim>>(problem, config.method, config.adapt.tolerance,
+                                              std::move(first), restart->start, std::move(u), &stop);
+}
+
+}  // namespace
+
+template <int dim>
+ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
+             const std::optional<Restart>& restart)
 {
   const Clock::time_point begin = Clock::now();
   const problem::Problem<dim> problem(case_file::resolve(config, mesh));
-  auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method);
   const std::atomic<bool>& stop = stop_on_signals();
-  if (stop) throw SolveError("interrupted before anything was solved; nothing is written");
-  adapt::Levels<dim> levels(problem, config.method, config.adapt.tolerance, std::move(first), &stop);
-  RunReport<dim> report(config, problem, levels.discrete(), begin,
-                        progress.quiet() ? Printed::verdict : Printed::everything);
+  const std::unique_ptr<adapt::Levels<dim>> levels =
+      first_level<dim>(config, problem, std::move(mesh), restart, stop);
+  RunReport<dim> report(config, problem, levels->discrete(), begin,
+                        progress.quiet() ? Printed::verdict : Printed::everything,
+                        restart ? &restart->earlier : nullptr);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)
@@ -38,10 +66,14 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
                          report.add(view);
                          const std::string forecast = forecast_text(report.record(), config.adapt.max_dofs);
                          if (!forecast.empty()) progress.stage(forecast);
+                       },
+                       [&](const adapt::Levels<dim>& next)
+                       {
+                         if (config.output.checkpoint) report.write_checkpoint(next);
                        }};
   try
   {
-    return report.close(adapt::adapt(levels, strategy));
+    return report.close(adapt::adapt(*levels, strategy));
   }
   catch (const SolveError& error)
   {
@@ -70,8 +102,10 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
               doctor::findings(doctor::diagnose(form, config.method, config.adapt)), as_json);
 }
 
-template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&);
-template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&);
+template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&,
+                      const std::optional<Restart>&);
+template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&,
+                      const std::optional<Restart>&);
 template void check(const case_file::Config&, const mesh::Mesh<2>&, bool);
 template void check(const case_file::Config&, const mesh::Mesh<3>&, bool);
 

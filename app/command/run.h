@@ -3,8 +3,13 @@
 /// @file run.h
 /// The commands of the program on one case.
 
+#include <optional>
+#include <vector>
+
 #include "app/console/console.h"
+#include "tribound/adapt/levels.h"
 #include "tribound/case/config.h"
+#include "tribound/io/record/report.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::app
@@ -19,10 +24,21 @@ enum class ExitCode
   budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
 };
 
-/// Runs the adaptive algorithm on the case and writes the results, level by level. Throws InputError,
+/// A run that goes on where another one was.
+struct Restart
+{
+  adapt::LevelStart start;
+  std::vector<Index> cells;    ///< of the mesh, in the order of their values
+  std::vector<double> values;  ///< of the solution at the nodes of the cells
+  io::EarlierLevels earlier;
+};
+
+/// Runs the adaptive algorithm on the case and writes the results, level by level; on several ranks all call
+/// it, each with its part of the mesh. With `restart` the mesh is that of a later level. Throws InputError,
 /// SolveError and WriteError.
 template <int dim>
-[[nodiscard]] ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress);
+[[nodiscard]] ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
+                           const std::optional<Restart>& restart = {});
 
 /// Reads and verifies everything `run` would, and prints a summary with what the doctor finds, for people or
 /// as JSON.

@@ -4,10 +4,11 @@
 
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <optional>
-#include <type_traits>
+#include <span>
 #include <variant>
 
 #include "app/command/interrupt.h"
@@ -15,6 +16,7 @@
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
 #include "tribound/base/ranks.h"
+#include "tribound/io/state/checkpoint.h"
 #include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/share_out.h"
 
@@ -33,12 +35,59 @@ int launcher_says(std::array<const char*, 2> variables, int otherwise)
   return otherwise;
 }
 
-ExitCode run_on(const Ranks& ranks, const std::string& case_file, std::span<const std::string> overrides,
-                bool quiet)
+/// The mesh of a run that begins, and that of one that goes on.
+template <int dim>
+ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::optional<mesh::AnyMesh> whole,
+                  const std::optional<io::CheckpointFacts>& checkpoint, const std::string& directory,
+                  const Progress& progress)
 {
-  const Progress progress(quiet || !ranks.is_first());
-  const case_file::Config config =
-      ranks.together([&] { return case_file::read_config(case_file, overrides); });
+  using Whole = mesh::Mesh<dim>;
+  auto first = whole ? std::make_shared<const Whole>(std::get<Whole>(*std::move(whole))) : nullptr;
+  if (!checkpoint) return run(config, mesh::share_out<dim>(ranks, std::move(first)), progress);
+  ranks.on_first(
+      [&]
+      {
+        if (first->n_cells() != checkpoint->earlier.first_cells)
+          throw InputError(first->source(),
+                           fmt::format("has {} cells, but the run to restart began with {}", first->n_cells(),
+                                       checkpoint->earlier.first_cells),
+                           "restart with the mesh that the run began with");
+      });
+  io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(directory, *checkpoint, ranks);
+  const int n_values = dim * fem::LagrangeBasis<dim>(checkpoint->degree).n_nodes();
+  mesh::Balanced<dim> balanced =
+      mesh::restore<dim>(ranks, std::move(first), std::move(read.cells), read.values, n_values);
+  return run(
+      config, std::move(balanced.mesh), progress,
+      Restart{checkpoint->start, std::move(balanced.cells), std::move(balanced.values), checkpoint->earlier});
+}
+
+/// The case of a checkpoint, whose results go on in the directory.
+case_file::Config restarted_config(const RunRequest& request, const io::CheckpointFacts& checkpoint)
+{
+  const std::filesystem::path directory = request.restart;
+  case_file::Config config =
+      case_file::parse_config(checkpoint.case_text, (directory / "case.toml").string(), request.overrides);
+  if (config.method.degree != checkpoint.degree)
+    throw InputError({},
+                     fmt::format("degree is {}, but that of the checkpoint is {}", config.method.degree,
+                                 checkpoint.degree),
+                     "a run goes on with its degree");
+  config.output.directory = directory;
+  return config;
+}
+
+ExitCode run_on(const Ranks& ranks, const RunRequest& request)
+{
+  const Progress progress(request.quiet || !ranks.is_first());
+  std::optional<io::CheckpointFacts> checkpoint;
+  if (!request.restart.empty()) checkpoint = io::read_checkpoint_facts(request.restart, ranks);
+  const case_file::Config config = ranks.together(
+      [&]
+      {
+        return checkpoint ? restarted_config(request, *checkpoint)
+                          : case_file::read_config(request.case_file, request.overrides);
+      });
   std::optional<mesh::AnyMesh> whole;
   const bool is_plane = ranks.on_first(
       [&]
@@ -46,13 +95,8 @@ ExitCode run_on(const Ranks& ranks, const std::string& case_file, std::span<cons
         whole.emplace(mesh::read_mesh(config.mesh, &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
-  const auto run_part = [&]<int dim>(std::integral_constant<int, dim>)
-  {
-    using Whole = mesh::Mesh<dim>;
-    auto first = whole ? std::make_shared<const Whole>(std::get<Whole>(*std::exchange(whole, {}))) : nullptr;
-    return run(config, mesh::share_out<dim>(ranks, std::move(first)), progress);
-  };
-  return is_plane ? run_part(std::integral_constant<int, 2>()) : run_part(std::integral_constant<int, 3>());
+  const auto run_in = is_plane ? run_part<2> : run_part<3>;
+  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, request.restart, progress);
 }
 
 }  // namespace
@@ -93,19 +137,19 @@ int report(ExitCode code, const std::string& message)
   return static_cast<int>(code);
 }
 
-ExitCode run_on_all_ranks(const std::string& case_file, std::span<const std::string> overrides, bool quiet)
+ExitCode run_on_ranks(const RunRequest& request)
 {
   constexpr double patience = 20;  // seconds, for those that still write files
   const algebra::Environment environment;
+  if (n_processes() == 1) return run_on(Ranks(), request);
   const Ranks ranks = Ranks::world();
   try
   {
     if (ranks.size() != n_processes())
       throw InputError(
           {}, fmt::format("started as {} processes, of which MPI connects {}", n_processes(), ranks.size()),
-          "start it by the mpirun of the MPI library it is built with (tribound info), or as one "
-          "process");
-    return run_on(ranks, case_file, overrides, quiet);
+          "start it by the mpirun of the MPI library it is built with (tribound info), or as one process");
+    return run_on(ranks, request);
   }
   catch (...)
   {

@@ -4,9 +4,9 @@
 /// `tribound run` by several processes that mpirun or a batch system has started together.
 
 #include <exception>
-#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/command/run.h"
 
@@ -23,9 +23,18 @@ namespace tribound::app
 /// Tells it on stderr.
 int report(ExitCode code, const std::string& message);
 
-/// Runs the case on all of them. The first reads the mesh, prints and writes what is not of each. What fails
-/// on all of them the first one tells; what fails on one alone ends all.
-[[nodiscard]] ExitCode run_on_all_ranks(const std::string& case_file, std::span<const std::string> overrides,
-                                        bool quiet);
+/// What is to be run: a case file, or what a checkpoint in a directory of results says.
+struct RunRequest
+{
+  std::string case_file;
+  std::string restart;  ///< the directory; empty: the case file
+  std::vector<std::string> overrides;
+  bool quiet = false;
+};
+
+/// Runs it, on all processes that were started together, which may be one. The first reads the mesh, prints
+/// and writes what is not of each. What fails on all of them the first one tells; what fails on one alone
+/// ends all. Of one process it throws what run() does.
+[[nodiscard]] ExitCode run_on_ranks(const RunRequest& request);
 
 }  // namespace tribound::app

@@ -10,16 +10,16 @@
 #include "app/console/balance_text.h"
 #include "app/console/console.h"
 #include "app/page/page_volume.h"
+#include "app/program_facts.h"
 #include "app/shared_file.h"
 #include "tribound/algebra/linear_solver.h"
-#include "tribound/algebra/petsc.h"
 #include "tribound/case/resolve.h"
 #include "tribound/doctor/run_warnings.h"
 #include "tribound/doctor/solution_facts.h"
 #include "tribound/io/fields/contact_line.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/io/state/checkpoint.h"
 #include "tribound/mesh/gmsh_text.h"
 
 namespace tribound::app
@@ -70,44 +70,10 @@ std::exception_ptr failure_of(const Write& write)
 
 }  // namespace
 
-io::BuildFacts library_facts()
-{
-  const algebra::AlgebraVersions algebra = algebra::algebra_versions();
-  io::BuildFacts build = io::build_facts();
-  build.petsc = algebra.petsc;
-  build.mumps = algebra.mumps;
-  build.mpi = algebra.mpi;
-  build.blas = algebra.blas.library;
-  build.blas_threads = algebra.blas.threads;
-  build.gmsh = mesh::gmsh_version();
-  build.features = {"2D", "3D", "degrees 1-4", "friction: none, Tresca, Coulomb"};
-  build.report_page = find_shared_file("report.html").string();
-  return build;
-}
-
-std::string describe_solver(algebra::LinearMethod method)
-{
-  switch (method)
-  {
-    case algebra::LinearMethod::condensed:
-      return "direct, condensed onto the contact boundary";
-    case algebra::LinearMethod::iterative:
-      return "GMRES with multigrid";
-    default:
-      return "direct";
-  }
-}
-
-std::string describe_solver(std::span<const adapt::CertifiedStep> steps)
-{
-  const bool fell_back = std::ranges::any_of(steps, [](const auto& s) { return s.step.fell_back; });
-  return describe_solver(steps.back().step.method) +
-         (fell_back ? ", as GMRES with multigrid failed on this mesh" : "");
-}
-
 template <int dim>
 RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
-                          const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed)
+                          const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed,
+                          const io::EarlierLevels* earlier)
     : output_(config.output),
       method_(config.method),
       ranks_(first.mesh.ranks()),
@@ -123,10 +89,13 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
       {
         require_mesh_elsewhere(config);
         directory_.emplace(output_.directory);
-        remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
-                                           "contact.csv", "adapted.msh"});
+        if (earlier && writes_all_levels()) return;  // its fields are those of this run, too
         io::remove_series(output_.directory);
+        if (earlier) return;
+        remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
+                                           "contact.csv", "adapted.msh", io::checkpoint_name});
       });
+  if (earlier) record_.earlier = *earlier;
   record_.facts = case_file::case_facts(config, dim);
   record_.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   record_.build = library_facts();
@@ -340,6 +309,15 @@ void RunReport<dim>::write_what_holds()
         }
         if (failure) std::rethrow_exception(failure);
       });
+}
+
+template <int dim>
+void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next) const
+{
+  const fem::LagrangeSpace<dim>& space = next.discrete().space;
+  io::write_checkpoint<dim>(
+      output_.directory, {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_)},
+      space, next.start_displacement());
 }
 
 template <int dim>

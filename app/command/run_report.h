@@ -16,7 +16,6 @@
 #include "app/output_directory.h"
 #include "app/page/report_page.h"
 #include "tribound/adapt/loop.h"
-#include "tribound/algebra/linear_solver.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/config.h"
 #include "tribound/io/record/facts.h"
@@ -24,14 +23,6 @@
 
 namespace tribound::app
 {
-
-/// Versions of the program and of the libraries it runs with.
-[[nodiscard]] io::BuildFacts library_facts();
-
-/// "direct", "GMRES with multigrid", ...: for people.
-[[nodiscard]] std::string describe_solver(algebra::LinearMethod method);
-/// The same of the steps on a mesh, at least one.
-[[nodiscard]] std::string describe_solver(std::span<const adapt::CertifiedStep> steps);
 
 /// What a run says on stdout.
 enum class Printed
@@ -53,16 +44,19 @@ class RunReport
 {
  public:
   /// On the first mesh; the run began at `begin`. Removes what an earlier run has left in the directory, the
-  /// certificate first. Throws InputError where nothing can be written.
+  /// certificate first, unless this one goes on with it: then `earlier` has its levels. Throws InputError
+  /// where nothing can be written.
   RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
             const adapt::Discretisation<dim>& first, Clock::time_point begin,
-            Printed printed = Printed::everything);
+            Printed printed = Printed::everything, const io::EarlierLevels* earlier = nullptr);
 
   /// After every level, and once more for the last one if Newton's method has converged on it later: tables
   /// and a certificate that holds should the program be killed, at most a second behind; fields where they
   /// are asked for of all levels. Waits for the files of the level before. Throws WriteError, the level being
   /// printed, for its own files or later for those of the level before.
   void add(const adapt::LevelView<dim>& view);
+  /// What the next level starts from. Throws WriteError.
+  void write_checkpoint(const adapt::Levels<dim>& next) const;
   /// Which level is the last is known only now: its fields, the page, and the last word.
   [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
   /// The files of the levels so far, where the run ends by an exception. Throws WriteError.

@@ -14,6 +14,7 @@
 #include "app/command/run_report.h"
 #include "app/command/study_cases.h"
 #include "app/output_directory.h"
+#include "app/program_facts.h"
 #include "app/page/report_page.h"
 #include "app/page/study_page.h"
 #include "app/result/figures.h"

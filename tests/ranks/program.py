@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -116,6 +117,39 @@ def interrupted():
            errors)
 
 
+def a_run_goes_on():
+    """Written by 3, read by 1, 2 and 4, after a kill in the middle of things."""
+    case = [f"{EXAMPLES}/05_dam/case.toml", "--set", "output.checkpoint=true", "--set", "adapt.tolerance=0.002"]
+    run_case("whole", 1, *case)
+    out("killed", 3).mkdir(parents=True, exist_ok=True)
+    process = subprocess.Popen(command(3, PROGRAM, "run", "-q", *case, "--set", f"output.directory='{out('killed', 3)}'"),
+                               env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    end = time.monotonic() + TIME_LIMIT
+    while not (out("killed", 3) / "checkpoint.h5").exists() and time.monotonic() < end and process.poll() is None:
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    for n in (1, 2, 4):
+        shutil.rmtree(out("whole", n + 10), ignore_errors=True)
+        shutil.copytree(out("killed", 3), out("whole", n + 10))
+        directory = str(out("whole", n + 10))
+        result = run(n, PROGRAM, "run", "-q", "--restart", directory)
+        expect(f"restart on {n}", result.returncode == 0, result.returncode, result.stderr)
+        expect_same_tables("whole", n + 10)
+    checkpoint = out("whole", 12) / "checkpoint.h5"
+    result = run(2, PROGRAM, "run", "--restart", str(out("whole", 12)), "--set", "degree=1")
+    expect("another degree", result.returncode == 1 and "degree" in result.stderr, result.returncode, result.stderr)
+    data = checkpoint.read_bytes()
+    checkpoint.write_bytes(data[: len(data) // 2])
+    for n in (1, 2):
+        result = run(n, PROGRAM, "run", "--restart", str(out("whole", 12)))
+        expect("damaged", result.returncode == 1 and "checkpoint.h5" in result.stderr, result.returncode, result.stderr)
+    result = run(2, PROGRAM, "run", "--restart", f"{DIRECTORY}/nowhere")
+    expect("nothing", result.returncode == 1 and "checkpoint.h5" in result.stderr, result.returncode, result.stderr)
+    result = run(1, PROGRAM, "run")
+    expect("no case", result.returncode == 1 and "--restart" in result.stderr, result.returncode, result.stderr)
+
+
 def faults():
     for name, code, words in (("throw_together", 1, "all: "), ("throw_alone", 2, "process 1: alone"), ("die", None, "")):
         begin = time.monotonic()
@@ -131,6 +165,7 @@ the_same_as_one("dam3d", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_l
 bad_input_is_told_once()
 commands_for_one_process()
 interrupted()
+a_run_goes_on()
 faults()
 print("\n".join(failures) or "as by one process")
 sys.exit(1 if failures else 0)

@@ -31,17 +31,6 @@ std::vector<double> stress_of(const certify::Stress<dim>& stress, std::span<cons
   return values;
 }
 
-template <int dim>
-std::vector<double> values_of(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
-                              std::span<const Index> cells)
-{
-  std::vector<double> values;
-  for (const Index c : cells)
-    for (const Index node : space.cell_nodes(c))
-      values.insert(values.end(), u.begin() + dim * node, u.begin() + dim * (node + 1));
-  return values;
-}
-
 /// What all ranks have, one behind the other, on the first.
 template <class T>
 std::vector<T> gathered(const Ranks& ranks, std::span<const T> items)
@@ -75,7 +64,7 @@ std::optional<Excerpt<dim>> excerpt(const LevelView<dim>& view, const Method& me
   for (const Index c : cells)
     if (!view.level.estimate.cells.empty()) components.push_back(view.level.estimate.cells[c]);
   const auto records = gathered<mesh::CellRecord<dim>>(ranks, mesh::records_of(discrete.mesh, cells));
-  const auto u = gathered<double>(ranks, values_of<dim>(discrete.space, view.level.u, cells));
+  const auto u = gathered<double>(ranks, fem::cell_values<dim>(discrete.space, view.level.u, cells));
   const auto stress =
       gathered<double>(ranks, has_bound ? stress_of(view.level.stress, cells) : std::vector<double>{});
   components = gathered<certify::BoundComponents>(ranks, components);

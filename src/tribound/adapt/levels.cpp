@@ -90,6 +90,24 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
 }
 
 template <int dim>
+Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
+                    std::unique_ptr<Discretisation<dim>> first, const LevelStart& start,
+                    std::vector<double> u, const std::atomic<bool>* stop)
+    : problem_(problem),
+      method_(method),
+      tolerance_(tolerance),
+      stop_(stop),
+      number_(start.level - 1),
+      current_(std::move(first)),
+      start_(std::move(u)),
+      accuracy_(start.accuracy),
+      expected_(start.expected)
+{
+  level_.delta = start.delta;
+  level_.friedrichs = start.friedrichs;
+}
+
+template <int dim>
 std::string Levels<dim>::advance(const StepObserver& observer, bool is_last)
 {
   const Clock::time_point begin = Clock::now();
@@ -107,7 +125,6 @@ std::string Levels<dim>::advance(const StepObserver& observer, bool is_last)
 template <int dim>
 std::string Levels<dim>::try_to_advance(const StepObserver& observer, bool is_last)
 {
-  assert(number_ < 0 || discrete_before_);  // refine() comes first
   std::string why;
   std::optional<CertifiedLevel<dim>> level = solve(observer, is_last, why);
   if (!level) return why;
@@ -264,9 +281,9 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
     if (std::string why = limit(is_next); !why.empty()) return why;
   mesh::Mesh<dim> mesh = finer.mesh();
   seconds.bisect += lap();
-  auto next = std::make_shared<const Discretisation<dim>>(
-      std::move(mesh), problem_, method_,
-      contact::DataAccuracy{.absolute = share_of_data * level_.estimate.total_sharp});
+  accuracy_ = share_of_data * level_.estimate.total_sharp;
+  auto next = std::make_shared<const Discretisation<dim>>(std::move(mesh), problem_, method_,
+                                                          contact::DataAccuracy{.absolute = accuracy_});
   seconds.discretise = lap();
   is_next.dofs = free_dofs(*next);
   is_next.growth = static_cast<double>(*is_next.dofs) /

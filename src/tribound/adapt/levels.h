@@ -37,6 +37,16 @@ struct NextMesh
   Ranks ranks{};                       ///< which decide together
 };
 
+/// What a level starts from beside its mesh and the solution that was carried there.
+struct LevelStart
+{
+  int level = 0;                     ///< its number
+  double delta = 0;                  ///< of the regularised variant
+  double accuracy = 0;               ///< of the data, DataAccuracy::absolute
+  std::optional<double> expected{};  ///< of solve_and_certify()
+  std::optional<certify::FriedrichsConstant> friedrichs{};
+};
+
 /// The cells of a level to bisect, ascending; on several ranks own ones.
 template <int dim>
 using Marker = std::function<std::vector<Index>(const LevelView<dim>&)>;
@@ -66,6 +76,20 @@ class Levels
   /// the loads (check_rigid_motions).
   Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
          std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop = nullptr);
+
+  /// Goes on with a level that another run has come to, on the mesh of `first`, from the solution `u` there.
+  Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
+         std::unique_ptr<Discretisation<dim>> first, const LevelStart& start, std::vector<double> u,
+         const std::atomic<bool>* stop = nullptr);
+
+  /// The number of the level that advance() comes to.
+  [[nodiscard]] int next_number() const { return number_ + 1; }
+  /// What it starts from, and the solution carried there; between refine() and advance().
+  [[nodiscard]] LevelStart start() const
+  {
+    return {number_ + 1, level_.delta, accuracy_, expected_, level_.friedrichs};
+  }
+  [[nodiscard]] std::span<const double> start_displacement() const { return start_; }
 
   /// Solves and certifies on the current mesh. Not empty: why this level was given up; the one before is the
   /// last again, without its stress and estimate: finish() may then be called, refine() may not. Throws
@@ -116,6 +140,7 @@ class Levels
   // For the next level.
   std::shared_ptr<const Discretisation<dim>> discrete_before_;  ///< present between refine() and advance()
   std::vector<double> start_;                                   ///< the solution on the current mesh
+  double accuracy_ = 0;                                         ///< of the data there
   RefinementSeconds refinement_;
   double seconds_of_next_ = 0;
   std::optional<double> expected_;  ///< BoundComponents::discretisation() on the current mesh, guessed

@@ -91,7 +91,7 @@ certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy)
   };
   const auto finish = [&] { return levels.finish(strategy.observer.step); };
   std::string end;  // why the last level is the last
-  for (int number = 0;; ++number)
+  for (int number = levels.next_number();; ++number)
   {
     end = levels.advance(strategy.observer.step, number == strategy.last_level);
     const bool told = !end.empty();
@@ -100,7 +100,11 @@ certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy)
     if ((is_last && finish()) || !told) tell();
     if (is_last) break;
     end = levels.refine(strategy.mark, strategy.limit);
-    if (end.empty()) continue;
+    if (end.empty())
+    {
+      if (strategy.observer.refined) strategy.observer.refined(levels);
+      continue;
+    }
     if (finish()) tell();
     break;
   }

@@ -37,6 +37,8 @@ struct LoopObserver
   StepObserver step{};
   /// Of the last level a second time, if Newton's method has converged on it after the first.
   std::function<void(const LevelView<dim>&)> level{};
+  /// Of the next mesh, before anything is solved on it.
+  std::function<void(const Levels<dim>&)> refined{};
 };
 
 /// What may be exchanged in the loop; all but `mark` may be empty.

@@ -280,6 +280,11 @@ void Ranks::agree(const std::exception_ptr& failure) const
   if (failure) std::rethrow_exception(failure);
 }
 
+const void* Ranks::mpi_communicator() const
+{
+  return size_ > 1 ? &communicator_->handle : nullptr;
+}
+
 bool Ranks::all_arrive(double seconds) const
 {
   if (size_ == 1) return true;

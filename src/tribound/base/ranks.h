@@ -159,6 +159,9 @@ class Ranks
     }
   }
 
+  /// MPI's communicator, as const MPI_Comm*, for libraries that take one; null on one rank.
+  [[nodiscard]] const void* mpi_communicator() const;
+
   /// For a rank that gives up: whether all ranks call this within so many seconds. If not, they wait for this
   /// one somewhere else, for ever, unless it calls end_all().
   [[nodiscard]] bool all_arrive(double seconds) const;

@@ -154,7 +154,8 @@ StudyConfig read_study(const Node& node, int degree)
 
 OutputConfig read_output(const Node& node, OutputConfig output)
 {
-  const TableReader table(node, {"directory", "vtu", "levels", "report", "mesh", "moment_about"});
+  const TableReader table(node,
+                          {"directory", "vtu", "levels", "report", "mesh", "checkpoint", "moment_about"});
   table.read("directory", output.directory, to_text);
   if (output.directory.empty())
     throw InputError(table.find("directory")->where, "is empty", "a directory to write to, such as \"out\"");
@@ -162,6 +163,7 @@ OutputConfig read_output(const Node& node, OutputConfig output)
   table.read("levels", output.levels, one_of<FieldLevels>({"last", "all"}));
   table.read("report", output.report, to_bool);
   table.read("mesh", output.mesh, to_bool);
+  table.read("checkpoint", output.checkpoint, to_bool);
   if (const Node* point = table.find("moment_about"))
   {
     output.moment_about_where = point->where;

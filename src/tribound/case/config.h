@@ -74,6 +74,7 @@ struct OutputConfig
   FieldLevels levels = FieldLevels::last;
   bool report = true;                ///< the page report.html
   bool mesh = true;                  ///< the last mesh, adapted.msh
+  bool checkpoint = false;           ///< whether each level can be restarted from
   std::vector<double> moment_about;  ///< point of the moments in the balance; empty: centroid of the body
   Where moment_about_where;
 };

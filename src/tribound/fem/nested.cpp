@@ -90,6 +90,18 @@ std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<co
 }
 
 template <int dim>
+std::vector<double> cell_values(const LagrangeSpace<dim>& space, std::span<const double> u,
+                                std::span<const Index> cells)
+{
+  std::vector<double> values;
+  values.reserve(cells.size() * space.basis().n_nodes() * dim);
+  for (const Index c : cells)
+    for (const Index node : space.cell_nodes(c))
+      values.insert(values.end(), u.begin() + dim * node, u.begin() + dim * (node + 1));
+  return values;
+}
+
+template <int dim>
 std::vector<double> from_cell_values(const LagrangeSpace<dim>& space, std::span<const Index> cells,
                                      std::span<const double> values)
 {
@@ -119,12 +131,16 @@ template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::sp
                                                 std::span<const Index>, const LagrangeSpace<3>&);
 template std::vector<double> nested_values(const LagrangeSpace<2>&, std::span<const double>,
                                            std::span<const mesh::CellRecord<2>>, std::span<const Index>);
+template std::vector<double> cell_values(const LagrangeSpace<2>&, std::span<const double>,
+                                         std::span<const Index>);
 template std::vector<double> from_cell_values(const LagrangeSpace<2>&, std::span<const Index>,
                                               std::span<const double>);
 template std::vector<double> nested_interpolant(const LagrangeSpace<2>&, std::span<const double>,
                                                 const mesh::Refined<2>&, const LagrangeSpace<2>&);
 template std::vector<double> nested_values(const LagrangeSpace<3>&, std::span<const double>,
                                            std::span<const mesh::CellRecord<3>>, std::span<const Index>);
+template std::vector<double> cell_values(const LagrangeSpace<3>&, std::span<const double>,
+                                         std::span<const Index>);
 template std::vector<double> from_cell_values(const LagrangeSpace<3>&, std::span<const Index>,
                                               std::span<const double>);
 template std::vector<double> nested_interpolant(const LagrangeSpace<3>&, std::span<const double>,

@@ -37,6 +37,11 @@ template <int dim>
                                                 std::span<const mesh::CellRecord<dim>> cells,
                                                 std::span<const Index> parent);
 
+/// The values at the nodes of cells of the mesh itself, in the same order.
+template <int dim>
+[[nodiscard]] std::vector<double> cell_values(const LagrangeSpace<dim>& space, std::span<const double> u,
+                                              std::span<const Index> cells);
+
 /// The function with such values on own cells cells[0], cells[1], ..., all that there are. All ranks call it
 /// together, and agree on the values at common nodes.
 template <int dim>

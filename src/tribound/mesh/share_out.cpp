@@ -76,15 +76,13 @@ std::vector<double> values_sent_to(const Ranks& ranks, std::span<const int> rank
   return result;
 }
 
-/// The numbers of own cells in a mesh.
-template <int dim>
-std::vector<Index> numbers_of(const Mesh<dim>& mesh, std::span<const CellName> names)
+/// Where names are in a list of them, which ascends.
+std::vector<Index> numbers_in(std::span<const CellName> all, std::span<const CellName> names)
 {
-  const auto own = std::span(mesh.partition()->names).first(mesh.n_owned_cells());
   std::vector<Index> numbers;
   numbers.reserve(names.size());
   for (const CellName& name : names)
-    numbers.push_back(static_cast<Index>(std::ranges::lower_bound(own, name) - own.begin()));
+    numbers.push_back(static_cast<Index>(std::ranges::lower_bound(all, name) - all.begin()));
   return numbers;
 }
 
@@ -106,6 +104,72 @@ Mesh<dim> make_part(const Ranks& ranks, const Cube<dim>& cube, std::shared_ptr<c
   return ranks.together([&] { return Mesh<dim>(std::move(part), std::move(labels)); });
 }
 
+/// What all ranks know of the first mesh.
+template <int dim>
+struct Origin
+{
+  Cube<dim> cube;
+  MeshLabels labels;
+};
+
+template <int dim>
+Origin<dim> origin_of(const Ranks& ranks, const Mesh<dim>* first)
+{
+  Origin<dim> origin;
+  if (first) origin.labels = labels_of(*first);
+  copy_labels(ranks, origin.labels);
+  const std::array<double, dim + 1> ends = ranks.on_first(
+      [&]
+      {
+        const Cube<dim> around = cube_around<dim>(first->vertices());
+        std::array<double, dim + 1> numbers{};
+        std::ranges::copy(around.lower, numbers.begin());
+        numbers[dim] = around.size;
+        return numbers;
+      });
+  origin.cube = {Point<dim>(ends.data()), ends[dim]};
+  return origin;
+}
+
+template <int dim>
+Balanced<dim> balance_cells(const Ranks& ranks, Origin<dim> origin, std::shared_ptr<const Mesh<dim>> first,
+                            std::vector<CellRecord<dim>> cells, std::span<const double> values, int n_values)
+{
+  assert(values.size() == cells.size() * n_values);
+  const std::vector<int> rank_of = destinations<dim>(ranks, origin.cube, cells);
+  std::vector<double> arrived = values_sent_to(ranks, rank_of, values, n_values);
+  cells = sent_to<dim>(ranks, rank_of, cells);
+  const std::vector<CellName> names = names_of<dim>(cells);
+  Balanced<dim> result{
+      make_part<dim>(ranks, origin.cube, std::move(first), std::move(cells), std::move(origin.labels)),
+      {},
+      std::move(arrived)};
+  const auto own = std::span(result.mesh.partition()->names).first(result.mesh.n_owned_cells());
+  result.cells = numbers_in(own, names);
+  return result;
+}
+
+/// The cells of a part without ghosts as a whole mesh, in their order.
+template <int dim>
+Mesh<dim> whole_mesh(const MeshPart<dim>& part, MeshLabels labels)
+{
+  MeshData<dim> data;
+  for (const VertexName<dim>& vertex : part.partition.vertices) data.vertices.push_back(vertex.point());
+  data.cells = part.corners;
+  for (std::size_t c = 0; c < part.cells.size(); ++c)
+  {
+    data.regions.push_back(part.cells[c].region);
+    data.bisection_types.push_back(static_cast<std::uint8_t>(part.cells[c].bisection_type));
+    for (int i = 0; i <= dim; ++i)
+      if (part.cells[c].tags[i] >= 0)
+        data.facets.push_back({facet_vertices(part.corners[c], i), part.cells[c].tags[i]});
+  }
+  data.region_names = std::move(labels.region_names);
+  data.boundary_names = std::move(labels.boundary_names);
+  data.source = std::move(labels.source);
+  return Mesh<dim>(std::move(data));
+}
+
 }  // namespace
 
 template <int dim>
@@ -113,45 +177,32 @@ Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole)
 {
   assert(ranks.is_first() == (whole != nullptr));
   std::vector<CellRecord<dim>> cells;
-  MeshLabels labels;
-  if (whole)
-  {
-    cells = first_records(*whole);
-    labels = labels_of(*whole);
-  }
-  copy_labels(ranks, labels);
-  std::array<double, dim + 1> ends = ranks.on_first(
-      [&]
-      {
-        const Cube<dim> around = cube_around<dim>(whole->vertices());
-        std::array<double, dim + 1> numbers{};
-        std::ranges::copy(around.lower, numbers.begin());
-        numbers[dim] = around.size;
-        return numbers;
-      });
-  const Cube<dim> cube{Point<dim>(ends.data()), ends[dim]};
-  const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells);
-  return make_part<dim>(ranks, cube, std::move(whole), sent_to<dim>(ranks, rank_of, cells),
-                        std::move(labels));
+  if (whole) cells = first_records(*whole);
+  Origin<dim> origin = origin_of(ranks, whole.get());
+  return balance_cells<dim>(ranks, std::move(origin), std::move(whole), std::move(cells), {}, 0).mesh;
 }
 
 template <int dim>
 Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
                       std::span<const double> values, int n_values)
 {
-  assert(values.size() == cells.size() * n_values);
   const Partition<dim>& partition = *before.partition();
-  const Ranks& ranks = partition.ranks;
-  const std::vector<int> rank_of = destinations<dim>(ranks, partition.cube, cells);
-  std::vector<double> arrived = values_sent_to(ranks, rank_of, values, n_values);
-  cells = sent_to<dim>(ranks, rank_of, cells);
+  return balance_cells<dim>(partition.ranks, {partition.cube, labels_of(before)}, partition.first_mesh,
+                            std::move(cells), values, n_values);
+}
+
+template <int dim>
+Balanced<dim> restore(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> first,
+                      std::vector<CellRecord<dim>> cells, std::span<const double> values, int n_values)
+{
+  Origin<dim> origin = origin_of(ranks, first.get());
+  if (ranks.size() > 1)
+    return balance_cells<dim>(ranks, std::move(origin), std::move(first), std::move(cells), values, n_values);
   const std::vector<CellName> names = names_of<dim>(cells);
-  Balanced<dim> result{
-      make_part<dim>(ranks, partition.cube, partition.first_mesh, std::move(cells), labels_of(before)),
-      {},
-      std::move(arrived)};
-  result.cells = numbers_of<dim>(result.mesh, names);
-  return result;
+  const MeshPart<dim> part = with_ghosts<dim>(ranks, origin.cube, std::move(cells));
+  std::vector<Index> numbers = numbers_in(part.partition.names, names);
+  return {
+      whole_mesh<dim>(part, std::move(origin.labels)), std::move(numbers), {values.begin(), values.end()}};
 }
 
 template <int dim>
@@ -182,15 +233,19 @@ PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> 
   part.partition.n_vertices = from.n_global_vertices();
   std::ranges::fill(part.partition.has_patch, 0);
   Mesh<dim> mesh(std::move(part), labels_of(from));
-  std::vector<Index> number = numbers_of<dim>(mesh, names_of<dim>(cells));
+  std::vector<Index> number = numbers_in(mesh.partition()->names, names_of<dim>(cells));
   return {std::move(mesh), std::move(number)};
 }
 
 template Mesh<2> share_out(const Ranks&, std::shared_ptr<const Mesh<2>>);
 template Mesh<3> share_out(const Ranks&, std::shared_ptr<const Mesh<3>>);
+template Balanced<2> restore(const Ranks&, std::shared_ptr<const Mesh<2>>, std::vector<CellRecord<2>>,
+                             std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
+template Balanced<3> restore(const Ranks&, std::shared_ptr<const Mesh<3>>, std::vector<CellRecord<3>>,
+                             std::span<const double>, int);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
 template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);

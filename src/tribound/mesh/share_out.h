@@ -37,6 +37,13 @@ template <int dim>
 [[nodiscard]] Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
                                     std::span<const double> values, int n_values);
 
+/// A mesh of cells that a rank has from somewhere else, for example a file; `first`: the mesh they come from,
+/// on the first rank, elsewhere null. On one rank it is a whole mesh, that comes from bisect().
+template <int dim>
+[[nodiscard]] Balanced<dim> restore(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> first,
+                                    std::vector<CellRecord<dim>> cells, std::span<const double> values,
+                                    int n_values);
+
 /// Own cells as they travel.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> records_of(const Mesh<dim>& mesh, std::span<const Index> cells);

@@ -198,6 +198,13 @@ Json balance_json(const certify::Balance& balance)
   return object;
 }
 
+Json levels_json(const RunRecord& run)
+{
+  Json levels = Json::parse(run.earlier.levels);
+  for (const LevelRecord& level : run.levels) levels.push_back(json(level));
+  return levels;
+}
+
 Json certificate(const RunRecord& run)
 {
   Json object{{"schema", certificate_schema},
@@ -224,8 +231,7 @@ Json certificate(const RunRecord& run)
   object["warnings"] = Json::array();
   for (const doctor::Finding& warning : run.warnings) object["warnings"].push_back(json(warning));
   object["mesh"] = mesh_json(run.mesh);
-  object["levels"] = Json::array();
-  for (const LevelRecord& level : run.levels) object["levels"].push_back(json(level));
+  object["levels"] = levels_json(run);
   object["times"] = times_json(run);
   return object;
 }

@@ -20,6 +20,9 @@ namespace tribound::io
 /// `case` of the certificate: the effective case by the hash of its text; null where there is none.
 [[nodiscard]] Json effective_case_json(const RunRecord& run);
 
+/// `levels` of the certificate, earlier ones included.
+[[nodiscard]] Json levels_json(const RunRecord& run);
+
 /// `balance` of the certificate.
 [[nodiscard]] Json balance_json(const certify::Balance& balance);
 

@@ -15,6 +15,15 @@
 namespace tribound::io
 {
 
+/// The levels before a restart, as text.
+struct EarlierLevels
+{
+  std::string convergence;       ///< rows of convergence.csv
+  std::string newton;            ///< rows of newton.csv
+  std::string levels = "[]";     ///< `levels` of certificate.json
+  std::int64_t first_cells = 0;  ///< of the first mesh
+};
+
 struct RunRecord
 {
   CaseFacts facts;
@@ -22,14 +31,22 @@ struct RunRecord
   BuildFacts build;
   certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
-  std::vector<LevelRecord> levels;
-  double tolerance = 0.0;  ///< of bound / ||sigma(u_h)||
+  EarlierLevels earlier;
+  std::vector<LevelRecord> levels;  ///< after them
+  double tolerance = 0.0;           ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
   std::vector<doctor::Finding> warnings;  ///< about the last level
   EffectiveCase effective;                ///< empty where the run is a part of something larger
   std::string case_file = "case.toml";    ///< where it is written in the output directory
   double setup = 0.0;                     ///< wall time before the first level; s
 };
+
+/// All its levels as earlier ones.
+[[nodiscard]] EarlierLevels as_earlier(const RunRecord& run);
+
+/// The tables with the earlier levels.
+[[nodiscard]] std::string convergence_csv(const RunRecord& run);
+[[nodiscard]] std::string newton_csv(const RunRecord& run);
 
 /// The text of certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);

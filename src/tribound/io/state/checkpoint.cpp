@@ -1,0 +1,198 @@
+#include "tribound/io/state/checkpoint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "tribound/base/error.h"
+#include "tribound/fem/nested.h"
+#include "tribound/io/file/json.h"
+#include "tribound/io/state/hdf5_file.h"
+#include "tribound/mesh/share_out.h"
+
+namespace tribound::io
+{
+
+namespace
+{
+
+/// Of the file; another one cannot be read.
+constexpr int format = 1;
+
+Json state_json(const CheckpointFacts& facts)
+{
+  const adapt::LevelStart& start = facts.start;
+  Json json = {{"format", format},
+               {"dimension", facts.dimension},
+               {"degree", facts.degree},
+               {"level", start.level},
+               {"delta", start.delta},
+               {"accuracy", start.accuracy},
+               {"first_cells", facts.earlier.first_cells},
+               {"case", facts.case_text},
+               {"convergence", facts.earlier.convergence},
+               {"newton", facts.earlier.newton},
+               {"levels", facts.earlier.levels}};
+  if (start.expected) json["expected"] = *start.expected;
+  if (const auto& c = start.friedrichs; c && std::isfinite(c->value))
+    json["friedrichs"] = {c->value, c->theta, c->mesh_size, c->cells};
+  return json;
+}
+
+CheckpointFacts facts_of(const Json& json)
+{
+  CheckpointFacts facts;
+  facts.dimension = json.at("dimension");
+  facts.degree = json.at("degree");
+  facts.start.level = json.at("level");
+  facts.start.delta = json.at("delta");
+  facts.start.accuracy = json.at("accuracy");
+  facts.case_text = json.at("case");
+  facts.earlier = {json.at("convergence"), json.at("newton"), json.at("levels"), json.at("first_cells")};
+  if (json.contains("expected")) facts.start.expected = json.at("expected").get<double>();
+  if (json.contains("friedrichs"))
+  {
+    const Json& c = json.at("friedrichs");
+    facts.start.friedrichs = {c.at(0), c.at(1), c.at(2), c.at(3)};
+  }
+  return facts;
+}
+
+/// A member of all cells, `width` numbers each.
+template <class T, int dim, class Get>
+std::vector<T> column(std::span<const mesh::CellRecord<dim>> cells, const Get& get)
+{
+  std::vector<T> values;
+  for (const mesh::CellRecord<dim>& cell : cells) get(cell, [&values](T value) { values.push_back(value); });
+  return values;
+}
+
+template <int dim>
+void write_cells(Hdf5File& file, std::span<const mesh::CellRecord<dim>> cells)
+{
+  constexpr int n = dim + 1;
+  using Cell = mesh::CellRecord<dim>;
+  file.write<std::int64_t>(
+      "root", column<std::int64_t, dim>(cells, [](const Cell& c, const auto& put) { put(c.name.root); }), 1);
+  file.write<std::uint64_t>("path",
+                            column<std::uint64_t, dim>(cells, [](const Cell& c, const auto& put)
+                                                       { std::ranges::for_each(c.name.path, put); }),
+                            2);
+  file.write<std::int32_t>(
+      "depth", column<std::int32_t, dim>(cells, [](const Cell& c, const auto& put) { put(c.name.depth); }),
+      1);
+  file.write<double>("vertices",
+                     column<double, dim>(cells,
+                                         [](const Cell& c, const auto& put)
+                                         {
+                                           for (const auto& v : c.vertices)
+                                             std::ranges::for_each(v.position, put);
+                                         }),
+                     n * dim);
+  file.write<std::uint64_t>("origins",
+                            column<std::uint64_t, dim>(cells,
+                                                       [](const Cell& c, const auto& put)
+                                                       {
+                                                         for (const auto& v : c.vertices) put(v.origin);
+                                                       }),
+                            n);
+  file.write<std::int32_t>("tags",
+                           column<std::int32_t, dim>(cells, [](const Cell& c, const auto& put)
+                                                     { std::ranges::for_each(c.tags, put); }),
+                           n);
+  file.write<std::int32_t>(
+      "region", column<std::int32_t, dim>(cells, [](const Cell& c, const auto& put) { put(c.region); }), 1);
+  file.write<std::int32_t>(
+      "bisection_type",
+      column<std::int32_t, dim>(cells, [](const Cell& c, const auto& put) { put(c.bisection_type); }), 1);
+}
+
+template <int dim>
+std::vector<mesh::CellRecord<dim>> read_cells(Hdf5File& file)
+{
+  constexpr std::size_t n = dim + 1;
+  const auto root = file.read<std::int64_t>("root", 1);
+  const auto path = file.read<std::uint64_t>("path", 2);
+  const auto depth = file.read<std::int32_t>("depth", 1);
+  const auto position = file.read<double>("vertices", n * dim);
+  const auto origin = file.read<std::uint64_t>("origins", n);
+  const auto tags = file.read<std::int32_t>("tags", n);
+  const auto region = file.read<std::int32_t>("region", 1);
+  const auto type = file.read<std::int32_t>("bisection_type", 1);
+  std::vector<mesh::CellRecord<dim>> cells(root.size());
+  for (std::size_t c = 0; c < cells.size(); ++c)
+  {
+    mesh::CellRecord<dim>& cell = cells[c];
+    cell.name = {root[c], {path[2 * c], path[2 * c + 1]}, depth[c]};
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      std::copy_n(&position[(c * n + i) * dim], dim, cell.vertices[i].position.begin());
+      cell.vertices[i].origin = origin[c * n + i];
+      cell.tags[i] = tags[c * n + i];
+    }
+    cell.region = region[c];
+    cell.bisection_type = type[c];
+  }
+  return cells;
+}
+
+}  // namespace
+
+template <int dim>
+void write_checkpoint(const std::filesystem::path& directory, const CheckpointFacts& facts,
+                      const fem::LagrangeSpace<dim>& space, std::span<const double> u)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  std::vector<Index> own(mesh.n_owned_cells());
+  std::iota(own.begin(), own.end(), 0);
+  const std::vector<mesh::CellRecord<dim>> cells =
+      mesh.partition() ? mesh::records_of(mesh, own) : mesh::first_records(mesh);
+  Hdf5File file(directory / checkpoint_name, Hdf5File::Mode::write, mesh.ranks());
+  file.write_text("state", state_json(facts).dump());
+  write_cells<dim>(file, cells);
+  file.write<double>("u", fem::cell_values<dim>(space, u, own), dim * space.basis().n_nodes());
+  file.commit();
+}
+
+CheckpointFacts read_checkpoint_facts(const std::filesystem::path& directory, const Ranks& ranks)
+{
+  const std::filesystem::path path = directory / checkpoint_name;
+  Hdf5File file(path, Hdf5File::Mode::read, ranks);
+  const std::string text = file.read_text("state");
+  try
+  {
+    const Json json = Json::parse(text);
+    if (json.at("format") != format)
+      throw InputError({.file = path.string()}, "is a checkpoint of another version of Tribound",
+                       "start the run anew, or restart it with the version that wrote it");
+    return facts_of(json);
+  }
+  catch (const Json::exception& error)
+  {
+    throw InputError({.file = path.string()}, std::string("is a damaged checkpoint: ") + error.what(),
+                     "start the run anew");
+  }
+}
+
+template <int dim>
+CheckpointCells<dim> read_checkpoint_cells(const std::filesystem::path& directory,
+                                           const CheckpointFacts& facts, const Ranks& ranks)
+{
+  Hdf5File file(directory / checkpoint_name, Hdf5File::Mode::read, ranks);
+  CheckpointCells<dim> result;
+  result.cells = read_cells<dim>(file);
+  result.values = file.read<double>("u", dim * fem::LagrangeBasis<dim>(facts.degree).n_nodes());
+  return result;
+}
+
+template void write_checkpoint(const std::filesystem::path&, const CheckpointFacts&,
+                               const fem::LagrangeSpace<2>&, std::span<const double>);
+template void write_checkpoint(const std::filesystem::path&, const CheckpointFacts&,
+                               const fem::LagrangeSpace<3>&, std::span<const double>);
+template CheckpointCells<2> read_checkpoint_cells(const std::filesystem::path&, const CheckpointFacts&,
+                                                  const Ranks&);
+template CheckpointCells<3> read_checkpoint_cells(const std::filesystem::path&, const CheckpointFacts&,
+                                                  const Ranks&);
+
+}  // namespace tribound::io
