@@ -158,6 +158,7 @@ def faults():
         expect(name, good and words in result.stdout and time.monotonic() - begin < 30, result.returncode, result.stdout, result.stderr)
 
 
+shutil.rmtree(DIRECTORY, ignore_errors=True)
 the_same_as_one("tresca", f"{EXAMPLES}/01_tresca_block/case.toml")
 the_same_as_one("coulomb", f"{EXAMPLES}/02_coulomb_block/case.toml", "--set", "degree=3")
 the_same_as_one("dam", f"{EXAMPLES}/05_dam/case.toml")
