@@ -42,6 +42,8 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
                   const Progress& progress)
 {
   using Whole = mesh::Mesh<dim>;
+  if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh); box && !checkpoint)
+    return run(config, mesh::share_out<dim>(ranks, *box), progress);
   auto first = whole ? std::make_shared<const Whole>(std::get<Whole>(*std::move(whole))) : nullptr;
   if (!checkpoint) return run(config, mesh::share_out<dim>(ranks, std::move(first)), progress);
   ranks.on_first(
@@ -92,6 +94,8 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
   const bool is_plane = ranks.on_first(
       [&]
       {
+        if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh); box && !checkpoint)
+          return box->lower.size() == 2;  // all ranks make it
         whole.emplace(mesh::read_mesh(config.mesh, &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });

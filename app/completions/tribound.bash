@@ -13,7 +13,7 @@ _tribound()
   done
 
   case $previous in
-    --directory)
+    --directory | --restart)
       mapfile -t COMPREPLY < <(compgen -d -- "$current")
       compopt -o filenames 2>/dev/null
       return ;;
@@ -30,7 +30,8 @@ _tribound()
         init) candidates="block hertz dam --directory --help" ;;
         info) candidates="--help" ;;
         check) candidates="--set --quiet --json --help" ;;
-        run | study) candidates="--set --quiet --help" ;;
+        run) candidates="--set --quiet --restart --help" ;;
+        study) candidates="--set --quiet --help" ;;
         sweep) candidates="--set --table --jobs --resume --help" ;;
         verify) candidates="--set --quiet --refinements --help" ;;
       esac ;;

@@ -25,6 +25,7 @@
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/overlay.h"
 #include "tribound/mesh/refine.h"
+#include "tribound/mesh/share_out.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "tribound/contact/nitsche/elasticity.h"
@@ -69,6 +70,7 @@
 #include "tribound/certify/truth/true_error.h"
 
 // The adaptive loop: a level of it, where to refine, the whole.
+#include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/levels.h"
 #include "tribound/adapt/loop.h"
@@ -85,3 +87,4 @@
 #include "tribound/io/record/report.h"
 #include "tribound/io/record/solution_figures.h"
 #include "tribound/io/record/tables.h"
+#include "tribound/io/state/checkpoint.h"

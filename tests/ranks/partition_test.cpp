@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <memory>
+#include <numeric>
 #include <set>
 #include <span>
 #include <utility>
@@ -15,6 +18,8 @@
 #include "support/joined_meshes.h"
 #include "support/meshes.h"
 #include "tribound/base/error.h"
+#include "tribound/mesh/box.h"
+#include "tribound/mesh/share_out.h"
 
 namespace tribound::test
 {
@@ -246,6 +251,45 @@ TEST(GhostUpdate, BringsTheValuesOfTheOwners)
     for (int i = 0; i < 2; ++i) EXPECT_EQ(values[2 * c + i], 10.0 * partition.names[c].root + i);
   std::vector<char> nothing;
   GhostUpdate()(std::span(nothing));
+}
+
+/// Each rank makes its stretch of the cells of a box; the whole box would be the same.
+template <int dim>
+void expect_same_box(const mesh::BoxMesh& box)
+{
+  const Ranks ranks = Ranks::world();
+  const mesh::Mesh<dim> whole(mesh::box_mesh<dim>(box));
+  const std::vector<CellRecord<dim>> all = mesh::first_records(whole);
+  ASSERT_EQ(mesh::n_box_cells(box), static_cast<std::int64_t>(all.size()));
+  EXPECT_TRUE(mesh::box_records<dim>(box, 0, mesh::n_box_cells(box)) == all);
+  const auto first =
+      ranks.is_first() ? std::make_shared<const mesh::Mesh<dim>>(mesh::box_mesh<dim>(box)) : nullptr;
+  for (const std::int64_t most_whole : {1'000'000, 20})
+  {
+    const mesh::Mesh<dim> by_formula = mesh::share_out<dim>(ranks, box, most_whole);
+    const mesh::Mesh<dim> from_first = mesh::share_out<dim>(ranks, first);
+    EXPECT_EQ(by_formula.n_global_cells(), static_cast<std::int64_t>(all.size()));
+    EXPECT_EQ(by_formula.n_global_vertices(), from_first.n_global_vertices());
+    EXPECT_TRUE(std::ranges::equal(by_formula.boundary_names(), from_first.boundary_names()));
+    if (!by_formula.partition()->first_mesh) continue;
+    EXPECT_EQ(by_formula.partition()->first_mesh->n_cells() == whole.n_cells(), most_whole > 20);
+  }
+  const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, box);
+  std::vector<Index> own(part.n_owned_cells());
+  std::iota(own.begin(), own.end(), 0);
+  std::int64_t n = 0;
+  for (const CellRecord<dim>& cell : mesh::records_of(part, std::span<const Index>(own)))
+  {
+    EXPECT_TRUE(cell == all[cell.name.root]);
+    ++n;
+  }
+  EXPECT_EQ(ranks.sum(n), static_cast<std::int64_t>(all.size()));
+}
+
+TEST(Box, IsMadeByAllRanks)
+{
+  expect_same_box<2>({.lower = {0, -1}, .upper = {2.5, 0.7}, .cells = {7, 5}});
+  expect_same_box<3>({.lower = {0, -1, 3}, .upper = {2.5, 0.7, 4}, .cells = {5, 3, 4}});
 }
 
 }  // namespace

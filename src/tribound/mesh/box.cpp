@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "tribound/mesh/marked_cell.h"
 
 namespace tribound::mesh
 {
@@ -53,6 +56,56 @@ void for_each_side(const std::array<Index, dim>& corners, const std::array<Index
   }
 }
 
+/// The points and cubes of the grid.
+template <int dim>
+struct Grid
+{
+  explicit Grid(const BoxMesh& of) : box(of)
+  {
+    for (int i = 0; i < dim; ++i)
+    {
+      n_cubes[i] = box.cells[i];
+      n_points[i] = n_cubes[i] + 1;
+      stride[i] = i == 0 ? 1 : stride[i - 1] * n_points[i - 1];
+    }
+  }
+
+  [[nodiscard]] Point<dim> point(const std::array<Index, dim>& at) const
+  {
+    Point<dim> x;
+    for (int i = 0; i < dim; ++i) x[i] = std::lerp(box.lower[i], box.upper[i], double(at[i]) / n_cubes[i]);
+    return x;
+  }
+  /// Of a corner of a cube.
+  [[nodiscard]] std::array<Index, dim> corner(std::array<Index, dim> cube, Index corner) const
+  {
+    for (int i = 0; i < dim; ++i) cube[i] += corner >> i & 1;
+    return cube;
+  }
+  [[nodiscard]] Index vertex(const std::array<Index, dim>& at) const
+  {
+    Index v = 0;
+    for (int i = 0; i < dim; ++i) v += at[i] * stride[i];
+    return v;
+  }
+  /// In the order of for_each_grid_point().
+  [[nodiscard]] std::array<Index, dim> cube(std::int64_t number) const
+  {
+    std::array<Index, dim> at;
+    for (int i = 0; i < dim; ++i)
+    {
+      at[i] = static_cast<Index>(number % n_cubes[i]);
+      number /= n_cubes[i];
+    }
+    return at;
+  }
+
+  const BoxMesh& box;
+  std::array<Index, dim> n_cubes;
+  std::array<Index, dim> n_points;
+  std::array<Index, dim> stride;  ///< between the vertex numbers of neighbours along an axis
+};
+
 }  // namespace
 
 void require_valid(const BoxMesh& box)
@@ -88,51 +141,37 @@ void require_valid(const BoxMesh& box)
 }
 
 template <int dim>
-MeshData<dim> box_mesh(const BoxMesh& box)
+MeshLabels box_labels(const BoxMesh& box)
 {
   require_valid(box);
   if (box.lower.size() != dim)
     throw InputError(box.where, fmt::format("the box has {} dimensions", box.lower.size()),
                      fmt::format("a mesh in {}D needs {} coordinates for each corner", dim, dim));
+  MeshLabels labels{{"box"}, {"left", "right", "bottom", "top"}, box.where};
+  if (dim == 3) labels.boundary_names.insert(labels.boundary_names.end(), {"back", "front"});
+  return labels;
+}
+
+template <int dim>
+MeshData<dim> box_mesh(const BoxMesh& box)
+{
+  MeshLabels labels = box_labels<dim>(box);
   MeshData<dim> data;
-  data.source = box.where;
-  data.region_names = {"box"};
-  data.boundary_names = {"left", "right", "bottom", "top"};
-  if (dim == 3) data.boundary_names.insert(data.boundary_names.end(), {"back", "front"});
-
-  std::array<Index, dim> n_cubes;
-  std::array<Index, dim> n_points;
-  std::array<Index, dim> stride;  // between the vertex numbers of neighbours along an axis
-  for (int i = 0; i < dim; ++i)
-  {
-    n_cubes[i] = box.cells[i];
-    n_points[i] = n_cubes[i] + 1;
-    stride[i] = i == 0 ? 1 : stride[i - 1] * n_points[i - 1];
-  }
-
-  for_each_grid_point<dim>(n_points,
-                           [&](const auto& at)
-                           {
-                             Point<dim> x;
-                             for (int i = 0; i < dim; ++i)
-                               x[i] = std::lerp(box.lower[i], box.upper[i], double(at[i]) / n_cubes[i]);
-                             data.vertices.push_back(x);
-                           });
-  for_each_grid_point<dim>(n_cubes,
+  data.source = std::move(labels.source);
+  data.region_names = std::move(labels.region_names);
+  data.boundary_names = std::move(labels.boundary_names);
+  const Grid<dim> grid(box);
+  for_each_grid_point<dim>(grid.n_points, [&](const auto& at) { data.vertices.push_back(grid.point(at)); });
+  for_each_grid_point<dim>(grid.n_cubes,
                            [&](const auto& cube)
                            {
-                             const auto vertex = [&](Index corner)
-                             {
-                               Index v = 0;
-                               for (int i = 0; i < dim; ++i) v += (cube[i] + (corner >> i & 1)) * stride[i];
-                               return v;
-                             };
                              for (const Cell<dim>& corners : cube_cells<dim>)
                              {
                                Cell<dim>& cell = data.cells.emplace_back();
-                               for (int i = 0; i <= dim; ++i) cell[i] = vertex(corners[i]);
                                for (int i = 0; i <= dim; ++i)
-                                 for_each_side<dim>(facet_vertices(corners, i), cube, n_cubes,
+                                 cell[i] = grid.vertex(grid.corner(cube, corners[i]));
+                               for (int i = 0; i <= dim; ++i)
+                                 for_each_side<dim>(facet_vertices(corners, i), cube, grid.n_cubes,
                                                     [&](int tag) {
                                                       data.facets.push_back({facet_vertices(cell, i), tag});
                                                     });
@@ -142,6 +181,52 @@ MeshData<dim> box_mesh(const BoxMesh& box)
   return data;
 }
 
+std::int64_t n_box_cells(const BoxMesh& box)
+{
+  std::int64_t n = box.lower.size() == 2 ? 2 : 6;
+  for (const int cubes : box.cells) n *= cubes;
+  return n;
+}
+
+template <int dim>
+std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first, std::int64_t last)
+{
+  constexpr auto n_in_cube = static_cast<std::int64_t>(cube_cells<dim>.size());
+  const Grid<dim> grid(box);
+  std::vector<CellRecord<dim>> records;
+  records.reserve(last - first);
+  for (std::int64_t number = first; number < last; ++number)
+  {
+    const auto cube = grid.cube(number / n_in_cube);
+    const Cell<dim>& corners = cube_cells<dim>[number % n_in_cube];
+    std::array<Point<dim>, dim + 1> points;
+    Cell<dim> own;  // numbers in `points`
+    for (int i = 0; i <= dim; ++i)
+    {
+      points[i] = grid.point(grid.corner(cube, corners[i]));
+      own[i] = i;
+    }
+    const MarkedCell<dim> marked = longest_edges_marked<dim>(points, own);
+    CellRecord<dim>& record = records.emplace_back();
+    record.name.root = number;
+    record.region = 0;
+    record.bisection_type = marked.type;
+    for (int i = 0; i <= dim; ++i)
+    {
+      const Index local = marked.vertices[i];
+      record.vertices[i] = vertex_name<dim>(points[local], grid.vertex(grid.corner(cube, corners[local])));
+      record.tags[i] = facet_inside;
+      for_each_side<dim>(facet_vertices(corners, local), cube, grid.n_cubes,
+                         [&](int tag) { record.tags[i] = tag; });
+    }
+  }
+  return records;
+}
+
+template MeshLabels box_labels<2>(const BoxMesh&);
+template MeshLabels box_labels<3>(const BoxMesh&);
+template std::vector<CellRecord<2>> box_records<2>(const BoxMesh&, std::int64_t, std::int64_t);
+template std::vector<CellRecord<3>> box_records<3>(const BoxMesh&, std::int64_t, std::int64_t);
 template MeshData<2> box_mesh<2>(const BoxMesh&);
 template MeshData<3> box_mesh<3>(const BoxMesh&);
 

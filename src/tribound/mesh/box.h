@@ -3,7 +3,11 @@
 /// @file box.h
 /// Structured meshes of a rectangle or a cuboid.
 
+#include <cstdint>
+#include <vector>
+
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/partition.h"
 #include "tribound/mesh/source.h"
 
 namespace tribound::mesh
@@ -19,5 +23,17 @@ void require_valid(const BoxMesh& box);
 /// Throws as require_valid() does.
 template <int dim>
 [[nodiscard]] MeshData<dim> box_mesh(const BoxMesh& box);
+
+/// Its names. Throws as require_valid() does.
+template <int dim>
+[[nodiscard]] MeshLabels box_labels(const BoxMesh& box);
+
+/// How many cells it has.
+[[nodiscard]] std::int64_t n_box_cells(const BoxMesh& box);
+
+/// Its cells number first, ..., last - 1 as first_records() gives them, without the others.
+template <int dim>
+[[nodiscard]] std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first,
+                                                       std::int64_t last);
 
 }  // namespace tribound::mesh

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "tribound/mesh/box.h"
+
 namespace tribound::mesh
 {
 
@@ -170,6 +172,15 @@ Mesh<dim> whole_mesh(const MeshPart<dim>& part, MeshLabels labels)
   return Mesh<dim>(std::move(data));
 }
 
+template <int dim>
+std::shared_ptr<const Mesh<dim>> whole_or_coarse(const BoxMesh& box, std::int64_t most_whole)
+{
+  BoxMesh coarse = box;
+  while (n_box_cells(coarse) > most_whole)
+    for (int& n : coarse.cells) n = (n + 1) / 2;
+  return std::make_shared<const Mesh<dim>>(box_mesh<dim>(coarse));
+}
+
 }  // namespace
 
 template <int dim>
@@ -180,6 +191,24 @@ Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole)
   if (whole) cells = first_records(*whole);
   Origin<dim> origin = origin_of(ranks, whole.get());
   return balance_cells<dim>(ranks, std::move(origin), std::move(whole), std::move(cells), {}, 0).mesh;
+}
+
+template <int dim>
+Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box, std::int64_t most_whole)
+{
+  MeshLabels labels = box_labels<dim>(box);
+  std::shared_ptr<const Mesh<dim>> first;
+  if (ranks.is_first()) first = whole_or_coarse<dim>(box, most_whole);
+  const Origin<dim> origin = origin_of(ranks, first.get());
+  const std::int64_t n = n_box_cells(box);
+  std::vector<CellRecord<dim>> cells =
+      box_records<dim>(box, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
+  // Cells come in stretches of the last axis: it is the curve that gives them few neighbours.
+  const std::vector<std::int64_t> weights(cells.size(), 1);
+  const std::vector<int> rank_of =
+      balanced_ranks(ranks, centre_keys<dim>(origin.cube, std::span<const CellRecord<dim>>(cells)), weights);
+  cells = sent_to<dim>(ranks, rank_of, cells);
+  return make_part<dim>(ranks, origin.cube, std::move(first), std::move(cells), std::move(labels));
 }
 
 template <int dim>
@@ -243,11 +272,13 @@ template Balanced<2> restore(const Ranks&, std::shared_ptr<const Mesh<2>>, std::
                              std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
+template Mesh<2> share_out(const Ranks&, const BoxMesh&, std::int64_t);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
 template Balanced<3> restore(const Ranks&, std::shared_ptr<const Mesh<3>>, std::vector<CellRecord<3>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
+template Mesh<3> share_out(const Ranks&, const BoxMesh&, std::int64_t);
 template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);
 
 }  // namespace tribound::mesh

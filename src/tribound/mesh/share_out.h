@@ -4,6 +4,7 @@
 /// Meshes on several ranks: the first one from the rank that has it, and each later one where its cells
 /// balance.
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "tribound/base/ranks.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/partition.h"
+#include "tribound/mesh/source.h"
 
 namespace tribound::mesh
 {
@@ -19,6 +21,12 @@ namespace tribound::mesh
 /// cells, up to one. Cells have their vertices in the order in which bisect() takes them.
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole);
+
+/// The same of a box, of which each rank makes its own cells. The first mesh that the first rank keeps
+/// (Partition::first_mesh) is that of the box, or, of a box with more than `most_whole` cells, a coarser one
+/// of it: bodies, supports and bounds for data are those of the box.
+template <int dim>
+[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box, std::int64_t most_whole = 100'000);
 
 /// The part of a rank, and values that have come with the cells.
 template <int dim>
