@@ -4,6 +4,7 @@
 
 #include "app/shared_file.h"
 #include "tribound/algebra/petsc.h"
+#include "tribound/base/parallel.h"
 #include "tribound/mesh/gmsh.h"
 
 namespace tribound::app
@@ -16,6 +17,7 @@ io::BuildFacts library_facts()
   build.petsc = algebra.petsc;
   build.mumps = algebra.mumps;
   build.mpi = algebra.mpi;
+  build.threads = max_threads();
   build.blas = algebra.blas.library;
   build.blas_threads = algebra.blas.threads;
   build.gmsh = mesh::gmsh_version();

@@ -99,6 +99,7 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   record_.facts = case_file::case_facts(config, dim);
   record_.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
   record_.build = library_facts();
+  record_.build.processes = ranks_.size();
   for (const std::string& name : first.mesh.boundary_names())
     if (std::ranges::count(config.boundaries, name, &case_file::BoundaryConfig::name) == 0)
       free_sides_.push_back(name);

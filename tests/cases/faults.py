@@ -169,7 +169,7 @@ def little_address_space(directory):
 
 def several_processes(directory):
     for variable in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
-        code, _, errors = run(directory, "check", "case.toml", env=ENVIRONMENT | {variable: "2"})
+        code, _, errors = run(directory, "verify", "case.toml", env=ENVIRONMENT | {variable: "2"})
         expect(code == 1 and "started as 2 processes" in errors, code, errors)
 
 

@@ -292,5 +292,36 @@ TEST(Box, IsMadeByAllRanks)
   expect_same_box<3>({.lower = {0, -1, 3}, .upper = {2.5, 0.7, 4}, .cells = {5, 3, 4}});
 }
 
+/// Bytes of what a rank has of a mesh, as long as they grow with it.
+template <int dim>
+double bytes_of(const mesh::Mesh<dim>& mesh)
+{
+  const auto size = [](const auto& values) { return static_cast<double>(std::span(values).size_bytes()); };
+  const mesh::Topology<dim>& t = mesh.topology();
+  const mesh::Partition<dim>& p = *mesh.partition();
+  double bytes =
+      size(mesh.vertices()) + size(mesh.cells()) + size(mesh.boundary()) + size(mesh.bisection_types());
+  bytes += size(t.facets) + size(t.facet_cells) + size(t.cell_facets) + size(t.edges) + size(t.cell_edges) +
+           size(t.vertex_cells_begin) + size(t.vertex_cells);
+  bytes += size(p.names) + size(p.ghost_owners) + size(p.vertices) + size(p.has_patch) +
+           size(p.sharers_begin) + size(p.sharers);
+  return bytes + (p.first_mesh ? 200.0 * p.first_mesh->n_cells() : 0);
+}
+
+/// A share of the cells, and what grows like the surface between the parts.
+TEST(Box, LeavesNoRankTheWhole)
+{
+  const Ranks ranks = Ranks::world();
+  constexpr double per_cell = 350;
+  for (const int n : {8, 16, 32})
+  {
+    const mesh::BoxMesh box{.lower = {0, 0, 0}, .upper = {1, 1, 1}, .cells = {n, n, n}};
+    const mesh::Mesh<3> part = mesh::share_out<3>(ranks, box, 1000);
+    const double share = static_cast<double>(part.n_global_cells()) / ranks.size();
+    const double surface = ranks.size() == 1 ? 0 : 40.0 * n * n;
+    EXPECT_LT(bytes_of(part), per_cell * (1.05 * share + surface) + 3e5) << n;
+  }
+}
+
 }  // namespace
 }  // namespace tribound::test

@@ -5,6 +5,9 @@
 #include <set>
 #include <utility>
 
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/partition.h"
+
 namespace tribound::doctor
 {
 
@@ -79,18 +82,27 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
 
 /// Per boundary number the mean normal of a contact boundary whose facets are within 10 degrees of it.
 template <int dim>
-std::vector<std::optional<Point<dim>>> normals_of_planes(const contact::NitscheForm<dim>& form)
+std::vector<std::optional<Point<dim>>> normals_of_planes(const problem::Problem<dim>& problem,
+                                                         const mesh::Mesh<dim>& mesh)
 {
   constexpr double cos_limit = 0.985;
-  std::vector<Point<dim>> sum(form.problem().boundaries().size(), Point<dim>::Zero());
-  for (const contact::ContactSegment<dim>& segment : form.segments())
-    sum[segment.slave.facet.tag] += segment.measure * segment.normal;
+  const auto for_each_facet = [&](const auto& visit)
+  {
+    for (const mesh::BoundaryFacet& facet : mesh.boundary())
+      if (problem.boundary(facet.tag).contact)
+        visit(facet.tag, mesh::facet_geometry(mesh, facet.cell, facet.local));
+  };
+  std::vector<Point<dim>> sum(problem.boundaries().size(), Point<dim>::Zero());
+  for_each_facet([&](int tag, const mesh::FacetGeometry<dim>& facet)
+                 { sum[tag] += facet.measure * facet.normal; });
   std::vector<std::optional<Point<dim>>> normals(sum.size());
   for (std::size_t tag = 0; tag < sum.size(); ++tag)
     if (sum[tag].norm() > 0) normals[tag] = sum[tag].normalized();
-  for (const contact::ContactSegment<dim>& segment : form.segments())
-    if (auto& normal = normals[segment.slave.facet.tag]; normal && segment.normal.dot(*normal) < cos_limit)
-      normal.reset();
+  for_each_facet(
+      [&](int tag, const mesh::FacetGeometry<dim>& facet)
+      {
+        if (auto& normal = normals[tag]; normal && facet.normal.dot(*normal) < cos_limit) normal.reset();
+      });
   return normals;
 }
 
@@ -103,20 +115,29 @@ bool OverconstrainedCorner::contradicts() const
 }
 
 template <int dim>
-std::vector<bool> slides_as_a_whole(const contact::NitscheForm<dim>& form)
+std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem,
+                                    const fem::LagrangeSpace<dim>& space)
 {
   constexpr double negligible = 1e-6;  // motions have size 1
-  const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const std::vector<std::optional<Point<dim>>> plane = normals_of_planes(form);
-  std::vector<bool> slides(plane.size(), false);
-  for (const contact::Body<dim>& body : contact::find_bodies(form.space()))
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  std::vector<bool> slides(problem.boundaries().size(), false);
+  if (mesh.partition())
   {
-    const contact::BodySupport<dim> support(form.problem(), mesh, body);
+    mesh.ranks().on_first(
+        [&] {
+          slides = slides_as_a_whole<dim>(problem, fem::LagrangeSpace<dim>(*mesh.partition()->first_mesh, 1));
+        });
+    return slides;
+  }
+  const std::vector<std::optional<Point<dim>>> plane = normals_of_planes(problem, mesh);
+  for (const contact::Body<dim>& body : contact::find_bodies(space))
+  {
+    const contact::BodySupport<dim> support(problem, mesh, body);
     Eigen::MatrixXd gram = support.dirichlet_gram();
     const auto for_each_contact_vertex = [&](const auto& visit)
     {
       for (const mesh::BoundaryFacet& facet : body.facets)
-        if (form.problem().boundary(facet.tag).contact)
+        if (problem.boundary(facet.tag).contact)
           for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
             visit(facet, body.modes.at(mesh.vertex(v)));
     };
@@ -193,8 +214,8 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const contact::Nitsch
   return result;
 }
 
-template std::vector<bool> slides_as_a_whole(const contact::NitscheForm<2>&);
-template std::vector<bool> slides_as_a_whole(const contact::NitscheForm<3>&);
+template std::vector<bool> slides_as_a_whole(const problem::Problem<2>&, const fem::LagrangeSpace<2>&);
+template std::vector<bool> slides_as_a_whole(const problem::Problem<3>&, const fem::LagrangeSpace<3>&);
 template std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<2>&);
 template std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<3>&);
 template std::vector<OverconstrainedCorner> overconstrained_corners(const contact::NitscheForm<2>&);

@@ -153,7 +153,7 @@ Balanced<dim> balance_cells(const Ranks& ranks, Origin<dim> origin, std::shared_
 
 /// The cells of a part without ghosts as a whole mesh, in their order.
 template <int dim>
-Mesh<dim> whole_mesh(const MeshPart<dim>& part, MeshLabels labels)
+Mesh<dim> whole_mesh(const MeshPart<dim>& part, const MeshLabels& labels)
 {
   MeshData<dim> data;
   for (const VertexName<dim>& vertex : part.partition.vertices) data.vertices.push_back(vertex.point());
@@ -166,9 +166,9 @@ Mesh<dim> whole_mesh(const MeshPart<dim>& part, MeshLabels labels)
       if (part.cells[c].tags[i] >= 0)
         data.facets.push_back({facet_vertices(part.corners[c], i), part.cells[c].tags[i]});
   }
-  data.region_names = std::move(labels.region_names);
-  data.boundary_names = std::move(labels.boundary_names);
-  data.source = std::move(labels.source);
+  data.region_names = labels.region_names;
+  data.boundary_names = labels.boundary_names;
+  data.source = labels.source;
   return Mesh<dim>(std::move(data));
 }
 
@@ -231,7 +231,7 @@ Balanced<dim> restore(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> first
   const MeshPart<dim> part = with_ghosts<dim>(ranks, origin.cube, std::move(cells));
   std::vector<Index> numbers = numbers_in(part.partition.names, names);
   return {
-      whole_mesh<dim>(part, std::move(origin.labels)), std::move(numbers), {values.begin(), values.end()}};
+      whole_mesh<dim>(part, origin.labels), std::move(numbers), {values.begin(), values.end()}};
 }
 
 template <int dim>

@@ -66,6 +66,8 @@ struct BuildFacts
   std::string gmsh;
   std::string blas;
   int blas_threads = 0;  ///< 0: unknown
+  int processes = 1;     ///< that compute together
+  int threads = 1;       ///< of each, beside those of the BLAS
   std::string mpi;
   std::string eigen;
   std::vector<std::string> features;

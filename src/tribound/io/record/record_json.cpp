@@ -156,6 +156,7 @@ Json program_json(const BuildFacts& build)
           {"mumps", build.mumps},       {"gmsh", build.gmsh},
           {"blas", build.blas},         {"blas_threads", build.blas_threads},
           {"mpi", build.mpi},           {"eigen", build.eigen},
+          {"processes", build.processes}, {"threads", build.threads},
           {"features", build.features}};
 }
 

@@ -76,7 +76,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   const std::vector<Point<dim>> t = form.traction(level.u);
   figures.contact = resultants<dim>(form, t, level.traction);
   const auto boundaries = form.problem().boundaries();
-  const std::vector<bool> slides = doctor::slides_as_a_whole(form);
+  const std::vector<bool> slides = doctor::slides_as_a_whole(form.problem(), form.space());
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
   {
     if (!boundaries[tag].contact) continue;
