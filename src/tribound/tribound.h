@@ -26,6 +26,7 @@
 #include "tribound/mesh/overlay.h"
 #include "tribound/mesh/refine.h"
 #include "tribound/mesh/share_out.h"
+#include "tribound/mesh/shared_facets.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "tribound/contact/nitsche/elasticity.h"
