@@ -32,6 +32,7 @@
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
 #include "tribound/base/memory.h"
+#include "tribound/base/ranks.h"
 #include "tribound/base/version.h"
 #include "tribound/mesh/gmsh.h"
 
@@ -93,6 +94,10 @@ ExitCode run_command(const Arguments& arguments)
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
   mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, &stop_on_signals());
   const algebra::Environment environment;  // behind the input: bad input then fails at once
+  if (Ranks::world().size() > 1)
+    throw InputError(
+        {}, fmt::format("{} processes were started by a launcher that is not known", Ranks::world().size()),
+        "start them by mpirun");
   return std::visit([&](auto& m) { return run(config, std::move(m), progress); }, mesh);
 }
 
@@ -132,10 +137,11 @@ ExitCode sweep_command(const Arguments& arguments)
   return sweep({arguments.case_file, arguments.overrides, arguments.jobs, arguments.resume}, table);
 }
 
-void info_command()
+/// MPI starts on all processes; the first one prints.
+void info_command(bool prints)
 {
   const algebra::Environment environment;
-  print_info(library_facts());
+  if (prints) print_info(library_facts());
 }
 
 constexpr const char* case_commands = "Working on a case";
@@ -236,6 +242,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   {
     if (command == "run") return run_command(arguments);
     const bool needs_one = command == "verify" || command == "study" || command == "sweep";
+    if (!is_first_process() && command == "info") info_command(false);
     if (!is_first_process()) return needs_one ? ExitCode::bad_input : ExitCode::success;
     if (needs_one)
       throw InputError(
@@ -248,7 +255,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "sweep") return sweep_command(arguments);
   if (command == "check") check_command(arguments);
   if (command == "init") init(arguments.start, arguments.directory);
-  if (command == "info") info_command();
+  if (command == "info") info_command(true);
   return ExitCode::success;
 }
 

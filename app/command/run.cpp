@@ -13,14 +13,29 @@
 #include "tribound/adapt/loop.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/base/clock.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/case/resolve.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
 #include "tribound/fem/nested.h"
+#include "tribound/io/file/atomic_file.h"
 
 namespace tribound::app
 {
+
+ExitCode exit_code(certify::RunStatus status)
+{
+  switch (status)
+  {
+    case certify::RunStatus::certified:
+      return ExitCode::success;
+    case certify::RunStatus::budget:
+      return ExitCode::budget_used_up;
+    default:
+      return ExitCode::failed;
+  }
+}
 
 namespace
 {
@@ -69,7 +84,17 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
                        },
                        [&](const adapt::Levels<dim>& next)
                        {
-                         if (config.output.checkpoint) report.write_checkpoint(next);
+                         if (!config.output.checkpoint) return;
+                         try
+                         {
+                           report.write_checkpoint(next);
+                         }
+                         catch (const io::WriteError& error)
+                         {
+                           require_all_failed(next.discrete().mesh.ranks(), error.what());
+                           report.write_what_holds();
+                           throw;
+                         }
                        }};
   try
   {
@@ -77,11 +102,13 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   }
   catch (const SolveError& error)
   {
+    require_all_failed(levels->discrete().mesh.ranks(), error.what());
     report.fail(error.what());
     throw;
   }
-  catch (const InputError&)  // data that are not valid on a finer mesh: the levels before hold
+  catch (const InputError& error)  // data that are not valid on a finer mesh: the levels before hold
   {
+    require_all_failed(levels->discrete().mesh.ranks(), error.what());
     report.write_what_holds();
     throw;
   }

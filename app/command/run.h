@@ -24,6 +24,8 @@ enum class ExitCode
   budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
 };
 
+[[nodiscard]] ExitCode exit_code(certify::RunStatus status);
+
 /// A run that goes on where another one was.
 struct Restart
 {

@@ -68,14 +68,16 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
 case_file::Config restarted_config(const RunRequest& request, const io::CheckpointFacts& checkpoint)
 {
   const std::filesystem::path directory = request.restart;
-  case_file::Config config =
-      case_file::parse_config(checkpoint.case_text, (directory / "case.toml").string(), request.overrides);
+  // Before the others: paths of the effective case lead from there.
+  std::vector<std::string> overrides = {fmt::format("output.directory='{}'", directory.string())};
+  overrides.insert(overrides.end(), request.overrides.begin(), request.overrides.end());
+  const case_file::Config config =
+      case_file::parse_config(checkpoint.case_text, (directory / "case.toml").string(), overrides);
   if (config.method.degree != checkpoint.degree)
     throw InputError({},
                      fmt::format("degree is {}, but that of the checkpoint is {}", config.method.degree,
                                  checkpoint.degree),
                      "a run goes on with its degree");
-  config.output.directory = directory;
   return config;
 }
 

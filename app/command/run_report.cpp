@@ -28,19 +28,6 @@ namespace tribound::app
 namespace
 {
 
-ExitCode exit_code(certify::RunStatus status)
-{
-  switch (status)
-  {
-    case certify::RunStatus::certified:
-      return ExitCode::success;
-    case certify::RunStatus::budget:
-      return ExitCode::budget_used_up;
-    default:
-      return ExitCode::failed;
-  }
-}
-
 /// Seconds of work that a program which is killed may lose: the first levels take less time than files.
 constexpr double most_lost = 1.0;
 
@@ -53,7 +40,7 @@ bool is_complete(const mesh::Mesh<dim>& mesh)
   return mesh.n_cells() == mesh.n_global_cells();
 }
 
-/// What writing throws, to be thrown again when the level is printed.
+/// What writing throws, to be thrown again when the level is printed, on all ranks.
 template <typename Write>
 std::exception_ptr failure_of(const Write& write)
 {
@@ -61,7 +48,7 @@ std::exception_ptr failure_of(const Write& write)
   {
     write();
   }
-  catch (const io::WriteError&)
+  catch (...)
   {
     return std::current_exception();
   }
@@ -89,11 +76,10 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
       {
         require_mesh_elsewhere(config);
         directory_.emplace(output_.directory);
-        if (earlier && writes_all_levels()) return;  // its fields are those of this run, too
-        io::remove_series(output_.directory);
         if (earlier) return;
         remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
                                            "contact.csv", "adapted.msh", io::checkpoint_name});
+        io::remove_series(output_.directory);
       });
   if (earlier) record_.earlier = *earlier;
   record_.facts = case_file::case_facts(config, dim);
@@ -145,13 +131,12 @@ void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<d
       io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(shown->discrete->mesh, free_sides_));
     io::write_contact_csv(output_.directory / "contact.csv", form, shown->level.u, level.number);
     if (output_.vtu)
-    {
       io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", level.number),
                                  level.number, form, shown->level.u);
-      io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number, ranks_);
-    }
   }
-  if (output_.vtu) write_level_fields<dim>(output_.directory, level.number, *level.discrete, level.level);
+  if (!output_.vtu) return;
+  write_level_fields<dim>(output_.directory, level.number, *level.discrete, level.level);
+  if (shown) io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number);
 }
 
 template <int dim>
@@ -187,6 +172,16 @@ std::exception_ptr RunReport<dim>::finish_writing()
     times.output_cpu += std::exchange(writing_cpu_, 0);
   }
   return failure;
+}
+
+template <int dim>
+void RunReport<dim>::rethrow(const std::exception_ptr& failure) const
+{
+  ranks_.together(
+      [&]
+      {
+        if (failure) std::rethrow_exception(failure);
+      });
 }
 
 template <int dim>
@@ -270,16 +265,12 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
     shown_ = gather(view);
   }
   update_statements(view);
-  judge(view);
+  ranks_.together([&] { judge(view); });
   count_time(begin);
   if ((printed_ == Printed::everything || printed_ == Printed::levels) && !again)
     print_level(record_.levels.back());
-  ranks_.together(
-      [&]
-      {
-        if (failure) std::rethrow_exception(failure);
-        start_writing();
-      });
+  rethrow(failure);
+  ranks_.together([&] { start_writing(); });
   count_time(begin);
 }
 
@@ -294,7 +285,9 @@ void RunReport<dim>::write_what_holds()
     const ScopedTimer timer(times.stages.output, times.output_cpu, thread_cpu_seconds);
     work();
   };
-  if (last_ && !writes_all_levels())  // beside the page's data of this level
+  if (last_ && !writes_all_levels() && is_restarted())
+    ranks_.on_first([&] { io::remove_series(output_.directory); });  // of where it stopped before
+  if (last_ && !writes_all_levels())                                 // beside the page's data of this level
     timed([&] { failure = failure_of([&] { write_fields(*last_, shown_.get()); }); });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
   if (shown_ && (dim == 3 || is_complete(shown_->discrete->mesh)))
@@ -308,13 +301,14 @@ void RunReport<dim>::write_what_holds()
           io::write_report(output_.directory, record_);
           page_.write(output_.directory, record_);
         }
-        if (failure) std::rethrow_exception(failure);
       });
+  rethrow(failure);
 }
 
 template <int dim>
-void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next) const
+void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next)
 {
+  rethrow(finish_writing());  // the files of the level before come first
   const fem::LagrangeSpace<dim>& space = next.discrete().space;
   io::write_checkpoint<dim>(
       output_.directory, {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_)},
@@ -335,6 +329,7 @@ ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
 template <int dim>
 void RunReport<dim>::fail(const std::string& reason)
 {
+  if (is_restarted() && record_.levels.empty()) return;  // what the run before has left holds
   record_.status = certify::RunStatus::failed;
   record_.reason = reason;
   write_what_holds();

@@ -56,7 +56,7 @@ class RunReport
   /// printed, for its own files or later for those of the level before.
   void add(const adapt::LevelView<dim>& view);
   /// What the next level starts from. Throws WriteError.
-  void write_checkpoint(const adapt::Levels<dim>& next) const;
+  void write_checkpoint(const adapt::Levels<dim>& next);
   /// Which level is the last is known only now: its fields, the page, and the last word.
   [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
   /// The files of the levels so far, where the run ends by an exception. Throws WriteError.
@@ -68,6 +68,7 @@ class RunReport
 
  private:
   [[nodiscard]] bool writes_all_levels() const { return output_.levels == case_file::FieldLevels::all; }
+  [[nodiscard]] bool is_restarted() const { return record_.earlier.first_cells > 0; }
   /// What the first rank shows of a level; null elsewhere.
   [[nodiscard]] std::shared_ptr<const KeptLevel<dim>> gather(const adapt::LevelView<dim>& view) const;
   void write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const;
@@ -75,6 +76,8 @@ class RunReport
   void start_writing();
   /// Waits for them; their time goes to the last level. What writing has thrown.
   [[nodiscard]] std::exception_ptr finish_writing();
+  /// On all ranks, if there is one on any.
+  void rethrow(const std::exception_ptr& failure) const;
   /// Removes the record of the level, if it is the last, and returns its times.
   io::LevelTimes take_back(int number);
   /// What the certificate says about the level: its data, and how its systems were solved.

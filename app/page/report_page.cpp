@@ -170,11 +170,10 @@ std::vector<std::string> run_files(const io::RunRecord& run)
   std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv", "newton.csv",
                                     "contact.csv",      "adapted.msh", "series.pvd"};
   for (const io::LevelRecord& level : run.levels)
-    for (const std::string stem : {"level", "contact"})
-    {
-      names.push_back(io::level_file_name(stem, level.level));
-      names.push_back(fmt::format("{}_{:03}.pvtu", stem, level.level));
-    }
+    for (const std::string& name :
+         {io::level_file_name("level", level.level), fmt::format("level_{:03}.pvtu", level.level),
+          io::level_file_name("contact", level.level)})
+      names.push_back(name);
   return names;
 }
 

@@ -9,6 +9,7 @@
 
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/base/ranks.h"
 
 namespace
@@ -53,6 +54,22 @@ int throw_alone(const Ranks& ranks)
   }
 }
 
+/// Rank 1 fails alone where others would fail with it, and something else would be tried.
+int fail_alone(const Ranks& ranks)
+{
+  try
+  {
+    if (ranks.rank() == 1) tribound::require_all_failed(ranks, "out of memory", 0.5);
+    return ranks.sum(1.0) > 0 ? 0 : 1;
+  }
+  catch (const tribound::RankFailure& error)
+  {
+    std::printf("process %d: %s\n", ranks.rank(), error.what());
+    std::fflush(stdout);
+    Ranks::end_all(2);
+  }
+}
+
 /// Rank 1 is killed.
 int die(const Ranks& ranks)
 {
@@ -70,5 +87,6 @@ int main(int, char** argv)
   const std::string what = argv[1];
   if (what == "throw_together") return throw_together(ranks);
   if (what == "throw_alone") return throw_alone(ranks);
+  if (what == "fail_alone") return fail_alone(ranks);
   return die(ranks);
 }

@@ -14,6 +14,7 @@
 #include "support/meshes.h"
 #include "support/problem_data.h"
 #include "tribound/certify/bound/balance.h"
+#include "tribound/io/record/level_record.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/share_out.h"
 
@@ -46,9 +47,10 @@ Summary summary(const adapt::LevelView<dim>& view)
     result.numbers.push_back(estimate.global.*c.value);
   const auto resultants = contact::contact_resultants<dim>(form, form.traction(view.level.u));
   result.numbers.insert(result.numbers.end(), {resultants.normal, resultants.tangential});
-  const auto balance = certify::balance<dim>(form, view.level.stress, certify::centroid(mesh));
-  for (const certify::BalanceRow& row : balance.rows)
+  const io::LevelRecord record = io::level_record<dim>(view, certify::centroid(mesh));
+  for (const certify::BalanceRow& row : record.balance->rows)
     result.numbers.insert(result.numbers.end(), row.force.begin(), row.force.end());
+  result.numbers.push_back(record.figures.max_displacement);
   EXPECT_LT(view.level.identities.largest(form.space().degree()), 1e-9);
   return result;
 }
@@ -118,6 +120,11 @@ ProblemData<2> rough_data()
   data.boundaries[1] = loaded<2>("top", 0, formula("-0.1*abs(sin(5*x))"));
   data.boundaries.back() = obstacle<2>("bottom", Coulomb(0.3), formula("0.01*abs(x - 0.7)"));
   return data;
+}
+
+TEST(Loop, OnMoreRanksThanCells)
+{
+  expect_same<2>(block<2>({1, 1}), pressed_block<2>(), {.degree = 2}, {.max_levels = 3});
 }
 
 TEST(Loop, WithFormulasAndOtherChoices)

@@ -8,6 +8,7 @@
 #include "tribound/adapt/persistent.h"
 #include "tribound/base/clock.h"
 #include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
@@ -160,8 +161,9 @@ void tighten(const contact::NitscheForm<dim>& form, const Method& method, const 
     if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
       level = std::move(*better);
   }
-  catch (const SolveError&)  // the identities stay as they are, and the bound is refused
+  catch (const SolveError& error)  // the identities stay as they are, and the bound is refused
   {
+    require_all_failed(form.space().mesh().ranks(), error.what());
   }
   level.finishing_steps = 0;
   level.tightened = true;

@@ -14,6 +14,7 @@
 
 #include "tribound/base/clock.h"
 #include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/nested.h"
 #include "tribound/mesh/bisect.h"
@@ -27,6 +28,8 @@ namespace
 
 /// Of the bound on the mesh before: what the data may leave out of the next one.
 constexpr double share_of_data = 0.01;
+
+constexpr const char* out_of_memory = "out of memory";
 
 /// Thrown out of Newton's method when the user wants the run to end.
 struct Interrupted
@@ -151,8 +154,9 @@ std::optional<CertifiedLevel<dim>> Levels<dim>::solve_to_the_end(const StepObser
                                                        expected_, level_.friedrichs);
     if (level.converged && bound_holds(level, method_.degree)) return level;
   }
-  catch (const SolveError&)  // an iterate that the criterion accepts may come before that
+  catch (const SolveError& error)  // an iterate that the criterion accepts may come before that
   {
+    require_all_failed(current_->mesh.ranks(), error.what());
   }
   return std::nullopt;
 }
@@ -182,12 +186,14 @@ std::optional<CertifiedLevel<dim>> Levels<dim>::solve(const StepObserver& observ
   catch (const SolveError& error)
   {
     if (is_first) throw;
+    require_all_failed(current_->mesh.ranks(), error.what());
     why = failed(error.what());
   }
   catch (const std::bad_alloc&)
   {
     if (is_first) throw;
-    why = failed("out of memory");
+    require_all_failed(current_->mesh.ranks(), out_of_memory);
+    why = failed(out_of_memory);
   }
   return std::nullopt;
 }
@@ -230,11 +236,13 @@ bool Levels<dim>::finish(const StepObserver& observer)
     catch (const Interrupted&)
     {
     }
-    catch (const SolveError&)
+    catch (const SolveError& error)
     {
+      require_all_failed(current_->mesh.ranks(), error.what());
     }
     catch (const std::bad_alloc&)
     {
+      require_all_failed(current_->mesh.ranks(), out_of_memory);
     }
     return std::nullopt;
   };
@@ -252,7 +260,8 @@ bool Levels<dim>::finish(const StepObserver& observer)
 template <int dim>
 std::string Levels<dim>::refine(const Marker<dim>& mark, const MeshLimit& limit)
 {
-  assert(!level_.estimate.cells.empty());  // of a level that was not given up
+  assert(level_.estimate.total_sharp > 0 ||
+         !level_.estimate.cells.empty());  // of a level that was not given up
   const Clock::time_point begin = Clock::now();
   std::string why;
   try
@@ -261,6 +270,7 @@ std::string Levels<dim>::refine(const Marker<dim>& mark, const MeshLimit& limit)
   }
   catch (const std::bad_alloc&)
   {
+    require_all_failed(current_->mesh.ranks(), out_of_memory);
     why = "out of memory for the next mesh";
   }
   (why.empty() ? seconds_of_next_ : seconds_) += seconds_since(begin);

@@ -134,7 +134,10 @@ std::vector<Index> mark_doerfler(std::span<const double> eta, double theta, cons
     else if (eta[c] >= t * (1 - slack))
       ties.push_back(static_cast<Index>(c));
   constexpr double rounding = 1e-6;  // of a cell
-  const double missing = std::ceil((wanted - ranks.sum(sum_above)) / (t * t) - rounding);
+  double missing = std::ceil((wanted - ranks.sum(sum_above)) / (t * t) - rounding);
+  const bool has_any = ranks.any(!cells.empty());
+  if (!(missing >= 1)) missing = has_any ? 0 : 1;  // tiny shares, and squares that underflow
+  missing = std::min(missing, static_cast<double>(ranks.sum(static_cast<std::int64_t>(ties.size()))));
   ties.resize(missing > 0 ? n_among_lowest(markers, ties, std::llround(missing)) : 0);
   std::vector<Index> both;
   std::ranges::merge(cells, ties, std::back_inserter(both));

@@ -13,6 +13,7 @@
 
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/fem/nested.h"
 
@@ -171,8 +172,9 @@ std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& fo
     std::iota(itself.begin(), itself.end(), 0);
     return Start<dim>{fem::nested_interpolant<dim>(space, found->u, itself, form.space())};
   }
-  catch (const SolveError&)
+  catch (const SolveError& error)
   {
+    require_all_failed(form.space().mesh().ranks(), error.what());
     return std::nullopt;
   }
 }
@@ -187,7 +189,9 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
 {
   const bool may_start_anew = method.newton.damping && !method.regularisation && form.problem().has_contact();
   std::optional<Start<dim>> easier;
-  if (dim == 3 && start.empty() && may_start_anew) easier = start_from_scratch(form, method, record);
+  const Ranks& ranks = form.space().mesh().ranks();  // one without cells has no displacement
+  if (dim == 3 && !ranks.any(!start.empty()) && may_start_anew)
+    easier = start_from_scratch(form, method, record);
 
   solve::NewtonResult<dim> first;
   if (easier) first.equilibrium = easier->equilibrium;
@@ -198,15 +202,16 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   {
     first = attempt(easier ? easier->u : start);
   }
-  catch (const SolveError&)
+  catch (const SolveError& error)
   {
+    require_all_failed(ranks, error.what());
     failure = std::current_exception();
   }
   if (!failure && first.message.empty()) return first;
 
   using FindStart = std::function<std::optional<std::vector<double>>()>;
   std::vector<FindStart> others;
-  if (easier && !easier->u.empty()) others.emplace_back([] { return std::vector<double>{}; });
+  if (easier && ranks.any(!easier->u.empty())) others.emplace_back([] { return std::vector<double>{}; });
   if (may_start_anew)
     others.insert(others.end(), {[&] { return regularised_start(form, start, method, record); },
                                  [&] { return start_with_gamma(3, form, start, method, record); },
@@ -216,8 +221,9 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
       if (const auto better = other())
         if (solve::NewtonResult<dim> result = attempt(*better); result.message.empty()) return result;
     }
-    catch (const SolveError&)
+    catch (const SolveError& error)
     {
+      require_all_failed(ranks, error.what());
     }
   if (failure) std::rethrow_exception(failure);
   return first;

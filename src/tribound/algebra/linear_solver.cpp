@@ -7,6 +7,7 @@
 
 #include "tribound/algebra/petsc_detail.h"
 #include "tribound/algebra/single_product.h"
+#include "tribound/base/rank_failure.h"
 
 namespace tribound::algebra
 {
@@ -125,7 +126,7 @@ void check_magnitude(const SparseMatrix& a)
 
 void KspDeleter::operator()(_p_KSP* ksp) const
 {
-  KSPDestroy(&ksp);
+  if (!detail::waits_for_others(reinterpret_cast<PetscObject>(ksp))) KSPDestroy(&ksp);
 }
 
 const char* to_string(LinearMethod method)
@@ -263,8 +264,9 @@ LinearSolve LinearSolver::solve_owned(const SparseMatrix& a, Vec b, double toler
   {
     return attempt(a, b, tolerance, x);
   }
-  catch (const SolveError&)  // nobody insisted on multigrid
+  catch (const SolveError& error)  // nobody insisted on multigrid
   {
+    if (a.sharing()) require_all_failed(a.sharing()->ranks, error.what());
     method_ = LinearMethod::direct;
     ksp_.reset();  // its memory is needed
     multigrid_.reset();

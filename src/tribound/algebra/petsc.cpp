@@ -7,6 +7,7 @@
 #include <array>
 #include <cassert>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -48,6 +49,15 @@ VecHandle wrap(std::span<double> values, MPI_Comm processes)
 VecHandle wrap(std::span<const double> values, MPI_Comm processes)
 {
   return wrap(std::span(const_cast<double*>(values.data()), values.size()), processes);  // NOLINT
+}
+
+bool waits_for_others(PetscObject object)
+{
+  if (std::uncaught_exceptions() == 0) return false;
+  MPI_Comm processes = MPI_COMM_NULL;
+  int n = 1;
+  if (PetscObjectGetComm(object, &processes) == 0) MPI_Comm_size(processes, &n);
+  return n > 1;
 }
 
 LocalBlocks local_blocks(Mat a)

@@ -66,6 +66,10 @@ void put_owned_entries(const fem::NodeNumbers& nodes, int block_size, std::span<
   return own >= 0 && own < static_cast<std::int64_t>(nodes.owned.size());
 }
 
+/// Whether destroying an object of several processes would wait for the others while this one alone may be
+/// leaving by an exception: then it stays.
+[[nodiscard]] bool waits_for_others(PetscObject object);
+
 /// What a process has of a matrix: its rows, with the columns of own unknowns and, apart, with those of
 /// others.
 struct LocalBlocks

@@ -14,7 +14,7 @@ using detail::wrap;
 
 void MatDeleter::operator()(_p_Mat* mat) const
 {
-  MatDestroy(&mat);
+  if (!detail::waits_for_others(reinterpret_cast<PetscObject>(mat))) MatDestroy(&mat);
 }
 
 namespace
@@ -62,7 +62,7 @@ void multiply_in_threads(Mat a)
 void SparseMatrix::create()
 {
   if (sharing_ && block_size_ * sharing_->n > std::numeric_limits<PetscInt>::max())
-    throw SolveError("the matrix has more rows than PETSc can number: it needs libpetsc64-real-dev");
+    throw SolveError("the matrix has more rows than 32 bits can number");
   const auto n = static_cast<PetscInt>(sharing_ ? sharing_->owned.size() * block_size_ : size_);
   Mat mat = nullptr;
   check(MatCreate(detail::communicator(sharing_), &mat), "creating a matrix");

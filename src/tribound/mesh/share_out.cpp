@@ -50,14 +50,22 @@ void copy_labels(const Ranks& ranks, MeshLabels& labels)
   source = {place[0], place[1], std::stoi(place[2]), std::stoi(place[3])};
 }
 
+/// Cells that are many on one rank, or that are not along the curve.
+enum class Move
+{
+  where_unbalanced,
+  always
+};
+
 /// Where each cell is to be.
 template <int dim>
 std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
-                              std::span<const CellRecord<dim>> cells)
+                              std::span<const CellRecord<dim>> cells, Move move)
 {
   constexpr double much = 1.05;  // of the mean: what goes on a rank for itself is too short to gain more
   const auto n = static_cast<double>(cells.size());
-  if (ranks.max(n) * ranks.size() <= much * ranks.sum(n)) return std::vector<int>(cells.size(), ranks.rank());
+  if (move == Move::where_unbalanced && ranks.max(n) * ranks.size() <= much * ranks.sum(n))
+    return std::vector<int>(cells.size(), ranks.rank());
   const std::vector<std::int64_t> weights(cells.size(), 1);
   return balanced_ranks(ranks, centre_keys<dim>(cube, cells), weights);
 }
@@ -135,10 +143,11 @@ Origin<dim> origin_of(const Ranks& ranks, const Mesh<dim>* first)
 
 template <int dim>
 Balanced<dim> balance_cells(const Ranks& ranks, Origin<dim> origin, std::shared_ptr<const Mesh<dim>> first,
-                            std::vector<CellRecord<dim>> cells, std::span<const double> values, int n_values)
+                            std::vector<CellRecord<dim>> cells, std::span<const double> values, int n_values,
+                            Move move)
 {
   assert(values.size() == cells.size() * n_values);
-  const std::vector<int> rank_of = destinations<dim>(ranks, origin.cube, cells);
+  const std::vector<int> rank_of = destinations<dim>(ranks, origin.cube, cells, move);
   std::vector<double> arrived = values_sent_to(ranks, rank_of, values, n_values);
   cells = sent_to<dim>(ranks, rank_of, cells);
   const std::vector<CellName> names = names_of<dim>(cells);
@@ -190,7 +199,8 @@ Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole)
   std::vector<CellRecord<dim>> cells;
   if (whole) cells = first_records(*whole);
   Origin<dim> origin = origin_of(ranks, whole.get());
-  return balance_cells<dim>(ranks, std::move(origin), std::move(whole), std::move(cells), {}, 0).mesh;
+  return balance_cells<dim>(ranks, std::move(origin), std::move(whole), std::move(cells), {}, 0, Move::always)
+      .mesh;
 }
 
 template <int dim>
@@ -203,10 +213,8 @@ Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box, std::int64_t most_wh
   const std::int64_t n = n_box_cells(box);
   std::vector<CellRecord<dim>> cells =
       box_records<dim>(box, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
-  // Cells come in stretches of the last axis: it is the curve that gives them few neighbours.
-  const std::vector<std::int64_t> weights(cells.size(), 1);
-  const std::vector<int> rank_of =
-      balanced_ranks(ranks, centre_keys<dim>(origin.cube, std::span<const CellRecord<dim>>(cells)), weights);
+  // They come in stretches of the last axis: along the curve they have few neighbours.
+  const std::vector<int> rank_of = destinations<dim>(ranks, origin.cube, cells, Move::always);
   cells = sent_to<dim>(ranks, rank_of, cells);
   return make_part<dim>(ranks, origin.cube, std::move(first), std::move(cells), std::move(labels));
 }
@@ -217,7 +225,7 @@ Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cell
 {
   const Partition<dim>& partition = *before.partition();
   return balance_cells<dim>(partition.ranks, {partition.cube, labels_of(before)}, partition.first_mesh,
-                            std::move(cells), values, n_values);
+                            std::move(cells), values, n_values, Move::where_unbalanced);
 }
 
 template <int dim>
@@ -226,12 +234,12 @@ Balanced<dim> restore(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> first
 {
   Origin<dim> origin = origin_of(ranks, first.get());
   if (ranks.size() > 1)
-    return balance_cells<dim>(ranks, std::move(origin), std::move(first), std::move(cells), values, n_values);
+    return balance_cells<dim>(ranks, std::move(origin), std::move(first), std::move(cells), values, n_values,
+                              Move::always);
   const std::vector<CellName> names = names_of<dim>(cells);
   const MeshPart<dim> part = with_ghosts<dim>(ranks, origin.cube, std::move(cells));
   std::vector<Index> numbers = numbers_in(part.partition.names, names);
-  return {
-      whole_mesh<dim>(part, origin.labels), std::move(numbers), {values.begin(), values.end()}};
+  return {whole_mesh<dim>(part, origin.labels), std::move(numbers), {values.begin(), values.end()}};
 }
 
 template <int dim>

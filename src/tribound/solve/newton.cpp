@@ -273,12 +273,13 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 {
   NewtonResult<dim> result;
   initialise(start);
-  const bool at_rest = start.empty() && scale_ == 0 && residual_norm_ == 0;
+  const bool is_new = !form_.space().mesh().ranks().any(!start.empty());  // a rank may have no cells
+  const bool at_rest = is_new && scale_ == 0 && residual_norm_ == 0;
   int without_progress = 0;
   for (int k = 1; k <= config_.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
   {
     const Clock::time_point begin = Clock::now();
-    const bool from_scratch = k == 1 && start.empty();
+    const bool from_scratch = k == 1 && is_new;
     const double before = residual_norm_;
     report_ = {.step = k,
                .delta = delta_,
@@ -333,7 +334,8 @@ NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const d
                         const NewtonObserver<dim>& observer, double delta,
                         std::shared_ptr<Equilibrium<dim>> equilibrium)
 {
-  if (!equilibrium) equilibrium = make_equilibrium(form, solver, start.empty());
+  if (!equilibrium)
+    equilibrium = make_equilibrium(form, solver, !form.space().mesh().ranks().any(!start.empty()));
   return Newton<dim>(form, newton, solver.tolerance, delta, std::move(equilibrium)).run(start, observer);
 }
 

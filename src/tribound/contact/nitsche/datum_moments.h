@@ -15,6 +15,7 @@
 #include "tribound/base/types.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/fem/simplex_parts.h"
+#include "tribound/mesh/geometry.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
 
@@ -123,5 +124,21 @@ class DatumMoments
   int n_;                      ///< dim P^{p+1}
   std::vector<double> theta_;  ///< at the points of the rule, [q * n + j]
 };
+
+/// Of a cell and of a boundary facet.
+template <int dim>
+[[nodiscard]] SimplexMap<dim, dim> simplex_map(const mesh::Mesh<dim>& mesh, Index cell)
+{
+  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
+  return {map.origin, map.jacobian, map.measure()};
+}
+
+template <int dim>
+[[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh,
+                                                   const mesh::BoundaryFacet& facet)
+{
+  const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
+  return {map.origin, map.jacobian, mesh::facet_geometry(mesh, facet.cell, facet.local).measure};
+}
 
 }  // namespace tribound::contact

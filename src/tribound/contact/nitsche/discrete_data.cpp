@@ -21,20 +21,6 @@ constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts = 4096;
 
-template <int dim>
-SimplexMap<dim, dim> simplex_map(const mesh::Mesh<dim>& mesh, Index cell)
-{
-  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
-  return {map.origin, map.jacobian, map.measure()};
-}
-
-template <int dim>
-SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
-{
-  const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
-  return {map.origin, map.jacobian, mesh::facet_geometry(mesh, facet.cell, facet.local).measure};
-}
-
 /// An upper bound of |f| on a cell or facet; 0 where there is none.
 template <int k, int dim>
 double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)

@@ -80,6 +80,7 @@ std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const std::vector<int> cell_label = label_cells(mesh.topology());
+  if (cell_label.empty()) return {};
   std::vector<Body<dim>> bodies(std::ranges::max(cell_label) + 1);
   measure<dim>(mesh,
                spread(

@@ -297,12 +297,17 @@ std::string level_file_name(std::string_view stem, int level)
   return fmt::format("{}_{:03}.vtu", stem, level);
 }
 
-void write_series(const std::filesystem::path& directory, int first, int last, const Ranks& ranks)
+void write_series(const std::filesystem::path& directory, int first, int last)
 {
+  std::error_code error;
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (int level = first; level <= last; ++level)
-    text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"level_{:03}.{}\"/>\n", level, level,
-                        ranks.size() == 1 ? "vtu" : "pvtu");
+  {
+    const std::string list = fmt::format("level_{:03}.pvtu", level);
+    text += fmt::format(
+        "<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level,
+        std::filesystem::exists(directory / list, error) ? list : level_file_name("level", level));
+  }
   text += "</Collection>\n</VTKFile>\n";
   write_file(directory / "series.pvd", text);
 }

@@ -95,9 +95,9 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const conta
 /// The name of a numbered file, such as "level_003.vtu".
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
-/// Writes series.pvd, which lists level_NNN.vtu, or level_NNN.pvtu of several ranks, from `first` to `last`
-/// with the level as time. Throws WriteError when the file cannot be written.
-void write_series(const std::filesystem::path& directory, int first, int last, const Ranks& ranks = {});
+/// Writes series.pvd, which lists level_NNN.vtu, or level_NNN.pvtu where that is there, from `first` to
+/// `last` with the level as time. Throws WriteError when the file cannot be written.
+void write_series(const std::filesystem::path& directory, int first, int last);
 
 /// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu and
 /// contact_NNN.vtu, N a digit, at least three of NNN, and series.pvd. Other files stay. Throws InputError

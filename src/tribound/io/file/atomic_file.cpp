@@ -15,20 +15,19 @@ namespace
 
 constexpr std::size_t buffer_size = 1 << 20;
 
-/// Unique among the processes that may write to the same directory.
-std::filesystem::path temporary_name(const std::filesystem::path& path)
-{
-  std::filesystem::path name = path;
-  name.replace_filename("." + path.filename().string() + "." + std::to_string(::getpid()) + ".part");
-  return name;
-}
-
 std::string reason(int error)
 {
   return std::generic_category().message(error);
 }
 
 }  // namespace
+
+std::filesystem::path temporary_name(const std::filesystem::path& path, int process)
+{
+  std::filesystem::path name = path;
+  name.replace_filename("." + path.filename().string() + "." + std::to_string(process) + ".part");
+  return name;
+}
 
 WriteError::WriteError(const std::filesystem::path& path, std::string problem, std::string hint)
     : std::runtime_error(path.string() + ": " + problem + "\n  hint: " + hint),
@@ -53,7 +52,9 @@ std::string hint_for_writing(int error)
 }
 
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(temporary_name(path_)), file_(std::fopen(temporary_.c_str(), "wb"))
+    : path_(std::move(path)),
+      temporary_(temporary_name(path_, ::getpid())),
+      file_(std::fopen(temporary_.c_str(), "wb"))
 {
   if (!file_) fail(errno);
   std::setvbuf(file_.get(), nullptr, _IOFBF, buffer_size);

@@ -33,6 +33,9 @@ class WriteError : public std::runtime_error
 /// What to do about an error number of the system.
 [[nodiscard]] std::string hint_for_writing(int error);
 
+/// The name of a file that a process has not finished: unique among those that may write to the directory.
+[[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& path, int process);
+
 /// A file written under a temporary name beside its final one and renamed by commit(). Without commit() the
 /// temporary file is removed and an older file of the final name stays as it was.
 /// Every function throws WriteError naming the file and the system's reason (disk full, no permission).

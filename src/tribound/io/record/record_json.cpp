@@ -151,12 +151,18 @@ Json json(const std::vector<std::pair<std::string, Value>>& named)
 
 Json program_json(const BuildFacts& build)
 {
-  return {{"name", "tribound"},         {"version", build.version},
-          {"compiler", build.compiler}, {"petsc", build.petsc},
-          {"mumps", build.mumps},       {"gmsh", build.gmsh},
-          {"blas", build.blas},         {"blas_threads", build.blas_threads},
-          {"mpi", build.mpi},           {"eigen", build.eigen},
-          {"processes", build.processes}, {"threads", build.threads},
+  return {{"name", "tribound"},
+          {"version", build.version},
+          {"compiler", build.compiler},
+          {"petsc", build.petsc},
+          {"mumps", build.mumps},
+          {"gmsh", build.gmsh},
+          {"blas", build.blas},
+          {"blas_threads", build.blas_threads},
+          {"mpi", build.mpi},
+          {"eigen", build.eigen},
+          {"processes", build.processes},
+          {"threads", build.threads},
           {"features", build.features}};
 }
 

@@ -35,7 +35,7 @@ Json state_json(const CheckpointFacts& facts)
                {"newton", facts.earlier.newton},
                {"levels", facts.earlier.levels}};
   if (start.expected) json["expected"] = *start.expected;
-  if (const auto& c = start.friedrichs; c && std::isfinite(c->value))
+  if (const auto& c = start.friedrichs; c && std::isfinite(c->value) && std::isfinite(c->theta))
     json["friedrichs"] = {c->value, c->theta, c->mesh_size, c->cells};
   return json;
 }
@@ -120,7 +120,12 @@ std::vector<mesh::CellRecord<dim>> read_cells(Hdf5File& file)
   const auto tags = file.read<std::int32_t>("tags", n);
   const auto region = file.read<std::int32_t>("region", 1);
   const auto type = file.read<std::int32_t>("bisection_type", 1);
-  std::vector<mesh::CellRecord<dim>> cells(root.size());
+  const std::size_t n_cells = root.size();
+  file.require(path.size() == 2 * n_cells && depth.size() == n_cells &&
+                   position.size() == n_cells * n * dim && origin.size() == n_cells * n &&
+                   tags.size() == n_cells * n && region.size() == n_cells && type.size() == n_cells,
+               "read");
+  std::vector<mesh::CellRecord<dim>> cells(n_cells);
   for (std::size_t c = 0; c < cells.size(); ++c)
   {
     mesh::CellRecord<dim>& cell = cells[c];
@@ -182,7 +187,9 @@ CheckpointCells<dim> read_checkpoint_cells(const std::filesystem::path& director
   Hdf5File file(directory / checkpoint_name, Hdf5File::Mode::read, ranks);
   CheckpointCells<dim> result;
   result.cells = read_cells<dim>(file);
-  result.values = file.read<double>("u", dim * fem::LagrangeBasis<dim>(facts.degree).n_nodes());
+  const int n_values = dim * fem::LagrangeBasis<dim>(facts.degree).n_nodes();
+  result.values = file.read<double>("u", n_values);
+  file.require(facts.dimension == dim && result.values.size() == result.cells.size() * n_values, "read");
   return result;
 }
 

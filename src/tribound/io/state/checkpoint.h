@@ -25,9 +25,9 @@ struct CheckpointFacts
 {
   int dimension = 0;
   int degree = 0;
-  adapt::LevelStart start;  ///< without u
-  std::string case_text;    ///< the effective case
-  EarlierLevels earlier;    ///< the tables up to here
+  adapt::LevelStart start;
+  std::string case_text;  ///< the effective case
+  EarlierLevels earlier;  ///< the tables up to here
 };
 
 /// The cells that a rank reads, in no particular order, with the values of u at their nodes.
@@ -38,8 +38,8 @@ struct CheckpointCells
   std::vector<double> values;
 };
 
-/// Writes checkpoint.h5 in the directory, in the place of an earlier one when it is complete. `start.u`
-/// belongs to `space`. All ranks call it together. Throws WriteError.
+/// Writes checkpoint.h5 in the directory, in the place of an earlier one when it is complete. `u` belongs
+/// to `space`. All ranks call it together. Throws WriteError.
 template <int dim>
 void write_checkpoint(const std::filesystem::path& directory, const CheckpointFacts& facts,
                       const fem::LagrangeSpace<dim>& space, std::span<const double> u);

@@ -1,8 +1,11 @@
 #include "tribound/io/state/hdf5_file.h"
 
+#include <fcntl.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <array>
+#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -64,7 +67,8 @@ Hdf5File::Hdf5File(std::filesystem::path path, Mode mode, const Ranks& ranks)
     : path_(std::move(path)), actual_(path_), mode_(mode), ranks_(ranks)
 {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told by exceptions
-  if (mode == Mode::write) actual_ += ".tmp";
+  if (mode == Mode::write) actual_ = temporary_name(path_, ranks.on_first([] { return ::getpid(); }));
+  is_temporary_ = mode == Mode::write;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (const auto* communicator = static_cast<const MPI_Comm*>(ranks.mpi_communicator()))
     H5Pset_fapl_mpio(access.get(), *communicator, MPI_INFO_NULL);
@@ -75,10 +79,10 @@ Hdf5File::Hdf5File(std::filesystem::path path, Mode mode, const Ranks& ranks)
 
 Hdf5File::~Hdf5File()
 {
-  if (file_ < 0) return;
-  H5Fclose(file_);
+  // With MPI closing waits for the other ranks, which may not be leaving by an exception.
+  if (file_ >= 0 && (ranks_.size() == 1 || std::uncaught_exceptions() == 0)) H5Fclose(file_);
   std::error_code none;
-  if (mode_ == Mode::write && ranks_.is_first()) std::filesystem::remove(actual_, none);
+  if (is_temporary_ && ranks_.is_first()) std::filesystem::remove(actual_, none);
 }
 
 void Hdf5File::require(bool good, const std::string& doing) const
@@ -157,22 +161,21 @@ std::string Hdf5File::read_text(const std::string& name)
   return {all.begin(), all.end()};
 }
 
-void Hdf5File::close()
-{
-  const bool good = H5Fclose(std::exchange(file_, -1)) >= 0;
-  require(good, "closed");
-}
-
 void Hdf5File::commit()
 {
-  close();
+  require(H5Fclose(std::exchange(file_, -1)) >= 0, "closed");
   ranks_.on_first(
       [&]
       {
+        const int file = ::open(actual_.c_str(), O_RDONLY | O_CLOEXEC);
+        const bool is_on_disk = file >= 0 && ::fsync(file) == 0;
+        if (file >= 0) ::close(file);
         std::error_code error;
-        std::filesystem::rename(actual_, path_, error);
-        if (error) throw WriteError(path_, "cannot be renamed: " + error.message(), "a place to write to");
+        if (is_on_disk) std::filesystem::rename(actual_, path_, error);
+        if (!is_on_disk || error)
+          throw WriteError(path_, "cannot be brought to the disk", "is it full, or without permission?");
       });
+  is_temporary_ = false;
 }
 
 }  // namespace tribound::io

@@ -52,7 +52,10 @@ class Hdf5File
   void write_text(const std::string& name, const std::string& text);
   [[nodiscard]] std::string read_text(const std::string& name);
 
-  /// Closes the file and gives it its name.
+  /// Throws on all ranks if something is not good on any: the file cannot be opened, written, read.
+  void require(bool good, const std::string& doing) const;
+
+  /// Closes the file, waits until it is on the disk and gives it its name.
   void commit();
 
  private:
@@ -79,15 +82,13 @@ class Hdf5File
   [[nodiscard]] std::uint64_t n_own_rows(const std::string& name, int width);
   void write_bytes(const std::string& name, Type type, const void* values, std::uint64_t n_rows, int width);
   void read_bytes(const std::string& name, Type type, void* values, std::uint64_t n_rows, int width);
-  /// Fails on all ranks if HDF5 failed on any.
-  void require(bool good, const std::string& doing) const;
-  void close();
 
   std::filesystem::path path_;
   std::filesystem::path actual_;  ///< the temporary name where it is written
   Mode mode_;
   Ranks ranks_;
   Id file_ = -1;
+  bool is_temporary_ = false;
 };
 
 }  // namespace tribound::io
