@@ -71,7 +71,7 @@ case_file::Config restarted_config(const RunRequest& request, const io::Checkpoi
   // Before the others: paths of the effective case lead from there.
   std::vector<std::string> overrides = {fmt::format("output.directory='{}'", directory.string())};
   overrides.insert(overrides.end(), request.overrides.begin(), request.overrides.end());
-  const case_file::Config config =
+  case_file::Config config =
       case_file::parse_config(checkpoint.case_text, (directory / "case.toml").string(), overrides);
   if (config.method.degree != checkpoint.degree)
     throw InputError({},
