@@ -285,13 +285,19 @@ void RunReport<dim>::write_what_holds()
     const ScopedTimer timer(times.stages.output, times.output_cpu, thread_cpu_seconds);
     work();
   };
+  // Fields of where the run before has stopped.
   if (last_ && !writes_all_levels() && is_restarted())
-    ranks_.on_first([&] { io::remove_series(output_.directory); });  // of where it stopped before
-  if (last_ && !writes_all_levels())                                 // beside the page's data of this level
+    ranks_.on_first([&] { io::remove_series(output_.directory); });
+  if (last_ && !writes_all_levels())  // beside the page's data of this level
     timed([&] { failure = failure_of([&] { write_fields(*last_, shown_.get()); }); });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
+  const auto add_last = [&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); };
   if (shown_ && (dim == 3 || is_complete(shown_->discrete->mesh)))
-    timed([&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); });
+    timed(
+        [&]
+        {
+          if (const std::exception_ptr of_page = failure_of(add_last)) failure = of_page;
+        });
   if (!record_.levels.empty()) count_time(begin);
   ranks_.together(
       [&]

@@ -170,7 +170,7 @@ def little_address_space(directory):
 def several_processes(directory):
     for variable in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
         code, _, errors = run(directory, "verify", "case.toml", env=ENVIRONMENT | {variable: "2"})
-        expect(code == 1 and "started as 2 processes" in errors, code, errors)
+        expect(code == 1 and "was started as 2" in errors, code, errors)
 
 
 def a_page_that_cannot_be_written(directory):
