@@ -95,8 +95,8 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
                                    describe_facet<dim>(data, topology.facets[f])),
                        hint);
   }
-  std::ranges::stable_partition(boundary,
-                                [n_owned](const BoundaryFacet& facet) { return facet.cell < n_owned; });
+  std::stable_partition(boundary.begin(), boundary.end(),  // clang 14 fails at that of ranges
+                        [n_owned](const BoundaryFacet& facet) { return facet.cell < n_owned; });
   return boundary;
 }
 
