@@ -25,13 +25,17 @@ struct KeptLevel
     level.equilibrium.reset();  // factors are large, and no more steps are to come
   }
   KeptLevel(int n, adapt::Excerpt<dim> excerpt)
-      : number(n), discrete(std::move(excerpt.discrete)), level(std::move(excerpt.level))
+      : number(n),
+        discrete(std::move(excerpt.discrete)),
+        level(std::move(excerpt.level)),
+        is_merged(excerpt.is_merged)
   {
   }
 
   int number;
   std::shared_ptr<const adapt::Discretisation<dim>> discrete;
   adapt::CertifiedLevel<dim> level;
+  bool is_merged = false;  ///< whether cells of several ranks were put together to be few enough
 };
 
 /// Writes level_NNN.vtu, or the files of several ranks: the fields of a level with the bound of every cell,

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "app/command/interrupt.h"
 #include "app/command/run_report.h"
@@ -18,6 +19,7 @@
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
+#include "tribound/doctor/support_facts.h"
 #include "tribound/fem/nested.h"
 #include "tribound/io/file/atomic_file.h"
 
@@ -40,11 +42,26 @@ ExitCode exit_code(certify::RunStatus status)
 namespace
 {
 
+/// doctor::slides_as_a_whole() as far as this rank has a whole mesh; elsewhere nothing slides.
+template <int dim>
+std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                    const mesh::Mesh<dim>* whole)
+{
+  return mesh.ranks().together(
+      [&]
+      {
+        const mesh::Mesh<dim>* known = mesh.partition() ? whole : &mesh;
+        return known ? doctor::slides_as_a_whole<dim>(problem, *known)
+                     : std::vector<bool>(problem.boundaries().size(), false);
+      });
+}
+
 template <int dim>
 std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
                                                 const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
                                                 const std::optional<Restart>& restart,
-                                                const std::atomic<bool>& stop)
+                                                const std::atomic<bool>& stop,
+                                                std::shared_ptr<const mesh::Mesh<dim>> whole)
 {
   contact::DataAccuracy accuracy;
   if (restart) accuracy.absolute = restart->start.accuracy;
@@ -54,24 +71,26 @@ std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
     throw SolveError("interrupted before anything was solved; nothing is written");
   if (!restart)
     return std::make_unique<adapt::Levels<dim>>(problem, config.method, config.adapt.tolerance,
-                                                std::move(first), &stop);
+                                                std::move(first), &stop, std::move(whole));
   std::vector<double> u = fem::from_cell_values<dim>(first->space, restart->cells, restart->values);
   return std::make_unique<adapt::Levels<dim>>(problem, config.method, config.adapt.tolerance,
-                                              std::move(first), restart->start, std::move(u), &stop);
+                                              std::move(first), restart->start, std::move(u), &stop,
+                                              std::move(whole));
 }
 
 }  // namespace
 
 template <int dim>
 ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
-             const std::optional<Restart>& restart)
+             std::shared_ptr<const mesh::Mesh<dim>> whole, const std::optional<Restart>& restart)
 {
   const Clock::time_point begin = Clock::now();
   const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   const std::atomic<bool>& stop = stop_on_signals();
+  const std::vector<bool> slides = slides_as_a_whole<dim>(problem, mesh, whole.get());
   const std::unique_ptr<adapt::Levels<dim>> levels =
-      first_level<dim>(config, problem, std::move(mesh), restart, stop);
-  RunReport<dim> report(config, problem, levels->discrete(), begin,
+      first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
+  RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
                         progress.quiet() ? Printed::verdict : Printed::everything,
                         restart ? &restart->earlier : nullptr);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
@@ -130,9 +149,9 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
 }
 
 template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&,
-                      const std::optional<Restart>&);
+                      std::shared_ptr<const mesh::Mesh<2>>, const std::optional<Restart>&);
 template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&,
-                      const std::optional<Restart>&);
+                      std::shared_ptr<const mesh::Mesh<3>>, const std::optional<Restart>&);
 template void check(const case_file::Config&, const mesh::Mesh<2>&, bool);
 template void check(const case_file::Config&, const mesh::Mesh<3>&, bool);
 

@@ -36,10 +36,12 @@ struct Restart
 };
 
 /// Runs the adaptive algorithm on the case and writes the results, level by level; on several ranks all call
-/// it, each with its part of the mesh. With `restart` the mesh is that of a later level. Throws InputError,
-/// SolveError and WriteError.
+/// it, each with its part of the mesh, and the first with the `whole` first mesh or one like it, see
+/// adapt::Levels. With `restart` the mesh is that of a later level. Throws InputError, SolveError and
+/// WriteError.
 template <int dim>
 [[nodiscard]] ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
+                           std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr,
                            const std::optional<Restart>& restart = {});
 
 /// Reads and verifies everything `run` would, and prints a summary with what the doctor finds, for people or

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -15,8 +16,10 @@
 #include "app/console/console.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/base/ranks.h"
 #include "tribound/io/state/checkpoint.h"
+#include "tribound/mesh/box.h"
 #include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/share_out.h"
 
@@ -41,11 +44,23 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
                   const std::optional<io::CheckpointFacts>& checkpoint, const std::string& directory,
                   const Progress& progress)
 {
+  constexpr std::int64_t most_in_box = 100'000;  // that one rank makes to look at
   using Whole = mesh::Mesh<dim>;
+  std::shared_ptr<const Whole> first;
   if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh); box && !checkpoint)
-    return run(config, mesh::share_out<dim>(ranks, *box), progress);
-  auto first = whole ? std::make_shared<const Whole>(std::get<Whole>(*std::move(whole))) : nullptr;
-  if (!checkpoint) return run(config, mesh::share_out<dim>(ranks, std::move(first)), progress);
+  {
+    ranks.on_first(
+        [&] {
+          first = std::make_shared<const Whole>(mesh::box_mesh<dim>(mesh::coarser_box(*box, most_in_box)));
+        });
+    return run(config, mesh::share_out<dim>(ranks, *box), progress, std::move(first));
+  }
+  if (whole) first = std::make_shared<const Whole>(std::get<Whole>(*std::move(whole)));
+  if (!checkpoint)
+  {
+    mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, first.get());
+    return run(config, std::move(part), progress, std::move(first));
+  }
   ranks.on_first(
       [&]
       {
@@ -58,9 +73,9 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
   io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(directory, *checkpoint, ranks);
   const int n_values = dim * fem::LagrangeBasis<dim>(checkpoint->degree).n_nodes();
   mesh::Balanced<dim> balanced =
-      mesh::restore<dim>(ranks, std::move(first), std::move(read.cells), read.values, n_values);
+      mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, n_values);
   return run(
-      config, std::move(balanced.mesh), progress,
+      config, std::move(balanced.mesh), progress, std::move(first),
       Restart{checkpoint->start, std::move(balanced.cells), std::move(balanced.values), checkpoint->earlier});
 }
 
@@ -145,7 +160,6 @@ int report(ExitCode code, const std::string& message)
 
 ExitCode run_on_ranks(const RunRequest& request)
 {
-  constexpr double patience = 20;  // seconds, for those that still write files
   const algebra::Environment environment;
   if (n_processes() == 1) return run_on(Ranks(), request);
   const Ranks ranks = Ranks::world();
@@ -160,7 +174,7 @@ ExitCode run_on_ranks(const RunRequest& request)
   catch (...)
   {
     const auto [code, message] = describe(std::current_exception());
-    if (!ranks.all_arrive(patience))
+    if (!ranks.all_arrive(failure_patience))
     {
       report(code, fmt::format("process {}: {}", ranks.rank(), message));
       Ranks::end_all(static_cast<int>(code));

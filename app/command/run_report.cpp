@@ -40,6 +40,13 @@ bool is_complete(const mesh::Mesh<dim>& mesh)
   return mesh.n_cells() == mesh.n_global_cells();
 }
 
+/// Whether the page can show what the first rank has of a level.
+template <int dim>
+bool fits_page(const KeptLevel<dim>& shown)
+{
+  return dim == 3 || shown.is_merged || is_complete(shown.discrete->mesh);
+}
+
 /// What writing throws, to be thrown again when the level is printed, on all ranks.
 template <typename Write>
 std::exception_ptr failure_of(const Write& write)
@@ -59,15 +66,16 @@ std::exception_ptr failure_of(const Write& write)
 
 template <int dim>
 RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
-                          const adapt::Discretisation<dim>& first, Clock::time_point begin, Printed printed,
-                          const io::EarlierLevels* earlier)
+                          const adapt::Discretisation<dim>& first, std::vector<bool> slides,
+                          Clock::time_point begin, Printed printed, const io::EarlierLevels* earlier)
     : output_(config.output),
       method_(config.method),
       ranks_(first.mesh.ranks()),
       contact_rule_(config.method.contact_rule),
       printed_(printed),
       page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
-      moment_about_(moment_point<dim>(config.output, first.mesh))
+      moment_about_(moment_point<dim>(config.output, first.mesh)),
+      slides_(std::move(slides))
 {
   const fem::LagrangeSpace<dim>& space = first.space;
   const contact::NitscheForm<dim>& form = first.form;
@@ -105,18 +113,11 @@ template <int dim>
 std::shared_ptr<const KeptLevel<dim>> RunReport<dim>::gather(const adapt::LevelView<dim>& view) const
 {
   if (!view.discrete.mesh.partition()) return last_;
-  // Of more cells the page shows the surface in 3D, and there is no page in 2D and no adapted mesh as one
-  // file.
-  const std::int64_t few = dim == 2 || output_.mesh ? most_in_one : std::int64_t{max_volume_cells};
-  const mesh::Mesh<dim>& mesh = view.discrete.mesh;
-  std::vector<Index> cells;
-  if (mesh.n_global_cells() <= few)
-    for (Index c = 0; c < mesh.n_owned_cells(); ++c) cells.push_back(c);
-  else
-    for (const mesh::BoundaryFacet& facet : mesh.owned_boundary()) cells.push_back(facet.cell);
-  std::ranges::sort(cells);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  std::optional<adapt::Excerpt<dim>> excerpt = adapt::excerpt<dim>(view, method_, cells);
+  // In 3D the page shows the surface, and of few cells the inside.
+  const std::int64_t most = dim == 2 || output_.mesh ? most_in_one : std::int64_t{max_volume_cells};
+  std::optional<adapt::Excerpt<dim>> excerpt = dim == 2 || view.discrete.mesh.n_global_cells() <= most
+                                                   ? adapt::excerpt<dim>(view, method_, most)
+                                                   : adapt::boundary_excerpt<dim>(view, method_);
   if (!excerpt) return nullptr;
   return std::make_shared<const KeptLevel<dim>>(view.number, *std::move(excerpt));
 }
@@ -156,7 +157,7 @@ void RunReport<dim>::start_writing()
         const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
         if (level && writes_all_levels()) write_fields(*level, shown.get());
         if (record && ranks_.is_first()) io::write_report(output_.directory, *record);
-        if (shown && is_followed && (dim == 3 || is_complete(shown->discrete->mesh)))
+        if (shown && is_followed && fits_page(*shown))
           page_.add(shown->number, shown->discrete->form, shown->level);
       });
 }
@@ -246,7 +247,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   double output_cpu = 0;
   {
     const ScopedTimer timer(output, output_cpu, thread_cpu_seconds);
-    level = io::level_record<dim>(view, moment_about_);
+    level = io::level_record<dim>(view, moment_about_, slides_);
   }
   const std::exception_ptr failure = finish_writing();
   const io::LevelTimes before = take_back(view.number);
@@ -292,7 +293,7 @@ void RunReport<dim>::write_what_holds()
     timed([&] { failure = failure_of([&] { write_fields(*last_, shown_.get()); }); });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
   const auto add_last = [&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); };
-  if (shown_ && (dim == 3 || is_complete(shown_->discrete->mesh)))
+  if (shown_ && fits_page(*shown_))
     timed(
         [&]
         {

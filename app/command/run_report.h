@@ -43,11 +43,11 @@ template <int dim>
 class RunReport
 {
  public:
-  /// On the first mesh; the run began at `begin`. Removes what an earlier run has left in the directory, the
-  /// certificate first, unless this one goes on with it: then `earlier` has its levels. Throws InputError
-  /// where nothing can be written.
+  /// On the first mesh; `slides`: doctor::slides_as_a_whole(); the run began at `begin`. Removes what an
+  /// earlier run has left in the directory, the certificate first, unless this one goes on with it: then
+  /// `earlier` has its levels. Throws InputError where nothing can be written.
   RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
-            const adapt::Discretisation<dim>& first, Clock::time_point begin,
+            const adapt::Discretisation<dim>& first, std::vector<bool> slides, Clock::time_point begin,
             Printed printed = Printed::everything, const io::EarlierLevels* earlier = nullptr);
 
   /// After every level, and once more for the last one if Newton's method has converged on it later: tables
@@ -99,6 +99,7 @@ class RunReport
   std::shared_ptr<const KeptLevel<dim>> last_;   ///< the last level that has a bound
   std::shared_ptr<const KeptLevel<dim>> shown_;  ///< what the first rank shows of it
   Point<dim> moment_about_;
+  std::vector<bool> slides_;
   std::vector<std::string> free_sides_;       ///< boundaries that the case does not mention
   Clock::time_point written_ = Clock::now();  ///< when the record was; at first when the run began
   double held_ = 0;                    ///< wall time that the loop has been held up on the last level; s

@@ -24,6 +24,7 @@
 #include "tribound/base/clock.h"
 #include "tribound/case/resolve.h"
 #include "tribound/certify/truth/solution_error.h"
+#include "tribound/doctor/support_facts.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/bisect.h"
 
@@ -121,7 +122,9 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
   auto first = std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_,
                                                             config.method);
   adapt::Levels<dim> levels(problem_, config.method, config.adapt.tolerance, std::move(first), &stop_);
-  RunReport<dim> report(config, problem_, levels.discrete(), Clock::now(), Printed::levels);
+  RunReport<dim> report(config, problem_, levels.discrete(),
+                        doctor::slides_as_a_whole<dim>(problem_, levels.discrete().mesh), Clock::now(),
+                        Printed::levels);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop_);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress_(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)
@@ -235,18 +238,19 @@ void StudyCommand<dim>::show_errors(const StudyVariant& variant) const
 template <int dim>
 void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
 {
-  const auto& [_, discrete, level] = levels_[variant][number];
+  const KeptLevel<dim>& kept = levels_[variant][number];
+  const adapt::Discretisation<dim>& discrete = *kept.discrete;
   StudiedLevel& result = study_.variants[variant].levels[number];
   if (!result.record.bound) return;
-  if (const auto space = dual_space(discrete->space, config_.study.dual_norm_dofs))
-    result.dual_norm = certify::DualNorm<dim>(discrete->form, *space)(level.u);
+  if (const auto space = dual_space(discrete.space, config_.study.dual_norm_dofs))
+    result.dual_norm = certify::DualNorm<dim>(discrete.form, *space)(kept.level.u);
   if (!reference_) return;
   const certify::LocalError error = certify::solution_error<dim>(
-      problem_, discrete->space, level.u, reference_->discrete->space, reference_->level.u);
+      problem_, discrete.space, kept.level.u, reference_->discrete->space, reference_->level.u);
   result.error = error.global;
   const case_file::Config config = variant_config(config_, study_.variants[variant].name);
   if (config.output.vtu)
-    write_level_fields<dim>(config.output.directory, static_cast<int>(number), *discrete, level,
+    write_level_fields<dim>(config.output.directory, static_cast<int>(number), discrete, kept.level,
                             {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
 }
 

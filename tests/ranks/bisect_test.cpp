@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "support/joined_meshes.h"
@@ -72,7 +73,7 @@ class Parts
                                 std::vector<std::int64_t>(owned_.size(), 1));
     else
       for (const CellRecord<dim>& cell : owned_) to.push_back(anywhere(cell.name, round));
-    owned_ = mesh::sent_to<dim>(ranks_, to, owned_);
+    owned_ = ranks_.send_to<CellRecord<dim>>(to, owned_);
   }
 
   /// The cells of all ranks in the order of their names, on every rank.
@@ -183,6 +184,76 @@ TEST(BisectPart, OfBodiesThatTouchAndOfJoints)
   expect_same(touching_boxes<2>(4), 3);
   expect_same(touching_boxes<2>(6), 3);
   expect_same(touching_boxes<3>(6), 2);
+}
+
+/// Ranks 0 and 1 forget of the vertex number `which` of those they share that the other has it; false where
+/// they share no more.
+template <int dim>
+bool skip_sharer(mesh::Partition<dim>& partition, Index which)
+{
+  const int other = 1 - partition.ranks.rank();
+  bool skipped = false;
+  for (Index v = 0; v < static_cast<Index>(partition.vertices.size()) && other >= 0 && !skipped; ++v)
+  {
+    const std::span<const int> sharers = partition.sharers_of(v);
+    const auto found = std::ranges::find(sharers, other);
+    if (found == sharers.end() || which-- > 0) continue;
+    partition.sharers.erase(partition.sharers.begin() + partition.sharers_begin[v] +
+                            (found - sharers.begin()));
+    for (std::size_t w = v + 1; w < partition.sharers_begin.size(); ++w) --partition.sharers_begin[w];
+    skipped = true;
+  }
+  return partition.ranks.any(skipped);
+}
+
+/// A bug that loses one sharer of a vertex makes meshes that do not conform, or none that are different.
+template <int dim>
+void expect_all_sharers_needed(const MeshData<dim>& data)
+{
+  const Ranks ranks = Ranks::world();
+  const auto cube = mesh::cube_around<dim>(data.vertices);
+  const mesh::MeshLabels labels{data.region_names, data.boundary_names, {}};
+  std::vector<CellRecord<dim>> owned;
+  for (const CellRecord<dim>& cell : all_records(data))
+    if (static_cast<int>(hash(cell.name, 7) % ranks.size()) == ranks.rank()) owned.push_back(cell);
+  const auto bisected = [&](mesh::MeshPart<dim> part)
+  {
+    const mesh::Mesh<dim> local(std::move(part), labels);
+    std::vector<Index> marked;
+    for (Index c = 0; c < local.n_owned_cells(); ++c)
+      if (hash(local.partition()->names[c], 8) % 3 == 0) marked.push_back(c);
+    return mesh::bisect_part<dim>(local, marked, 1).cells;
+  };
+  const mesh::MeshPart<dim> good = mesh::with_ghosts<dim>(ranks, cube, owned);
+  const std::vector<CellRecord<dim>> right = bisected(good);
+  int n_seen = 0;
+  for (Index which = 0;; ++which)
+  {
+    mesh::MeshPart<dim> part = good;
+    if (!skip_sharer(part.partition, which)) break;
+    const std::vector<CellRecord<dim>> cells = bisected(std::move(part));
+    const bool differs = ranks.any(cells != right);
+    const mesh::MeshPart<dim> finer = mesh::with_ghosts<dim>(ranks, cube, cells);
+    bool is_seen = false;
+    try
+    {
+      const mesh::Mesh<dim> mesh(finer, labels);
+    }
+    catch (const InputError&)
+    {
+      is_seen = true;
+    }
+    is_seen = ranks.any(is_seen);
+    EXPECT_EQ(is_seen, differs) << "vertex " << which;
+    n_seen += is_seen ? 1 : 0;
+  }
+  EXPECT_EQ(n_seen > 0, ranks.size() > 1);
+}
+
+TEST(BisectPart, NeedsAllSharers)
+{
+  expect_all_sharers_needed(block<2>({8, 4}));
+  expect_all_sharers_needed(block<3>({4, 2}, {3, 2, 2}));
 }
 
 /// Too deep on one rank is an error on all.

@@ -5,14 +5,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/meshes.h"
 #include "support/problem_data.h"
+#include "tribound/adapt/excerpt.h"
 #include "tribound/certify/bound/balance.h"
 #include "tribound/io/record/level_record.h"
 #include "tribound/mesh/geometry.h"
@@ -47,7 +52,8 @@ Summary summary(const adapt::LevelView<dim>& view)
     result.numbers.push_back(estimate.global.*c.value);
   const auto resultants = contact::contact_resultants<dim>(form, form.traction(view.level.u));
   result.numbers.insert(result.numbers.end(), {resultants.normal, resultants.tangential});
-  const io::LevelRecord record = io::level_record<dim>(view, certify::centroid(mesh));
+  const std::vector<bool> slides(form.problem().boundaries().size(), false);
+  const io::LevelRecord record = io::level_record<dim>(view, certify::centroid(mesh), slides);
   for (const certify::BalanceRow& row : record.balance->rows)
     result.numbers.insert(result.numbers.end(), row.force.begin(), row.force.end());
   result.numbers.push_back(record.figures.max_displacement);
@@ -57,14 +63,17 @@ Summary summary(const adapt::LevelView<dim>& view)
 
 template <int dim>
 std::vector<Summary> run(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, const adapt::Method& method,
-                         const adapt::AdaptOptions& options)
+                         const adapt::AdaptOptions& options,
+                         std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr)
 {
   const problem::Problem<dim> problem = data.on(mesh);
   auto first = std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, method);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(options);
   std::vector<Summary> levels;
   strategy.observer.level = [&](const adapt::LevelView<dim>& view) { levels.push_back(summary(view)); };
-  adapt::Levels<dim> loop(problem, method, options.tolerance, std::move(first));
+  const std::weak_ptr<const mesh::Mesh<dim>> kept = whole;
+  adapt::Levels<dim> loop(problem, method, options.tolerance, std::move(first), nullptr, std::move(whole));
+  EXPECT_TRUE(kept.expired());  // no rank has the whole any longer
   EXPECT_EQ(adapt::adapt(loop, strategy).status, certify::RunStatus::budget);
   return levels;
 }
@@ -84,8 +93,8 @@ void expect_same(const mesh::MeshData<dim>& mesh, const ProblemData<dim>& data, 
   const Ranks ranks = Ranks::world();
   const std::vector<Summary> alone = run<dim>(mesh::Mesh<dim>(mesh), data, method, options);
   auto whole = ranks.is_first() ? std::make_shared<const mesh::Mesh<dim>>(mesh) : nullptr;
-  const std::vector<Summary> shared =
-      run<dim>(mesh::share_out<dim>(ranks, std::move(whole)), data, method, options);
+  mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, whole.get());
+  const std::vector<Summary> shared = run<dim>(std::move(part), data, method, options, std::move(whole));
   ASSERT_EQ(alone.size(), shared.size());
   for (std::size_t level = 0; level < alone.size(); ++level)
   {
@@ -168,13 +177,100 @@ TEST(Loop, WithMultigrid)
   }
 }
 
+/// Area, means of the stress and squares of the components over cells; what they add up to.
+template <int dim>
+std::vector<double> sums(const mesh::Mesh<dim>& mesh, const adapt::CertifiedLevel<dim>& level)
+{
+  std::vector<double> result(1 + dim * dim + certify::all_components.size(), 0.0);
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
+  {
+    const double det = mesh::cell_map(mesh, c).det;
+    result[0] += det;
+    for (int entry = 0; entry < dim * dim; ++entry)
+      result[1 + entry] += std::sqrt(det) * level.stress.dis_in(c)[entry * level.stress.n];
+    for (std::size_t i = 0; i < certify::all_components.size(); ++i)
+      result[1 + dim * dim + i] += std::pow(level.estimate.cells[c].*certify::all_components[i].value, 2);
+  }
+  mesh.ranks().sum(std::span(result));
+  return result;
+}
+
+/// Of a level with a polynomial for u.
+template <int dim>
+void expect_merged(const adapt::LevelView<dim>& view, const adapt::Method& method, std::int64_t most)
+{
+  const mesh::Mesh<dim>& mesh = view.discrete.mesh;
+  const auto polynomial = [&](const fem::LagrangeSpace<dim>& space)
+  {
+    std::vector<double> u;
+    for (const Point<dim>& x : space.node_points())
+      for (int a = 0; a < dim; ++a) u.push_back(std::pow(0.3 * x[0] - x[1], method.degree) + a * x[dim - 1]);
+    return u;
+  };
+  adapt::CertifiedLevel<dim> level = view.level;
+  level.u = polynomial(view.discrete.space);
+  level.stress.lin.clear();
+  level.stress.reg.clear();
+  const std::vector<double> expected = sums(mesh, level);
+  const std::int64_t n_facets = mesh.ranks().sum(static_cast<std::int64_t>(mesh.n_owned_boundary()));
+  const adapt::LevelView<dim> changed{view.number, view.discrete, level, view.verdict, 0, view.owner};
+  const auto merged = adapt::excerpt<dim>(changed, method, most);
+  ASSERT_EQ(merged.has_value(), mesh.ranks().is_first());
+  if (!merged) return;
+  const mesh::Mesh<dim>& shown = merged->discrete->mesh;
+  EXPECT_TRUE(merged->is_merged);
+  EXPECT_LE(shown.n_cells(), most);
+  EXPECT_LT(most, shown.n_global_cells());
+  EXPECT_EQ(std::ssize(shown.boundary()), n_facets);
+  const std::vector<double> found = sums(shown, merged->level);
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], 1e-12 * std::max(1.0, std::abs(expected[i]))) << i;
+  const std::vector<double> u = polynomial(merged->discrete->space);
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(merged->level.u[i], u[i], 1e-12);
+}
+
+/// Too many cells to be shown are put together, all of them are at the boundary or in larger ones.
+TEST(Excerpt, OfMergedCells)
+{
+  const Ranks ranks = Ranks::world();
+  const auto check = [&]<int dim>(const mesh::MeshData<dim>& data, int p, double share)
+  {
+    SCOPED_TRACE(testing::Message() << dim << "D, p = " << p);
+    const adapt::Method method{.degree = p};
+    auto whole = ranks.is_first() ? std::make_shared<const mesh::Mesh<dim>>(data) : nullptr;
+    mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, whole.get());
+    const problem::Problem<dim> problem = pressed_block<dim>().on(part);
+    adapt::Levels<dim> levels(problem, method, 1e-6,
+                              std::make_unique<adapt::Discretisation<dim>>(std::move(part), problem, method),
+                              nullptr, std::move(whole));
+    ASSERT_EQ(levels.advance(), "");
+    for (int level = 0; level < 2; ++level)
+    {
+      const auto all = [](const adapt::LevelView<dim>& view)
+      {
+        std::vector<Index> marked(view.discrete.mesh.n_owned_cells());
+        std::iota(marked.begin(), marked.end(), 0);
+        return marked;
+      };
+      ASSERT_EQ(levels.refine(all), "");
+      ASSERT_EQ(levels.advance(), "");
+    }
+    const auto n = static_cast<double>(levels.discrete().mesh.n_global_cells());
+    expect_merged<dim>(levels.view(), method, std::llround(share * n));
+    const auto at_boundary = adapt::excerpt<dim>(levels.view(), method, 1);  // that is not enough
+    EXPECT_FALSE(at_boundary && at_boundary->is_merged);
+  };
+  for (const int p : {1, 3}) check(block<2>({8, 4}), p, 0.6);
+  check(block<3>({4, 3}, {3, 3, 3}), 2, 0.95);
+}
+
 /// What is wrong on one rank alone is seen at facets between ranks, too.
 TEST(Identities, SeeFacetsBetweenRanks)
 {
   const Ranks ranks = Ranks::world();
   const mesh::MeshData<2> data = block<2>({8, 4});
-  auto whole = ranks.is_first() ? std::make_shared<const mesh::Mesh<2>>(data) : nullptr;
-  mesh::Mesh<2> mesh = mesh::share_out<2>(ranks, std::move(whole));
+  const mesh::Mesh<2> whole(data);
+  mesh::Mesh<2> mesh = mesh::share_out<2>(ranks, ranks.is_first() ? &whole : nullptr);
   const adapt::Method method{.degree = 2};
   const problem::Problem<2> problem = pressed_block<2>().on(mesh);
   const adapt::Discretisation<2> discrete(std::move(mesh), problem, method);

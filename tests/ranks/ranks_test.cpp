@@ -108,12 +108,10 @@ TEST(Ranks, GatheredOnTheFirstAndCopiedFromIt)
   std::vector<int> mine(ranks.rank() + 1);
   std::iota(mine.begin(), mine.end(), 10 * ranks.rank());
   const auto all = ranks.gather<int>(mine);
-  ASSERT_EQ(std::ssize(all), ranks.is_first() ? ranks.size() : 0);
-  for (int r = 0; r < std::ssize(all); ++r)
-  {
-    ASSERT_EQ(std::ssize(all[r]), r + 1);
-    EXPECT_EQ(all[r].back(), 11 * r);
-  }
+  std::vector<int> expected;
+  for (int r = 0; r < ranks.size() && ranks.is_first(); ++r)
+    for (int i = 0; i <= r; ++i) expected.push_back(10 * r + i);
+  EXPECT_EQ(all, expected);
   std::vector<char> text;
   if (ranks.is_first()) text = {'c', 'a', 's', 'e'};
   ranks.copy_from_first(text);

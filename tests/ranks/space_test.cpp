@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -34,7 +35,7 @@ struct Shared
   explicit Shared(int seed)
       : ranks(Ranks::world()),
         whole(std::make_shared<const mesh::Mesh<dim>>(distorted(block<dim>({5, 4}, {4, 3, 2}), seed))),
-        part(mesh::share_out<dim>(ranks, ranks.is_first() ? whole : nullptr))
+        part(mesh::share_out<dim>(ranks, ranks.is_first() ? whole.get() : nullptr))
   {
   }
 
@@ -152,6 +153,34 @@ void expect_same_products(int degree)
                       EXPECT_EQ(fem::n_free_dofs(part, constraints), fem::n_free_dofs(whole, all));
                     });
           });
+}
+
+/// K u of the whole mesh, with a bug that gives a node of another rank the number of its neighbour: seen in
+/// the products.
+TEST(Nodes, NumberedTwiceMakeAnotherMatrix)
+{
+  const Shared<2> mesh(3);
+  const ProblemData<2> data{.boundaries = {fixed<2>("left", formula("y"), free, free)}};
+  const problem::Problem<2> problem = data.on(mesh.part);
+  const fem::LagrangeSpace<2> space(mesh.part, 2);
+  const fem::Constraints constraints = fem::dirichlet(problem, space);
+  std::vector<double> u;
+  for (const Point<2>& x : space.node_points())
+    for (int a = 0; a < 2; ++a) u.push_back(std::sin(3 * x[0] + a) + x[1] * x[1]);
+  const auto product = [&](const std::shared_ptr<const fem::NodeNumbers>& numbers)
+  { return algebra::SparseMatrix(2, contact::stiffness(problem, space, constraints), numbers).multiply(u); };
+  const fem::NodeNumbers& good = *space.numbers();
+  fem::NodeNumbers bad = good;
+  const auto is_ghost = [&](Index node)
+  { return good.global[node] < good.first || good.global[node] >= good.first + std::ssize(good.owned); };
+  Index ghost = 0;
+  while (ghost < space.n_nodes() && !is_ghost(ghost)) ++ghost;
+  if (ghost < space.n_nodes()) bad.global[ghost] = good.global[ghost == 0 ? 1 : ghost - 1];
+  const std::vector<double> right = product(space.numbers());
+  const std::vector<double> wrong = product(std::make_shared<const fem::NodeNumbers>(bad));
+  double largest = 0;
+  for (std::size_t i = 0; i < right.size(); ++i) largest = std::max(largest, std::abs(wrong[i] - right[i]));
+  EXPECT_EQ(mesh.ranks.max(largest) > 1e-3, mesh.ranks.size() > 1);
 }
 
 TEST(Nodes, AreNumberedOnceAndAgreeByPlace)

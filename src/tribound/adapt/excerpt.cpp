@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "tribound/adapt/merged_cells.h"
 #include "tribound/fem/nested.h"
 #include "tribound/mesh/share_out.h"
 
@@ -31,16 +34,6 @@ std::vector<double> stress_of(const certify::Stress<dim>& stress, std::span<cons
   return values;
 }
 
-/// What all ranks have, one behind the other, on the first.
-template <class T>
-std::vector<T> gathered(const Ranks& ranks, std::span<const T> items)
-{
-  std::vector<T> all;
-  for (const std::vector<T>& of_rank : ranks.gather(items))
-    all.insert(all.end(), of_rank.begin(), of_rank.end());
-  return all;
-}
-
 /// Blocks of `size` numbers, that of cell number[k] in place number[k].
 std::vector<double> in_order(std::span<const double> blocks, std::size_t size, std::span<const Index> number)
 {
@@ -51,29 +44,33 @@ std::vector<double> in_order(std::span<const double> blocks, std::size_t size, s
   return result;
 }
 
-}  // namespace
-
 template <int dim>
-std::optional<Excerpt<dim>> excerpt(const LevelView<dim>& view, const Method& method,
-                                    std::span<const Index> cells)
+FieldCells<dim> field_cells(const LevelView<dim>& view, std::span<const Index> cells)
+{
+  FieldCells<dim> fields;
+  fields.cells = mesh::records_of(view.discrete.mesh, cells);
+  fields.u = fem::cell_values<dim>(view.discrete.space, view.level.u, cells);
+  if (!view.level.stress.dis.empty()) fields.stress = stress_of(view.level.stress, cells);
+  if (!view.level.estimate.cells.empty())
+    for (const Index c : cells) fields.components.push_back(view.level.estimate.cells[c]);
+  return fields;
+}
+
+/// Those of all ranks, on the first.
+template <int dim>
+std::optional<Excerpt<dim>> gathered(const LevelView<dim>& view, const Method& method, FieldCells<dim> fields)
 {
   const Discretisation<dim>& discrete = view.discrete;
   const Ranks& ranks = discrete.mesh.ranks();
-  const bool has_bound = !view.level.stress.dis.empty() || view.level.estimate.total_sharp > 0;
-  std::vector<certify::BoundComponents> components;
-  for (const Index c : cells)
-    if (!view.level.estimate.cells.empty()) components.push_back(view.level.estimate.cells[c]);
-  const auto records = gathered<mesh::CellRecord<dim>>(ranks, mesh::records_of(discrete.mesh, cells));
-  const auto u = gathered<double>(ranks, fem::cell_values<dim>(discrete.space, view.level.u, cells));
-  const auto stress =
-      gathered<double>(ranks, has_bound ? stress_of(view.level.stress, cells) : std::vector<double>{});
-  components = gathered<certify::BoundComponents>(ranks, components);
-
+  fields.cells = ranks.gather<mesh::CellRecord<dim>>(fields.cells);
+  fields.u = ranks.gather<double>(fields.u);
+  fields.stress = ranks.gather<double>(fields.stress);
+  fields.components = ranks.gather<certify::BoundComponents>(fields.components);
   return ranks.together(
       [&]() -> std::optional<Excerpt<dim>>
       {
         if (!ranks.is_first()) return std::nullopt;
-        mesh::PickedOut<dim> picked = mesh::pick_out<dim>(discrete.mesh, records);
+        mesh::PickedOut<dim> picked = mesh::pick_out<dim>(discrete.mesh, fields.cells);
         Excerpt<dim> result;
         result.discrete = std::make_shared<const Discretisation<dim>>(std::move(picked.mesh),
                                                                       discrete.form.problem(), method);
@@ -81,20 +78,49 @@ std::optional<Excerpt<dim>> excerpt(const LevelView<dim>& view, const Method& me
         level.steps = view.level.steps;
         level.norms = view.level.norms;
         level.delta_updates = view.level.delta_updates;
-        level.u = fem::from_cell_values<dim>(result.discrete->space, picked.number, u);
+        level.u = fem::from_cell_values<dim>(result.discrete->space, picked.number, fields.u);
         level.estimate.Bound::operator=(view.level.estimate.bound());
-        level.estimate.cells.resize(components.size());
-        for (std::size_t k = 0; k < components.size(); ++k)
-          level.estimate.cells[picked.number[k]] = components[k];
+        level.estimate.cells.resize(fields.components.size());
+        for (std::size_t k = 0; k < fields.components.size(); ++k)
+          level.estimate.cells[picked.number[k]] = fields.components[k];
         level.stress.degree = view.level.stress.degree;
         level.stress.n = view.level.stress.n;
-        level.stress.dis = in_order(stress, level.stress.block_size(), picked.number);
-        level.stress.lin_block.assign(records.size(), -1);
+        level.stress.dis = in_order(fields.stress, level.stress.block_size(), picked.number);
+        level.stress.lin_block.assign(fields.cells.size(), -1);
         return result;
       });
 }
 
-template std::optional<Excerpt<2>> excerpt(const LevelView<2>&, const Method&, std::span<const Index>);
-template std::optional<Excerpt<3>> excerpt(const LevelView<3>&, const Method&, std::span<const Index>);
+}  // namespace
+
+template <int dim>
+std::optional<Excerpt<dim>> excerpt(const LevelView<dim>& view, const Method& method, std::int64_t most)
+{
+  const mesh::Mesh<dim>& mesh = view.discrete.mesh;
+  std::vector<Index> cells(mesh.n_owned_cells());
+  std::iota(cells.begin(), cells.end(), 0);
+  FieldCells<dim> fields = field_cells(view, cells);
+  const bool is_merged = mesh.n_global_cells() > most;
+  if (is_merged && !merge_cells<dim>(mesh.ranks(), view.discrete.space.basis(), most, fields))
+    return boundary_excerpt<dim>(view, method);
+  std::optional<Excerpt<dim>> result = gathered<dim>(view, method, std::move(fields));
+  if (result) result->is_merged = is_merged;
+  return result;
+}
+
+template <int dim>
+std::optional<Excerpt<dim>> boundary_excerpt(const LevelView<dim>& view, const Method& method)
+{
+  std::vector<Index> cells;
+  for (const mesh::BoundaryFacet& facet : view.discrete.mesh.owned_boundary()) cells.push_back(facet.cell);
+  std::ranges::sort(cells);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return gathered<dim>(view, method, field_cells<dim>(view, cells));
+}
+
+template std::optional<Excerpt<2>> excerpt(const LevelView<2>&, const Method&, std::int64_t);
+template std::optional<Excerpt<3>> excerpt(const LevelView<3>&, const Method&, std::int64_t);
+template std::optional<Excerpt<2>> boundary_excerpt(const LevelView<2>&, const Method&);
+template std::optional<Excerpt<3>> boundary_excerpt(const LevelView<3>&, const Method&);
 
 }  // namespace tribound::adapt

@@ -3,9 +3,9 @@
 /// @file excerpt.h
 /// Some cells of a level on several ranks, all on the first: what is shown of a solution as one.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "tribound/adapt/levels.h"
 
@@ -21,11 +21,17 @@ struct Excerpt
   /// u, the stress (all of it in `dis`) and the cells of the estimate are those of the cells; no tractions,
   /// and no equilibrium.
   CertifiedLevel<dim> level;
+  bool is_merged = false;  ///< whether cells were put together, see merge_cells()
 };
 
-/// Those own cells of each rank; nothing elsewhere than on the first rank. All ranks call it together.
+/// The cells of all ranks, merged where there are more than `most`; where that is not enough those at the
+/// boundary. Nothing elsewhere than on the first rank. All ranks call it together.
 template <int dim>
 [[nodiscard]] std::optional<Excerpt<dim>> excerpt(const LevelView<dim>& view, const Method& method,
-                                                  std::span<const Index> cells);
+                                                  std::int64_t most);
+
+/// The cells at the boundary.
+template <int dim>
+[[nodiscard]] std::optional<Excerpt<dim>> boundary_excerpt(const LevelView<dim>& view, const Method& method);
 
 }  // namespace tribound::adapt

@@ -86,16 +86,26 @@ Finer<dim> bisected_part(const Discretisation<dim>& discrete, std::span<const do
 
 template <int dim>
 Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
-                    std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop)
+                    std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop,
+                    std::shared_ptr<const mesh::Mesh<dim>> whole)
     : problem_(problem), method_(method), tolerance_(tolerance), stop_(stop), current_(std::move(first))
 {
-  contact::check_rigid_motions<dim>(problem_, current_->space, current_->form.data(), current_->form.load());
+  if (current_->mesh.partition())
+  {
+    current_->mesh.ranks().on_first([&]
+                                    { contact::check_rigid_motions<dim>(problem_, *whole, method_.degree); });
+    ask(whole.get());
+  }
+  else
+    contact::check_rigid_motions<dim>(problem_, current_->space, current_->form.data(),
+                                      current_->form.load());
 }
 
 template <int dim>
 Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
                     std::unique_ptr<Discretisation<dim>> first, const LevelStart& start,
-                    std::vector<double> u, const std::atomic<bool>* stop)
+                    std::vector<double> u, const std::atomic<bool>* stop,
+                    std::shared_ptr<const mesh::Mesh<dim>> whole)
     : problem_(problem),
       method_(method),
       tolerance_(tolerance),
@@ -108,6 +118,15 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
 {
   level_.delta = start.delta;
   level_.friedrichs = start.friedrichs;
+  if (current_->mesh.partition() && !level_.friedrichs) ask(whole.get());
+}
+
+template <int dim>
+void Levels<dim>::ask(const mesh::Mesh<dim>* whole)
+{
+  if (current_->form.data().effort().loads > 0)
+    level_.friedrichs =
+        current_->mesh.ranks().on_first([&] { return certify::friedrichs_constant<dim>(problem_, *whole); });
 }
 
 template <int dim>

@@ -73,14 +73,17 @@ class Levels
   /// On the mesh of `first`. A level whose bound is at most tolerance * ||sigma(u_h)|| is certified. Newton's
   /// method is left when `stop` becomes true, on the first level only after it has been solved. Throws
   /// InputError where the problem is not well posed: a rigid motion is left free, or contact cannot balance
-  /// the loads (check_rigid_motions).
+  /// the loads (check_rigid_motions). `whole`: where the mesh is shared out, on the first rank the whole one
+  /// or another with the same bodies, supports and C_F, which is let go of.
   Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
-         std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop = nullptr);
+         std::unique_ptr<Discretisation<dim>> first, const std::atomic<bool>* stop = nullptr,
+         std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr);
 
   /// Goes on with a level that another run has come to, on the mesh of `first`, from the solution `u` there.
+  /// `whole`: as above, of the mesh that the other run began with.
   Levels(const problem::Problem<dim>& problem, const Method& method, double tolerance,
          std::unique_ptr<Discretisation<dim>> first, const LevelStart& start, std::vector<double> u,
-         const std::atomic<bool>* stop = nullptr);
+         const std::atomic<bool>* stop = nullptr, std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr);
 
   /// The number of the level that advance() comes to.
   [[nodiscard]] int next_number() const { return number_ + 1; }
@@ -115,6 +118,8 @@ class Levels
   [[nodiscard]] const certify::Verdict& verdict() const { return verdict_; }
 
  private:
+  /// What can be needed later and only a whole mesh tells.
+  void ask(const mesh::Mesh<dim>* whole);
   [[nodiscard]] bool interrupted() const { return current_->mesh.ranks().any(stop_ && *stop_); }
   /// Passes the steps on, and leaves Newton's method when the user wants it to end and it may.
   [[nodiscard]] StepObserver watch(const StepObserver& observer, bool interruptible) const;

@@ -19,9 +19,12 @@ class RankFailure : public std::runtime_error
   using std::runtime_error::runtime_error;
 };
 
+/// Time that a rank which gives up leaves the others, which may still write files or free what they have; s.
+constexpr double failure_patience = 20;
+
 /// To be called by whoever catches a failure and goes on: throws RankFailure if it is not that of all ranks.
-/// `patience`: seconds, for those that free what they have.
-inline void require_all_failed(const Ranks& ranks, const std::string& what, double patience = 20)
+inline void require_all_failed(const Ranks& ranks, const std::string& what,
+                               double patience = failure_patience)
 {
   if (!ranks.all_arrive(patience)) throw RankFailure(what);
 }

@@ -67,6 +67,22 @@ class Ranks
     return in;
   }
 
+  /// Of the items, `n_each` at a time, the k-th go to rank rank_of[k]; the result has what came, in the order
+  /// of the ranks.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  [[nodiscard]] std::vector<T> send_to(std::span<const int> rank_of, std::span<const T> items,
+                                       std::size_t n_each = 1) const
+  {
+    std::vector<std::vector<T>> out(size_);
+    for (std::size_t k = 0; k < rank_of.size(); ++k)
+    {
+      const std::span<const T> block = items.subspan(k * n_each, n_each);
+      out[rank_of[k]].insert(out[rank_of[k]].end(), block.begin(), block.end());
+    }
+    return joined(send(out));
+  }
+
   struct Outgoing
   {
     int rank;
@@ -80,16 +96,14 @@ class Ranks
   /// Between neighbours that know from and to whom, and how much; no other rank takes part.
   void transfer(std::span<const Outgoing> out, std::span<const Incoming> in) const;
 
-  /// The items of all ranks, on the first; elsewhere nothing.
+  /// The items of all ranks in their order, on the first; elsewhere nothing.
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  [[nodiscard]] std::vector<std::vector<T>> gather(std::span<const T> items) const
+  [[nodiscard]] std::vector<T> gather(std::span<const T> items) const
   {
     std::vector<std::vector<T>> out(size_);
     out[0].assign(items.begin(), items.end());
-    std::vector<std::vector<T>> in = send(out);
-    if (!is_first()) in.clear();
-    return in;
+    return joined(send(out));
   }
 
   /// The bytes that the first rank has, everywhere.
@@ -170,6 +184,17 @@ class Ranks
 
  private:
   struct Communicator;
+
+  template <class T>
+  static std::vector<T> joined(const std::vector<std::vector<T>>& parts)
+  {
+    std::size_t n = 0;
+    for (const std::vector<T>& part : parts) n += part.size();
+    std::vector<T> all;
+    all.reserve(n);
+    for (const std::vector<T>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
 
   /// Room for what comes from a rank.
   using Receiver = std::function<std::span<std::byte>(int rank, std::size_t n_bytes)>;

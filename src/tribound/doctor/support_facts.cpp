@@ -115,20 +115,11 @@ bool OverconstrainedCorner::contradicts() const
 }
 
 template <int dim>
-std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem,
-                                    const fem::LagrangeSpace<dim>& space)
+std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   constexpr double negligible = 1e-6;  // motions have size 1
-  const mesh::Mesh<dim>& mesh = space.mesh();
+  const fem::LagrangeSpace<dim> space(mesh, 1);
   std::vector<bool> slides(problem.boundaries().size(), false);
-  if (mesh.partition())
-  {
-    mesh.ranks().on_first(
-        [&] {
-          slides = slides_as_a_whole<dim>(problem, fem::LagrangeSpace<dim>(*mesh.partition()->first_mesh, 1));
-        });
-    return slides;
-  }
   const std::vector<std::optional<Point<dim>>> plane = normals_of_planes(problem, mesh);
   for (const contact::Body<dim>& body : contact::find_bodies(space))
   {
@@ -214,8 +205,8 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const contact::Nitsch
   return result;
 }
 
-template std::vector<bool> slides_as_a_whole(const problem::Problem<2>&, const fem::LagrangeSpace<2>&);
-template std::vector<bool> slides_as_a_whole(const problem::Problem<3>&, const fem::LagrangeSpace<3>&);
+template std::vector<bool> slides_as_a_whole(const problem::Problem<2>&, const mesh::Mesh<2>&);
+template std::vector<bool> slides_as_a_whole(const problem::Problem<3>&, const mesh::Mesh<3>&);
 template std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<2>&);
 template std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<3>&);
 template std::vector<OverconstrainedCorner> overconstrained_corners(const contact::NitscheForm<2>&);

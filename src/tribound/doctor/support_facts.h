@@ -30,11 +30,10 @@ template <int dim>
 /// Per boundary number, whether a body would slide along it as a whole without its friction: the facets of
 /// the boundary are within 10 degrees of a plane, and a rigid motion along the plane is stopped neither by
 /// displacement conditions nor by closed contact without friction. There, and only there, resultants tell how
-/// far sliding is. Of a mesh that is shared out the first rank knows, from the first mesh; all call it
-/// together.
+/// far sliding is. Refinement does not change it; the mesh is a whole one.
 template <int dim>
 [[nodiscard]] std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem,
-                                                  const fem::LagrangeSpace<dim>& space);
+                                                  const mesh::Mesh<dim>& mesh);
 
 /// Vertices where a contact boundary meets a boundary that fixes the normal displacement.
 struct OverconstrainedCorner

@@ -1,9 +1,50 @@
 #include "tribound/fem/nested.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cstddef>
+
+#include "tribound/fem/evaluation.h"
 
 namespace tribound::fem
 {
+
+namespace
+{
+
+/// u at points of a cell, given in reference coordinates.
+template <int dim>
+std::vector<Point<dim>> values_in(const LagrangeSpace<dim>& space, Index cell, std::span<const double> u,
+                                  std::span<const Point<dim>> points)
+{
+  const Tabulation<dim> table = space.basis().tabulate(points);
+  std::vector<Point<dim>> values;
+  values.reserve(points.size());
+  for (int q = 0; q < table.n_points; ++q)
+    values.push_back(value_at<dim>(space.cell_nodes(cell), u, table.values_at(q)));
+  return values;
+}
+
+/// Appends u at the nodes of a cell.
+template <int dim>
+void append_values(const LagrangeSpace<dim>& space, Index cell, std::span<const double> u,
+                   std::vector<double>& values)
+{
+  for (const Index node : space.cell_nodes(cell))
+    values.insert(values.end(), u.begin() + dim * node, u.begin() + dim * (node + 1));
+}
+
+/// From the reference coordinates of a cell to its points.
+template <int dim>
+Point<dim> point_in(const mesh::CellRecord<dim>& cell, const Point<dim>& xhat)
+{
+  const Point<dim> origin = cell.vertices[0].point();
+  Point<dim> x = origin;
+  for (int j = 0; j < dim; ++j) x += xhat[j] * (cell.vertices[j + 1].point() - origin);
+  return x;
+}
+
+}  // namespace
 
 template <int dim>
 std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::span<const double> u,
@@ -29,33 +70,12 @@ std::vector<double> nested_interpolant(const LagrangeSpace<dim>& coarse, std::sp
       nodes.push_back(node);
       in_parent.push_back(reference_point(parent_map, map(fine.basis().node_point(i))));
     }
-    const Tabulation<dim> table = coarse.basis().tabulate(in_parent);
-    const std::span<const Index> parent_nodes = coarse.cell_nodes(parent[c]);
-    for (int q = 0; q < table.n_points; ++q)
-      for (int a = 0; a < dim; ++a)
-      {
-        double value = 0;
-        for (int j = 0; j < table.n_nodes; ++j) value += table.values_at(q)[j] * u[dim * parent_nodes[j] + a];
-        result[dim * nodes[q] + a] = value;
-      }
+    const std::vector<Point<dim>> values = values_in<dim>(coarse, parent[c], u, in_parent);
+    for (std::size_t q = 0; q < nodes.size(); ++q)
+      std::ranges::copy(values[q], result.begin() + static_cast<std::ptrdiff_t>(dim) * nodes[q]);
   }
   return result;
 }
-
-namespace
-{
-
-/// From the reference coordinates of a cell to its points.
-template <int dim>
-Point<dim> point_in(const mesh::CellRecord<dim>& cell, const Point<dim>& xhat)
-{
-  const Point<dim> origin = cell.vertices[0].point();
-  Point<dim> x = origin;
-  for (int j = 0; j < dim; ++j) x += xhat[j] * (cell.vertices[j + 1].point() - origin);
-  return x;
-}
-
-}  // namespace
 
 template <int dim>
 std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<const double> u,
@@ -64,27 +84,19 @@ std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<co
   const int n = coarse.basis().n_nodes();
   const std::vector<Point<dim>> reference = coarse.basis().node_points();
   std::vector<Point<dim>> in_parent(n);
-  std::vector<double> values(cells.size() * n * dim);
+  std::vector<double> values;
+  values.reserve(cells.size() * n * dim);
   for (std::size_t c = 0; c < cells.size(); ++c)
   {
-    const std::span<const Index> nodes = coarse.cell_nodes(parent[c]);
-    const auto of_cell = std::span(values).subspan(c * n * dim, static_cast<std::size_t>(n) * dim);
     if (cells[c].name == coarse.mesh().partition()->names[parent[c]])  // the same cell
     {
-      for (int i = 0; i < n; ++i)
-        for (int a = 0; a < dim; ++a) of_cell[i * dim + a] = u[dim * nodes[i] + a];
+      append_values<dim>(coarse, parent[c], u, values);
       continue;
     }
     const mesh::CellMap<dim> map = mesh::cell_map(coarse.mesh(), parent[c]);
     for (int i = 0; i < n; ++i) in_parent[i] = reference_point(map, point_in<dim>(cells[c], reference[i]));
-    const Tabulation<dim> table = coarse.basis().tabulate(in_parent);
-    for (int i = 0; i < n; ++i)
-      for (int a = 0; a < dim; ++a)
-      {
-        double value = 0;
-        for (int j = 0; j < n; ++j) value += table.values_at(i)[j] * u[dim * nodes[j] + a];
-        of_cell[i * dim + a] = value;
-      }
+    for (const Point<dim>& value : values_in<dim>(coarse, parent[c], u, in_parent))
+      values.insert(values.end(), value.begin(), value.end());
   }
   return values;
 }
@@ -95,9 +107,7 @@ std::vector<double> cell_values(const LagrangeSpace<dim>& space, std::span<const
 {
   std::vector<double> values;
   values.reserve(cells.size() * space.basis().n_nodes() * dim);
-  for (const Index c : cells)
-    for (const Index node : space.cell_nodes(c))
-      values.insert(values.end(), u.begin() + dim * node, u.begin() + dim * (node + 1));
+  for (const Index c : cells) append_values<dim>(space, c, u, values);
   return values;
 }
 

@@ -73,7 +73,8 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
 
 template <int dim>
 std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topology<dim>& topology,
-                                         std::span<const CellRecord<dim>> cells, Index n_owned)
+                                         std::span<const CellRecord<dim>> cells, Index n_owned,
+                                         std::span<const char> has_patch)
 {
   constexpr const char* hint = "the cells of the first mesh, or how they were bisected, have been changed";
   std::vector<BoundaryFacet> boundary;
@@ -89,7 +90,8 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
                        fmt::format("{} is on the boundary and has two cells",
                                    describe_facet<dim>(data, topology.facets[f])),
                        hint);
-    if (other < 0 && is_inside && cell < n_owned)
+    if (other < 0 && is_inside &&
+        std::ranges::any_of(topology.facets[f], [&](Index v) { return has_patch[v] != 0; }))
       throw InputError(data.source,
                        fmt::format("{} is inside the domain and has one cell",
                                    describe_facet<dim>(data, topology.facets[f])),
@@ -101,9 +103,11 @@ std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data, const Topolo
 }
 
 template std::vector<BoundaryFacet> find_boundary<2>(const MeshData<2>&, const Topology<2>&,
-                                                     std::span<const CellRecord<2>>, Index);
+                                                     std::span<const CellRecord<2>>, Index,
+                                                     std::span<const char>);
 template std::vector<BoundaryFacet> find_boundary<3>(const MeshData<3>&, const Topology<3>&,
-                                                     std::span<const CellRecord<3>>, Index);
+                                                     std::span<const CellRecord<3>>, Index,
+                                                     std::span<const char>);
 template std::vector<BoundaryFacet> find_boundary<2>(const MeshData<2>&, const Topology<2>&);
 template std::vector<BoundaryFacet> find_boundary<3>(const MeshData<3>&, const Topology<3>&);
 

@@ -188,6 +188,13 @@ std::int64_t n_box_cells(const BoxMesh& box)
   return n;
 }
 
+BoxMesh coarser_box(BoxMesh box, std::int64_t most_cells)
+{
+  while (n_box_cells(box) > most_cells)
+    for (int& n : box.cells) n = (n + 1) / 2;
+  return box;
+}
+
 template <int dim>
 std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first, std::int64_t last)
 {

@@ -31,6 +31,10 @@ template <int dim>
 /// How many cells it has.
 [[nodiscard]] std::int64_t n_box_cells(const BoxMesh& box);
 
+/// One of the same sides with half as many cells in each direction, again and again, until there are at most
+/// so many.
+[[nodiscard]] BoxMesh coarser_box(BoxMesh box, std::int64_t most_cells);
+
 /// Its cells number first, ..., last - 1 as first_records() gives them, without the others.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first,

@@ -43,6 +43,14 @@ struct CellName
     ++name.depth;
     return name;
   }
+  /// The cell it is a child of; not of one of the first mesh.
+  [[nodiscard]] constexpr CellName parent() const
+  {
+    CellName name = *this;
+    --name.depth;
+    name.path[name.depth / 64] &= ~(std::uint64_t{1} << (63 - name.depth % 64));
+    return name;
+  }
 };
 
 /// A vertex as its position, to the bit, and what tells apart vertices in one place, as on the two sides of a

@@ -20,19 +20,26 @@ std::vector<CellTags<dim>> cell_tags(std::size_t n_cells, std::span<const Bounda
 namespace
 {
 
-/// `regions`: that of a cell.
+/// Those of cells first, ..., last - 1. `region`: that of a cell.
 template <int dim, class Region>
 std::vector<CellRecord<dim>> first_records(std::span<const Point<dim>> points,
                                            std::span<const Cell<dim>> cells,
                                            std::span<const std::uint8_t> types, const Region& region,
-                                           std::span<const BoundaryFacet> boundary)
+                                           std::span<const BoundaryFacet> boundary, Index first, Index last)
 {
-  const std::vector<CellTags<dim>> tags = cell_tags<dim>(cells.size(), boundary);
-  std::vector<CellRecord<dim>> records(cells.size());
-  for (Index c = 0; c < static_cast<Index>(records.size()); ++c)
+  std::vector<BoundaryFacet> facets;  // in which `first` is cell 0
+  for (BoundaryFacet facet : boundary)
+    if (facet.cell >= first && facet.cell < last)
+    {
+      facet.cell -= first;
+      facets.push_back(facet);
+    }
+  const std::vector<CellTags<dim>> tags = cell_tags<dim>(last - first, facets);
+  std::vector<CellRecord<dim>> records(last - first);
+  for (Index c = first; c < last; ++c)
   {
     const MarkedCell<dim> marked = marked_cell<dim>(points, cells, types, c);
-    CellRecord<dim>& record = records[c];
+    CellRecord<dim>& record = records[c - first];
     record.name.root = c;
     record.region = region(c);
     record.bisection_type = marked.type;
@@ -40,7 +47,7 @@ std::vector<CellRecord<dim>> first_records(std::span<const Point<dim>> points,
     {
       const Index v = marked.vertices[i];
       record.vertices[i] = vertex_name<dim>(points[v], v);
-      record.tags[i] = tags[c][std::ranges::find(cells[c], v) - cells[c].begin()];
+      record.tags[i] = tags[c - first][std::ranges::find(cells[c], v) - cells[c].begin()];
     }
   }
   return records;
@@ -52,22 +59,23 @@ template <int dim>
 std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data, std::span<const BoundaryFacet> boundary)
 {
   return first_records<dim>(
-      data.vertices, data.cells, data.bisection_types, [&](Index c) { return data.regions[c]; }, boundary);
+      data.vertices, data.cells, data.bisection_types, [&](Index c) { return data.regions[c]; }, boundary, 0,
+      static_cast<Index>(data.cells.size()));
 }
 
 template <int dim>
-std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh)
+std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh, Index first, Index last)
 {
   return first_records<dim>(
       mesh.vertices(), mesh.cells(), mesh.bisection_types(), [&](Index c) { return mesh.region(c); },
-      mesh.boundary());
+      mesh.boundary(), first, last);
 }
 
 template std::vector<CellTags<2>> cell_tags<2>(std::size_t, std::span<const BoundaryFacet>);
 template std::vector<CellRecord<2>> first_records(const MeshData<2>&, std::span<const BoundaryFacet>);
-template std::vector<CellRecord<2>> first_records(const Mesh<2>&);
+template std::vector<CellRecord<2>> first_records(const Mesh<2>&, Index, Index);
 template std::vector<CellTags<3>> cell_tags<3>(std::size_t, std::span<const BoundaryFacet>);
 template std::vector<CellRecord<3>> first_records(const MeshData<3>&, std::span<const BoundaryFacet>);
-template std::vector<CellRecord<3>> first_records(const Mesh<3>&);
+template std::vector<CellRecord<3>> first_records(const Mesh<3>&, Index, Index);
 
 }  // namespace tribound::mesh

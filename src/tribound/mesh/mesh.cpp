@@ -64,7 +64,7 @@ Mesh<dim>::Mesh(MeshPart<dim> part, MeshLabels labels)
   check_shapes(data);
   Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
   check_facets(data, topology);
-  boundary_ = find_boundary<dim>(data, topology, part.cells, partition_->is_excerpt ? 0 : n_owned_cells_);
+  boundary_ = find_boundary<dim>(data, topology, part.cells, n_owned_cells_, has_patch_);
   n_owned_boundary_ = std::ranges::partition_point(boundary_, [this](const BoundaryFacet& facet)
                                                    { return facet.cell < n_owned_cells_; }) -
                       boundary_.begin();

@@ -210,19 +210,6 @@ MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube, std::vector
   return part;
 }
 
-template <int dim>
-std::vector<CellRecord<dim>> sent_to(const Ranks& ranks, std::span<const int> rank_of,
-                                     std::span<const CellRecord<dim>> owned)
-{
-  assert(rank_of.size() == owned.size());
-  std::vector<std::vector<CellRecord<dim>>> out(ranks.size());
-  for (std::size_t c = 0; c < owned.size(); ++c) out[rank_of[c]].push_back(owned[c]);
-  std::vector<CellRecord<dim>> result;
-  for (const std::vector<CellRecord<dim>>& cells : ranks.send(out))
-    result.insert(result.end(), cells.begin(), cells.end());
-  return result;
-}
-
 std::vector<int> balanced_ranks(const Ranks& ranks, std::span<const std::uint64_t> keys,
                                 std::span<const std::int64_t> weights)
 {
@@ -285,13 +272,9 @@ GhostUpdate cell_update(const Partition<dim>& partition)
 }
 
 template MeshPart<2> with_ghosts(const Ranks&, const Cube<2>&, std::vector<CellRecord<2>>);
-template std::vector<CellRecord<2>> sent_to(const Ranks&, std::span<const int>,
-                                            std::span<const CellRecord<2>>);
 template std::vector<std::uint64_t> centre_keys(const Cube<2>&, std::span<const CellRecord<2>>);
 template GhostUpdate cell_update(const Partition<2>&);
 template MeshPart<3> with_ghosts(const Ranks&, const Cube<3>&, std::vector<CellRecord<3>>);
-template std::vector<CellRecord<3>> sent_to(const Ranks&, std::span<const int>,
-                                            std::span<const CellRecord<3>>);
 template std::vector<std::uint64_t> centre_keys(const Cube<3>&, std::span<const CellRecord<3>>);
 template GhostUpdate cell_update(const Partition<3>&);
 

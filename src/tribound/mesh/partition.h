@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -53,8 +52,9 @@ struct CellRecord
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data,
                                                          std::span<const BoundaryFacet> boundary);
+/// Those of the cells number first, ..., last - 1.
 template <int dim>
-[[nodiscard]] std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh);
+[[nodiscard]] std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh, Index first, Index last);
 
 /// What a rank knows of how the mesh is shared out. Its own cells come first, in ascending order of their
 /// names, then ghosts likewise: every cell of others that has a vertex in common with one of its own. The
@@ -63,15 +63,14 @@ template <int dim>
 struct Partition
 {
   Ranks ranks;
-  Cube<dim> cube;                               ///< around the first mesh
-  std::shared_ptr<const Mesh<dim>> first_mesh;  ///< whole, on the first rank; elsewhere null
-  /// Whether the cells are picked out of a mesh: facets inside may then have one cell, and no vertex a patch.
-  bool is_excerpt = false;
+  Cube<dim> cube;  ///< around the first mesh
   Index n_owned_cells = 0;
   std::vector<CellName> names;            ///< per cell
   std::vector<int> ghost_owners;          ///< per ghost cell
   std::vector<VertexName<dim>> vertices;  ///< per vertex
-  std::vector<char> has_patch;  ///< per vertex, whether it has an own cell: then all its cells are here
+  /// Per vertex, whether it has an own cell: then all its cells are here. Not of cells that are picked out of
+  /// a mesh.
+  std::vector<char> has_patch;
   std::vector<std::int32_t> sharers_begin;  ///< per vertex, into `sharers`; one more at the end
   std::vector<int> sharers;     ///< other ranks with own cells around a vertex that has a patch, ascending
   std::int64_t n_cells = 0;     ///< of the whole mesh
@@ -98,11 +97,6 @@ struct MeshPart
 template <int dim>
 [[nodiscard]] MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube,
                                         std::vector<CellRecord<dim>> owned);
-
-/// Every cell on the rank where it is to be; `rank_of[i]` is that of owned[i]. In no particular order.
-template <int dim>
-[[nodiscard]] std::vector<CellRecord<dim>> sent_to(const Ranks& ranks, std::span<const int> rank_of,
-                                                   std::span<const CellRecord<dim>> owned);
 
 /// Where cells should be for all ranks to have the same weight: stretches of the curve along which `keys`
 /// ascend. Nothing of the size of the mesh is exchanged, and where a cell goes does not depend on where it

@@ -66,24 +66,7 @@ std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
   const auto n = static_cast<double>(cells.size());
   if (move == Move::where_unbalanced && ranks.max(n) * ranks.size() <= much * ranks.sum(n))
     return std::vector<int>(cells.size(), ranks.rank());
-  const std::vector<std::int64_t> weights(cells.size(), 1);
-  return balanced_ranks(ranks, centre_keys<dim>(cube, cells), weights);
-}
-
-/// What comes from all ranks in their order, as sent_to() has it of cells.
-std::vector<double> values_sent_to(const Ranks& ranks, std::span<const int> rank_of,
-                                   std::span<const double> values, int n_values)
-{
-  std::vector<std::vector<double>> out(ranks.size());
-  for (std::size_t c = 0; c < rank_of.size(); ++c)
-  {
-    const auto of_cell = values.subspan(c * n_values, n_values);
-    out[rank_of[c]].insert(out[rank_of[c]].end(), of_cell.begin(), of_cell.end());
-  }
-  std::vector<double> result;
-  for (const std::vector<double>& from : ranks.send(out))
-    result.insert(result.end(), from.begin(), from.end());
-  return result;
+  return balanced_ranks(ranks, centre_keys<dim>(cube, cells), std::vector<std::int64_t>(cells.size(), 1));
 }
 
 /// Where names are in a list of them, which ascends.
@@ -106,11 +89,10 @@ std::vector<CellName> names_of(std::span<const CellRecord<dim>> cells)
 }
 
 template <int dim>
-Mesh<dim> make_part(const Ranks& ranks, const Cube<dim>& cube, std::shared_ptr<const Mesh<dim>> first,
-                    std::vector<CellRecord<dim>> cells, MeshLabels labels)
+Mesh<dim> make_part(const Ranks& ranks, const Cube<dim>& cube, std::vector<CellRecord<dim>> cells,
+                    MeshLabels labels)
 {
   MeshPart<dim> part = with_ghosts<dim>(ranks, cube, std::move(cells));
-  part.partition.first_mesh = std::move(first);
   return ranks.together([&] { return Mesh<dim>(std::move(part), std::move(labels)); });
 }
 
@@ -142,19 +124,16 @@ Origin<dim> origin_of(const Ranks& ranks, const Mesh<dim>* first)
 }
 
 template <int dim>
-Balanced<dim> balance_cells(const Ranks& ranks, Origin<dim> origin, std::shared_ptr<const Mesh<dim>> first,
-                            std::vector<CellRecord<dim>> cells, std::span<const double> values, int n_values,
-                            Move move)
+Balanced<dim> balance_cells(const Ranks& ranks, Origin<dim> origin, std::vector<CellRecord<dim>> cells,
+                            std::span<const double> values, int n_values, Move move)
 {
   assert(values.size() == cells.size() * n_values);
   const std::vector<int> rank_of = destinations<dim>(ranks, origin.cube, cells, move);
-  std::vector<double> arrived = values_sent_to(ranks, rank_of, values, n_values);
-  cells = sent_to<dim>(ranks, rank_of, cells);
+  std::vector<double> arrived = ranks.send_to<double>(rank_of, values, n_values);
+  cells = ranks.send_to<CellRecord<dim>>(rank_of, cells);
   const std::vector<CellName> names = names_of<dim>(cells);
   Balanced<dim> result{
-      make_part<dim>(ranks, origin.cube, std::move(first), std::move(cells), std::move(origin.labels)),
-      {},
-      std::move(arrived)};
+      make_part<dim>(ranks, origin.cube, std::move(cells), std::move(origin.labels)), {}, std::move(arrived)};
   const auto own = std::span(result.mesh.partition()->names).first(result.mesh.n_owned_cells());
   result.cells = numbers_in(own, names);
   return result;
@@ -181,42 +160,57 @@ Mesh<dim> whole_mesh(const MeshPart<dim>& part, const MeshLabels& labels)
   return Mesh<dim>(std::move(data));
 }
 
-template <int dim>
-std::shared_ptr<const Mesh<dim>> whole_or_coarse(const BoxMesh& box, std::int64_t most_whole)
+/// work(first, last) for the cells number first, ..., last - 1, one batch after the other.
+template <class Work>
+void in_batches(Index n_cells, Index batch, const Work& work)
 {
-  BoxMesh coarse = box;
-  while (n_box_cells(coarse) > most_whole)
-    for (int& n : coarse.cells) n = (n + 1) / 2;
-  return std::make_shared<const Mesh<dim>>(box_mesh<dim>(coarse));
+  for (Index first = 0; first < n_cells; first += batch) work(first, std::min(n_cells, first + batch));
 }
 
 }  // namespace
 
 template <int dim>
-Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole)
+Mesh<dim> share_out(const Ranks& ranks, const Mesh<dim>* whole, Index batch)
 {
   assert(ranks.is_first() == (whole != nullptr));
-  std::vector<CellRecord<dim>> cells;
-  if (whole) cells = first_records(*whole);
-  Origin<dim> origin = origin_of(ranks, whole.get());
-  return balance_cells<dim>(ranks, std::move(origin), std::move(whole), std::move(cells), {}, 0, Move::always)
-      .mesh;
+  Origin<dim> origin = origin_of(ranks, whole);
+  const Index n_cells = ranks.on_first([&] { return whole->n_cells(); });
+  std::vector<std::uint64_t> keys;
+  if (whole)
+    in_batches(n_cells, batch,
+               [&](Index first, Index last)
+               {
+                 const std::vector<std::uint64_t> of_batch =
+                     centre_keys<dim>(origin.cube, first_records(*whole, first, last));
+                 keys.insert(keys.end(), of_batch.begin(), of_batch.end());
+               });
+  const std::vector<int> rank_of = balanced_ranks(ranks, keys, std::vector<std::int64_t>(keys.size(), 1));
+  std::vector<CellRecord<dim>> own;
+  in_batches(n_cells, batch,
+             [&](Index first, Index last)
+             {
+               std::vector<CellRecord<dim>> cells;
+               if (whole) cells = first_records(*whole, first, last);
+               const auto to = std::span(rank_of).subspan(whole ? first : 0, cells.size());
+               cells = ranks.send_to<CellRecord<dim>>(to, cells);
+               own.insert(own.end(), cells.begin(), cells.end());
+             });
+  return make_part<dim>(ranks, origin.cube, std::move(own), std::move(origin.labels));
 }
 
 template <int dim>
-Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box, std::int64_t most_whole)
+Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box)
 {
   MeshLabels labels = box_labels<dim>(box);
-  std::shared_ptr<const Mesh<dim>> first;
-  if (ranks.is_first()) first = whole_or_coarse<dim>(box, most_whole);
-  const Origin<dim> origin = origin_of(ranks, first.get());
+  const std::array corners{Point<dim>(box.lower.data()), Point<dim>(box.upper.data())};
+  const Cube<dim> cube = cube_around<dim>(corners);
   const std::int64_t n = n_box_cells(box);
   std::vector<CellRecord<dim>> cells =
       box_records<dim>(box, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
   // They come in stretches of the last axis: along the curve they have few neighbours.
-  const std::vector<int> rank_of = destinations<dim>(ranks, origin.cube, cells, Move::always);
-  cells = sent_to<dim>(ranks, rank_of, cells);
-  return make_part<dim>(ranks, origin.cube, std::move(first), std::move(cells), std::move(labels));
+  const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells, Move::always);
+  cells = ranks.send_to<CellRecord<dim>>(rank_of, cells);
+  return make_part<dim>(ranks, cube, std::move(cells), std::move(labels));
 }
 
 template <int dim>
@@ -224,18 +218,17 @@ Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cell
                       std::span<const double> values, int n_values)
 {
   const Partition<dim>& partition = *before.partition();
-  return balance_cells<dim>(partition.ranks, {partition.cube, labels_of(before)}, partition.first_mesh,
-                            std::move(cells), values, n_values, Move::where_unbalanced);
+  return balance_cells<dim>(partition.ranks, {partition.cube, labels_of(before)}, std::move(cells), values,
+                            n_values, Move::where_unbalanced);
 }
 
 template <int dim>
-Balanced<dim> restore(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> first,
-                      std::vector<CellRecord<dim>> cells, std::span<const double> values, int n_values)
+Balanced<dim> restore(const Ranks& ranks, const Mesh<dim>* first, std::vector<CellRecord<dim>> cells,
+                      std::span<const double> values, int n_values)
 {
-  Origin<dim> origin = origin_of(ranks, first.get());
+  Origin<dim> origin = origin_of(ranks, first);
   if (ranks.size() > 1)
-    return balance_cells<dim>(ranks, std::move(origin), std::move(first), std::move(cells), values, n_values,
-                              Move::always);
+    return balance_cells<dim>(ranks, std::move(origin), std::move(cells), values, n_values, Move::always);
   const std::vector<CellName> names = names_of<dim>(cells);
   const MeshPart<dim> part = with_ghosts<dim>(ranks, origin.cube, std::move(cells));
   std::vector<Index> numbers = numbers_in(part.partition.names, names);
@@ -265,7 +258,6 @@ template <int dim>
 PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells)
 {
   MeshPart<dim> part = with_ghosts<dim>(Ranks(), from.partition()->cube, {cells.begin(), cells.end()});
-  part.partition.is_excerpt = true;
   part.partition.n_cells = from.n_global_cells();
   part.partition.n_vertices = from.n_global_vertices();
   std::ranges::fill(part.partition.has_patch, 0);
@@ -274,19 +266,19 @@ PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> 
   return {std::move(mesh), std::move(number)};
 }
 
-template Mesh<2> share_out(const Ranks&, std::shared_ptr<const Mesh<2>>);
-template Mesh<3> share_out(const Ranks&, std::shared_ptr<const Mesh<3>>);
-template Balanced<2> restore(const Ranks&, std::shared_ptr<const Mesh<2>>, std::vector<CellRecord<2>>,
+template Mesh<2> share_out(const Ranks&, const Mesh<2>*, Index);
+template Mesh<3> share_out(const Ranks&, const Mesh<3>*, Index);
+template Balanced<2> restore(const Ranks&, const Mesh<2>*, std::vector<CellRecord<2>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
-template Mesh<2> share_out(const Ranks&, const BoxMesh&, std::int64_t);
+template Mesh<2> share_out(const Ranks&, const BoxMesh&);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
-template Balanced<3> restore(const Ranks&, std::shared_ptr<const Mesh<3>>, std::vector<CellRecord<3>>,
+template Balanced<3> restore(const Ranks&, const Mesh<3>*, std::vector<CellRecord<3>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
-template Mesh<3> share_out(const Ranks&, const BoxMesh&, std::int64_t);
+template Mesh<3> share_out(const Ranks&, const BoxMesh&);
 template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);
 
 }  // namespace tribound::mesh

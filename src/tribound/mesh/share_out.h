@@ -5,7 +5,6 @@
 /// balance.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,15 +17,14 @@ namespace tribound::mesh
 {
 
 /// The part of each rank of a mesh that the first one has; elsewhere `whole` is null. All ranks have as many
-/// cells, up to one. Cells have their vertices in the order in which bisect() takes them.
+/// cells, up to one. Cells have their vertices in the order in which bisect() takes them, and travel in
+/// batches of so many.
 template <int dim>
-[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> whole);
+[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const Mesh<dim>* whole, Index batch = 1'000'000);
 
-/// The same of a box, of which each rank makes its own cells. The first mesh that the first rank keeps
-/// (Partition::first_mesh) is that of the box, or, of a box with more than `most_whole` cells, a coarser one
-/// of it: bodies, supports and bounds for data are those of the box.
+/// The same of a box, of which each rank makes its own cells.
 template <int dim>
-[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box, std::int64_t most_whole = 100'000);
+[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box);
 
 /// The part of a rank, and values that have come with the cells.
 template <int dim>
@@ -48,7 +46,7 @@ template <int dim>
 /// A mesh of cells that a rank has from somewhere else, for example a file; `first`: the mesh they come from,
 /// on the first rank, elsewhere null. On one rank it is a whole mesh, that comes from bisect().
 template <int dim>
-[[nodiscard]] Balanced<dim> restore(const Ranks& ranks, std::shared_ptr<const Mesh<dim>> first,
+[[nodiscard]] Balanced<dim> restore(const Ranks& ranks, const Mesh<dim>* first,
                                     std::vector<CellRecord<dim>> cells, std::span<const double> values,
                                     int n_values);
 
@@ -64,7 +62,8 @@ struct PickedOut
   std::vector<Index> number;  ///< in the mesh, per cell given
 };
 
-/// A mesh of cells that have been picked out of another: see Partition::is_excerpt.
+/// A mesh of cells that have been picked out of another: facets inside may have one cell, and no vertex has
+/// its patch.
 template <int dim>
 [[nodiscard]] PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells);
 

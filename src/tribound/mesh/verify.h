@@ -43,12 +43,14 @@ template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology);
 
-/// The same of a part of a mesh, by the tags of its cells, those of the first `n_owned` cells in front. Of
-/// these the facets inside must have two cells, and no others: else the mesh does not conform.
+/// The same of a part of a mesh, by the tags of its cells, those of the first `n_owned` cells in front.
+/// Facets inside with a vertex that has its patch here must have two cells, and those of the boundary one:
+/// else the mesh does not conform, or a ghost is missing.
 template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology,
-                                                       std::span<const CellRecord<dim>> cells, Index n_owned);
+                                                       std::span<const CellRecord<dim>> cells, Index n_owned,
+                                                       std::span<const char> has_patch);
 
 /// Every vertex has cells, and they are connected through facets that contain the vertex. If `which` is not
 /// empty, only vertices where it is not 0 are looked at.

@@ -48,7 +48,7 @@ TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
 template <int dim>
 std::vector<std::string> sliding_boundaries(const DiscreteProblem<dim>& c)
 {
-  const std::vector<bool> slides = doctor::slides_as_a_whole(c.problem, c.space);
+  const std::vector<bool> slides = doctor::slides_as_a_whole(c.problem, c.mesh);
   std::vector<std::string> names;
   for (std::size_t tag = 0; tag < slides.size(); ++tag)
     if (slides[tag]) names.push_back(c.problem.boundaries()[tag].name);

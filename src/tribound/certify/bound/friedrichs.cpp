@@ -312,10 +312,7 @@ template <int dim>
 FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                        Index most_cells_factorised)
 {
-  if (mesh.partition())
-    return mesh.ranks().on_first(
-        [&] { return friedrichs_constant(problem, *mesh.partition()->first_mesh, most_cells_factorised); });
-  if (!holds_every_component(problem, mesh))
+  if (mesh.partition() || !holds_every_component(problem, mesh))
     return {std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
   if (mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);
   try

@@ -32,7 +32,8 @@ inline constexpr Index most_cells_factorised_3d = 100'000;
 /// on this mesh and on all its refinements, whose h_F are not larger. Infinite (and theta = 0) where a body
 /// has a component with neither Gamma_D nor Gamma_C, which check_rigid_motions() refuses as a free
 /// translation, and where no theta could be proved. Where the factorisation fails, for example for lack
-/// of memory, the proof does without it, too. Of a mesh that is shared out it is that of its first mesh.
+/// of memory, the proof does without it, too. Infinite for a mesh that is shared out: that of the whole mesh
+/// which it was made of is known before.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(
     const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,

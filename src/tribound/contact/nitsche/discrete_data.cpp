@@ -130,20 +130,25 @@ Datum<dim> DiscreteData<dim>::contact_datum(const mesh::BoundaryFacet& facet, do
 template <int dim>
 void DiscreteData<dim>::count_formulas()
 {
-  const auto count = [&](const Datum<dim>& datum)
+  const auto count = [&](const Datum<dim>& datum, bool is_load)
   {
     if (datum.degree() <= degree_ + 2) return;
     ++effort_.formulas;
+    if (is_load) ++effort_.loads;
     if (!datum.is_enclosed()) ++effort_.unenclosed;
   };
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
-    if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c));
+    if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c), true);
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
-    count(problem_.boundary(facet.tag).contact ? contact_datum(facet, 1) : traction_datum(facet));
-  std::array<std::int64_t, 2> sums{effort_.formulas, effort_.unenclosed};
+  {
+    const bool is_contact = problem_.boundary(facet.tag).contact.has_value();
+    count(is_contact ? contact_datum(facet, 1) : traction_datum(facet), !is_contact);
+  }
+  std::array<std::int64_t, 3> sums{effort_.formulas, effort_.loads, effort_.unenclosed};
   mesh_.ranks().sum(std::span(sums));
   effort_.formulas = sums[0];
-  effort_.unenclosed = sums[1];
+  effort_.loads = sums[1];
+  effort_.unenclosed = sums[2];
 }
 
 /// Of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; of prescribed displacements: the stress that

@@ -46,6 +46,7 @@ struct DataAccuracy
 struct DataEffort
 {
   std::int64_t formulas = 0;  ///< cells and boundary facets with data that are no polynomials of degree p + 2
+  std::int64_t loads = 0;     ///< of these, those whose data are loads
   std::int64_t subdivided = 0;  ///< of these
   std::int64_t parts = 0;       ///< into which these were cut
   std::int64_t unenclosed = 0;  ///< cells and facets with functions of which only values at points are known

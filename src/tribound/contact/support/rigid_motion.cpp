@@ -1,12 +1,12 @@
 #include "tribound/contact/support/rigid_motion.h"
 
+#include <cassert>
 #include <vector>
 
 #include "tribound/contact/nitsche/discrete_data.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/support/body.h"
 #include "tribound/contact/support/body_check.h"
-#include "tribound/mesh/partition.h"
 
 namespace tribound::contact
 {
@@ -15,17 +15,7 @@ template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          const DiscreteData<dim>& data, std::span<const double> load)
 {
-  if (space.mesh().partition())
-  {
-    const auto check_first = [&]
-    {
-      const mesh::Mesh<dim>& first = *space.mesh().partition()->first_mesh;
-      const fem::LagrangeSpace<dim> on_first(first, space.degree());
-      const DiscreteData<dim> of_first(problem, first, space.degree(), 1.0);
-      check_rigid_motions<dim>(problem, on_first, of_first, assemble_load<dim>(of_first, on_first));
-    };
-    return space.mesh().ranks().on_first(check_first);
-  }
+  assert(!space.mesh().partition());
   constexpr double relative_round_off = 1e-11;
   const std::vector<Body<dim>> bodies = find_bodies(space);
   const std::vector<Point<dim>> points = space.node_points();
@@ -47,9 +37,19 @@ void check_rigid_motions(const problem::Problem<dim>& problem, const fem::Lagran
   }
 }
 
+template <int dim>
+void check_rigid_motions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree)
+{
+  const fem::LagrangeSpace<dim> space(mesh, degree);
+  const DiscreteData<dim> data(problem, mesh, degree, 1.0);
+  check_rigid_motions<dim>(problem, space, data, assemble_load<dim>(data, space));
+}
+
 template void check_rigid_motions(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                   const DiscreteData<2>&, std::span<const double>);
 template void check_rigid_motions(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                   const DiscreteData<3>&, std::span<const double>);
+template void check_rigid_motions(const problem::Problem<2>&, const mesh::Mesh<2>&, int);
+template void check_rigid_motions(const problem::Problem<3>&, const mesh::Mesh<3>&, int);
 
 }  // namespace tribound::contact

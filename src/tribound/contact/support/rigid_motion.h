@@ -23,11 +23,15 @@ namespace tribound::contact
 ///    for constant s without friction of Coulomb; for Coulomb's law in 3D the cone of friction is replaced by
 ///    an eight-sided one around it, and integrals of loads and of s |z^t| count with their quadrature error.
 ///    So what is refused has no solution, but some cases without one pass.
-/// Bodies that displacement conditions hold by themselves pass at once. Of a mesh that is shared out its
-/// first mesh is examined: refinement changes neither bodies nor supports. `load`: L(phi_i) for every degree
-/// of freedom, up to the remainders of the data.
+/// Bodies that displacement conditions hold by themselves pass at once. The mesh is a whole one: before it is
+/// shared out or later, since refinement changes neither bodies nor supports. `load`: L(phi_i) for every
+/// degree of freedom, up to the remainders of the data.
 template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          const DiscreteData<dim>& data, std::span<const double> load);
+
+/// The same from the mesh alone.
+template <int dim>
+void check_rigid_motions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree);
 
 }  // namespace tribound::contact

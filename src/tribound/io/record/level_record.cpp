@@ -10,7 +10,8 @@ StageTimes& StageTimes::operator+=(const StageTimes& other)
 }
 
 template <int dim>
-LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about)
+LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
+                         const std::vector<bool>& slides)
 {
   const contact::NitscheForm<dim>& form = view.discrete.form;
   const adapt::CertifiedLevel<dim>& level = view.level;
@@ -21,7 +22,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   record.newton = level.steps;
   record.finishing_steps = level.finishing_steps;
   record.delta_updates = level.delta_updates;
-  record.figures = solution_figures(form, level);
+  record.figures = solution_figures(form, level, slides);
   if (level.solved() && !certify::is_round_off(level.estimate, level.norms))
     record.identities = level.identities;  // relative to rounding they say nothing
   if (certify::is_bound(view.verdict.status))
@@ -69,7 +70,7 @@ bool is_round_off(const LevelRecord& level)
   return level.bound && certify::is_round_off(*level.bound, norms);
 }
 
-template LevelRecord level_record(const adapt::LevelView<2>&, const Point<2>&);
-template LevelRecord level_record(const adapt::LevelView<3>&, const Point<3>&);
+template LevelRecord level_record(const adapt::LevelView<2>&, const Point<2>&, const std::vector<bool>&);
+template LevelRecord level_record(const adapt::LevelView<3>&, const Point<3>&, const std::vector<bool>&);
 
 }  // namespace tribound::io

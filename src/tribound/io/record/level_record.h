@@ -63,10 +63,12 @@ struct LevelRecord
   LevelTimes times;
 };
 
-/// The record of a level that the loop tells of, moments about the given point. Where the verdict says that
-/// there is no bound, it shows none of any step. Of the times it lacks the output, and level_cpu.
+/// The record of a level that the loop tells of, moments about the given point; `slides`: as
+/// doctor::slides_as_a_whole() has it. Where the verdict says that there is no bound, it shows none of any
+/// step. Of the times it lacks the output, and level_cpu.
 template <int dim>
-[[nodiscard]] LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about);
+[[nodiscard]] LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
+                                       const std::vector<bool>& slides);
 
 /// Whether it is one of the regularised variant, method section 7.
 [[nodiscard]] bool is_regularised(const LevelRecord& level);

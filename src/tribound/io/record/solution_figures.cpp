@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tribound/doctor/support_facts.h"
-
 namespace tribound::io
 {
 
@@ -61,7 +59,7 @@ std::optional<Sliding> sliding(const Resultants& resultants)
 
 template <int dim>
 SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
-                                 const adapt::CertifiedLevel<dim>& level)
+                                 const adapt::CertifiedLevel<dim>& level, const std::vector<bool>& slides)
 {
   SolutionFigures figures;
   figures.round_off = level.norms.round_off;
@@ -76,7 +74,6 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   const std::vector<Point<dim>> t = form.traction(level.u);
   figures.contact = resultants<dim>(form, t, level.traction);
   const auto boundaries = form.problem().boundaries();
-  const std::vector<bool> slides = doctor::slides_as_a_whole(form.problem(), form.space());
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
   {
     if (!boundaries[tag].contact) continue;
@@ -91,7 +88,9 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   return figures;
 }
 
-template SolutionFigures solution_figures(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
-template SolutionFigures solution_figures(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
+template SolutionFigures solution_figures(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&,
+                                          const std::vector<bool>&);
+template SolutionFigures solution_figures(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&,
+                                          const std::vector<bool>&);
 
 }  // namespace tribound::io

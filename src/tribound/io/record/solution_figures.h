@@ -22,7 +22,7 @@ struct Resultants
   double tangential = 0.0;    ///< 2D: integral of T.t with t = n turned by +90 degrees; 3D: |integral of T^t|
   double abs_tangential = 0.0;  ///< integral of |T^t|
   /// mu_F of Coulomb's friction where it alone keeps a body from sliding along a boundary that is nearly
-  /// plane (slides_as_a_whole).
+  /// plane.
   std::optional<double> coefficient{};
   double resolution = 0.0;  ///< forces are known to this much: the distance of T(u^k) from t^k
 };
@@ -58,9 +58,10 @@ struct SolutionFigures
 /// The figures of the solution on a level, with the contact traction T(u). Forces have only the digits that
 /// are known of the discrete solution: t^k is in equilibrium with the loads, T(u^k) obeys the laws of
 /// contact, and what they differ by Newton's method has still to find. A stress that is nothing but rounding
-/// is 0.
+/// is 0. `slides`: as doctor::slides_as_a_whole() has it.
 template <int dim>
 [[nodiscard]] SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
-                                               const adapt::CertifiedLevel<dim>& level);
+                                               const adapt::CertifiedLevel<dim>& level,
+                                               const std::vector<bool>& slides);
 
 }  // namespace tribound::io

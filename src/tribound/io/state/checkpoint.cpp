@@ -152,7 +152,7 @@ void write_checkpoint(const std::filesystem::path& directory, const CheckpointFa
   std::vector<Index> own(mesh.n_owned_cells());
   std::iota(own.begin(), own.end(), 0);
   const std::vector<mesh::CellRecord<dim>> cells =
-      mesh.partition() ? mesh::records_of(mesh, own) : mesh::first_records(mesh);
+      mesh.partition() ? mesh::records_of(mesh, own) : mesh::first_records(mesh, 0, mesh.n_cells());
   Hdf5File file(directory / checkpoint_name, Hdf5File::Mode::write, mesh.ranks());
   file.write_text("state", state_json(facts).dump());
   write_cells<dim>(file, cells);

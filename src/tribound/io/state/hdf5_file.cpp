@@ -154,9 +154,7 @@ void Hdf5File::write_text(const std::string& name, const std::string& text)
 std::string Hdf5File::read_text(const std::string& name)
 {
   const std::vector<char> own = read<char>(name, 1);
-  std::vector<char> all;
-  for (const std::vector<char>& part : ranks_.gather(std::span<const char>(own)))
-    all.insert(all.end(), part.begin(), part.end());
+  std::vector<char> all = ranks_.gather<char>(own);
   ranks_.copy_from_first(all);
   return {all.begin(), all.end()};
 }
