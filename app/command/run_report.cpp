@@ -205,7 +205,10 @@ template <int dim>
 void RunReport<dim>::update_statements(const adapt::LevelView<dim>& view)
 {
   if (view.level.steps.empty()) return;
-  record_.statements = certify::statements(view.discrete.form, contact_rule_, view.level.friedrichs);
+  const bool uses_friedrichs = view.level.estimate.global.quad > 0;
+  record_.statements = certify::statements(
+      view.discrete.form, contact_rule_,
+      uses_friedrichs ? view.level.friedrichs : std::optional<certify::FriedrichsConstant>());
   if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))
     record_.statements.assumptions.emplace_back(
         "stress",

@@ -18,6 +18,7 @@
 
 #include "support/meshes.h"
 #include "support/problem_data.h"
+#include "tribound/algebra/condensation.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/nested.h"
@@ -190,6 +191,96 @@ TEST(Nodes, AreNumberedOnceAndAgreeByPlace)
     SCOPED_TRACE("degree " + std::to_string(degree));
     expect_numbers<2>(degree);
     expect_numbers<3>(degree);
+  }
+}
+
+/// Condensed onto what lies at x_1 < 0.3, with a layer up to 0.6: all that it gives, at its unknowns.
+template <int dim>
+struct Condensed
+{
+  Condensed(const mesh::Mesh<dim>& mesh, int degree)
+      : space(mesh, degree),
+        problem(
+            ProblemData<dim>{.boundaries = {fixed<dim>("top", formula("0"), formula("0"), formula("0"))}}.on(
+                mesh)),
+        constraints(fem::dirichlet(problem, space))
+  {
+    const std::vector<Point<dim>> points = space.node_points();
+    std::vector<Index> layer;
+    std::vector<Index> trace;
+    std::vector<double> b(space.n_dofs(), 0.0);
+    std::vector<double> at_nodes(space.n_dofs(), 0.0);
+    for (Index k = 0; k < space.n_owned_nodes(); ++k)
+      for (int a = 0; a < dim; ++a)
+      {
+        const Index node = space.owned_node(k);
+        const Index i = dim * node + a;
+        if (constraints.fixed[i]) continue;
+        b[i] = std::cos(2 * points[node][0] + a) - points[node][1];
+        at_nodes[i] = std::sin(3 * points[node][0] + a) + points[node][1] * points[node][1];
+        if (points[node][1] < 0.6) (points[node][1] < 0.3 ? trace : layer).push_back(i);
+      }
+    const algebra::Condensation condensed(dim, contact::stiffness(problem, space, constraints), layer, trace,
+                                          b, space.numbers());
+    const std::vector<double> x = condensed.on_trace(at_nodes);
+    u = condensed.expand(x);
+    const std::vector<double> force = condensed.multiply(x);
+    std::vector<double> kept(condensed.on_layer_and_trace(at_nodes).size(), 0.0);
+    for (std::size_t i = 0; i < force.size(); ++i)
+      kept[kept.size() - force.size() + i] = force[i] - condensed.load()[i];
+    forces.resize(space.n_dofs(), 0.0);
+    condensed.put(kept, forces);
+    std::vector<double> near = u;
+    condensed.put(condensed.near(x), near);
+    distance = 0;
+    for (std::size_t i = 0; i < near.size(); ++i) distance = std::max(distance, std::abs(near[i] - u[i]));
+    algebra::Triplets springs;
+    for (const Index i : trace) springs.add(i, i, 2.0);
+    for (const Index i : trace)
+      if (!layer.empty()) springs.add(i, layer.front(), 0.0);
+    const std::vector<double> d = condensed.solve(springs, force, 1e-14);
+    const std::vector<double> again = condensed.multiply(d);
+    residual = 0;
+    for (std::size_t i = 0; i < d.size(); ++i)
+      residual = std::max(residual, std::abs(again[i] + 2 * d[i] - force[i]));
+  }
+
+  fem::LagrangeSpace<dim> space;
+  problem::Problem<dim> problem;
+  fem::Constraints constraints;
+  std::vector<double> u;
+  std::vector<double> forces;  ///< S x - g
+  double distance;             ///< of expand() from near()
+  double residual;             ///< of solve()
+};
+
+template <int dim>
+void expect_same_condensation(int degree)
+{
+  const Shared<dim> mesh(20 + degree);
+  const Condensed<dim> whole(*mesh.whole, degree);
+  const Condensed<dim> part(mesh.part, degree);
+  const ByPlace<dim> u(whole.space, whole.u);
+  const ByPlace<dim> forces(whole.space, whole.forces);
+  const std::vector<Point<dim>> points = part.space.node_points();
+  for (Index k = 0; k < part.space.n_owned_nodes(); ++k)
+    for (int a = 0; a < dim; ++a)
+    {
+      const Index node = part.space.owned_node(k);
+      EXPECT_NEAR(part.u[dim * node + a], u.at(points[node])[a], 1e-10);
+      EXPECT_NEAR(part.forces[dim * node + a], forces.at(points[node])[a], 1e-10);
+    }
+  EXPECT_EQ(part.distance, 0);
+  EXPECT_LE(part.residual, 1e-12);
+}
+
+TEST(Condensation, IsThatOfTheWholeMesh)
+{
+  for (int degree = 1; degree <= 3; ++degree)
+  {
+    SCOPED_TRACE("degree " + std::to_string(degree));
+    expect_same_condensation<2>(degree);
+    expect_same_condensation<3>(degree);
   }
 }
 

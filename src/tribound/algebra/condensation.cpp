@@ -1,6 +1,8 @@
 #include "tribound/algebra/condensation.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <unordered_map>
 #include <utility>
 
 #include "tribound/algebra/petsc_detail.h"
@@ -28,173 +30,44 @@ void add_product(double a, std::span<const double> matrix, PetscBLASInt rows, Pe
             y.data(), &one);
 }
 
-/// The dense Cholesky factor that MUMPS and PETSc leave, column by column: a view.
-class SchurFactor
+/// The Schur complement that MUMPS leaves, column by column: a view. On one process its lower half.
+class SchurComplement
 {
  public:
-  explicit SchurFactor(Mat factors) : factors_(factors)
+  explicit SchurComplement(Mat factors) : factors_(factors)
   {
-    check(MatFactorFactorizeSchurComplement(factors_), "condensing a matrix");
     check(MatFactorGetSchurComplement(factors_, &schur_, &status_), "condensing a matrix");
-    check(MatDenseGetArrayRead(schur_, &entries_), "condensing a matrix");
+    check(MatDenseGetArrayWrite(schur_, &entries_), "condensing a matrix");
   }
-  ~SchurFactor()
+  ~SchurComplement()
   {
-    MatDenseRestoreArrayRead(schur_, &entries_);
+    MatDenseRestoreArrayWrite(schur_, &entries_);
     MatFactorRestoreSchurComplement(factors_, &schur_, status_);
   }
-  SchurFactor(const SchurFactor&) = delete;
-  SchurFactor& operator=(const SchurFactor&) = delete;
+  SchurComplement(const SchurComplement&) = delete;
+  SchurComplement& operator=(const SchurComplement&) = delete;
 
-  [[nodiscard]] const double* entries() const { return entries_; }
+  [[nodiscard]] double* entries() const { return entries_; }
 
  private:
   Mat factors_;
   Mat schur_ = nullptr;
-  MatFactorSchurStatus status_ = MAT_FACTOR_SCHUR_FACTORED;
-  const double* entries_ = nullptr;
+  MatFactorSchurStatus status_ = MAT_FACTOR_SCHUR_UNFACTORED;
+  double* entries_ = nullptr;
 };
 
-}  // namespace
-
-Condensation::Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
-                           std::span<const double> b)
-    : layer_(std::move(layer)), trace_(std::move(trace)), position_(b.size(), -1), sprung_(b.size())
-{
-  int position = 0;
-  for (const Index i : layer_) position_[i] = position++;
-  for (const Index i : trace_) position_[i] = position++;
-  for (const Index i : trace_)
-  {
-    double& diagonal = k.diagonal(i);
-    penalty_.push_back(diagonal);
-    diagonal *= 2;
-  }
-  factorise(SparseMatrix(dim, k), dim);
-  check(MatSolve(factors_.get(), wrap(b).get(), wrap(std::span(sprung_)).get()), "solving a linear system");
-  condense();
-}
-
-void Condensation::factorise(const SparseMatrix& k, int dim)
-{
-  const detail::Options options(false, {});
-  factors_ = detail::start_cholesky(k, dim);
-  std::vector<PetscInt> kept(layer_.begin(), layer_.end());
-  kept.insert(kept.end(), trace_.begin(), trace_.end());
-  IS rows = nullptr;
-  check(ISCreateGeneral(detail::communicator(), static_cast<PetscInt>(kept.size()), kept.data(),
-                        PETSC_USE_POINTER, &rows),
-        "factorising");
-  const PetscErrorCode error = MatFactorSetSchurIS(factors_.get(), rows);
-  ISDestroy(&rows);
-  check(error, "factorising");
-  if (!detail::factorise_cholesky(k, factors_.get()))
-    throw SolveError("the stiffness matrix is not positive definite");
-}
-
-/// With the Cholesky factor [L_LL 0; L_GL L_GG] of the Schur complement on layer and trace:
-/// W^T = L_GL L_LL^{-1} and S = L_GG L_GG^T - D.
-void Condensation::condense()
-{
-  const SchurFactor schur(factors_.get());
-  const auto n_layer = static_cast<PetscBLASInt>(layer_.size());
-  const auto n_trace = static_cast<PetscBLASInt>(trace_.size());
-  const PetscBLASInt n = n_layer + n_trace;
-  const double one = 1;
-  const double zero = 0;
-
-  const auto lower = [&](PetscBLASInt column) { return schur.entries() + std::size_t(column) * n + n_layer; };
-  w_.reserve(std::size_t(n_trace) * n_layer);
-  for (PetscBLASInt j = 0; j < n_layer; ++j) w_.insert(w_.end(), lower(j), lower(j) + n_trace);
-  BLAStrsm_("R", "L", "N", "N", &n_trace, &n_layer, &one, schur.entries(), &n, w_.data(), &n_trace);
-
-  std::vector<double> factor(std::size_t(n_trace) * n_trace, 0.0);
-  for (PetscBLASInt j = 0; j < n_trace; ++j)
-    std::copy(lower(n_layer + j) + j, lower(n_layer + j) + n_trace,
-              factor.begin() + std::ptrdiff_t(j) * n_trace + j);
-  s_.resize(factor.size());
-  BLASsyrk_("L", "N", &n_trace, &n_trace, &one, factor.data(), &n_trace, &zero, s_.data(), &n_trace);
-  for (PetscBLASInt j = 0; j < n_trace; ++j)
-    for (PetscBLASInt i = 0; i < j; ++i) s_[std::size_t(j) * n_trace + i] = s_[std::size_t(i) * n_trace + j];
-
-  std::vector<double> sprung_trace;
-  for (const Index i : trace_) sprung_trace.push_back(sprung_[i]);
-  load_ = multiply(sprung_trace);  // before D is taken out of S
-  for (PetscBLASInt i = 0; i < n_trace; ++i) s_[std::size_t(i) * n_trace + i] -= penalty_[i];
-}
-
-std::vector<double> Condensation::multiply(std::span<const double> x) const
-{
-  std::vector<double> y(trace_.size(), 0.0);
-  const auto n = static_cast<PetscBLASInt>(trace_.size());
-  add_product(1, s_, n, n, false, x, y);
-  return y;
-}
-
-std::vector<double> Condensation::deviation(std::span<const double> x) const
-{
-  std::vector<double> difference(x.begin(), x.end());
-  for (std::size_t i = 0; i < trace_.size(); ++i) difference[i] -= sprung_[trace_[i]];
-  return difference;
-}
-
-std::vector<double> Condensation::on_layer(std::span<const double> x) const
-{
-  std::vector<double> u;
-  u.reserve(layer_.size());
-  for (const Index i : layer_) u.push_back(sprung_[i]);
-  add_product(-1, w_, static_cast<PetscBLASInt>(trace_.size()), static_cast<PetscBLASInt>(layer_.size()),
-              true, deviation(x), u);
-  return u;
-}
-
-/// (K + D)(u - (K + D)^{-1} b) acts on the trace alone, where it is (S + D)(x - its trace).
-std::vector<double> Condensation::expand(std::span<const double> x) const
-{
-  const std::vector<double> of_trace = deviation(x);
-  const std::vector<double> force = multiply(of_trace);
-  std::vector<double> b(sprung_.size(), 0.0);
-  for (std::size_t i = 0; i < trace_.size(); ++i) b[trace_[i]] = force[i] + penalty_[i] * of_trace[i];
-  std::vector<double> u(sprung_.size());
-  check(MatSolve(factors_.get(), wrap(std::span<const double>(b)).get(), wrap(std::span(u)).get()),
-        "solving a linear system");
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] += sprung_[i];
-  return u;
-}
-
-/// Column i is row i of S + N_GG - N_GL W: its sums run over columns of W^T.
-std::vector<double> Condensation::transposed_tangent(const Triplets& n) const
-{
-  const auto n_layer = static_cast<int>(layer_.size());
-  const auto n_trace = static_cast<PetscBLASInt>(trace_.size());
-  const PetscBLASInt one = 1;
-  std::vector<double> m = s_;
-  for (std::size_t e = 0; e < n.rows.size(); ++e)
-  {
-    if (n.rows[e] < 0 || n.cols[e] < 0) continue;
-    double* row = m.data() + std::size_t(position_[n.rows[e]] - n_layer) * n_trace;
-    const int column = position_[n.cols[e]];
-    const double a = -n.values[e];
-    if (column >= n_layer)
-      row[column - n_layer] -= a;
-    else
-      BLASaxpy_(&n_trace, &a, w_.data() + std::size_t(column) * n_trace, &one, row, &one);
-  }
-  return m;
-}
-
-std::vector<double> Condensation::solve(const Triplets& n, std::span<const double> r, double tolerance) const
+/// d with M d = r up to `tolerance` or round-off; `m` is M^T by columns.
+std::vector<double> solve_dense(const std::vector<double>& m, std::span<const double> r, double tolerance)
 {
   constexpr int max_refinements = 3;
   constexpr double useless = 1e-6;  // of the right-hand side: as little is left by factors that are of use
-  const std::vector<double> m = transposed_tangent(n);
   std::vector<double> lu = m;
-  const auto size = static_cast<PetscBLASInt>(trace_.size());
-  std::vector<PetscBLASInt> pivots(trace_.size());
+  const auto size = static_cast<PetscBLASInt>(r.size());
+  std::vector<PetscBLASInt> pivots(r.size());
   const PetscBLASInt one = 1;
   PetscBLASInt info = 0;
   LAPACKgetrf_(&size, &size, lu.data(), &size, pivots.data(), &info);
-  std::vector<double> d(trace_.size(), 0.0);
+  std::vector<double> d(r.size(), 0.0);
   std::vector<double> residual(r.begin(), r.end());
   double before = norm(residual);
   for (int k = 0; info == 0 && k <= max_refinements; ++k)
@@ -213,6 +86,265 @@ std::vector<double> Condensation::solve(const Triplets& n, std::span<const doubl
   if (info != 0 || !(before <= std::max(tolerance, useless * norm(r))))
     throw SolveError(detail::singular_tangent);
   return d;
+}
+
+/// On several processes MUMPS 5.5 leaves the upper half in place of the lower one.
+void fill_lower_half(double* matrix, PetscBLASInt n)
+{
+  for (PetscBLASInt j = 0; j < n; ++j)
+    for (PetscBLASInt i = j + 1; i < n; ++i) matrix[std::size_t(j) * n + i] = matrix[std::size_t(i) * n + j];
+}
+
+constexpr const char* not_positive = "the stiffness matrix is not positive definite";
+
+}  // namespace
+
+Condensation::Condensation(int dim, const SparseRows& k, std::vector<Index> layer, std::vector<Index> trace,
+                           std::span<const double> b, Sharing sharing)
+    : sharing_(std::move(sharing)),
+      block_size_(dim),
+      layer_(std::move(layer)),
+      trace_(std::move(trace)),
+      b_(b.begin(), b.end())
+{
+  if (sharing_) ranks_ = sharing_->ranks;
+  find_places(static_cast<Index>(b.size()));
+  factorise(SparseMatrix(dim, k, sharing_), dim);
+  couple(k);
+  condense();
+}
+
+/// Ranks have their own unknowns in ascending order, and one rank after the other.
+void Condensation::find_places(Index n_unknowns)
+{
+  const auto number = [this](Index i)
+  { return sharing_ ? detail::global_unknown(*sharing_, block_size_, i) : std::int64_t{i}; };
+  const auto of_all = [&](std::span<const Index> own)
+  {
+    std::vector<std::int64_t> numbers;
+    for (const Index i : own) numbers.push_back(number(i));
+    numbers = ranks_.gather<std::int64_t>(numbers);
+    ranks_.copy_from_first(numbers);
+    return numbers;
+  };
+  all_kept_ = of_all(layer_);
+  n_layer_ = all_kept_.size();
+  const std::vector<std::int64_t> all_trace = of_all(trace_);
+  n_trace_ = all_trace.size();
+  all_kept_.insert(all_kept_.end(), all_trace.begin(), all_trace.end());
+  std::unordered_map<std::int64_t, int> positions;
+  for (std::size_t p = 0; p < all_kept_.size(); ++p) positions[all_kept_[p]] = static_cast<int>(p);
+  position_.assign(n_unknowns, -1);
+  for (Index i = 0; i < n_unknowns; ++i)
+    if (const auto found = positions.find(number(i)); found != positions.end()) position_[i] = found->second;
+}
+
+bool Condensation::owns(Index unknown) const
+{
+  return !sharing_ || detail::is_owned(*sharing_, block_size_, unknown);
+}
+
+/// MUMPS keeps the Schur complement on the first rank.
+void Condensation::factorise(const SparseMatrix& k, int dim)
+{
+  const detail::Options options(false, sharing_);
+  factors_ = detail::start_cholesky(k, dim);
+  std::vector<PetscInt> kept;
+  if (ranks_.is_first()) kept.assign(all_kept_.begin(), all_kept_.end());
+  IS rows = nullptr;
+  check(ISCreateGeneral(detail::communicator(sharing_), static_cast<PetscInt>(kept.size()), kept.data(),
+                        PETSC_USE_POINTER, &rows),
+        "factorising");
+  const PetscErrorCode error = MatFactorSetSchurIS(factors_.get(), rows);
+  ISDestroy(&rows);
+  check(error, "factorising");
+  if (!detail::factorise_cholesky(k, factors_.get())) throw SolveError(not_positive);
+  PetscInt negative = 0;
+  check(MatMumpsGetInfog(factors_.get(), 12, &negative), "counting pivots");
+  if (negative > 0) throw SolveError(not_positive);
+  check(MatMumpsSetIcntl(factors_.get(), 26, 0), "factorising");  // solves with the rest alone
+}
+
+void Condensation::couple(const SparseRows& k)
+{
+  for (int row = 0; row + 1 < static_cast<int>(k.begin.size()); ++row)
+  {
+    const Index i =
+        sharing_ ? block_size_ * sharing_->owned[row / block_size_] + row % block_size_ : Index{row};
+    if (position_[i] >= 0) continue;
+    for (int e = k.begin[row]; e < k.begin[row + 1]; ++e)
+      if (const int column = position_[k.columns[e]]; column >= 0)
+        coupling_.push_back({i, column, k.values[e]});
+  }
+}
+
+template <class Work>
+std::vector<double> Condensation::by_first(const Work& work) const
+{
+  std::vector<double> result;
+  ranks_.on_first([&] { result = work(); });
+  ranks_.copy_from_first(result);
+  return result;
+}
+
+std::vector<double> Condensation::solve_rest(std::span<const double> b) const
+{
+  std::vector<double> x(b.size());
+  if (!sharing_)
+    check(MatSolve(factors_.get(), wrap(b).get(), wrap(std::span(x)).get()), "solving a linear system");
+  else
+  {
+    const MPI_Comm processes = detail::communicator(sharing_);
+    const std::vector<double> own_b = detail::owned_entries(*sharing_, block_size_, b);
+    std::vector<double> own_x(own_b.size());
+    check(MatSolve(factors_.get(), wrap(own_b, processes).get(), wrap(std::span(own_x), processes).get()),
+          "solving a linear system");
+    detail::put_owned_entries<double>(*sharing_, block_size_, own_x, x);
+  }
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (position_[i] >= 0) x[i] = 0;
+  return x;
+}
+
+/// With C_LL = L L^T and V = C_GL L^{-T}: S = C_GG - V V^T, W^T = V L^{-1}, and with the forces c of the rest
+/// on layer and trace u_0 = C_LL^{-1} c_L, g = c_G - W^T c_L.
+void Condensation::condense()
+{
+  const std::vector<double> of_rest = solve_rest(b_);
+  std::vector<double> c(all_kept_.size(), 0.0);
+  for (const Entry& entry : coupling_) c[entry.column] -= entry.value * of_rest[entry.row];
+  ranks_.sum(std::span(c));
+  const std::vector<double> b = on_layer_and_trace(b_);
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] += b[i];
+
+  const auto n_layer = static_cast<PetscBLASInt>(n_layer_);
+  const auto n_trace = static_cast<PetscBLASInt>(n_trace_);
+  const PetscBLASInt n = n_layer + n_trace;
+  layer_load_ = by_first(
+      [&]
+      {
+        const SchurComplement schur(factors_.get());
+        double* l = schur.entries();
+        if (sharing_) fill_lower_half(l, n);
+        PetscBLASInt info = 0;
+        LAPACKpotrf_("L", &n_layer, l, &n, &info);
+        if (info != 0) throw SolveError(not_positive);
+        const auto lower = [&](PetscBLASInt column) { return l + std::size_t(column) * n + n_layer; };
+        w_.reserve(n_trace_ * n_layer_);
+        for (PetscBLASInt j = 0; j < n_layer; ++j) w_.insert(w_.end(), lower(j), lower(j) + n_trace);
+        s_.reserve(n_trace_ * n_trace_);
+        for (PetscBLASInt j = n_layer; j < n; ++j) s_.insert(s_.end(), lower(j), lower(j) + n_trace);
+        const double one = 1;
+        const double minus_one = -1;
+        BLAStrsm_("R", "L", "T", "N", &n_trace, &n_layer, &one, l, &n, w_.data(), &n_trace);
+        BLASsyrk_("L", "N", &n_trace, &n_layer, &minus_one, w_.data(), &n_trace, &one, s_.data(), &n_trace);
+        BLAStrsm_("R", "L", "N", "N", &n_trace, &n_layer, &one, l, &n, w_.data(), &n_trace);
+        for (std::size_t j = 0; j < n_trace_; ++j)
+          for (std::size_t i = 0; i < j; ++i) s_[j * n_trace_ + i] = s_[i * n_trace_ + j];
+        std::vector<double> u(c.begin(), c.begin() + n_layer);
+        const PetscBLASInt columns = 1;
+        LAPACKpotrs_("L", &n_layer, &columns, l, &n, u.data(), &n_layer, &info);
+        return u;
+      });
+  load_ = by_first(
+      [&]
+      {
+        std::vector<double> g(c.begin() + n_layer, c.end());
+        add_product(-1, w_, n_trace, n_layer, false, std::span(c).first(n_layer_), g);
+        return g;
+      });
+}
+
+std::vector<double> Condensation::on_trace(std::span<const double> values) const
+{
+  std::vector<double> own;
+  own.reserve(trace_.size());
+  for (const Index i : trace_) own.push_back(values[i]);
+  own = ranks_.gather<double>(own);
+  ranks_.copy_from_first(own);
+  return own;
+}
+
+std::vector<double> Condensation::on_layer_and_trace(std::span<const double> values) const
+{
+  std::vector<double> own;
+  own.reserve(layer_.size());
+  for (const Index i : layer_) own.push_back(values[i]);
+  own = ranks_.gather<double>(own);
+  ranks_.copy_from_first(own);
+  const std::vector<double> of_trace = on_trace(values);
+  own.insert(own.end(), of_trace.begin(), of_trace.end());
+  return own;
+}
+
+std::vector<double> Condensation::multiply(std::span<const double> x) const
+{
+  return by_first(
+      [&]
+      {
+        std::vector<double> y(n_trace_, 0.0);
+        const auto n = static_cast<PetscBLASInt>(n_trace_);
+        add_product(1, s_, n, n, false, x, y);
+        return y;
+      });
+}
+
+std::vector<double> Condensation::near(std::span<const double> x) const
+{
+  std::vector<double> u = by_first(
+      [&]
+      {
+        std::vector<double> layer = layer_load_;
+        add_product(-1, w_, static_cast<PetscBLASInt>(n_trace_), static_cast<PetscBLASInt>(n_layer_), true, x,
+                    layer);
+        return layer;
+      });
+  u.insert(u.end(), x.begin(), x.end());
+  return u;
+}
+
+void Condensation::put(std::span<const double> layer_and_trace, std::span<double> u) const
+{
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (position_[i] >= 0) u[i] = layer_and_trace[position_[i]];
+}
+
+std::vector<double> Condensation::expand(std::span<const double> x) const
+{
+  const std::vector<double> kept = near(x);
+  std::vector<double> b = b_;
+  for (const Entry& entry : coupling_) b[entry.row] -= entry.value * kept[entry.column];
+  std::vector<double> u = solve_rest(b);
+  put(kept, u);
+  return u;
+}
+
+/// Column i is row i of S + N_GG - N_GL W: its sums run over columns of W^T.
+std::vector<double> Condensation::transposed_tangent(std::span<const Entry> n) const
+{
+  const auto n_trace = static_cast<PetscBLASInt>(n_trace_);
+  const PetscBLASInt one = 1;
+  std::vector<double> m = s_;
+  for (const auto& [place, column, value] : n)
+  {
+    double* row = m.data() + (place - n_layer_) * n_trace_;
+    const double a = -value;
+    if (std::cmp_greater_equal(column, n_layer_))
+      row[column - n_layer_] += value;
+    else
+      BLASaxpy_(&n_trace, &a, w_.data() + std::size_t(column) * n_trace_, &one, row, &one);
+  }
+  return m;
+}
+
+std::vector<double> Condensation::solve(const Triplets& n, std::span<const double> r, double tolerance) const
+{
+  std::vector<Entry> entries;
+  for (std::size_t e = 0; e < n.rows.size(); ++e)
+    if (n.rows[e] >= 0 && n.cols[e] >= 0 && owns(n.rows[e]))
+      entries.push_back({position_[n.rows[e]], position_[n.cols[e]], n.values[e]});
+  entries = ranks_.gather<Entry>(entries);
+  return by_first([&] { return solve_dense(transposed_tangent(entries), r, tolerance); });
 }
 
 }  // namespace tribound::algebra

@@ -3,11 +3,12 @@
 /// @file condensation.h
 /// Static condensation: a linear problem reduced to a few of its unknowns, exactly.
 
-#include <memory>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "tribound/algebra/petsc.h"
+#include "tribound/base/ranks.h"
 #include "tribound/base/types.h"
 
 namespace tribound::algebra
@@ -15,51 +16,83 @@ namespace tribound::algebra
 
 /// K u = b + f with symmetric K and forces f that act on the trace unknowns alone, reduced to them:
 /// S x = g + f for x = u on the trace, S = K_GG - K_GR K_RR^{-1} K_RG (R: the rest, G: the trace), and
-/// u = u_0 - W x on a layer of unknowns beside the trace. One sparse Cholesky factorisation by MUMPS, which
-/// leaves the Schur complement on layer and trace; dense factors by LAPACK do the rest.
+/// u = u_0 - W x on a layer of unknowns beside the trace. K may be singular where the trace alone holds a
+/// body.
 ///
-/// K may be singular where the trace alone holds a body: factorised is K + D, with the diagonal of K in D on
-/// the trace, whose Schur complement is that of K plus D.
+/// MUMPS factorises K without layer and trace and leaves the Schur complement C on these; dense factors by
+/// LAPACK do the rest: S = C_GG - C_GL C_LL^{-1} C_LG, W = C_LL^{-1} C_LG. Elsewhere u follows from its
+/// values on layer and trace by the sparse factors.
+///
+/// On several ranks u and b have entries for all unknowns of the rank, x and what else stands on trace or
+/// layer for those of all ranks, the same everywhere: the first has the dense matrices. All ranks call the
+/// members together.
 class Condensation
 {
  public:
-  /// `k`: K; `layer` and `trace` are distinct unknowns, neither is empty. `dim` is that of the mesh and
-  /// selects the ordering. Throws SolveError when K + D is not positive definite.
-  Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
-               std::span<const double> b);
+  /// `k`: the rows of own unknowns of K; `layer` and `trace` are distinct own unknowns, of all ranks neither
+  /// is empty. `dim` is that of the mesh and selects the ordering. Throws SolveError when K with the trace
+  /// held is not positive definite.
+  Condensation(int dim, const SparseRows& k, std::vector<Index> layer, std::vector<Index> trace,
+               std::span<const double> b, Sharing sharing = {});
 
-  [[nodiscard]] std::span<const Index> layer() const { return layer_; }
-  [[nodiscard]] std::span<const Index> trace() const { return trace_; }
+  /// Unknowns of all ranks on the trace.
+  [[nodiscard]] std::size_t n_trace() const { return n_trace_; }
+  /// Values of unknowns there, and on layer and trace.
+  [[nodiscard]] std::vector<double> on_trace(std::span<const double> values) const;
+  [[nodiscard]] std::vector<double> on_layer_and_trace(std::span<const double> values) const;
+  /// u on layer and trace.
+  [[nodiscard]] std::vector<double> near(std::span<const double> x) const;
+  /// Gives the unknowns of this rank on layer and trace, ghosts included, their values.
+  void put(std::span<const double> layer_and_trace, std::span<double> u) const;
+  /// u everywhere but at ghosts: a solve with the sparse factors.
+  [[nodiscard]] std::vector<double> expand(std::span<const double> x) const;
+
   /// g.
   [[nodiscard]] std::span<const double> load() const { return load_; }
   /// S x.
   [[nodiscard]] std::vector<double> multiply(std::span<const double> x) const;
-  /// u on the layer.
-  [[nodiscard]] std::vector<double> on_layer(std::span<const double> x) const;
-  /// u everywhere: two solves with the sparse factors.
-  [[nodiscard]] std::vector<double> expand(std::span<const double> x) const;
-
   /// d with (S + N_GG - N_GL W) d = r up to `tolerance` (absolute, Euclidean) or round-off, by LU factors;
-  /// `n` has rows on the trace, columns on trace and layer. Throws SolveError when the matrix is singular to
-  /// working precision.
+  /// `n` has rows on the trace, columns on trace and layer, and those of own rows count. Throws SolveError
+  /// when the matrix is singular to working precision.
   [[nodiscard]] std::vector<double> solve(const Triplets& n, std::span<const double> r,
                                           double tolerance) const;
 
  private:
-  void factorise(const SparseMatrix& k, int dim);
-  void condense();
-  /// x - trace of (K + D)^{-1} b
-  [[nodiscard]] std::vector<double> deviation(std::span<const double> x) const;
-  [[nodiscard]] std::vector<double> transposed_tangent(const Triplets& n) const;
+  /// An entry on layer and trace.
+  struct Entry
+  {
+    int row;
+    int column;
+    double value;
+  };
 
-  std::vector<Index> layer_;
-  std::vector<Index> trace_;
-  std::vector<int> position_;  ///< of an unknown in [layer, trace]; -1 for others
+  void find_places(Index n_unknowns);
+  void factorise(const SparseMatrix& k, int dim);
+  void couple(const SparseRows& k);
+  void condense();
+  [[nodiscard]] bool owns(Index unknown) const;
+  /// K_RR^{-1} b, without layer and trace.
+  [[nodiscard]] std::vector<double> solve_rest(std::span<const double> b) const;
+  /// What work() makes on the first rank, everywhere.
+  template <class Work>
+  [[nodiscard]] std::vector<double> by_first(const Work& work) const;
+  [[nodiscard]] std::vector<double> transposed_tangent(std::span<const Entry> n) const;
+
+  Ranks ranks_;
+  Sharing sharing_;
+  int block_size_;
+  std::vector<Index> layer_;            ///< own unknowns
+  std::vector<Index> trace_;            ///< own unknowns
+  std::vector<std::int64_t> all_kept_;  ///< of all ranks, layer in front, as the matrix numbers its rows
+  std::size_t n_layer_ = 0;             ///< of all ranks
+  std::size_t n_trace_ = 0;             ///< of all ranks
+  std::vector<int> position_;           ///< of an unknown of this rank in all_kept_; -1 for others
+  std::vector<Entry> coupling_;         ///< K: row an own unknown of the rest, column in all_kept_
   MatHandle factors_;
-  std::vector<double> sprung_;   ///< (K + D)^{-1} b
-  std::vector<double> penalty_;  ///< D on the trace
-  std::vector<double> s_;        ///< S, by columns
-  std::vector<double> w_;        ///< W^T, by columns
+  std::vector<double> b_;
+  std::vector<double> s_;           ///< S, by columns; on the first rank
+  std::vector<double> w_;           ///< W^T, by columns; on the first rank
+  std::vector<double> layer_load_;  ///< u_0
   std::vector<double> load_;
 };
 

@@ -65,12 +65,12 @@ struct SparseRows
     columns.insert(columns.end(), more.columns.begin(), more.columns.end());
     values.insert(values.end(), more.values.begin(), more.values.end());
   }
-  /// Entry (i, i), which the row must have.
-  [[nodiscard]] double& diagonal(int i)
+  /// Entry (row, column), which the row must have.
+  [[nodiscard]] double entry(int row, int column) const
   {
-    const auto first = columns.begin() + begin[i];
-    const auto entry = std::lower_bound(first, columns.begin() + begin[i + 1], i);
-    return values[entry - columns.begin()];
+    const auto first = columns.begin() + begin[row];
+    const auto found = std::lower_bound(first, columns.begin() + begin[row + 1], column);
+    return values[found - columns.begin()];
   }
 };
 

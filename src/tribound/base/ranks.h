@@ -106,8 +106,19 @@ class Ranks
     return joined(send(out));
   }
 
-  /// The bytes that the first rank has, everywhere.
+  /// The items that the first rank has, everywhere.
   void copy_from_first(std::vector<char>& bytes) const;
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void copy_from_first(std::vector<T>& items) const
+  {
+    if (size_ == 1) return;
+    std::vector<char> bytes(items.size() * sizeof(T));
+    std::memcpy(bytes.data(), items.data(), bytes.size());
+    copy_from_first(bytes);
+    items.resize(bytes.size() / sizeof(T));
+    std::memcpy(items.data(), bytes.data(), bytes.size());
+  }
 
   /// work(). If it throws on some ranks, all of them throw: those what they have thrown, the others what the
   /// lowest of them has, with its number. For everything that may fail on a rank of its own.

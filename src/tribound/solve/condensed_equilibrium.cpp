@@ -28,51 +28,47 @@ CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form)
     place[pattern.cols[e]] = std::max(place[pattern.cols[e]], on_layer);
   }
   CondensedDofs dofs;
-  for (Index i = 0; i < static_cast<Index>(place.size()); ++i)
-  {
-    if (place[i] == on_layer) dofs.layer.push_back(i);
-    if (place[i] == on_trace) dofs.trace.push_back(i);
-  }
+  for (Index k = 0; k < form.space().n_owned_nodes(); ++k)
+    for (int a = 0; a < dim; ++a)
+    {
+      const Index i = dim * form.space().owned_node(k) + a;
+      if (place[i] == on_layer) dofs.layer.push_back(i);
+      if (place[i] == on_trace) dofs.trace.push_back(i);
+    }
   return dofs;
 }
 
 namespace
 {
 
+/// The unknowns x are the displacement on the contact boundary, of all ranks on each.
 template <int dim>
 class CondensedEquilibrium final : public Equilibrium<dim>
 {
  public:
-  CondensedEquilibrium(const contact::NitscheForm<dim>& form, algebra::SparseRows stiffness,
+  CondensedEquilibrium(const contact::NitscheForm<dim>& form, const algebra::SparseRows& stiffness,
                        const ExternalForces& forces, CondensedDofs dofs)
       : form_(form),
-        diagonal_(diagonal(stiffness, dofs)),
-        condensed_(dim, std::move(stiffness), std::move(dofs.layer), std::move(dofs.trace), forces.load),
+        condensed_(dim, stiffness, std::move(dofs.layer), std::move(dofs.trace), forces.load,
+                   form.space().numbers()),
+        diagonal_(condensed_.on_layer_and_trace(diagonal(stiffness, form.space()))),
         force_scale_(forces.scale)
   {
   }
 
-  std::vector<double> unknowns(std::span<const double> u) const override
-  {
-    std::vector<double> x;
-    x.reserve(condensed_.trace().size());
-    for (const Index i : condensed_.trace()) x.push_back(u[i]);
-    return x;
-  }
+  std::vector<double> unknowns(std::span<const double> u) const override { return condensed_.on_trace(u); }
 
   void displace_contact(std::span<const double> x, std::span<double> u) const override
   {
-    const std::vector<double> layer = condensed_.on_layer(x);
-    for (std::size_t i = 0; i < layer.size(); ++i) u[condensed_.layer()[i]] = layer[i];
-    for (std::size_t i = 0; i < x.size(); ++i) u[condensed_.trace()[i]] = x[i];
+    condensed_.put(condensed_.near(x), u);
   }
 
   std::vector<double> displacement(std::span<const double> x) const override
   {
     std::vector<double> u = condensed_.expand(x);
-    displace_contact(x, u);
     for (std::size_t i = 0; i < u.size(); ++i)
       if (form_.constraints().fixed[i]) u[i] = form_.constraints().values[i];
+    form_.space().update(std::span(u));
     return u;
   }
 
@@ -86,17 +82,15 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   {
     std::vector<double> contact(form_.space().n_dofs(), 0.0);
     form_.add_contact_load(traction, contact);
-    std::vector<double> r(condensed_.load().begin(), condensed_.load().end());
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] += contact[condensed_.trace()[i]] - internal_forces[i];
+    std::vector<double> r = condensed_.on_trace(contact);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] += condensed_.load()[i] - internal_forces[i];
     return r;
   }
 
   double norm(std::span<const double> x) const override { return tribound::norm(x); }
   double round_off(std::span<const double> x) const override
   {
-    std::vector<double> u = condensed_.on_layer(x);
-    u.insert(u.end(), x.begin(), x.end());
-    return norm(solve::round_off(diagonal_, u));
+    return norm(solve::round_off(diagonal_, condensed_.near(x)));
   }
 
   algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
@@ -109,17 +103,23 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   double force_scale() const override { return force_scale_; }
 
  private:
-  static std::vector<double> diagonal(algebra::SparseRows& stiffness, const CondensedDofs& dofs)
+  /// Of the stiffness, at own unknowns.
+  static std::vector<double> diagonal(const algebra::SparseRows& stiffness,
+                                      const fem::LagrangeSpace<dim>& space)
   {
-    std::vector<double> result;
-    for (const std::span<const Index> kept : {std::span(dofs.layer), std::span(dofs.trace)})
-      for (const Index i : kept) result.push_back(stiffness.diagonal(i));
+    std::vector<double> result(space.n_dofs(), 0.0);
+    for (Index k = 0; k < space.n_owned_nodes(); ++k)
+      for (int a = 0; a < dim; ++a)
+      {
+        const Index i = dim * space.owned_node(k) + a;
+        result[i] = stiffness.entry(dim * k + a, i);
+      }
     return result;
   }
 
   const contact::NitscheForm<dim>& form_;
-  std::vector<double> diagonal_;  ///< of the stiffness, [layer, trace]
   algebra::Condensation condensed_;
+  std::vector<double> diagonal_;  ///< of the stiffness, on layer and trace
   double force_scale_;
   bool used_ = false;
 };

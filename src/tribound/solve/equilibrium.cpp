@@ -1,11 +1,15 @@
 #include "tribound/solve/equilibrium.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
 namespace tribound::solve
@@ -31,21 +35,22 @@ namespace
 /// keeps little: in 2D a factorisation takes about n^{3/2} operations, dense ones the cube of their size.
 /// Measured on blocks and strips with p = 1, 2, 4: from scratch, with 11 to 15 steps, condensing takes as
 /// long from 13 to 18 n^{1/2} kept unknowns on; on adaptive meshes, with one step or two, it makes no
-/// difference at 6 n^{1/2}. On several ranks the whole system stays.
+/// difference at 6 n^{1/2}.
 template <int dim>
 std::optional<CondensedDofs> worth_condensing(const contact::NitscheForm<dim>& form,
                                               const algebra::SolverOptions& options, bool from_scratch)
 {
   const bool told = options.method == algebra::LinearMethod::condensed;
-  if (form.space().numbers()) return std::nullopt;
   const bool may_pay = dim == 2 && options.method == algebra::LinearMethod::automatic &&
                        options.package != algebra::DirectPackage::umfpack;
   if (!told && !may_pay) return std::nullopt;
   CondensedDofs dofs = condensed_dofs(form);
-  const auto n = static_cast<double>(form.space().n_dofs());
-  const auto kept = static_cast<double>(dofs.layer.size() + dofs.trace.size());
+  const auto n = static_cast<double>(form.space().n_global_dofs());
+  std::array<std::int64_t, 2> sizes{std::ssize(dofs.layer), std::ssize(dofs.trace)};
+  form.space().mesh().ranks().sum(std::span(sizes));
+  const auto kept = static_cast<double>(sizes[0] + sizes[1]);
   const bool pays = told || kept <= (from_scratch ? 12 : 6) * std::sqrt(n);
-  if (dofs.layer.empty() || kept >= n || !pays) return std::nullopt;
+  if (sizes[0] == 0 || kept >= n || !pays) return std::nullopt;
   return dofs;
 }
 
@@ -68,8 +73,9 @@ std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<di
     {
       return condensed_equilibrium(form, forces, *std::move(dofs));
     }
-    catch (const SolveError&)  // the tangent may be regular where the stiffness is not
+    catch (const SolveError& error)  // the tangent may be regular where the stiffness is not
     {
+      require_all_failed(form.space().mesh().ranks(), error.what());
       if (options.method == algebra::LinearMethod::condensed) throw;
     }
   return sparse_equilibrium(form, std::move(forces), options);

@@ -67,8 +67,8 @@ template <int dim>
                                                                    ExternalForces forces,
                                                                    const algebra::SolverOptions& options);
 
-/// The degrees of freedom that condensation keeps: free ones of nodes on the contact boundary, and of the
-/// other nodes of cells there.
+/// The degrees of freedom of own nodes that condensation keeps: free ones of nodes on the contact boundary,
+/// and of the other nodes of cells there.
 struct CondensedDofs
 {
   std::vector<Index> layer;

@@ -103,7 +103,12 @@ TEST(Condensation, IsTheWholeProblemOnTheTrace)
       const Vector x = random_vector(static_cast<int>(trace.size()), seed);
       const Reference exact(k, b, x);
       EXPECT_LE((vector(condensed.multiply(values(x))) - vector(condensed.load()) - exact.f).norm(), 1e-12);
-      EXPECT_LE((vector(condensed.on_layer(values(x))) - exact.u(layer)).norm(), 1e-12);
+      Vector near(n);
+      near(layer) = exact.u(layer);
+      near(trace) = x;
+      EXPECT_LE(
+          (vector(condensed.near(values(x))) - vector(condensed.on_layer_and_trace(values(near)))).norm(),
+          1e-12);
       EXPECT_LE((vector(condensed.expand(values(x))) - exact.u).norm(), 1e-12);
     }
   }
