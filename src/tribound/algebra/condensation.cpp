@@ -9,7 +9,7 @@
 // After PETSc's other headers: it does not stand alone.
 #include <petscblaslapack.h>
 
-#include "tribound/base/norm.h"
+#include "tribound/algebra/dense.h"
 
 namespace tribound::algebra
 {
@@ -19,16 +19,6 @@ using detail::wrap;
 
 namespace
 {
-
-/// y += a A x for a column-major A of the given shape, or with its transpose.
-void add_product(double a, std::span<const double> matrix, PetscBLASInt rows, PetscBLASInt columns,
-                 bool transposed, std::span<const double> x, std::span<double> y)
-{
-  const PetscBLASInt one = 1;
-  const double beta = 1;
-  BLASgemv_(transposed ? "T" : "N", &rows, &columns, &a, matrix.data(), &rows, x.data(), &one, &beta,
-            y.data(), &one);
-}
 
 /// The Schur complement that MUMPS leaves, column by column: a view. On one process its lower half.
 class SchurComplement
@@ -55,38 +45,6 @@ class SchurComplement
   MatFactorSchurStatus status_ = MAT_FACTOR_SCHUR_UNFACTORED;
   double* entries_ = nullptr;
 };
-
-/// d with M d = r up to `tolerance` or round-off; `m` is M^T by columns.
-std::vector<double> solve_dense(const std::vector<double>& m, std::span<const double> r, double tolerance)
-{
-  constexpr int max_refinements = 3;
-  constexpr double useless = 1e-6;  // of the right-hand side: as little is left by factors that are of use
-  std::vector<double> lu = m;
-  const auto size = static_cast<PetscBLASInt>(r.size());
-  std::vector<PetscBLASInt> pivots(r.size());
-  const PetscBLASInt one = 1;
-  PetscBLASInt info = 0;
-  LAPACKgetrf_(&size, &size, lu.data(), &size, pivots.data(), &info);
-  std::vector<double> d(r.size(), 0.0);
-  std::vector<double> residual(r.begin(), r.end());
-  double before = norm(residual);
-  for (int k = 0; info == 0 && k <= max_refinements; ++k)
-  {
-    std::vector<double> correction = residual;
-    LAPACKgetrs_("T", &size, &one, lu.data(), &size, pivots.data(), correction.data(), &size, &info);
-    std::vector<double> next = residual;
-    add_product(-1, m, size, size, true, correction, next);
-    const double after = norm(next);
-    if (!(after < before)) break;
-    for (std::size_t i = 0; i < d.size(); ++i) d[i] += correction[i];
-    residual = std::move(next);
-    before = after;
-    if (after <= tolerance) break;
-  }
-  if (info != 0 || !(before <= std::max(tolerance, useless * norm(r))))
-    throw SolveError(detail::singular_tangent);
-  return d;
-}
 
 /// On several processes MUMPS 5.5 leaves the upper half in place of the lower one.
 void fill_lower_half(double* matrix, PetscBLASInt n)
@@ -225,7 +183,7 @@ void Condensation::condense()
       {
         const SchurComplement schur(factors_.get());
         double* l = schur.entries();
-        if (sharing_) fill_lower_half(l, n);
+        if (ranks_.size() > 1) fill_lower_half(l, n);
         PetscBLASInt info = 0;
         LAPACKpotrf_("L", &n_layer, l, &n, &info);
         if (info != 0) throw SolveError(not_positive);
@@ -250,31 +208,32 @@ void Condensation::condense()
       [&]
       {
         std::vector<double> g(c.begin() + n_layer, c.end());
-        add_product(-1, w_, n_trace, n_layer, false, std::span(c).first(n_layer_), g);
+        detail::add_product(-1, w_, n_trace_, n_layer_, false, std::span(c).first(n_layer_), g);
         return g;
       });
 }
 
+std::vector<double> Condensation::of_all(std::span<const Index> own, std::span<const double> values) const
+{
+  std::vector<double> result;
+  result.reserve(own.size());
+  for (const Index i : own) result.push_back(values[i]);
+  result = ranks_.gather<double>(result);
+  ranks_.copy_from_first(result);
+  return result;
+}
+
 std::vector<double> Condensation::on_trace(std::span<const double> values) const
 {
-  std::vector<double> own;
-  own.reserve(trace_.size());
-  for (const Index i : trace_) own.push_back(values[i]);
-  own = ranks_.gather<double>(own);
-  ranks_.copy_from_first(own);
-  return own;
+  return of_all(trace_, values);
 }
 
 std::vector<double> Condensation::on_layer_and_trace(std::span<const double> values) const
 {
-  std::vector<double> own;
-  own.reserve(layer_.size());
-  for (const Index i : layer_) own.push_back(values[i]);
-  own = ranks_.gather<double>(own);
-  ranks_.copy_from_first(own);
-  const std::vector<double> of_trace = on_trace(values);
-  own.insert(own.end(), of_trace.begin(), of_trace.end());
-  return own;
+  std::vector<double> result = of_all(layer_, values);
+  const std::vector<double> of_trace = of_all(trace_, values);
+  result.insert(result.end(), of_trace.begin(), of_trace.end());
+  return result;
 }
 
 std::vector<double> Condensation::multiply(std::span<const double> x) const
@@ -283,8 +242,7 @@ std::vector<double> Condensation::multiply(std::span<const double> x) const
       [&]
       {
         std::vector<double> y(n_trace_, 0.0);
-        const auto n = static_cast<PetscBLASInt>(n_trace_);
-        add_product(1, s_, n, n, false, x, y);
+        detail::add_product(1, s_, n_trace_, n_trace_, false, x, y);
         return y;
       });
 }
@@ -295,8 +253,7 @@ std::vector<double> Condensation::near(std::span<const double> x) const
       [&]
       {
         std::vector<double> layer = layer_load_;
-        add_product(-1, w_, static_cast<PetscBLASInt>(n_trace_), static_cast<PetscBLASInt>(n_layer_), true, x,
-                    layer);
+        detail::add_product(-1, w_, n_trace_, n_layer_, true, x, layer);
         return layer;
       });
   u.insert(u.end(), x.begin(), x.end());
@@ -344,7 +301,7 @@ std::vector<double> Condensation::solve(const Triplets& n, std::span<const doubl
     if (n.rows[e] >= 0 && n.cols[e] >= 0 && owns(n.rows[e]))
       entries.push_back({position_[n.rows[e]], position_[n.cols[e]], n.values[e]});
   entries = ranks_.gather<Entry>(entries);
-  return by_first([&] { return solve_dense(transposed_tangent(entries), r, tolerance); });
+  return by_first([&] { return detail::solve_dense(transposed_tangent(entries), r, tolerance); });
 }
 
 }  // namespace tribound::algebra

@@ -71,6 +71,8 @@ class Condensation
   void couple(const SparseRows& k);
   void condense();
   [[nodiscard]] bool owns(Index unknown) const;
+  /// The values at these unknowns of all ranks, everywhere.
+  [[nodiscard]] std::vector<double> of_all(std::span<const Index> own, std::span<const double> values) const;
   /// K_RR^{-1} b, without layer and trace.
   [[nodiscard]] std::vector<double> solve_rest(std::span<const double> b) const;
   /// What work() makes on the first rank, everywhere.

@@ -3,12 +3,14 @@
 /// @file ranks.h
 /// The processes of one computation.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -101,9 +103,20 @@ class Ranks
   requires std::is_trivially_copyable_v<T>
   [[nodiscard]] std::vector<T> gather(std::span<const T> items) const
   {
-    std::vector<std::vector<T>> out(size_);
-    out[0].assign(items.begin(), items.end());
-    return joined(send(out));
+    if (size_ == 1) return {items.begin(), items.end()};
+    std::vector<std::int64_t> sizes(size_, 0);
+    sizes[rank_] = static_cast<std::int64_t>(items.size());
+    sum(std::span(sizes));
+    std::vector<T> all(is_first() ? std::reduce(sizes.begin(), sizes.end()) : 0);
+    std::vector<Incoming> in;
+    if (is_first())
+      for (std::span<T> rest = all; const std::int64_t n : sizes)
+      {
+        in.push_back({static_cast<int>(in.size()), std::as_writable_bytes(rest.first(n))});
+        rest = rest.subspan(n);
+      }
+    transfer(std::array{Outgoing{0, std::as_bytes(items)}}, in);
+    return all;
   }
 
   /// The items that the first rank has, everywhere.
