@@ -57,7 +57,7 @@ constexpr const char* not_positive = "the stiffness matrix is not positive defin
 
 }  // namespace
 
-Condensation::Condensation(int dim, const SparseRows& k, std::vector<Index> layer, std::vector<Index> trace,
+Condensation::Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
                            std::span<const double> b, Sharing sharing)
     : sharing_(std::move(sharing)),
       block_size_(dim),
@@ -67,8 +67,8 @@ Condensation::Condensation(int dim, const SparseRows& k, std::vector<Index> laye
 {
   if (sharing_) ranks_ = sharing_->ranks;
   find_places(static_cast<Index>(b.size()));
-  factorise(SparseMatrix(dim, k, sharing_), dim);
   couple(k);
+  factorise(SparseMatrix(dim, std::move(k), sharing_), dim);
   condense();
 }
 

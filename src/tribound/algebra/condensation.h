@@ -32,7 +32,7 @@ class Condensation
   /// `k`: the rows of own unknowns of K; `layer` and `trace` are distinct own unknowns, of all ranks neither
   /// is empty. `dim` is that of the mesh and selects the ordering. Throws SolveError when K with the trace
   /// held is not positive definite.
-  Condensation(int dim, const SparseRows& k, std::vector<Index> layer, std::vector<Index> trace,
+  Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
                std::span<const double> b, Sharing sharing = {});
 
   /// Unknowns of all ranks on the trace.

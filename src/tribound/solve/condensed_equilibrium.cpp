@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "tribound/algebra/condensation.h"
 #include "tribound/base/norm.h"
@@ -41,17 +43,32 @@ CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form)
 namespace
 {
 
+/// Of a matrix, at own unknowns.
+template <int dim>
+std::vector<double> diagonal(const algebra::SparseRows& matrix, const fem::LagrangeSpace<dim>& space)
+{
+  std::vector<double> result(space.n_dofs(), 0.0);
+  for (Index k = 0; k < space.n_owned_nodes(); ++k)
+    for (int a = 0; a < dim; ++a)
+    {
+      const Index i = dim * space.owned_node(k) + a;
+      result[i] = matrix.entry(dim * k + a, i);
+    }
+  return result;
+}
+
 /// The unknowns x are the displacement on the contact boundary, of all ranks on each.
 template <int dim>
 class CondensedEquilibrium final : public Equilibrium<dim>
 {
  public:
-  CondensedEquilibrium(const contact::NitscheForm<dim>& form, const algebra::SparseRows& stiffness,
-                       const ExternalForces& forces, CondensedDofs dofs)
+  /// `diagonal`: of the stiffness, at own unknowns.
+  CondensedEquilibrium(const contact::NitscheForm<dim>& form, algebra::SparseRows stiffness,
+                       std::span<const double> diagonal, const ExternalForces& forces, CondensedDofs dofs)
       : form_(form),
-        condensed_(dim, stiffness, std::move(dofs.layer), std::move(dofs.trace), forces.load,
+        condensed_(dim, std::move(stiffness), std::move(dofs.layer), std::move(dofs.trace), forces.load,
                    form.space().numbers()),
-        diagonal_(condensed_.on_layer_and_trace(diagonal(stiffness, form.space()))),
+        diagonal_(condensed_.on_layer_and_trace(diagonal)),
         force_scale_(forces.scale)
   {
   }
@@ -103,20 +120,6 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   double force_scale() const override { return force_scale_; }
 
  private:
-  /// Of the stiffness, at own unknowns.
-  static std::vector<double> diagonal(const algebra::SparseRows& stiffness,
-                                      const fem::LagrangeSpace<dim>& space)
-  {
-    std::vector<double> result(space.n_dofs(), 0.0);
-    for (Index k = 0; k < space.n_owned_nodes(); ++k)
-      for (int a = 0; a < dim; ++a)
-      {
-        const Index i = dim * space.owned_node(k) + a;
-        result[i] = stiffness.entry(dim * k + a, i);
-      }
-    return result;
-  }
-
   const contact::NitscheForm<dim>& form_;
   algebra::Condensation condensed_;
   std::vector<double> diagonal_;  ///< of the stiffness, on layer and trace
@@ -130,8 +133,10 @@ template <int dim>
 std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheForm<dim>& form,
                                                         const ExternalForces& forces, CondensedDofs dofs)
 {
-  return std::make_unique<CondensedEquilibrium<dim>>(
-      form, contact::stiffness(form.problem(), form.space(), form.constraints()), forces, std::move(dofs));
+  algebra::SparseRows stiffness = contact::stiffness(form.problem(), form.space(), form.constraints());
+  const std::vector<double> of_stiffness = diagonal(stiffness, form.space());
+  return std::make_unique<CondensedEquilibrium<dim>>(form, std::move(stiffness), of_stiffness, forces,
+                                                     std::move(dofs));
 }
 
 template CondensedDofs condensed_dofs(const contact::NitscheForm<2>&);
