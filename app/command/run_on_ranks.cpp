@@ -14,8 +14,10 @@
 
 #include "app/command/interrupt.h"
 #include "app/console/console.h"
+#include "tribound/algebra/blas.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
+#include "tribound/base/parallel.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/base/ranks.h"
 #include "tribound/io/state/checkpoint.h"
@@ -46,27 +48,27 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
 {
   constexpr std::int64_t most_in_box = 100'000;  // that one rank makes to look at
   using Whole = mesh::Mesh<dim>;
+  const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh);
   std::shared_ptr<const Whole> first;
-  if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh); box && !checkpoint)
-  {
-    ranks.on_first(
-        [&] {
-          first = std::make_shared<const Whole>(mesh::box_mesh<dim>(mesh::coarser_box(*box, most_in_box)));
-        });
-    return run(config, mesh::share_out<dim>(ranks, *box), progress, std::move(first));
-  }
-  if (whole) first = std::make_shared<const Whole>(std::get<Whole>(*std::move(whole)));
+  ranks.on_first(
+      [&]
+      {
+        first = std::make_shared<const Whole>(
+            box ? Whole(mesh::box_mesh<dim>(mesh::coarser_box(*box, most_in_box)))
+                : std::get<Whole>(*std::exchange(whole, {})));
+      });
   if (!checkpoint)
   {
-    mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, first.get());
+    Whole part = box ? mesh::share_out<dim>(ranks, *box) : mesh::share_out<dim>(ranks, first.get());
     return run(config, std::move(part), progress, std::move(first));
   }
   ranks.on_first(
       [&]
       {
-        if (first->n_cells() != checkpoint->earlier.first_cells)
+        const std::int64_t n_cells = box ? mesh::n_box_cells(*box) : first->n_cells();
+        if (n_cells != checkpoint->earlier.first_cells)
           throw InputError(first->source(),
-                           fmt::format("has {} cells, but the run to restart began with {}", first->n_cells(),
+                           fmt::format("has {} cells, but the run to restart began with {}", n_cells,
                                        checkpoint->earlier.first_cells),
                            "restart with the mesh that the run began with");
       });
@@ -111,13 +113,24 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
   const bool is_plane = ranks.on_first(
       [&]
       {
-        if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh); box && !checkpoint)
+        if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh))
+        {
+          mesh::require_valid(*box);
           return box->lower.size() == 2;  // all ranks make it
+        }
         whole.emplace(mesh::read_mesh(config.mesh, &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   const auto run_in = is_plane ? run_part<2> : run_part<3>;
   return run_in(ranks, config, std::exchange(whole, {}), checkpoint, request.restart, progress);
+}
+
+/// One for each of several processes, where the environment does not say how many.
+void limit_threads()
+{
+  if (std::getenv("OMP_NUM_THREADS")) return;  // for OpenBLAS, too
+  set_max_threads(1);
+  if (!std::getenv("OPENBLAS_NUM_THREADS")) algebra::set_blas_threads(1);
 }
 
 }  // namespace
@@ -162,6 +175,7 @@ ExitCode run_on_ranks(const RunRequest& request)
 {
   const algebra::Environment environment;
   if (n_processes() == 1) return run_on(Ranks(), request);
+  limit_threads();
   const Ranks ranks = Ranks::world();
   try
   {

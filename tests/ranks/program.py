@@ -164,6 +164,23 @@ def a_run_goes_on():
     expect("no case", result.returncode == 1 and "--restart" in result.stderr, result.returncode, result.stderr)
 
 
+def a_box_goes_on():
+    for n in (1, 3):
+        run_case("box", n, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "output.checkpoint=true", "--set", "adapt.max_levels=2")
+        result = run(n, PROGRAM, "run", "-q", "--restart", str(out("box", n)), "--set", "adapt.max_levels=4")
+        expect("box", result.returncode == 3 and len(table("box", n)) == 5, n, result.returncode, result.stderr)
+    expect_same_tables("box", 3)
+
+
+def one_thread_each():
+    others = {name: value for name, value in ENVIRONMENT.items() if not name.endswith("_NUM_THREADS")}
+    for words, threads in (({}, 1), ({"OMP_NUM_THREADS": "2"}, 2)):
+        subprocess.run(command(2, PROGRAM, "run", "-q", f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "adapt.max_levels=0", "--set",
+                               f"output.directory='{out('threads', 2)}'"), capture_output=True, timeout=TIME_LIMIT, env=others | words)
+        program = json.loads((out("threads", 2) / "certificate.json").read_text())["program"]
+        expect("threads", program["threads"] == threads and program["processes"] == 2, words, program)
+
+
 def faults():
     for name, code, words in (("throw_together", 1, "all: "), ("throw_alone", 2, "process 1: alone"), ("fail_alone", 2, "process 1: out of memory"), ("die", None, "")):
         begin = time.monotonic()
@@ -181,6 +198,8 @@ bad_input_is_told_once()
 commands_for_one_process()
 interrupted()
 a_run_goes_on()
+a_box_goes_on()
+one_thread_each()
 faults()
 print("\n".join(failures) or "as by one process")
 sys.exit(1 if failures else 0)

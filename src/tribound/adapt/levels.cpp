@@ -92,6 +92,7 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
 {
   if (current_->mesh.partition())
   {
+    assert(whole || !current_->mesh.ranks().is_first());
     current_->mesh.ranks().on_first([&]
                                     { contact::check_rigid_motions<dim>(problem_, *whole, method_.degree); });
     ask(whole.get());

@@ -78,4 +78,9 @@ BlasFacts blas_facts()
   return facts;
 }
 
+void set_blas_threads(int n)
+{
+  if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(n);
+}
+
 }  // namespace tribound::algebra

@@ -22,4 +22,7 @@ struct BlasFacts
 };
 [[nodiscard]] BlasFacts blas_facts();
 
+/// From now on so many threads, if the library is OpenBLAS.
+void set_blas_threads(int n);
+
 }  // namespace tribound::algebra

@@ -14,6 +14,11 @@ int max_threads()
   return omp_get_max_threads();
 }
 
+void set_max_threads(int n)
+{
+  omp_set_num_threads(n);
+}
+
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, int grain)
 {
   // Waking threads and letting them wait costs more than some loops.

@@ -13,6 +13,8 @@ namespace tribound
 
 /// How many threads OpenMP offers here.
 [[nodiscard]] int max_threads();
+/// From now on at most so many.
+void set_max_threads(int n);
 
 /// body(i) for i = 0, ..., n - 1, shared out to the threads that OpenMP offers, `grain` at a time, if there
 /// are enough of them. Of the exceptions thrown, the one with the smallest i is thrown on, so that a message

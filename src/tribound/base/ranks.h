@@ -3,6 +3,7 @@
 /// @file ranks.h
 /// The processes of one computation.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -126,11 +127,12 @@ class Ranks
   void copy_from_first(std::vector<T>& items) const
   {
     if (size_ == 1) return;
-    std::vector<char> bytes(items.size() * sizeof(T));
-    std::memcpy(bytes.data(), items.data(), bytes.size());
+    const auto chars = [&items]
+    { return std::span(reinterpret_cast<char*>(items.data()), items.size() * sizeof(T)); };
+    std::vector<char> bytes(chars().begin(), chars().end());
     copy_from_first(bytes);
     items.resize(bytes.size() / sizeof(T));
-    std::memcpy(items.data(), bytes.data(), bytes.size());
+    std::ranges::copy(bytes, chars().begin());
   }
 
   /// work(). If it throws on some ranks, all of them throw: those what they have thrown, the others what the
