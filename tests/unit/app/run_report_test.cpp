@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "app/page/page_template.h"
 #include "tribound/case/resolve.h"
@@ -128,7 +129,8 @@ class RunReportTest : public ::testing::Test
     for (int i = 0; i < 2; ++i)
     {
       configs[i].output.directory = out(i + 1);
-      reports[i].emplace(configs[i], problem, levels.discrete(), Clock::now(), app::Printed::verdict);
+      const std::vector<bool> slides(problem.boundaries().size(), false);
+      reports[i].emplace(configs[i], problem, levels.discrete(), slides, Clock::now(), app::Printed::verdict);
     }
     const auto each = [&](const auto& tell)
     {
