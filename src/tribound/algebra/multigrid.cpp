@@ -22,7 +22,7 @@ constexpr const char* making = "making multigrid levels";
 /// iterations.
 constexpr std::int64_t factorised = 5000;
 
-/// The degrees of freedom that nothing couples: whose row has one entry. Those of ghosts, too.
+/// The degrees of freedom that nothing couples: whose row is 0 beside the diagonal. Those of ghosts, too.
 std::vector<char> decoupled(Mat a, int dim, const Sharing& sharing)
 {
   PetscInt begin = 0;
@@ -32,9 +32,13 @@ std::vector<char> decoupled(Mat a, int dim, const Sharing& sharing)
   for (PetscInt i = begin; i < end; ++i)
   {
     PetscInt n_entries = 0;
-    check(MatGetRow(a, i, &n_entries, nullptr, nullptr), making);
-    own[i - begin] = n_entries == 1 ? 1 : 0;
-    check(MatRestoreRow(a, i, &n_entries, nullptr, nullptr), making);
+    const PetscInt* columns = nullptr;
+    const PetscScalar* entries = nullptr;
+    check(MatGetRow(a, i, &n_entries, &columns, &entries), making);
+    own[i - begin] = 1;
+    for (PetscInt k = 0; k < n_entries; ++k)
+      if (columns[k] != i && entries[k] != 0) own[i - begin] = 0;
+    check(MatRestoreRow(a, i, &n_entries, &columns, &entries), making);
   }
   if (!sharing) return own;
   std::vector<char> result(dim * sharing->global.size());
@@ -107,6 +111,19 @@ bool is(PC pc, PCType type)
   return result == PETSC_TRUE;
 }
 
+/// Products with an interpolation by aggregation and with its transpose are in single precision from now on.
+void transfer_in_single(PC pc, PetscInt level, Mat interpolation)
+{
+  Mat restriction = nullptr;
+  check(PCMGGetRestriction(pc, level, &restriction), making);
+  if (restriction != interpolation) return;  // done before
+  check(MatTranspose(interpolation, MAT_INITIAL_MATRIX, &restriction), making);
+  const MatHandle owned(restriction);
+  check(PCMGSetRestriction(pc, level, restriction), making);
+  detail::multiply_in_single(restriction);
+  detail::interpolate_in_single(interpolation);
+}
+
 /// The levels of smoothed aggregation below the finest: see Multigrid::settle().
 void settle_aggregation(PC pc, Mat changing)
 {
@@ -122,6 +139,7 @@ void settle_aggregation(PC pc, Mat changing)
     check(PCMGGetInterpolation(pc, level + 1, &interpolation), making);
     if (changing) changing = detail::renew_by_change(matrix, interpolation, changing);
     detail::multiply_in_single(matrix);
+    transfer_in_single(pc, level + 1, interpolation);
   }
 }
 

@@ -17,7 +17,7 @@ namespace tribound::algebra
 /// V-cycles over a hierarchy of spaces. A step smooths by two Chebyshev iterations with the diagonal before
 /// and after, and leads to the matrix P^T A P of the coarser space, P the inclusion. On the coarsest space
 /// stands a factorisation where it is small, otherwise smoothed aggregation with rigid body modes (PETSc's
-/// GAMG): all there is if the hierarchy has no steps. Degrees of freedom whose row has the diagonal only,
+/// GAMG): all there is if the hierarchy has no steps. Degrees of freedom whose row is 0 beside the diagonal,
 /// those that Gamma_D fixes, stay decoupled on all levels.
 class Multigrid
 {

@@ -97,6 +97,7 @@ class SparseMatrix
   int block_size_ = 1;
   Sharing sharing_;
   bool has_more_ = false;  ///< a sum whose second pattern is not within the first
+  SparseRows rows_;        ///< the memory of mat_ where it was made of rows on one rank
   MatHandle mat_;
 };
 

@@ -1,6 +1,8 @@
 #include "tribound/algebra/single_product.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -30,50 +32,55 @@ struct Rows
 {
   explicit Rows(Mat a)
   {
-    check(MatGetSize(a, &n, nullptr), making);
+    check(MatGetSize(a, &n, &n_columns), making);
     check(MatSeqAIJGetCSRAndMemType(a, &begin, &columns, &entries, nullptr), making);
   }
 
   PetscInt n = 0;
+  PetscInt n_columns = 0;
   const PetscInt* begin = nullptr;
   const PetscInt* columns = nullptr;
   PetscScalar* entries = nullptr;
 };
 
-/// A / scale in blocks of floats, block row by block row.
+/// A / scale in blocks of floats, block row by block row, column by column in a block.
 class SingleBlocks
 {
  public:
   explicit SingleBlocks(Mat a)
   {
-    PetscInt size = 1;
-    check(MatGetBlockSize(a, &size), making);
-    width_ = size % 3 == 0 ? 3 : size % 2 == 0 ? 2 : 1;
+    PetscInt rows = 1;
+    PetscInt columns = 1;
+    check(MatGetBlockSizes(a, &rows, &columns), making);
+    height_ = divisor(rows);
+    width_ = divisor(columns);
   }
 
   /// The matrix has changed.
   void set_stale() { is_stale_ = true; }
 
-  /// y = A x.
-  void multiply(Mat a, std::span<const double> x, std::span<double> y)
+  /// y = A x, or z + A x if there is a z, which may be y.
+  void multiply(Mat a, std::span<const double> x, std::span<const double> z, std::span<double> y)
   {
     update(a);
-    double largest = 0;
-    for (const double value : x) largest = std::max(largest, std::abs(value));
+    const double largest = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()))
+                               .lpNorm<Eigen::Infinity>();
     const double inverse = inverse_of(largest);
     std::ranges::transform(x, x_.begin(), [=](double value) { return static_cast<float>(inverse * value); });
     switch (width_)
     {
       case 3:
-        return multiply_blocks<3>(scale_ * largest, y);
+        return multiply_blocks<3>(scale_ * largest, z, y);
       case 2:
-        return multiply_blocks<2>(scale_ * largest, y);
+        return multiply_blocks<2>(scale_ * largest, z, y);
       default:
-        return multiply_blocks<1>(scale_ * largest, y);
+        return multiply_blocks<1>(scale_ * largest, z, y);
     }
   }
 
  private:
+  static int divisor(PetscInt size) { return size % 3 == 0 ? 3 : size % 2 == 0 ? 2 : 1; }
+
   void update(Mat a)
   {
     if (!is_stale_) return;
@@ -89,14 +96,14 @@ class SingleBlocks
   /// The blocks with an entry.
   void find_blocks(const Rows& rows)
   {
-    const PetscInt n = rows.n / width_;
+    const PetscInt n = rows.n / height_;
     begin_.assign(1, 0);
     columns_.clear();
-    x_.resize(rows.n);
-    std::vector<PetscInt> seen(n, -1);
+    x_.resize(rows.n_columns);
+    std::vector<PetscInt> seen(rows.n_columns / width_, -1);
     for (PetscInt i = 0; i < n; ++i)
     {
-      for (PetscInt k = rows.begin[i * width_]; k < rows.begin[(i + 1) * width_]; ++k)
+      for (PetscInt k = rows.begin[i * height_]; k < rows.begin[(i + 1) * height_]; ++k)
       {
         const PetscInt j = rows.columns[k] / width_;
         if (seen[j] != i) columns_.push_back(j);
@@ -105,58 +112,65 @@ class SingleBlocks
       std::sort(columns_.begin() + begin_.back(), columns_.end());
       begin_.push_back(static_cast<PetscInt>(columns_.size()));
     }
+    place_.resize(rows.n_columns / width_);
   }
 
   void fill(const Rows& rows)
   {
-    scale_ = 0;
-    for (PetscInt k = 0; k < rows.begin[rows.n]; ++k) scale_ = std::max(scale_, std::abs(rows.entries[k]));
+    scale_ = Eigen::Map<const Eigen::VectorXd>(rows.entries, rows.begin[rows.n]).lpNorm<Eigen::Infinity>();
     const double inverse = inverse_of(scale_);
-    const std::size_t block = std::size_t(width_) * width_;
-    entries_.assign(block * columns_.size(), 0.0F);
-    std::vector<PetscInt> place(begin_.size() - 1);  // of the block, by its column
+    const std::size_t block = std::size_t(height_) * width_;
+    entries_.assign(block * columns_.size() + Lanes::SizeAtCompileTime, 0.0F);
     for (std::size_t i = 0; i + 1 < begin_.size(); ++i)
     {
-      for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k) place[columns_[k]] = k;
-      for (int r = 0; r < width_; ++r)
-        for (PetscInt k = rows.begin[i * width_ + r]; k < rows.begin[i * width_ + r + 1]; ++k)
+      for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k) place_[columns_[k]] = k;
+      for (int r = 0; r < height_; ++r)
+        for (PetscInt k = rows.begin[i * height_ + r]; k < rows.begin[i * height_ + r + 1]; ++k)
         {
           const PetscInt column = rows.columns[k];
-          entries_[block * place[column / width_] + r * width_ + column % width_] =
+          entries_[block * place_[column / width_] + column % width_ * height_ + r] =
               static_cast<float>(inverse * rows.entries[k]);
         }
     }
   }
 
   template <int width>
-  void multiply_blocks(double factor, std::span<double> y) const
+  void multiply_blocks(double factor, std::span<const double> z, std::span<double> y) const
   {
     constexpr PetscInt worth_threads = 5'000;
     const auto n = static_cast<PetscInt>(begin_.size()) - 1;
     const int n_threads = n < worth_threads ? 1 : max_threads();
+    const std::size_t height = height_;
 #pragma omp parallel for schedule(static) num_threads(n_threads)
     for (PetscInt i = 0; i < n; ++i)
     {
-      float sum[width] = {};
+      std::array<Lanes, width> sums;  // one for each column: an addition need not wait for that before
+      sums.fill(Lanes::Zero());
       for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k)
       {
-        const float* block = entries_.data() + std::size_t(width * width) * k;
+        const float* block = entries_.data() + height * width * k;
         const float* x = x_.data() + std::size_t(width) * columns_[k];
-        for (int r = 0; r < width; ++r)
-          for (int c = 0; c < width; ++c) sum[r] += block[r * width + c] * x[c];
+        for (int c = 0; c < width; ++c) sums[c] += x[c] * Eigen::Map<const Lanes>(block + height * c);
       }
-      for (int r = 0; r < width; ++r) y[std::size_t(width) * i + r] = factor * sum[r];
+      for (int c = 1; c < width; ++c) sums[0] += sums[c];
+      for (std::size_t r = height * i; r < height * (i + 1); ++r)
+        y[r] = (z.empty() ? 0 : z[r]) + factor * sums[0][static_cast<int>(r - height * i)];
     }
   }
 
+  /// A column of a block, and what follows it in memory.
+  using Lanes = Eigen::Vector4f;
+
+  int height_ = 1;  ///< of a block
   int width_ = 1;
   double scale_ = 1;
   bool is_stale_ = true;
   PetscObjectState pattern_ = -1;  ///< of the matrix whose blocks these are
   std::vector<PetscInt> begin_;    ///< per block row
   std::vector<PetscInt> columns_;  ///< per block
-  std::vector<float> entries_;
-  std::vector<float> x_;  ///< working space
+  std::vector<float> entries_;     ///< and room behind them for Lanes
+  std::vector<float> x_;           ///< working space
+  std::vector<PetscInt> place_;    ///< working space: of a block of the row, by its column
 };
 
 /// Those kept with the matrix.
@@ -166,19 +180,24 @@ SingleBlocks& blocks_of(Mat a)
   return attach(a, key, std::make_unique<SingleBlocks>(a));
 }
 
-PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
+/// y = A x, or z + A x.
+PetscErrorCode multiply_and_add_single(Mat a, Vec x, Vec z, Vec y)
 {
   PetscFunctionBegin;
   PetscInt n = 0;
+  PetscInt n_columns = 0;
   const PetscScalar* in = nullptr;
+  const PetscScalar* added = nullptr;
   PetscScalar* out = nullptr;
-  PetscCall(MatGetSize(a, &n, nullptr));
+  PetscCall(MatGetSize(a, &n, &n_columns));
   PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArrayWrite(y, &out));
+  if (z && z != y) PetscCall(VecGetArrayRead(z, &added));
+  PetscCall(VecGetArray(y, &out));
   PetscErrorCode error = 0;  // no exception may pass through PETSc
   try
   {
-    blocks_of(a).multiply(a, std::span(in, n), std::span(out, n));
+    const PetscScalar* begin = z == y ? out : added;
+    blocks_of(a).multiply(a, std::span(in, n_columns), std::span(begin, begin ? n : 0), std::span(out, n));
   }
   catch (const std::bad_alloc&)
   {
@@ -188,9 +207,15 @@ PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
   {
     error = PETSC_ERR_LIB;
   }
-  PetscCall(VecRestoreArrayWrite(y, &out));
+  PetscCall(VecRestoreArray(y, &out));
+  if (added) PetscCall(VecRestoreArrayRead(z, &added));
   PetscCall(VecRestoreArrayRead(x, &in));
   PetscFunctionReturn(error);
+}
+
+PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
+{
+  return multiply_and_add_single(a, x, nullptr, y);
 }
 
 /// The product that a matrix had, or that of its own columns where others are with other processes.
@@ -228,6 +253,13 @@ void multiply_in_single(Mat a)
   const Mat own = local_blocks(a).own;
   blocks_of(own).set_stale();
   check(MatSetOperation(own, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_single)), making);
+}
+
+void interpolate_in_single(Mat p)
+{
+  const Mat own = local_blocks(p).own;
+  blocks_of(own).set_stale();
+  check(MatSetOperation(own, MATOP_MULT_ADD, reinterpret_cast<void (*)()>(multiply_and_add_single)), making);
 }
 
 SingleProduct::SingleProduct(Mat a) : own_(local_blocks(a).own)

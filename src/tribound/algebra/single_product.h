@@ -13,6 +13,9 @@ namespace tribound::algebra::detail
 /// units; on several ranks the columns of own unknowns are. To be called again when the matrix has changed.
 void multiply_in_single(Mat a);
 
+/// The same for MatMultAdd(), which multigrid calls with interpolations.
+void interpolate_in_single(Mat p);
+
 /// The same for one that is needed exactly as well, while this is alive.
 class SingleProduct
 {

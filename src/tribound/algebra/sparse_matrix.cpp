@@ -103,9 +103,9 @@ SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries, Sharing sh
 SparseMatrix::SparseMatrix(int block_size, SparseRows rows, Sharing sharing)
     : size_(static_cast<Index>(rows.begin.size()) - 1), block_size_(block_size), sharing_(std::move(sharing))
 {
-  create();
   if (sharing_)
   {
+    create();
     size_ = static_cast<Index>(sharing_->global.size()) * block_size;
     for (int& column : rows.columns) column = detail::global_unknown(*sharing_, block_size_, column);
     check(
@@ -113,9 +113,15 @@ SparseMatrix::SparseMatrix(int block_size, SparseRows rows, Sharing sharing)
         "assembling a matrix");
   }
   else
-    check(
-        MatSeqAIJSetPreallocationCSR(mat_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()),
-        "assembling a matrix");
+  {
+    rows_ = std::move(rows);
+    Mat mat = nullptr;
+    check(MatCreateSeqAIJWithArrays(detail::communicator(), size_, size_, rows_.begin.data(),
+                                    rows_.columns.data(), rows_.values.data(), &mat),
+          "creating a matrix");
+    mat_.reset(mat);
+    check(MatSetBlockSize(mat, block_size_), "creating a matrix");
+  }
   settle();
 }
 

@@ -243,8 +243,12 @@ void Newton<dim>::step(contact::Linearisation kind)
   const bool first = report_.step == 1;
   linearised_ = {kind, u_, delta_};
   std::vector<double> target_u = u_;
-  equilibrium_->displace_contact(x_, target_u);
-  const std::vector<double> rhs = equilibrium_->residual(internal_, linearised_.traction(form_, target_u));
+  std::vector<double> rhs = residual_;  // T_lin = T where it is linearised
+  if (first)
+  {
+    equilibrium_->displace_contact(x_, target_u);
+    rhs = equilibrium_->residual(internal_, linearised_.traction(form_, target_u));
+  }
   const double tight = tight_target(rhs);
   const double target = std::max(tight, forcing_term() * equilibrium_->norm(rhs));
   norm_before_ = residual_norm_;

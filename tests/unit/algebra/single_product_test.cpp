@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -85,6 +86,58 @@ TEST(SingleProduct, FollowsTheMatrix)
   algebra::detail::multiply_in_single(a.handle());
   const std::vector<double> y = multiply(entries, x);
   EXPECT_LE(distance(product(a.handle(), x), y), 3e-7 * norm(y));
+}
+
+/// A matrix of n x m entries in blocks, a third of which are empty.
+algebra::MatHandle scattered_blocks(int n, int m, std::array<int, 2> block, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> value(-1, 1);
+  std::bernoulli_distribution is_empty(1. / 3);
+  algebra::Triplets entries;
+  for (int i = 0; i < n; i += block[0])
+    for (int j = 0; j < m; j += block[1])
+      if (!is_empty(random))
+        for (int k = 0; k < block[0] * block[1]; ++k)
+          entries.add(i + k / block[1], j + k % block[1], value(random));
+  Mat mat = nullptr;
+  EXPECT_EQ(MatCreate(algebra::detail::communicator(), &mat), 0);
+  EXPECT_EQ(MatSetSizes(mat, n, m, n, m), 0);
+  EXPECT_EQ(MatSetType(mat, MATSEQAIJ), 0);
+  EXPECT_EQ(MatSetBlockSizes(mat, block[0], block[1]), 0);
+  const auto n_entries = static_cast<PetscCount>(entries.rows.size());
+  EXPECT_EQ(MatSetPreallocationCOO(mat, n_entries, entries.rows.data(), entries.cols.data()), 0);
+  EXPECT_EQ(MatSetValuesCOO(mat, entries.values.data(), INSERT_VALUES), 0);
+  return algebra::MatHandle(mat);
+}
+
+/// Interpolations by aggregation have blocks of the components of a node and the modes of an aggregate.
+TEST(SingleProduct, InterpolatesAndAdds)
+{
+  using algebra::detail::wrap;
+  const int n = 60;
+  for (const std::array<int, 2> block : {std::array{3, 6}, {2, 3}, {6, 6}, {3, 2}, {1, 3}, {5, 1}})
+  {
+    SCOPED_TRACE(testing::Message() << block[0] << " x " << block[1]);
+    const int m = 12;
+    const algebra::MatHandle p = scattered_blocks(n, m, block, block[1]);
+    const std::vector<double> x = random_vector(m, 1e3, 1);
+    const std::vector<double> z = random_vector(n, 1e3, 2);
+    const auto added = [&](std::vector<double> to, bool in_place)
+    {
+      std::vector<double> y = to;
+      const auto result = wrap(std::span(y));
+      const auto before = wrap(std::span<const double>(to));
+      EXPECT_EQ(MatMultAdd(p.get(), wrap(x).get(), in_place ? result.get() : before.get(), result.get()), 0);
+      return y;
+    };
+    const std::vector<double> exact = added(z, false);
+    const std::vector<double> product_alone = added(std::vector<double>(n, 0.0), false);
+    algebra::detail::interpolate_in_single(p.get());
+    EXPECT_LE(distance(added(z, false), exact), 3e-7 * norm(product_alone));
+    EXPECT_GT(distance(added(z, false), exact), 0.0);
+    EXPECT_EQ(added(z, true), added(z, false));
+  }
 }
 
 TEST(SingleProduct, WhatIsNoNumberStaysNone)

@@ -27,7 +27,8 @@ template <int dim>
 }
 
 /// a(phi_j, phi_i) over free i and j. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal
-/// alone, which decouples it without spoiling the scaling. On several ranks the rows of the own nodes.
+/// alone, which decouples it without spoiling the scaling; where the node has free components the rest of the
+/// row is there and 0, so that nodes are coupled by whole blocks. On several ranks the rows of the own nodes.
 template <int dim>
 [[nodiscard]] algebra::SparseRows stiffness(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space,
