@@ -1,4 +1,5 @@
-/// Reading, verifying, sorting and bisecting meshes of a million triangles and of half a million tetrahedra.
+/// Reading, verifying, sorting and bisecting meshes of a million triangles and of half a million tetrahedra;
+/// overlays of boundaries.
 
 #include <benchmark/benchmark.h>
 #include <gmsh.h>
@@ -6,7 +7,11 @@
 #include <array>
 #include <filesystem>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "tribound/contact/pairing/pairing.h"
 #include "tribound/mesh/bisect.h"
 #include "tribound/mesh/box.h"
 #include "tribound/mesh/gmsh.h"
@@ -68,6 +73,28 @@ void bisection(benchmark::State& state)
   state.counters["bisected"] = n_cells;
 }
 
+/// The overlay of two sides of a flat box whose 2 n^2 facets do not match. Argument: n.
+void overlay(benchmark::State& state)
+{
+  const auto n = static_cast<int>(state.range(0));
+  mesh::MeshData<3> data = mesh::box_mesh<3>({{0, 0, 0}, {1, 1, 1}, {n, 1, n}, {}});
+  for (Point<3>& x : data.vertices)
+    if (x[1] > 0)
+      for (const int i : {0, 2}) x[i] += 0.4 * x[i] * (1 - x[i]);
+  const mesh::Mesh<3> mesh(std::move(data));
+  std::vector<std::size_t> bottom;
+  std::vector<std::size_t> top;
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    const std::string& name = mesh.boundary_names()[mesh.boundary()[k].tag];
+    if (name == "bottom") bottom.push_back(k);
+    if (name == "top") top.push_back(k);
+  }
+  std::size_t n_segments = 0;
+  for (auto _ : state) n_segments = contact::overlay<3>(mesh, bottom, top).size();
+  state.counters["segments"] = static_cast<double>(n_segments);
+}
+
 /// The large box as Gmsh would save it, with irregular coordinates so that ASCII files have all digits.
 std::filesystem::path write_large_file(double version, bool binary)
 {
@@ -120,6 +147,7 @@ BENCHMARK(bisection<3>)
     ->ArgNames({"times", "again"})
     ->ArgsProduct({{1, 3}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(overlay)->RangeMultiplier(2)->Range(32, 256)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_file)
     ->ArgNames({"version", "binary"})
     ->ArgsProduct({{22, 41}, {0, 1}})

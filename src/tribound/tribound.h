@@ -19,6 +19,7 @@
 // The mesh.
 #include "tribound/mesh/bisect.h"
 #include "tribound/mesh/box.h"
+#include "tribound/mesh/box_tree.h"
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
@@ -33,6 +34,7 @@
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/nitsche/segment_values.h"
+#include "tribound/contact/pairing/pairing.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/bernstein.h"
 #include "tribound/fem/degree.h"

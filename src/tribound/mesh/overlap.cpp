@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/mesh/box_tree.h"
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/verify.h"
@@ -62,76 +63,13 @@ std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topol
   return outer;
 }
 
-/// A binary tree of boxes: O(n log n) to build, a visit goes into the boxes that it accepts.
 template <int dim>
-class BoxTree
+BoxTree<dim> tree_of(std::span<const OuterFacet<dim>> facets)
 {
- public:
-  explicit BoxTree(std::span<const OuterFacet<dim>> facets) : facets_(facets), order_(facets.size())
-  {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    build(0, order_.size());
-  }
-
-  /// Calls visit(f) for every facet in boxes that all satisfy accept(box).
-  template <class Accept, class Visit>
-  void traverse(const Accept& accept, const Visit& visit) const
-  {
-    std::vector<std::size_t> open = {0};
-    while (!open.empty())
-    {
-      const Node& node = nodes_[open.back()];
-      const std::size_t number = open.back();
-      open.pop_back();
-      if (!accept(node.box)) continue;
-      if (node.second == 0)
-        for (std::size_t k = node.begin; k < node.end; ++k) visit(order_[k]);
-      else
-      {
-        open.push_back(number + 1);
-        open.push_back(node.second);
-      }
-    }
-  }
-
- private:
-  struct Node
-  {
-    BoundingBox<dim> box;
-    std::size_t begin;
-    std::size_t end;
-    std::size_t second;  ///< the first child is the next node; 0 for a leaf
-  };
-  static constexpr std::size_t leaf_size = 8;
-
-  std::size_t build(std::size_t begin, std::size_t end)
-  {
-    const std::size_t number = nodes_.size();
-    Node& node = nodes_.emplace_back(Node{{}, begin, end, 0});
-    for (std::size_t k = begin; k < end; ++k)
-    {
-      node.box.add(facets_[order_[k]].box.lower);
-      node.box.add(facets_[order_[k]].box.upper);
-    }
-    if (end - begin <= leaf_size) return number;
-    int axis = 0;
-    (node.box.upper - node.box.lower).maxCoeff(&axis);
-    const auto centre = [&](std::size_t f)
-    { return facets_[f].box.lower[axis] + facets_[f].box.upper[axis]; };
-    const std::size_t middle = (begin + end) / 2;
-    const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
-    std::nth_element(at(begin), at(middle), at(end),
-                     [&](std::size_t a, std::size_t b) { return centre(a) < centre(b); });
-    build(begin, middle);
-    const std::size_t second = build(middle, end);
-    nodes_[number].second = second;
-    return number;
-  }
-
-  std::span<const OuterFacet<dim>> facets_;
-  std::vector<std::size_t> order_;
-  std::vector<Node> nodes_;
-};
+  std::vector<BoundingBox<dim>> boxes;
+  for (const OuterFacet<dim>& facet : facets) boxes.push_back(facet.box);
+  return BoxTree<dim>(boxes);
+}
 
 /// Barycentric coordinates in the facet of a point of its plane.
 template <int dim>
@@ -221,15 +159,7 @@ std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<
   for (const Point<dim>& x : facets[start].points) from += x / dim;
   const auto meets = [&](const BoundingBox<dim>& box)
   {
-    double first = 0;
-    double last = HUGE_VAL;
-    for (int i = 0; i < dim; ++i)
-    {
-      const double a = (box.lower[i] - from[i]) / direction[i];
-      const double b = (box.upper[i] - from[i]) / direction[i];
-      first = std::max(first, std::min(a, b));
-      last = std::min(last, std::max(a, b));
-    }
+    const auto [first, last] = part_in_box(box, from, direction, {0, HUGE_VAL});
     return first <= last * (1 + coincidence);
   };
   int sum = 0;
@@ -301,7 +231,7 @@ template <int dim>
 void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology)
 {
   const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
-  const BoxTree<dim> tree(facets);
+  const BoxTree<dim> tree = tree_of<dim>(facets);
   check_crossings<dim>(data, facets, tree);
   check_covers<dim>(data, facets, tree);
 }

@@ -1,0 +1,257 @@
+#include "tribound/contact/pairing/pairing.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "tribound/base/error.h"
+#include "tribound/contact/pairing/polygon.h"
+#include "tribound/mesh/box_tree.h"
+#include "tribound/mesh/describe.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound::contact
+{
+
+namespace
+{
+
+constexpr double facing = 0.1;     ///< least cosine of an angle between e and n_F, e and -n_G, n_F and -n_G
+constexpr double snapped = 1e-12;  ///< of an edge, in barycentric coordinates: on it
+constexpr double negligible = 1e-14;    ///< of the slave facet
+constexpr double overlapping = 1e-9;    ///< of the slave facet: more than rounding
+constexpr double same_distance = 1e-9;  ///< of the diameter of the slave facet
+
+/// A facet as Pi needs it.
+template <int dim>
+struct Side
+{
+  Side(const mesh::Mesh<dim>& mesh, std::size_t which) : number(which)
+  {
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    map = mesh::facet_map(mesh, facet.cell, facet.local);
+    geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
+    for (const Point<dim - 1>& corner : fem::reference_simplex<dim - 1>()) box.add(map(corner));
+  }
+
+  [[nodiscard]] Point<dim> centre() const { return map(Point<dim - 1>::Constant(1.0 / dim)); }
+
+  std::size_t number;
+  mesh::FacetMap<dim> map;
+  mesh::FacetGeometry<dim> geometry;
+  mesh::BoundingBox<dim> box;
+};
+
+/// What a slave facet has in common with a master facet.
+template <int dim>
+struct Candidate
+{
+  std::size_t master;  ///< number of the facet
+  Polygon<dim> polygon;
+  double distance;       ///< l at s = 0
+  Point<dim - 1> slope;  ///< its gradient in s
+  double nearness = 0;   ///< |l| at the centroid
+
+  [[nodiscard]] double distance_at(const Point<dim - 1>& s) const
+  {
+    return std::abs(distance + slope.dot(s));
+  }
+};
+
+/// The overlay of one slave facet.
+template <int dim>
+class SlaveFacet
+{
+ public:
+  SlaveFacet(const Side<dim>& slave, const Pairing<dim>& pairing) : slave_(slave), reach_(pairing.reach)
+  {
+    e_ = pairing.direction ? pairing.direction->normalized() : slave.geometry.normal;
+    if (!(e_.dot(slave.geometry.normal) > facing))
+      throw InputError({},
+                       fmt::format("the direction of a pairing does not point out of the slave at {}",
+                                   mesh::describe(slave.centre())),
+                       "a direction within 84 degrees of every outward normal of the slave");
+    Tensor<dim> frame;
+    frame.template leftCols<dim - 1>() = slave.map.jacobian;
+    frame.col(dim - 1) = e_;
+    to_frame_ = frame.inverse();
+  }
+
+  /// e.
+  [[nodiscard]] const Point<dim>& direction() const { return e_; }
+
+  /// What lies on the side of the master that faces the slave, and below it.
+  void add(const Side<dim>& master)
+  {
+    if (master.geometry.normal.dot(slave_.geometry.normal) >= -facing ||
+        master.geometry.normal.dot(e_) >= -facing)
+      return;
+    Candidate<dim> found{.master = master.number, .polygon = {}, .distance = 0, .slope = {}};
+    std::array<double, dim> distances;
+    const auto corners = fem::reference_simplex<dim - 1>();
+    for (int i = 0; i < dim; ++i)
+    {
+      const Point<dim> seen = to_frame_ * (master.map(corners[i]) - slave_.map.origin);
+      found.polygon.push_back({seen.template head<dim - 1>(), corners[i]});
+      distances[i] = seen[dim - 1];
+    }
+    set_distance(found, distances);
+    clip_to_slave(found.polygon);
+    if (fraction<dim>(found.polygon) <= negligible) return;
+    found.nearness = found.distance_at(centroid<dim>(found.polygon));
+    if (found.nearness <= reach_) candidates_.push_back(std::move(found));
+  }
+
+  /// The parts with one partner each, the nearest.
+  void append_pairs(std::vector<FacetPair<dim>>& pairs)
+  {
+    const auto nearer = [](const Candidate<dim>& a, const Candidate<dim>& b)
+    { return std::pair(a.nearness, a.master) < std::pair(b.nearness, b.master); };
+    std::ranges::sort(candidates_, nearer);
+    std::vector<Candidate<dim>> taken;
+    for (const Candidate<dim>& candidate : candidates_)
+    {
+      std::vector<Polygon<dim>> rest = {candidate.polygon};
+      for (const Candidate<dim>& before : taken) rest = without(candidate, rest, before);
+      for (Polygon<dim>& polygon : rest)
+      {
+        taken.push_back(candidate);
+        taken.back().polygon = std::move(polygon);
+      }
+    }
+    std::ranges::stable_sort(taken, {}, &Candidate<dim>::master);
+    for (const Candidate<dim>& part : taken)
+      for_each_simplex<dim>(part.polygon,
+                            [&](const auto& on_slave, const auto& on_master)
+                            {
+                              if (fem::fraction<dim - 1>(on_slave) > negligible)
+                                pairs.push_back({{slave_.number, on_slave}, {part.master, on_master}});
+                            });
+  }
+
+ private:
+  /// l is affine on the plane of the slave facet: from its values where the corners of the master lie.
+  static void set_distance(Candidate<dim>& found, const std::array<double, dim>& distances)
+  {
+    Eigen::Matrix<double, dim - 1, dim - 1> edges;
+    Point<dim - 1> differences;
+    for (int i = 1; i < dim; ++i)
+    {
+      edges.row(i - 1) = (found.polygon[i].slave - found.polygon[0].slave).transpose();
+      differences[i - 1] = distances[i] - distances[0];
+    }
+    found.slope = edges.inverse() * differences;
+    found.distance = distances[0] - found.slope.dot(found.polygon[0].slave);
+  }
+
+  static void clip_to_slave(Polygon<dim>& polygon)
+  {
+    for (int i = 0; i < dim - 1; ++i)
+      polygon = clip<dim>(
+          polygon, [i](const CornerPair<dim>& x) { return x.slave[i]; }, snapped);
+    polygon = clip<dim>(
+        polygon, [](const CornerPair<dim>& x) { return 1 - x.slave.sum(); }, snapped);
+  }
+
+  /// What is left of a candidate's polygons where a nearer one lies before it.
+  [[nodiscard]] std::vector<Polygon<dim>> without(const Candidate<dim>& candidate,
+                                                  const std::vector<Polygon<dim>>& polygons,
+                                                  const Candidate<dim>& before) const
+  {
+    std::vector<Polygon<dim>> rest;
+    for (const Polygon<dim>& polygon : polygons)
+    {
+      std::vector<Polygon<dim>> outside;
+      Polygon<dim> common = polygon;
+      for_each_side<dim>(before.polygon,
+                         [&](const auto& side)
+                         {
+                           const auto opposite = [&](const CornerPair<dim>& x) { return -side(x); };
+                           outside.push_back(clip<dim>(common, opposite, snapped));
+                           common = clip<dim>(common, side, snapped);
+                         });
+      if (fraction<dim>(common) <= overlapping)
+      {
+        rest.push_back(polygon);
+        continue;
+      }
+      check_nearer(before, candidate, common);
+      for (Polygon<dim>& piece : outside)
+        if (fraction<dim>(piece) > overlapping) rest.push_back(std::move(piece));
+    }
+    return rest;
+  }
+
+  void check_nearer(const Candidate<dim>& near, const Candidate<dim>& far, const Polygon<dim>& common) const
+  {
+    const double size = same_distance * slave_.geometry.diameter;
+    const Point<dim - 1> centre = centroid<dim>(common);
+    const auto lead = [&](const Point<dim - 1>& s) { return far.distance_at(s) - near.distance_at(s); };
+    const bool is_nearer =
+        lead(centre) > size && std::ranges::all_of(common, [&](const CornerPair<dim>& corner)
+                                                   { return lead(corner.slave) >= -size; });
+    if (!is_nearer)
+      throw InputError(
+          {},
+          fmt::format("the pairing is ambiguous: opposite {} two facets of the master lie {:.6g} and "
+                      "{:.6g} away, and neither is the nearer throughout",
+                      mesh::describe(slave_.map(centre)), near.distance_at(centre), far.distance_at(centre)),
+          "a reach that leaves out one of them, or a master without one of them");
+  }
+
+  const Side<dim>& slave_;
+  double reach_;
+  Point<dim> e_;
+  Tensor<dim> to_frame_;  ///< of x - x_0: s on the plane of the facet, and l
+  std::vector<Candidate<dim>> candidates_;
+};
+
+}  // namespace
+
+template <int dim>
+std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh, std::span<const std::size_t> slave,
+                                    std::span<const std::size_t> master, const Pairing<dim>& pairing)
+{
+  std::vector<Side<dim>> masters;
+  std::vector<mesh::BoundingBox<dim>> boxes;
+  mesh::BoundingBox<dim> around;
+  for (const std::size_t number : master)
+  {
+    boxes.push_back(masters.emplace_back(mesh, number).box);
+    around.add(boxes.back().lower);
+    around.add(boxes.back().upper);
+  }
+  const mesh::BoxTree<dim> tree(boxes);
+  std::vector<FacetPair<dim>> pairs;
+  for (const std::size_t number : slave)
+  {
+    const Side<dim> side(mesh, number);
+    SlaveFacet<dim> facet(side, pairing);
+    // Whatever lies opposite a point of the facet is within its diameter of the line through its centre.
+    const double radius = side.geometry.diameter;
+    const double steepest = radius / facing;  // by which l changes on a facet
+    const double farthest = std::min(pairing.reach + steepest, (around.upper - around.lower).norm() +
+                                                                   (side.centre() - around.lower).norm());
+    const auto accept = [&](const mesh::BoundingBox<dim>& box)
+    {
+      const mesh::BoundingBox<dim> wider{box.lower.array() - radius, box.upper.array() + radius};
+      const auto [first, last] =
+          mesh::part_in_box<dim>(wider, side.centre(), facet.direction(), {-farthest, farthest});
+      return first <= last;
+    };
+    tree.traverse(accept, [&](std::size_t k) { facet.add(masters[k]); });
+    facet.append_pairs(pairs);
+  }
+  return pairs;
+}
+
+template std::vector<FacetPair<2>> overlay(const mesh::Mesh<2>&, std::span<const std::size_t>,
+                                           std::span<const std::size_t>, const Pairing<2>&);
+template std::vector<FacetPair<3>> overlay(const mesh::Mesh<3>&, std::span<const std::size_t>,
+                                           std::span<const std::size_t>, const Pairing<3>&);
+
+}  // namespace tribound::contact
