@@ -329,6 +329,25 @@ TYPED_TEST(PairingTest, DirectionsPointOutOfTheSlave)
   }
 }
 
+/// A plane that faces the slave and turns its back on the direction.
+TYPED_TEST(PairingTest, PartnersFaceTheDirection)
+{
+  constexpr int dim = TypeParam::value;
+  const auto incline = [](const Point<dim>& x) -> Point<dim>
+  {
+    Point<dim> y = x;
+    if (x[1] < 0) y[1] -= 2 * x[0];
+    return y;
+  };
+  const mesh::Mesh<dim> mesh(mapped(two_slabs<dim>(cubes<dim>(2), cubes<dim>(3), 0, 1), incline));
+  Point<dim> e = Point<dim>::Zero();
+  e[0] = 1;
+  e[1] = -0.2;
+  EXPECT_TRUE(overlay<dim>(mesh, {"top_below"}, {.direction = e}).empty());
+  e[0] = -1;
+  EXPECT_FALSE(overlay<dim>(mesh, {"top_below"}, {.direction = e}).empty());
+}
+
 /// Numbers of segments of the independent prototype.
 TEST(Pairing, HasAsManySegmentsAsThePrototype)
 {
