@@ -45,7 +45,10 @@ bool detail::factorise_cholesky(const SparseMatrix& a, Mat factors)
   check(MatCholeskyFactorSymbolic(factors, a.handle(), nullptr, &info), "ordering a matrix");
   if (!succeeded(factors)) return false;
   check(MatCholeskyFactorNumeric(factors, a.handle(), &info), "factorising");
-  return succeeded(factors);
+  if (!succeeded(factors)) return false;
+  PetscInt negative = 0;
+  check(MatMumpsGetInfog(factors, 12, &negative), "counting pivots");
+  return negative == 0;
 }
 
 SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
@@ -53,10 +56,6 @@ SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
   const detail::Options options(false, a.sharing());
   factors_ = detail::start_cholesky(a, dim);
   if (!detail::factorise_cholesky(a, factors_.get())) return;
-
-  PetscInt negative = 0;
-  check(MatMumpsGetInfog(factors_.get(), 12, &negative), "counting pivots");
-  if (negative > 0) return;
   // A pivot that is no number counts as none of them; it spoils every solution.
   const std::vector<double> ones(a.size(), 1.0);
   std::vector<double> x(a.size());

@@ -15,7 +15,6 @@ namespace tribound::algebra
 {
 
 using detail::check;
-using detail::wrap;
 
 namespace
 {
@@ -117,9 +116,6 @@ void Condensation::factorise(const SparseMatrix& k, int dim)
   ISDestroy(&rows);
   check(error, "factorising");
   if (!detail::factorise_cholesky(k, factors_.get())) throw SolveError(not_positive);
-  PetscInt negative = 0;
-  check(MatMumpsGetInfog(factors_.get(), 12, &negative), "counting pivots");
-  if (negative > 0) throw SolveError(not_positive);
   check(MatMumpsSetIcntl(factors_.get(), 26, 0), "factorising");  // solves with the rest alone
 }
 
@@ -148,17 +144,9 @@ std::vector<double> Condensation::by_first(const Work& work) const
 std::vector<double> Condensation::solve_rest(std::span<const double> b) const
 {
   std::vector<double> x(b.size());
-  if (!sharing_)
-    check(MatSolve(factors_.get(), wrap(b).get(), wrap(std::span(x)).get()), "solving a linear system");
-  else
-  {
-    const MPI_Comm processes = detail::communicator(sharing_);
-    const std::vector<double> own_b = detail::owned_entries(*sharing_, block_size_, b);
-    std::vector<double> own_x(own_b.size());
-    check(MatSolve(factors_.get(), wrap(own_b, processes).get(), wrap(std::span(own_x), processes).get()),
-          "solving a linear system");
-    detail::put_owned_entries<double>(*sharing_, block_size_, own_x, x);
-  }
+  detail::on_owned_entries(sharing_, block_size_, b, x,
+                           [&](Vec own_b, Vec own_x)
+                           { check(MatSolve(factors_.get(), own_b, own_x), "solving a linear system"); });
   for (std::size_t i = 0; i < x.size(); ++i)
     if (position_[i] >= 0) x[i] = 0;
   return x;

@@ -13,7 +13,6 @@ namespace tribound::algebra
 {
 
 using detail::check;
-using detail::wrap;
 
 namespace
 {
@@ -244,15 +243,10 @@ int LinearSolver::patience(std::int64_t n) const
 LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b, double tolerance,
                                 std::span<double> x)
 {
-  if (!a.sharing()) return solve_owned(a, wrap(b).get(), tolerance, wrap(x).get());
-  const fem::NodeNumbers& nodes = *a.sharing();
-  const MPI_Comm processes = detail::communicator(a.sharing());
-  const std::vector<double> own_b = detail::owned_entries(nodes, a.block_size(), b);
-  std::vector<double> own_x(own_b.size(), 0.0);
-  const LinearSolve result =
-      solve_owned(a, wrap(own_b, processes).get(), tolerance, wrap(std::span(own_x), processes).get());
-  detail::put_owned_entries<double>(nodes, a.block_size(), own_x, x);
-  nodes.update(x, a.block_size());
+  LinearSolve result;
+  detail::on_owned_entries(a.sharing(), a.block_size(), b, x,
+                           [&](Vec own_b, Vec own_x) { result = solve_owned(a, own_b, tolerance, own_x); });
+  if (a.sharing()) a.sharing()->update(x, a.block_size());
   return result;
 }
 

@@ -54,6 +54,19 @@ void put_owned_entries(const fem::NodeNumbers& nodes, int block_size, std::span<
   for (const Index node : nodes.owned)
     for (int a = 0; a < block_size; ++a) values[block_size * node + a] = *next++;
 }
+/// Calls operation(x, y) with PETSc vectors of what this process owns of x and y, entries for all unknowns of
+/// its own: y is x's image, those of ghosts in y stay as they are.
+template <class Operation>
+void on_owned_entries(const Sharing& sharing, int block_size, std::span<const double> x, std::span<double> y,
+                      const Operation& operation)
+{
+  if (!sharing) return operation(wrap(x).get(), wrap(y).get());
+  const MPI_Comm processes = communicator(sharing);
+  const std::vector<double> own_x = owned_entries(*sharing, block_size, x);
+  std::vector<double> own_y(own_x.size());
+  operation(wrap(own_x, processes).get(), wrap(std::span(own_y), processes).get());
+  put_owned_entries<double>(*sharing, block_size, own_y, y);
+}
 /// The number of an unknown in PETSc's rows.
 [[nodiscard]] inline PetscInt global_unknown(const fem::NodeNumbers& nodes, int block_size, int unknown)
 {
@@ -140,8 +153,8 @@ inline constexpr const char* singular_tangent =
 void configure_mumps(Mat factors, int dim);
 /// MUMPS's Cholesky factors of a symmetric matrix without pivoting, not yet computed.
 [[nodiscard]] MatHandle start_cholesky(const SparseMatrix& a, int dim);
-/// Computes them, with an Options object alive. False: a pivot is 0. Throws SolveError when the memory does
-/// not suffice.
+/// Computes them, with an Options object alive. False: a pivot is not positive. Throws SolveError when the
+/// memory does not suffice.
 [[nodiscard]] bool factorise_cholesky(const SparseMatrix& a, Mat factors);
 
 }  // namespace tribound::algebra::detail

@@ -147,17 +147,9 @@ SparseMatrix SparseMatrix::duplicate() const
 std::vector<double> SparseMatrix::multiply(std::span<const double> x) const
 {
   std::vector<double> y(size_);
-  if (!sharing_)
-  {
-    check(MatMult(mat_.get(), wrap(x).get(), wrap(std::span(y)).get()), "multiplying a matrix");
-    return y;
-  }
-  const std::vector<double> own_x = detail::owned_entries(*sharing_, block_size_, x);
-  std::vector<double> own_y(own_x.size());
-  const MPI_Comm processes = detail::communicator(sharing_);
-  check(MatMult(mat_.get(), wrap(own_x, processes).get(), wrap(std::span(own_y), processes).get()),
-        "multiplying a matrix");
-  detail::put_owned_entries<double>(*sharing_, block_size_, own_y, y);
+  detail::on_owned_entries(sharing_, block_size_, x, y,
+                           [&](Vec own_x, Vec own_y)
+                           { check(MatMult(mat_.get(), own_x, own_y), "multiplying a matrix"); });
   return y;
 }
 
