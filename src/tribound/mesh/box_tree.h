@@ -36,6 +36,13 @@ template <int dim>
   return interval;
 }
 
+/// Whether they have a point in common.
+template <int dim>
+[[nodiscard]] bool meet(const BoundingBox<dim>& a, const BoundingBox<dim>& b)
+{
+  return (a.lower.array() <= b.upper.array()).all() && (a.upper.array() >= b.lower.array()).all();
+}
+
 /// A binary tree of boxes: O(n log n) to build, a visit goes into the boxes that it accepts.
 template <int dim>
 class BoxTree

@@ -131,22 +131,18 @@ void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>>
                      const BoxTree<dim>& tree)
 {
   for (std::size_t f = 0; f < facets.size(); ++f)
-    tree.traverse(
-        [&](const BoundingBox<dim>& box)
-        {
-          return (box.lower.array() <= facets[f].box.upper.array()).all() &&
-                 (box.upper.array() >= facets[f].box.lower.array()).all();
-        },
-        [&](std::size_t g)
-        {
-          if (f == g) return;
-          if (const auto x = crossing(facets[f], facets[g]))
-            throw InputError(data.source,
-                             fmt::format("the mesh overlaps itself: {} and {} of its boundary cross at {}",
-                                         describe_facet<dim>(data, facets[f].vertices),
-                                         describe_facet<dim>(data, facets[g].vertices), describe(*x)),
-                             hint);
-        });
+    tree.traverse([&](const BoundingBox<dim>& box) { return meet(box, facets[f].box); },
+                  [&](std::size_t g)
+                  {
+                    if (f == g) return;
+                    if (const auto x = crossing(facets[f], facets[g]))
+                      throw InputError(
+                          data.source,
+                          fmt::format("the mesh overlaps itself: {} and {} of its boundary cross at {}",
+                                      describe_facet<dim>(data, facets[f].vertices),
+                                      describe_facet<dim>(data, facets[g].vertices), describe(*x)),
+                          hint);
+                  });
 }
 
 /// How many cells cover the points just outside the facet: a ray from there leaves as many cells more than it

@@ -299,10 +299,12 @@ TYPED_TEST(PairingTest, AnAmbiguousPairingIsRefused)
       return y;
     };
     const mesh::MeshData<dim> below = slab<dim>(0, 1, -2, -1, cubes<dim>(1));
-    const mesh::Mesh<dim> mesh(
-        mapped(side_by_side(side_by_side(slab<dim>(0, 1, 0, 0.5, cubes<dim>(1)), below, "_below"),
-                            slab<dim>(0, 1, 0.75, 1, cubes<dim>(1)), "_above"),
-               incline));
+    const mesh::MeshData<dim> above = slab<dim>(0, 1, 0.75, 1, cubes<dim>(1));
+    const mesh::MeshData<dim> plate = slab<dim>(-0.1, 1.1, -0.4, -0.3, cubes<dim>(1));
+    const mesh::MeshData<dim> slave = slab<dim>(0, 1, 0, 0.5, cubes<dim>(1));
+    const mesh::Mesh<dim> mesh(mapped(
+        side_by_side(side_by_side(side_by_side(slave, below, "_below"), above, "_above"), plate, "_plate"),
+        incline));
     const auto pair = [&](double reach) {
       return overlay<dim>(mesh, {"top_below", "top_above"}, {.reach = reach});
     };
@@ -311,6 +313,9 @@ TYPED_TEST(PairingTest, AnAmbiguousPairingIsRefused)
     EXPECT_NE(message.find("reach"), std::string::npos);
     EXPECT_TRUE(pair(0.7).empty());
     EXPECT_FALSE(overlay<dim>(mesh, {"top_below"}).empty());
+    // What a plate hides may lie as it likes.
+    const auto pairs = overlay<dim>(mesh, {"top_below", "top_above", "top_plate"});
+    EXPECT_NEAR(integral<dim>(mesh, pairs, [](const Point<dim>&) { return 1.0; }), 1, 1e-8);
   }
 }
 

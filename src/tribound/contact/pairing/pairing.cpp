@@ -52,9 +52,10 @@ struct Candidate
 {
   std::size_t master;  ///< number of the facet
   Polygon<dim> polygon;
-  double distance;       ///< l at s = 0
-  Point<dim - 1> slope;  ///< its gradient in s
-  double nearness = 0;   ///< |l| at the centroid
+  std::vector<Polygon<dim>> visible{};  ///< what nearer ones leave of it
+  double distance;                      ///< l at s = 0
+  Point<dim - 1> slope;                 ///< its gradient in s
+  double nearness = 0;                  ///< |l| at the centroid
 
   [[nodiscard]] double distance_at(const Point<dim - 1>& s) const
   {
@@ -112,25 +113,16 @@ class SlaveFacet
     const auto nearer = [](const Candidate<dim>& a, const Candidate<dim>& b)
     { return std::pair(a.nearness, a.master) < std::pair(b.nearness, b.master); };
     std::ranges::sort(candidates_, nearer);
-    std::vector<Candidate<dim>> taken;
+    hide();
+    std::ranges::sort(candidates_, {}, &Candidate<dim>::master);
     for (const Candidate<dim>& candidate : candidates_)
-    {
-      std::vector<Polygon<dim>> rest = {candidate.polygon};
-      for (const Candidate<dim>& before : taken) rest = without(candidate, rest, before);
-      for (Polygon<dim>& polygon : rest)
-      {
-        taken.push_back(candidate);
-        taken.back().polygon = std::move(polygon);
-      }
-    }
-    std::ranges::stable_sort(taken, {}, &Candidate<dim>::master);
-    for (const Candidate<dim>& part : taken)
-      for_each_simplex<dim>(part.polygon,
-                            [&](const auto& on_slave, const auto& on_master)
-                            {
-                              if (fem::fraction<dim - 1>(on_slave) > negligible)
-                                pairs.push_back({{slave_.number, on_slave}, {part.master, on_master}});
-                            });
+      for (const Polygon<dim>& polygon : candidate.visible)
+        for_each_simplex<dim>(polygon,
+                              [&](const auto& on_slave, const auto& on_master)
+                              {
+                                if (fem::fraction<dim - 1>(on_slave) > negligible)
+                                  pairs.push_back({{slave_.number, on_slave}, {candidate.master, on_master}});
+                              });
   }
 
  private:
@@ -157,17 +149,39 @@ class SlaveFacet
         polygon, [](const CornerPair<dim>& x) { return 1 - x.slave.sum(); }, snapped);
   }
 
-  /// What is left of a candidate's polygons where a nearer one lies before it.
-  [[nodiscard]] std::vector<Polygon<dim>> without(const Candidate<dim>& candidate,
-                                                  const std::vector<Polygon<dim>>& polygons,
-                                                  const Candidate<dim>& before) const
+  /// What is visible of each candidate behind those before it: near ones hide what is farther away. Most have
+  /// nothing before them but their neighbours, of which a tree knows.
+  void hide()
+  {
+    std::vector<mesh::BoundingBox<dim - 1>> boxes(candidates_.size());
+    for (std::size_t k = 0; k < boxes.size(); ++k)
+      for (const CornerPair<dim>& corner : candidates_[k].polygon) boxes[k].add(corner.slave);
+    const mesh::BoxTree<dim - 1> tree(boxes);
+    for (std::size_t k = 0; k < boxes.size(); ++k)
+    {
+      std::vector<std::size_t> before;
+      tree.traverse([&](const mesh::BoundingBox<dim - 1>& box) { return mesh::meet(box, boxes[k]); },
+                    [&](std::size_t other)
+                    {
+                      if (other < k && mesh::meet(boxes[other], boxes[k])) before.push_back(other);
+                    });
+      std::ranges::sort(before);
+      candidates_[k].visible = {candidates_[k].polygon};
+      for (const std::size_t other : before)
+        for (const Polygon<dim>& polygon : candidates_[other].visible)
+          hide(candidates_[k], candidates_[other], polygon);
+    }
+  }
+
+  /// What is left of a candidate behind a polygon of a nearer one.
+  void hide(Candidate<dim>& candidate, const Candidate<dim>& before, const Polygon<dim>& cover) const
   {
     std::vector<Polygon<dim>> rest;
-    for (const Polygon<dim>& polygon : polygons)
+    for (const Polygon<dim>& polygon : candidate.visible)
     {
       std::vector<Polygon<dim>> outside;
       Polygon<dim> common = polygon;
-      for_each_side<dim>(before.polygon,
+      for_each_side<dim>(cover,
                          [&](const auto& side)
                          {
                            const auto opposite = [&](const CornerPair<dim>& x) { return -side(x); };
@@ -183,7 +197,7 @@ class SlaveFacet
       for (Polygon<dim>& piece : outside)
         if (fraction<dim>(piece) > overlapping) rest.push_back(std::move(piece));
     }
-    return rest;
+    candidate.visible = std::move(rest);
   }
 
   void check_nearer(const Candidate<dim>& near, const Candidate<dim>& far, const Polygon<dim>& common) const
