@@ -232,13 +232,7 @@ std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh, std::span<const
 {
   std::vector<Side<dim>> masters;
   std::vector<mesh::BoundingBox<dim>> boxes;
-  mesh::BoundingBox<dim> around;
-  for (const std::size_t number : master)
-  {
-    boxes.push_back(masters.emplace_back(mesh, number).box);
-    around.add(boxes.back().lower);
-    around.add(boxes.back().upper);
-  }
+  for (const std::size_t number : master) boxes.push_back(masters.emplace_back(mesh, number).box);
   const mesh::BoxTree<dim> tree(boxes);
   std::vector<FacetPair<dim>> pairs;
   for (const std::size_t number : slave)
@@ -247,9 +241,7 @@ std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh, std::span<const
     SlaveFacet<dim> facet(side, pairing);
     // Whatever lies opposite a point of the facet is within its diameter of the line through its centre.
     const double radius = side.geometry.diameter;
-    const double steepest = radius / facing;  // by which l changes on a facet
-    const double farthest = std::min(pairing.reach + steepest, (around.upper - around.lower).norm() +
-                                                                   (side.centre() - around.lower).norm());
+    const double farthest = pairing.reach + radius / facing;  // by so much l may change on the facet
     const auto accept = [&](const mesh::BoundingBox<dim>& box)
     {
       const mesh::BoundingBox<dim> wider{box.lower.array() - radius, box.upper.array() + radius};
