@@ -82,14 +82,9 @@ void overlay(benchmark::State& state)
     if (x[1] > 0)
       for (const int i : {0, 2}) x[i] += 0.4 * x[i] * (1 - x[i]);
   const mesh::Mesh<3> mesh(std::move(data));
-  std::vector<std::size_t> bottom;
-  std::vector<std::size_t> top;
-  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
-  {
-    const std::string& name = mesh.boundary_names()[mesh.boundary()[k].tag];
-    if (name == "bottom") bottom.push_back(k);
-    if (name == "top") top.push_back(k);
-  }
+  const auto side = [&](const std::string& name) { return mesh::facets_named<3>(mesh, std::span(&name, 1)); };
+  const std::vector<std::size_t> bottom = side("bottom");
+  const std::vector<std::size_t> top = side("top");
   std::size_t n_segments = 0;
   for (auto _ : state) n_segments = contact::overlay<3>(mesh, bottom, top).size();
   state.counters["segments"] = static_cast<double>(n_segments);

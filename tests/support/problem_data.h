@@ -98,7 +98,7 @@ template <int dim>
 [[nodiscard]] problem::BoundaryCondition<dim> obstacle(const std::string& name,
                                                        const problem::Contact& contact)
 {
-  return obstacle<dim>(name, contact.law, contact.gap);
+  return obstacle<dim>(name, contact.law, *contact.gap);
 }
 
 /// A problem before it meets a mesh. No member is initialised with {}: GCC 12 ends there with an internal

@@ -234,7 +234,7 @@ std::filesystem::path default_directory(const std::filesystem::path& case_file)
 std::string friction_name(const Config& config)
 {
   std::string text;
-  for (const problem::LawKind& kind : problem::law_kinds())
+  for (const problem::LawKind& kind : problem::obstacle_law_kinds())
     if (std::ranges::any_of(config.boundaries, [&](const BoundaryConfig& boundary)
                             { return boundary.contact && name(boundary.contact->law) == kind.name; }))
       text += (text.empty() ? "" : "+") + std::string(kind.name);

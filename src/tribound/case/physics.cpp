@@ -63,7 +63,7 @@ problem::Field read_law_value(const TableReader& table, const problem::LawKey& k
 /// `friction` and the keys that belong to the law it names.
 problem::ContactLaw read_law(const TableReader& table)
 {
-  const std::span<const problem::LawKind> kinds = problem::law_kinds();
+  const std::span<const problem::LawKind> kinds = problem::obstacle_law_kinds();
   std::vector<std::string> names;
   for (const problem::LawKind& kind : kinds) names.emplace_back(kind.name);
   std::size_t chosen = 0;
@@ -81,12 +81,12 @@ problem::ContactLaw read_law(const TableReader& table)
 problem::Contact read_contact(const Node& node)
 {
   std::vector<std::string_view> keys = {"friction"};
-  for (const problem::LawKind& kind : problem::law_kinds())
+  for (const problem::LawKind& kind : problem::obstacle_law_kinds())
     for (const problem::LawKey& key : kind.keys) keys.push_back(key.key);
   keys.push_back("gap");
   const TableReader table(node, keys);
   problem::Contact contact(read_law(table), problem::Field(0.0, node.where));
-  table.read("gap", contact.gap, to_nonnegative_field);
+  table.read("gap", *contact.gap, to_nonnegative_field);
   return contact;
 }
 

@@ -55,7 +55,7 @@ problem::BoundaryCondition<dim> resolve(const BoundaryConfig& config)
   boundary.contact = config.contact;
   if (config.contact)
   {
-    (void)in_dimension<dim>(config.contact->gap);
+    (void)in_dimension<dim>(*config.contact->gap);
     if (const problem::Field* strength = cone(config.contact->law).strength)
       (void)in_dimension<dim>(*strength);
   }

@@ -98,7 +98,20 @@ void Mesh<dim>::take(MeshData<dim> data, Topology<dim> topology)
   topology_ = std::make_unique<const Topology<dim>>(std::move(topology));
 }
 
+template <int dim>
+std::vector<std::size_t> facets_named(const Mesh<dim>& mesh, std::span<const std::string> names)
+{
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+    if (const int tag = mesh.boundary()[k].tag;
+        tag >= 0 && std::ranges::find(names, mesh.boundary_names()[tag]) != names.end())
+      numbers.push_back(k);
+  return numbers;
+}
+
 template class Mesh<2>;
 template class Mesh<3>;
+template std::vector<std::size_t> facets_named(const Mesh<2>&, std::span<const std::string>);
+template std::vector<std::size_t> facets_named(const Mesh<3>&, std::span<const std::string>);
 
 }  // namespace tribound::mesh

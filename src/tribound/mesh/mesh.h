@@ -191,6 +191,11 @@ class Mesh
   std::span<const char> has_patch_;  ///< of the partition
 };
 
+/// The numbers in Mesh::boundary() of the facets of the named boundaries, ascending.
+template <int dim>
+[[nodiscard]] std::vector<std::size_t> facets_named(const Mesh<dim>& mesh,
+                                                    std::span<const std::string> names);
+
 /// Facets, edges and incidence by counting sorts, O(n). The cells may be unverified: where more than two
 /// share a facet, facet_cells holds the first two.
 template <int dim>

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
+#include <limits>
+
 #include "tribound/problem/projection.h"
 
 namespace tribound::problem
@@ -94,6 +97,11 @@ std::string Tresca::words() const
   return fmt::format("Tresca friction, threshold {}", text(threshold));
 }
 
+std::string Tied::words() const
+{
+  return "tied";
+}
+
 std::string Coulomb::words() const
 {
   return fmt::format("Coulomb friction, coefficient {:.6g}", coefficient);
@@ -103,10 +111,12 @@ template <int dim>
 Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
 {
   return std::visit(
-      [&](const auto& l)
+      [&]<Law L>(const L& l) -> Response<dim>
       {
-        const double S = limit(l, point.strength, P.dot(point.normal), delta).value;
-        return unilateral<dim>(point, P, S, delta);
+        if constexpr (std::same_as<L, Tied>)
+          return {P, std::numeric_limits<double>::infinity(), ContactStatus::tied};
+        else
+          return unilateral<dim>(point, P, limit(l, point.strength, P.dot(point.normal), delta).value, delta);
       },
       law);
 }
@@ -115,8 +125,13 @@ template <int dim>
 Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
 {
   return std::visit(
-      [&](const auto& l) {
-        return unilateral_tangent<dim>(point, P, limit(l, point.strength, P.dot(point.normal), delta), delta);
+      [&]<Law L>(const L& l) -> Tensor<dim>
+      {
+        if constexpr (std::same_as<L, Tied>)
+          return Tensor<dim>::Identity();
+        else
+          return unilateral_tangent<dim>(point, P, limit(l, point.strength, P.dot(point.normal), delta),
+                                         delta);
       },
       law);
 }
@@ -141,9 +156,15 @@ bool is_minimum(const ContactLaw& law)
   return std::visit([](const auto& l) { return l.is_minimum; }, law);
 }
 
-std::span<const LawKind> law_kinds()
+bool is_linear(const ContactLaw& law)
 {
-  return kinds;
+  return std::holds_alternative<Tied>(law);
+}
+
+std::span<const LawKind> obstacle_law_kinds()
+{
+  static_assert(kinds.back().name == Tied::name);
+  return std::span(kinds).first<kinds.size() - 1>();
 }
 
 template Response<2> respond(const ContactLaw&, const LawPoint<2>&, const Point<2>&, double);

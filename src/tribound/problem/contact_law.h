@@ -26,7 +26,8 @@ enum class ContactStatus
 {
   open = 0,
   stick = 1,
-  slip = 2
+  slip = 2,
+  tied = 3
 };
 
 /// What a law knows of a point, evaluated once.
@@ -42,7 +43,7 @@ template <int dim>
 struct Response
 {
   Point<dim> traction;   ///< T
-  double limit;          ///< S_h: what |T^t| may reach, stress
+  double limit;          ///< S_h: what |T^t| may reach, stress; infinite where tied
   ContactStatus status;  ///< of the law itself, without regularisation
 };
 
@@ -52,11 +53,12 @@ struct FrictionCone
 {
   const Field* strength = nullptr;  ///< s(x) >= 0, stress; null for 0
   double coefficient = 0;           ///< mu_F >= 0
+  bool is_tied = false;             ///< it holds anything, tension too
 
   /// Whether there is anything to hold.
   [[nodiscard]] bool resists_sliding() const
   {
-    return coefficient > 0 || (strength != nullptr && !strength->is_zero());
+    return is_tied || coefficient > 0 || (strength != nullptr && !strength->is_zero());
   }
   /// strength + coefficient |T^n| for T^n = p_n <= 0.
   [[nodiscard]] double closed_limit(double strength_here, double p_n) const
@@ -117,6 +119,18 @@ struct Coulomb
   [[nodiscard]] std::string words() const;
 };
 
+/// [u] = 0, between bodies alone: T(P) = P.
+struct Tied
+{
+  static constexpr std::string_view name = "tied";
+  static constexpr std::array<LawKey, 0> keys = {};
+  static constexpr bool is_minimum = true;
+
+  explicit Tied(std::span<const Field> = {}) {}
+  [[nodiscard]] FrictionCone cone() const { return {.is_tied = true}; }
+  [[nodiscard]] std::string words() const;
+};
+
 /// What every law has: its name and keys in the case file, how it is made from their values, what it holds at
 /// most, its description, and whether the solution is the minimum of a strictly convex energy.
 template <class L>
@@ -137,7 +151,7 @@ concept Law = std::constructible_from<L, std::span<const Field>> && requires(con
     } -> std::same_as<std::string>;
 };
 
-using ContactLaw = std::variant<Frictionless, Tresca, Coulomb>;
+using ContactLaw = std::variant<Frictionless, Tresca, Coulomb, Tied>;
 
 /// T(P) with limit and status; T_delta with the regularised projections of method section 7 for delta > 0.
 template <int dim>
@@ -160,6 +174,9 @@ template <int dim>
 /// Whether the exact solution is the minimum of a strictly convex energy.
 [[nodiscard]] bool is_minimum(const ContactLaw& law);
 
+/// Whether T(P) = P, whatever P is.
+[[nodiscard]] bool is_linear(const ContactLaw& law);
+
 /// A law as the case file names it.
 struct LawKind
 {
@@ -168,7 +185,7 @@ struct LawKind
   ContactLaw (*make)(std::span<const Field> values);  ///< a value for each key
 };
 
-/// All laws, in the order of the variant.
-[[nodiscard]] std::span<const LawKind> law_kinds();
+/// The laws of contact with an obstacle, in the order of the variant.
+[[nodiscard]] std::span<const LawKind> obstacle_law_kinds();
 
 }  // namespace tribound::problem

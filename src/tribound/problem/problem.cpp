@@ -72,6 +72,36 @@ std::vector<BoundaryCondition<dim>> of_each_boundary(std::span<const std::string
   return boundaries;
 }
 
+/// Each boundary stands in one pair, on one side of it, and has no condition.
+template <int dim>
+void check_pairs(std::span<const std::string> names, const std::vector<BoundaryCondition<dim>>& conditions,
+                 std::span<const ContactPair<dim>> pairs)
+{
+  std::vector<bool> is_paired(names.size(), false);
+  for (const ContactPair<dim>& pair : pairs)
+  {
+    for (const std::vector<std::string>* side : {&pair.slave, &pair.master})
+    {
+      if (side->empty())
+        throw InputError(pair.where, "a side of the contact is empty", "name its boundaries");
+      for (const std::string& name : *side)
+      {
+        const int number = group_number(name, names, pair.where, "boundary");
+        if (is_paired[number])
+          throw InputError(
+              pair.where, fmt::format("boundary \"{}\" already is in contact", name),
+              "a boundary is the slave or the master of one contact; split the group in the mesh");
+        is_paired[number] = true;
+        if (std::ranges::find(conditions, name, &BoundaryCondition<dim>::name) != conditions.end())
+          throw InputError(pair.where, fmt::format("boundary \"{}\" has a condition of its own", name),
+                           "where bodies touch, nothing else holds; split the group in the mesh");
+      }
+    }
+    if (is_linear(pair.contact.law) && !(pair.contact.gap && pair.contact.gap->is_zero()))
+      throw InputError(pair.where, "a tied contact has no gap", "give the gap 0");
+  }
+}
+
 }  // namespace
 
 std::string quoted_list(std::span<const std::string> names)
@@ -148,7 +178,7 @@ BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Fie
 template <int dim>
 double gap_at(const Contact& contact, const Point<dim>& x)
 {
-  return nonnegative_at<dim>(contact.gap, x);
+  return nonnegative_at<dim>(*contact.gap, x);
 }
 
 template <int dim>
@@ -161,10 +191,13 @@ double strength_at(const ContactLaw& law, const Point<dim>& x)
 template <int dim>
 Problem<dim>::Problem(std::span<const std::string> region_names, std::span<const std::string> boundary_names,
                       const std::vector<Region<dim>>& regions,
-                      const std::vector<BoundaryCondition<dim>>& boundaries)
+                      const std::vector<BoundaryCondition<dim>>& boundaries,
+                      std::vector<ContactPair<dim>> pairs)
     : regions_(of_each_region(region_names, regions)),
-      boundaries_(of_each_boundary(boundary_names, boundaries))
+      boundaries_(of_each_boundary(boundary_names, boundaries)),
+      pairs_(std::move(pairs))
 {
+  check_pairs<dim>(boundary_names, boundaries, pairs_);
 }
 
 template <int dim>
@@ -190,7 +223,8 @@ bool Problem<dim>::body_force_is_zero(int region) const
 template <int dim>
 bool Problem<dim>::has_contact() const
 {
-  return std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.contact.has_value(); });
+  return !pairs_.empty() ||
+         std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.contact.has_value(); });
 }
 
 template struct BoundaryCondition<2>;

@@ -4,6 +4,7 @@
 /// The continuous problem of method section 1: material, loads, and what holds on each part of the boundary.
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,13 +29,38 @@ struct Region
   std::array<Field, dim> body_force{};  ///< force per volume
 };
 
-/// Unilateral contact with a rigid obstacle.
+/// Contact with a rigid obstacle or another body.
 struct Contact
 {
   ContactLaw law;
-  Field gap;  ///< initial distance g >= 0 along the outward normal
+  /// Initial distance g >= 0 along the outward normal. Absent, between bodies alone: the distance that the
+  /// meshes have, which may be negative.
+  std::optional<Field> gap;
 
-  explicit Contact(ContactLaw l, Field g = 0.0) : law(std::move(l)), gap(std::move(g)) {}
+  explicit Contact(ContactLaw l, std::optional<Field> g = Field(0.0)) : law(std::move(l)), gap(std::move(g))
+  {
+  }
+};
+
+/// How the projection Pi of a slave onto its master finds a partner.
+template <int dim>
+struct Pairing
+{
+  /// e, of any length; absent: the outward normal of each slave facet.
+  std::optional<Point<dim>> direction{};
+  double reach = std::numeric_limits<double>::infinity();  ///< largest |Pi(x) - x|
+};
+
+/// Contact between two parts of the boundaries of elastic bodies, each all facets of some named boundaries on
+/// which nothing else holds. Where nothing of the master lies opposite, the slave is free of traction.
+template <int dim>
+struct ContactPair
+{
+  std::vector<std::string> slave;
+  std::vector<std::string> master;
+  Contact contact;
+  Pairing<dim> pairing{};
+  Where where{};  ///< for messages
 };
 
 /// What holds on one named part of the boundary.
@@ -67,9 +93,9 @@ template <int dim>
 template <int dim>
 [[nodiscard]] BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Field gap = 0.0);
 
-/// Gap g(x) >= 0 and the strength s(x) >= 0 of the law's friction cone, 0 where it has none. Values that may
-/// be 0 within the rounding of x are: "y" on a floor y = 0 whose points have rounded coordinates. Throw
-/// InputError naming the point where the value is negative.
+/// The given gap g(x) >= 0 and the strength s(x) >= 0 of the law's friction cone, 0 where it has none. Values
+/// that may be 0 within the rounding of x are: "y" on a floor y = 0 whose points have rounded coordinates.
+/// Throw InputError naming the point where the value is negative.
 template <int dim>
 [[nodiscard]] double gap_at(const Contact& contact, const Point<dim>& x);
 template <int dim>
@@ -82,16 +108,18 @@ template <int dim>
 class Problem
 {
  public:
-  /// Throws InputError for a group that does not exist (listing those that do), for a region without entry
-  /// and for a boundary with two. Boundaries without condition are traction-free.
+  /// Throws InputError for a group that does not exist (listing those that do), for a region without entry,
+  /// for a boundary with two conditions, in two pairs or in a pair and with a condition, and for a tied pair
+  /// with a gap. Boundaries without condition are traction-free.
   Problem(std::span<const std::string> region_names, std::span<const std::string> boundary_names,
-          const std::vector<Region<dim>>& regions, const std::vector<BoundaryCondition<dim>>& boundaries);
+          const std::vector<Region<dim>>& regions, const std::vector<BoundaryCondition<dim>>& boundaries,
+          std::vector<ContactPair<dim>> pairs = {});
 
   /// The same on a mesh: whatever has region_names() and boundary_names().
   template <class Mesh>
   Problem(const Mesh& mesh, const std::vector<Region<dim>>& regions,
-          const std::vector<BoundaryCondition<dim>>& boundaries)
-      : Problem(mesh.region_names(), mesh.boundary_names(), regions, boundaries)
+          const std::vector<BoundaryCondition<dim>>& boundaries, std::vector<ContactPair<dim>> pairs = {})
+      : Problem(mesh.region_names(), mesh.boundary_names(), regions, boundaries, std::move(pairs))
   {
   }
 
@@ -115,11 +143,14 @@ class Problem
   [[nodiscard]] std::span<const BoundaryCondition<dim>> boundaries() const { return boundaries_; }
   /// In the order of the mesh, each with the name it has there.
   [[nodiscard]] std::span<const Region<dim>> regions() const { return regions_; }
+  [[nodiscard]] std::span<const ContactPair<dim>> pairs() const { return pairs_; }
+  /// Whether there are obstacles or pairs.
   [[nodiscard]] bool has_contact() const;
 
  private:
   std::vector<Region<dim>> regions_;
   std::vector<BoundaryCondition<dim>> boundaries_;
+  std::vector<ContactPair<dim>> pairs_;
   BoundaryCondition<dim> unnamed_;
 };
 

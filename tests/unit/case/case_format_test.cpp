@@ -225,7 +225,7 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
       {"boundary.top.contact.friction", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.boundaries[0].contact->law.index())); }},
       {"boundary.top.contact.gap", [](const case_file::Config& c, const Row&)
-       { return c.boundaries[0].contact->gap.is_zero() ? "0" : "not 0"; }},
+       { return c.boundaries[0].contact->gap->is_zero() ? "0" : "not 0"; }},
       {"nitsche.gamma0",
        [](const case_file::Config&, const Row&) {
          return fmt::format("{}; {} for degree 4", contact::default_gamma0(3), contact::default_gamma0(4));

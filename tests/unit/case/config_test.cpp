@@ -170,7 +170,7 @@ TEST(Config, ReadsBoundariesInTheOrderOfTheFile)
   EXPECT_DOUBLE_EQ((*right.pressure)(somewhere), 9810 * 5.0);
   EXPECT_EQ(bottom.name, "bottom");
   EXPECT_EQ(std::get<problem::Tresca>(bottom.contact->law).threshold(somewhere), 0.03);
-  EXPECT_TRUE(bottom.contact->gap.is_zero());
+  EXPECT_TRUE(bottom.contact->gap->is_zero());
 }
 
 constexpr auto small_case = R"toml(
@@ -214,7 +214,7 @@ TEST(Config, HasTheDefaultsOfTheHeader)
   EXPECT_TRUE(config.output.vtu);
   EXPECT_TRUE(config.output.report);
   EXPECT_TRUE(std::holds_alternative<problem::Frictionless>(config.boundaries[0].contact->law));
-  EXPECT_TRUE(config.boundaries[0].contact->gap.is_zero());
+  EXPECT_TRUE(config.boundaries[0].contact->gap->is_zero());
 }
 
 TEST(Config, ReadsABox)

@@ -56,23 +56,20 @@ std::array<int, dim> cubes(int n)
   return cells;
 }
 
-/// The numbers of the boundary facets with these names.
+/// The numbers of the boundary facets with this name.
 template <int dim>
-std::vector<std::size_t> facets_named(const mesh::Mesh<dim>& mesh, const std::vector<std::string>& names)
+std::vector<std::size_t> facets_named(const mesh::Mesh<dim>& mesh, const std::string& name)
 {
-  std::vector<std::size_t> numbers;
-  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
-    if (const int tag = mesh.boundary()[k].tag; tag >= 0)
-      if (std::ranges::count(names, mesh.boundary_names()[tag]) > 0) numbers.push_back(k);
-  return numbers;
+  return mesh::facets_named(mesh, std::span(&name, 1));
 }
 
 template <int dim>
 std::vector<contact::FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh,
                                              const std::vector<std::string>& masters,
-                                             const contact::Pairing<dim>& pairing = {})
+                                             const problem::Pairing<dim>& pairing = {})
 {
-  return contact::overlay<dim>(mesh, facets_named(mesh, {"bottom"}), facets_named(mesh, masters), pairing);
+  return contact::overlay<dim>(mesh, facets_named(mesh, "bottom"), mesh::facets_named<dim>(mesh, masters),
+                               pairing);
 }
 
 template <int dim>
@@ -180,7 +177,7 @@ TYPED_TEST(PairingTest, ProjectsOnInclinedPlanes)
   oblique[1] = -2;
   for (const Point<dim>& e : {Point<dim>(Point<dim>::Zero()), oblique})
   {
-    contact::Pairing<dim> pairing;
+    problem::Pairing<dim> pairing;
     if (e.norm() > 0) pairing.direction = e;
     const auto pairs = overlay<dim>(mesh, {"top_below"}, pairing);
     EXPECT_LE(largest_deviation<dim>(mesh, pairs, e), 1e-12);
@@ -210,8 +207,8 @@ TYPED_TEST(PairingTest, CurvedBoundariesMeetTheirOwnSide)
   outer[0] = n;
   inner[0] = n + 7;
   const mesh::Mesh<dim> mesh(renumbered(mapped(two_slabs<dim>(outer, inner, 0, 1), roll), 2));
-  const auto concave = facets_named<dim>(mesh, {"bottom"});
-  const auto convex = facets_named<dim>(mesh, {"top_below"});
+  const auto concave = facets_named(mesh, "bottom");
+  const auto convex = facets_named(mesh, "top_below");
   const double chord = 1.5 * 5. / 3 * std::acos(-1.0) / n;
   for (const auto& [slave, master] : {std::pair(concave, convex), std::pair(convex, concave)})
   {
@@ -250,7 +247,7 @@ TYPED_TEST(PairingTest, MatchingFacetsAreOneSegment)
     const auto pairs = overlay<dim>(mesh, {"top_below"});
     if (size <= 1e-14)
     {
-      EXPECT_EQ(pairs.size(), facets_named(mesh, {"bottom"}).size());
+      EXPECT_EQ(pairs.size(), facets_named(mesh, "bottom").size());
     }
     EXPECT_NEAR(integral<dim>(mesh, pairs, [](const Point<dim>&) { return 1.0; }), 1, 1e-11 + 20 * size);
   }

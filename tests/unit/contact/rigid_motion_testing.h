@@ -18,8 +18,8 @@ namespace tribound::test
 template <int dim>
 std::string verdict(const DiscreteProblem<dim>& c, std::span<const double> load)
 {
-  const std::string said =
-      message_of([&] { contact::check_rigid_motions<dim>(c.problem, c.space, c.form.data(), load); });
+  const std::string said = message_of(
+      [&] { contact::check_rigid_motions<dim>(c.problem, c.space, c.form.segments(), c.form.data(), load); });
   return said.empty() ? "held" : said;
 }
 

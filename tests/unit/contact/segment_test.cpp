@@ -4,16 +4,20 @@
 
 #include "tribound/contact/nitsche/segment.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/fields.h"
+#include "support/input_error.h"
 #include "support/meshes.h"
 #include "support/problem_data.h"
 #include "tribound/base/error.h"
@@ -22,7 +26,6 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/penalty.h"
-#include "tribound/contact/pairing/pairing.h"
 #include "tribound/solve/newton.h"
 
 namespace tribound::test
@@ -31,9 +34,9 @@ namespace tribound::test
 namespace
 {
 
+using ::testing::HasSubstr;
+
 constexpr double distance = 0.1;  ///< between the blocks
-constexpr double gap = 0.01;      ///< the datum
-constexpr double pressed = 0.05;  ///< displacement of the top, downwards
 
 template <int dim>
 mesh::MeshData<dim> blocks(int n_upper, int n_lower)
@@ -51,50 +54,6 @@ mesh::MeshData<dim> blocks(int n_upper, int n_lower)
   return side_by_side(box<dim>(Point<dim>::Zero(), corner, upper), box<dim>(low, low_top, lower), "_below");
 }
 
-/// The upper block pressed on the lower one and moved aside by `shift`; no displacement normal to the sides
-/// of both if `confined`.
-template <int dim>
-problem::Problem<dim> pressed_blocks(const mesh::Mesh<dim>& mesh, const problem::ContactLaw& law,
-                                     double E_below, double shift, bool confined)
-{
-  std::vector<problem::BoundaryCondition<dim>> conditions = {
-      fixed<dim>("top", shift, -pressed), clamped<dim>("bottom_below"),
-      problem::with_contact<dim>("bottom", law, gap), problem::with_contact<dim>("top_below", law, gap)};
-  for (const std::string suffix : {"", "_below"})
-    for (const char* side : {"left", "right", "back", "front"})
-    {
-      const bool along_z = side[0] == 'b' || side[0] == 'f';
-      if (!confined || (dim == 2 && along_z)) continue;
-      conditions.push_back(along_z ? fixed<dim>(side + suffix, free, free, 0.0)
-                                   : fixed<dim>(side + suffix, 0.0, free, free));
-    }
-  return problem::Problem<dim>(
-      mesh,
-      {{.name = "box", .material = lame(1, 0.3)}, {.name = "box_below", .material = lame(E_below, 0.2)}},
-      conditions);
-}
-
-/// The overlay of the boundaries named `slave` and `master`.
-template <int dim>
-std::vector<contact::ContactSegment<dim>> overlay(const problem::Problem<dim>& problem,
-                                                  const mesh::Mesh<dim>& mesh, double gamma0,
-                                                  const std::string& slave, const std::string& master)
-{
-  const auto facets_named = [&](const std::string& name)
-  {
-    std::vector<std::size_t> numbers;
-    for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
-      if (const int tag = mesh.boundary()[k].tag; tag >= 0 && problem.boundary(tag).name == name)
-        numbers.push_back(k);
-    return numbers;
-  };
-  std::vector<contact::ContactSegment<dim>> segments;
-  for (const auto& [on_slave, on_master] :
-       contact::overlay<dim>(mesh, facets_named(slave), facets_named(master)))
-    segments.push_back(contact::make_segment<dim>(problem, mesh, gamma0, on_slave, on_master));
-  return segments;
-}
-
 struct Setting
 {
   problem::ContactLaw law = Frictionless();
@@ -104,8 +63,34 @@ struct Setting
   double E_below = 2;
   double shift = 0;
   bool confined = false;
-  bool swapped = false;  ///< the lower block is the slave
+  bool swapped = false;              ///< the lower block is the slave
+  std::optional<double> gap = 0.01;  ///< absent: the distance
+  double pressed = 0.05;             ///< displacement of the top, downwards
 };
+
+/// The upper block pressed on the lower one and moved aside by `shift`; no displacement normal to the sides
+/// of both if `confined`.
+template <int dim>
+problem::Problem<dim> pressed_blocks(const mesh::Mesh<dim>& mesh, const Setting& setting)
+{
+  std::vector<problem::BoundaryCondition<dim>> conditions = {
+      fixed<dim>("top", setting.shift, -setting.pressed), clamped<dim>("bottom_below")};
+  for (const std::string suffix : {"", "_below"})
+    for (const char* side : {"left", "right", "back", "front"})
+    {
+      const bool along_z = side[0] == 'b' || side[0] == 'f';
+      if (!setting.confined || (dim == 2 && along_z)) continue;
+      conditions.push_back(along_z ? fixed<dim>(side + suffix, free, free, 0.0)
+                                   : fixed<dim>(side + suffix, 0.0, free, free));
+    }
+  problem::ContactPair<dim> pair{{"bottom"}, {"top_below"}, problem::Contact(setting.law, std::nullopt)};
+  if (setting.gap) pair.contact.gap = problem::Field(*setting.gap);
+  if (setting.swapped) std::swap(pair.slave, pair.master);
+  return problem::Problem<dim>(mesh,
+                               {{.name = "box", .material = lame(1, 0.3)},
+                                {.name = "box_below", .material = lame(setting.E_below, 0.2)}},
+                               conditions, {pair});
+}
 
 template <int dim>
 solve::NewtonResult<dim> solve_directly(const contact::NitscheForm<dim>& form)
@@ -121,12 +106,10 @@ struct Blocks
 {
   explicit Blocks(const Setting& setting)
       : mesh(blocks<dim>(setting.n_upper, setting.n_lower)),
-        problem(pressed_blocks<dim>(mesh, setting.law, setting.E_below, setting.shift, setting.confined)),
+        problem(pressed_blocks<dim>(mesh, setting)),
         space(mesh, setting.p),
         gamma0(contact::default_gamma0(setting.p)),
-        form(problem, space, gamma0,
-             overlay<dim>(problem, mesh, gamma0, setting.swapped ? "top_below" : "bottom",
-                          setting.swapped ? "bottom" : "top_below"))
+        form(problem, space, gamma0)
   {
   }
 
@@ -141,23 +124,34 @@ struct Blocks
 
 const std::vector<problem::ContactLaw> laws = {Frictionless(), Tresca(0.005), Coulomb(0.3)};
 
+std::vector<problem::ContactLaw> laws_between_bodies()
+{
+  std::vector<problem::ContactLaw> all = laws;
+  all.emplace_back(problem::Tied());
+  return all;
+}
+
 /// In uniaxial strain the stress is constant, through facets that do not match, too.
 template <int dim>
-void expect_constant_pressure(int p, int n_upper, int n_lower, double E_below)
+void expect_constant_pressure(Setting setting)
 {
-  const Blocks<dim> c({.p = p, .n_upper = n_upper, .n_lower = n_lower, .E_below = E_below, .confined = true});
+  setting.confined = true;
+  const int p = setting.p;
+  const Blocks<dim> c(setting);
   const auto stiffness = [&](int region)
   { return c.problem.material(region).lambda + 2 * c.problem.material(region).mu; };
-  const double pressure = (pressed - gap) / (1 / stiffness(0) + 1 / stiffness(1));
+  const double pressure =
+      (setting.pressed - setting.gap.value_or(distance)) / (1 / stiffness(0) + 1 / stiffness(1));
+  const double rounding = 1e-11 * std::abs(pressure);
   const solve::NewtonResult<dim> newton = c.solve();
   for (std::size_t k = 0; k < c.form.segments().size(); ++k)
     for (const contact::ContactState<dim>& state : c.form.contact_states(newton.u, k))
     {
-      EXPECT_NEAR(state.pressure, pressure, 1e-11 * pressure);
+      EXPECT_NEAR(state.pressure, pressure, rounding);
       EXPECT_NEAR(state.gap, 0, 1e-12);
     }
   const contact::ContactResultants<dim> sum = contact::contact_resultants<dim>(c.form, newton.traction);
-  EXPECT_NEAR(sum.normal, -2 * pressure, 1e-11 * pressure);
+  EXPECT_NEAR(sum.normal, -2 * pressure, rounding);
   const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, newton.u, newton.traction);
   EXPECT_LE(certify::check_identities<dim>(c.form, newton.traction, stress).largest(p), 1e-10);
 }
@@ -167,12 +161,30 @@ TEST(ContactSegments, ConstantPressureThroughFacetsThatDoNotMatch)
   for (const int p : {1, 2, 3})
     for (const double E_below : {1e-2, 2.0, 1e2})
     {
-      expect_constant_pressure<2>(p, 4, 3, E_below);
-      expect_constant_pressure<2>(p, 2, 5, E_below);
+      expect_constant_pressure<2>({.p = p, .n_upper = 4, .n_lower = 3, .E_below = E_below});
+      expect_constant_pressure<2>({.p = p, .n_upper = 2, .n_lower = 5, .E_below = E_below});
     }
   for (const int p : {1, 2})
-    for (const double E_below : {1e-2, 1e2}) expect_constant_pressure<3>(p, 2, 3, E_below);
-  for (const int p : {3, 4}) expect_constant_pressure<3>(p, 2, 1, 5);
+    for (const double E_below : {1e-2, 1e2})
+      expect_constant_pressure<3>({.p = p, .n_upper = 2, .n_lower = 3, .E_below = E_below});
+  for (const int p : {3, 4}) expect_constant_pressure<3>({.p = p, .n_upper = 2, .n_lower = 1, .E_below = 5});
+}
+
+TEST(ContactSegments, TheGapMayBeTheDistanceOfTheBodies)
+{
+  expect_constant_pressure<2>({.p = 2, .n_upper = 4, .n_lower = 3, .gap = {}, .pressed = 0.13});
+  expect_constant_pressure<3>({.p = 1, .n_upper = 2, .n_lower = 3, .gap = {}, .pressed = 0.13});
+}
+
+TEST(ContactSegments, WhatIsTiedMayBePulled)
+{
+  for (const double push : {0.05, -0.05})
+  {
+    const Setting setting{
+        .law = problem::Tied(), .p = 2, .n_upper = 2, .n_lower = 3, .gap = 0, .pressed = push};
+    expect_constant_pressure<2>(setting);
+    expect_constant_pressure<3>(setting);
+  }
 }
 
 /// The derivative of T(u) in a direction against differences, and the tangent against the derivative.
@@ -234,20 +246,20 @@ void expect_equilibrium(const Setting& setting)
 
 TEST(ContactSegments, BothBodiesAreInEquilibrium)
 {
-  for (const problem::ContactLaw& law : laws)
+  for (const problem::ContactLaw& law : laws_between_bodies())
   {
     for (const int p : {1, 2, 3})
-      expect_equilibrium<2>({.law = law, .p = p, .n_upper = 4, .n_lower = 3, .shift = 0.02});
+      expect_equilibrium<2>({.law = law, .p = p, .n_upper = 4, .n_lower = 3, .shift = 0.02, .gap = 0});
     for (const int p : {1, 2})
-      expect_equilibrium<3>({.law = law, .p = p, .n_upper = 2, .n_lower = 3, .shift = 0.02});
+      expect_equilibrium<3>({.law = law, .p = p, .n_upper = 2, .n_lower = 3, .shift = 0.02, .gap = 0});
   }
 }
 
 TEST(ContactSegments, OnAFlatInterfaceEitherSideMayBeTheSlave)
 {
-  for (const problem::ContactLaw& law : laws)
+  for (const problem::ContactLaw& law : laws_between_bodies())
   {
-    Setting setting{.law = law, .p = 2, .n_upper = 4, .n_lower = 3, .E_below = 30, .shift = 0.02};
+    Setting setting{.law = law, .p = 2, .n_upper = 4, .n_lower = 3, .E_below = 30, .shift = 0.02, .gap = 0};
     const std::vector<double> u = Blocks<2>(setting).solve().u;
     setting.swapped = true;
     const std::vector<double> of_swapped = Blocks<2>(setting).solve().u;
@@ -258,15 +270,11 @@ TEST(ContactSegments, OnAFlatInterfaceEitherSideMayBeTheSlave)
 TEST(ContactSegments, AStiffMasterIsAnObstacle)
 {
   const Blocks<2> c({.law = Coulomb(0.3), .p = 2, .n_upper = 3, .n_lower = 3, .E_below = 1e8, .shift = 0.02});
-  const contact::NitscheForm<2> on_obstacle(
-      c.problem, c.space, c.gamma0,
-      [&]
-      {
-        auto segments = contact::obstacle_segments(c.problem, c.mesh, c.gamma0);
-        std::erase_if(segments, [&](const auto& segment)
-                      { return c.problem.boundary(segment.slave.facet.tag).name == "top_below"; });
-        return segments;
-      }());
+  const problem::Problem<2> alone(
+      c.mesh, {{.name = "box", .material = lame(1, 0.3)}, {.name = "box_below", .material = lame(1e8, 0.2)}},
+      {fixed<2>("top", 0.02, -0.05), clamped<2>("bottom_below"),
+       problem::with_contact<2>("bottom", Coulomb(0.3), 0.01)});
+  const contact::NitscheForm<2> on_obstacle(alone, c.space, c.gamma0);
   const auto force = [](const contact::NitscheForm<2>& form)
   { return contact::contact_resultants<2>(form, solve_directly(form).traction).force; };
   const Point<2> expected = force(on_obstacle);
@@ -284,6 +292,36 @@ TEST(ContactSegments, NormalsNeedNotBeThoseOfTheFacets)
   const solve::NewtonResult<2> newton = solve_directly(form);
   const certify::Stress<2> stress = certify::equilibrate<2>(form, newton.u, newton.traction);
   EXPECT_LE(certify::check_identities<2>(form, newton.traction, stress).largest(2), 1e-10);
+}
+
+/// A boundary in a pair has nothing else to do.
+TEST(ContactSegments, BoundariesOfPairsAreInNothingElse)
+{
+  const mesh::Mesh<2> mesh(blocks<2>(1, 1));
+  const auto message = [&](const std::vector<problem::ContactPair<2>>& pairs)
+  {
+    return message_of(
+        [&] { problem::Problem<2>(mesh, {{.material = lame(1, 0.3)}}, {clamped<2>("top")}, pairs); });
+  };
+  const problem::Contact contact{Frictionless()};
+  EXPECT_EQ(message({{{"bottom"}, {"top_below"}, contact}}), "");
+  EXPECT_THAT(message({{{"bottom"}, {"bottom"}, contact}}), HasSubstr("\"bottom\" already is in contact"));
+  EXPECT_THAT(message({{{"bottom"}, {"top_below"}, contact}, {{"right"}, {"top_below"}, contact}}),
+              HasSubstr("\"top_below\" already is in contact"));
+  EXPECT_THAT(message({{{"top"}, {"top_below"}, contact}}), HasSubstr("\"top\" has a condition of its own"));
+  EXPECT_THAT(message({{{}, {"top_below"}, contact}}), HasSubstr("a side of the contact is empty"));
+  EXPECT_THAT(message({{{"bottom"}, {"roof"}, contact}}), HasSubstr("the mesh has no boundary \"roof\""));
+  const problem::Contact tied(problem::Tied(), 0.1);
+  EXPECT_THAT(message({{{"bottom"}, {"top_below"}, tied}}), HasSubstr("a tied contact has no gap"));
+}
+
+TEST(ContactSegments, ASlaveWithoutAnythingOppositeIsAnError)
+{
+  const mesh::Mesh<2> mesh(blocks<2>(1, 1));
+  const problem::Problem<2> problem(mesh, {{.material = lame(1, 0.3)}}, {},
+                                    {{{"bottom"}, {"right_below"}, problem::Contact(Frictionless())}});
+  EXPECT_THAT(message_of([&] { (void)contact::contact_segments<2>(problem, mesh, 10); }),
+              HasSubstr("nothing of the master lies opposite the slave"));
 }
 
 TEST(ContactSegments, NoBoundBetweenBodies)

@@ -22,7 +22,7 @@ using problem::ContactStatus;
 std::vector<ContactLaw> laws()
 {
   std::vector<ContactLaw> all;
-  for (const problem::LawKind& kind : problem::law_kinds())
+  for (const problem::LawKind& kind : problem::obstacle_law_kinds())
   {
     const std::vector<problem::Field> values(kind.keys.size(), problem::Field(0.4));
     all.push_back(kind.make(values));
@@ -92,13 +92,30 @@ TEST(ContactLaw, KindsAreNamedOnceAndMadeFromTheirKeys)
   const std::vector<ContactLaw> all = laws();
   for (std::size_t i = 0; i < all.size(); ++i)
   {
-    const problem::LawKind& kind = problem::law_kinds()[i];
+    const problem::LawKind& kind = problem::obstacle_law_kinds()[i];
     EXPECT_EQ(problem::name(all[i]), kind.name);
     EXPECT_EQ(all[i].index(), i);
     EXPECT_FALSE(problem::words(all[i]).empty());
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
     for (const problem::LawKey& key : kind.keys) EXPECT_TRUE(keys.insert(key.key).second) << key.key;
   }
+}
+
+TEST(ContactLaw, WhatIsTiedCarriesAnything)
+{
+  const ContactLaw tied = problem::Tied();
+  std::mt19937 dice(2);
+  const Point<3> P = random_vector<3>(dice);
+  const problem::LawPoint<3> point{random_vector<3>(dice).normalized()};
+  for (const double delta : {0.0, 0.3})
+  {
+    const problem::Response<3> response = problem::respond<3>(tied, point, P, delta);
+    EXPECT_EQ(response.traction, P);
+    EXPECT_EQ(response.status, ContactStatus::tied);
+    EXPECT_EQ(problem::tangent<3>(tied, point, P, delta), Tensor<3>(Tensor<3>::Identity()));
+  }
+  EXPECT_TRUE(problem::is_linear(tied));
+  for (const ContactLaw& law : laws()) EXPECT_FALSE(problem::is_linear(law));
 }
 
 TEST(ContactLaw, OnlyFrictionResistsSliding)
@@ -108,6 +125,7 @@ TEST(ContactLaw, OnlyFrictionResistsSliding)
   EXPECT_FALSE(cone(problem::Coulomb(0.0)).resists_sliding());
   EXPECT_TRUE(cone(problem::Tresca(problem::Field("x", {}))).resists_sliding());
   EXPECT_TRUE(cone(problem::Coulomb(0.1)).resists_sliding());
+  EXPECT_TRUE(cone(problem::Tied()).resists_sliding());
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     const FacetPoint s = fem::point_in<dim - 1>(piece, rule.points[q]);
     fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
     const Point<dim> x = map(s);
-    const double closing = segment.gamma * problem::gap_at<dim>(*segment.contact, x);
+    const double closing = segment.gamma * segment.gap(s, x);
     Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
@@ -234,7 +234,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result = linearisation(k, stress);
   const contact::ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
-  std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(segment.slave.number);
+  std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(k);
   if (parts.empty()) parts = std::span(&whole, 1);
   std::vector<Integrals> integrals;
   for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));

@@ -199,9 +199,9 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
 {
   constexpr double share = 1e-5;  // of the effect of the data: well below any bound
   if (load_.empty())
-    load_ = contact::assemble_load(contact::DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(),
-                                                              form_.gamma0(), {.share = share}),
-                                   space_);
+    load_ = contact::assemble_load(
+        contact::DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(), {}, {.share = share}),
+        space_);
   return residual(u, load_);
 }
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "tribound/base/types.h"
+#include "tribound/contact/nitsche/simplex_map.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/fem/simplex_parts.h"
-#include "tribound/mesh/geometry.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
 
@@ -38,17 +38,6 @@ struct Datum
   [[nodiscard]] int degree() const;
   /// Whether all terms are.
   [[nodiscard]] bool is_enclosed() const;
-};
-
-/// x = origin + J s maps the reference k-simplex onto a cell or facet.
-template <int k, int dim>
-struct SimplexMap
-{
-  Point<dim> origin;
-  Eigen::Matrix<double, dim, k> jacobian;
-  double measure;
-
-  [[nodiscard]] Point<dim> operator()(const Point<k>& s) const { return origin + jacobian * s; }
 };
 
 /// An upper bound of the distance of a formula from P^{order - 1} on a simplex, in the maximum norm, from its
@@ -124,21 +113,5 @@ class DatumMoments
   int n_;                      ///< dim P^{p+1}
   std::vector<double> theta_;  ///< at the points of the rule, [q * n + j]
 };
-
-/// Of a cell and of a boundary facet.
-template <int dim>
-[[nodiscard]] SimplexMap<dim, dim> simplex_map(const mesh::Mesh<dim>& mesh, Index cell)
-{
-  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
-  return {map.origin, map.jacobian, map.measure()};
-}
-
-template <int dim>
-[[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh,
-                                                   const mesh::BoundaryFacet& facet)
-{
-  const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
-  return {map.origin, map.jacobian, mesh::facet_geometry(mesh, facet.cell, facet.local).measure};
-}
 
 }  // namespace tribound::contact

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "tribound/base/parallel.h"
-#include "tribound/contact/nitsche/penalty.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
@@ -42,16 +41,15 @@ double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
 
 template <int dim>
 DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
-                                double gamma0, const DataAccuracy& accuracy)
+                                Segments segments, const DataAccuracy& accuracy)
     : problem_(problem),
       mesh_(mesh),
       degree_(degree),
-      gamma0_(gamma0),
       cell_moments_(degree, degree - 1),
       facet_moments_(degree, degree),
       size_(mesh::box_around(mesh).diagonal())
 {
-  count_formulas();
+  count_formulas(segments);
   double allowed = 0;
   if (effort_.formulas > 0)
     allowed = accuracy.absolute ? *accuracy.absolute : accuracy.share * largest_effect();
@@ -59,13 +57,13 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
                          fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
   max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts));
-  const Measures all = measures();
+  const Measures all = measures(segments);
   mesh.ranks().together(
       [&]
       {
         represent_body_forces(allowed / std::sqrt(all.body));
         represent_tractions(allowed / std::sqrt(all.boundary));
-        represent_contact(allowed / std::sqrt(all.contact));
+        represent_contact(segments, allowed / std::sqrt(all.contact));
       });
   std::array<std::int64_t, 2> cut{effort_.subdivided, effort_.parts};
   mesh.ranks().sum(std::span(cut));
@@ -74,16 +72,14 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
 }
 
 template <int dim>
-auto DiscreteData<dim>::measures() const -> Measures
+auto DiscreteData<dim>::measures(Segments segments) const -> Measures
 {
   std::array<double, 3> sums{};
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c) sums[0] += simplex_map(mesh_, c).measure;
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
-  {
-    const double area = simplex_map(mesh_, facet).measure;
-    sums[1] += area;
-    if (problem_.boundary(facet.tag).contact) sums[2] += area;
-  }
+    sums[1] += simplex_map(mesh_, facet).measure;
+  for (const ContactSegment<dim>& segment : segments)
+    if (is_owned(segment)) sums[2] += segment.measure;
   mesh_.ranks().sum(std::span(sums));
   return {sums[0], sums[1], sums[2]};
 }
@@ -117,18 +113,18 @@ Datum<dim> DiscreteData<dim>::traction_datum(const mesh::BoundaryFacet& facet) c
 }
 
 template <int dim>
-Datum<dim> DiscreteData<dim>::contact_datum(const mesh::BoundaryFacet& facet, double stiffness) const
+Datum<dim> DiscreteData<dim>::contact_datum(const ContactSegment<dim>& segment) const
 {
-  const problem::Contact& contact = *problem_.boundary(facet.tag).contact;
   Datum<dim> datum;
-  datum.terms.push_back({&contact.gap, stiffness * Point<dim>::Unit(0)});
+  const problem::Contact& contact = *segment.contact;
+  if (contact.gap) datum.terms.push_back({&*contact.gap, segment.gamma * Point<dim>::Unit(0)});
   if (const problem::Field* strength = cone(contact.law).strength)
     datum.terms.push_back({strength, Point<dim>::Unit(1)});
   return datum;
 }
 
 template <int dim>
-void DiscreteData<dim>::count_formulas()
+void DiscreteData<dim>::count_formulas(Segments segments)
 {
   const auto count = [&](const Datum<dim>& datum, bool is_load)
   {
@@ -139,11 +135,9 @@ void DiscreteData<dim>::count_formulas()
   };
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c), true);
-  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
-  {
-    const bool is_contact = problem_.boundary(facet.tag).contact.has_value();
-    count(is_contact ? contact_datum(facet, 1) : traction_datum(facet), !is_contact);
-  }
+  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary()) count(traction_datum(facet), true);
+  for (const ContactSegment<dim>& segment : segments)
+    if (is_owned(segment)) count(contact_datum(segment), false);
   std::array<std::int64_t, 3> sums{effort_.formulas, effort_.loads, effort_.unenclosed};
   mesh_.ranks().sum(std::span(sums));
   effort_.formulas = sums[0];
@@ -172,7 +166,7 @@ double DiscreteData<dim>::largest_effect() const
   {
     const problem::BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
-    if (!boundary.contact) traction += map.measure * std::pow(largest_value(traction_datum(facet), map), 2);
+    traction += map.measure * std::pow(largest_value(traction_datum(facet), map), 2);
     Datum<dim> prescribed;
     for (int i = 0; i < dim; ++i)
       if (boundary.fixes(i)) prescribed.terms.push_back({&*boundary.displacement[i], Point<dim>::Unit(i)});
@@ -186,11 +180,11 @@ double DiscreteData<dim>::largest_effect() const
 
 template <int dim>
 template <int k>
-void DiscreteData<dim>::keep(Represented& represented, std::size_t index, DatumOnSimplex<k, dim>&& found)
+void DiscreteData<dim>::keep(Represented& represented, std::size_t index, bool is_owned,
+                             DatumOnSimplex<k, dim>&& found)
 {
   if (!represented.remainders.empty()) represented.remainders[index] = {found.oscillation, found.mean};
   if (found.moments.empty()) return;
-  const bool is_owned = index < (k == dim ? mesh_.n_owned_cells() : mesh_.n_owned_boundary());
 #pragma omp critical(tribound_discrete_data)
   {
     effort_.subdivided += is_owned ? 1 : 0;
@@ -215,7 +209,7 @@ void DiscreteData<dim>::represent_body_forces(double density)
         if (problem_.body_force_is_constant(mesh_.region(c))) return;
         const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
         const DatumWeights weights{mesh::cell_diameter(mesh_, c) / 3, size_ / std::sqrt(map.measure)};
-        keep(body_, i,
+        keep(body_, i, c < mesh_.n_owned_cells(),
              cell_moments_(body_datum(c), map, weights, density * std::sqrt(map.measure), max_parts_));
       });
 }
@@ -231,62 +225,56 @@ void DiscreteData<dim>::represent_tractions(double density)
   parallel_for(facets.size(),
                [&](std::size_t i)
                {
-                 if (problem_.boundary(facets[i].tag).contact) return;
                  const Datum<dim> datum = traction_datum(facets[i]);
                  if (datum.degree() == 0) return;
                  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
                  const DatumWeights weights{std::sqrt(mesh::cell_diameter(mesh_, facets[i].cell)),
                                             size_ / std::sqrt(simplex_map(mesh_, facets[i].cell).measure)};
-                 keep(traction_, i,
+                 keep(traction_, i, i < mesh_.n_owned_boundary(),
                       facet_moments_(datum, map, weights, density * std::sqrt(map.measure), max_parts_));
                });
 }
 
 template <int dim>
-void DiscreteData<dim>::represent_contact(double density)
+void DiscreteData<dim>::represent_contact(Segments segments, double density)
 {
-  const std::span<const mesh::BoundaryFacet> facets = mesh_.boundary();
-  parallel_for(facets.size(),
-               [&](std::size_t i)
+  parallel_for(segments.size(),
+               [&](std::size_t k)
                {
-                 const mesh::BoundaryFacet& facet = facets[i];
-                 if (!problem_.boundary(facet.tag).contact) return;
-                 const problem::Material& material = problem_.material(mesh_.region(facet.cell));
-                 const double h = mesh::facet_geometry(mesh_, facet.cell, facet.local).diameter;
-                 const double stiffness = gamma0_ * penalty_modulus(material) / h;
-                 const Datum<dim> datum = contact_datum(facet, stiffness);
-                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
+                 const ContactSegment<dim>& segment = segments[k];
+                 const Datum<dim> datum = contact_datum(segment);
+                 if (datum.terms.empty()) return;
+                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
                  DatumOnSimplex<dim - 1, dim> found = facet_moments_(
-                     datum, map, {std::sqrt(h), 0}, density * std::sqrt(map.measure), max_parts_);
-                 for (auto& moment : found.moments) moment[0] /= stiffness;
-                 for (auto& part : found.parts) part.remainder[0] /= stiffness;
-                 check_signs(facet, found);
+                     datum, map, {std::sqrt(segment.h), 0}, density * std::sqrt(map.measure), max_parts_);
+                 for (auto& moment : found.moments) moment[0] /= segment.gamma;
+                 for (auto& part : found.parts) part.remainder[0] /= segment.gamma;
+                 check_signs(segment, found);
                  if (datum.degree() > degree_ + 2)
                  {
                    std::vector<ContactDatumPart<dim>> parts;
                    for (const auto& part : found.parts)
                      parts.push_back({part.part, part.remainder[0], part.remainder[1]});
 #pragma omp critical(tribound_discrete_data)
-                   contact_parts_.emplace(i, std::move(parts));
+                   contact_parts_.emplace(k, std::move(parts));
                  }
-                 keep(contact_, i, std::move(found));
+                 keep(contact_, k, is_owned(segment), std::move(found));
                });
 }
 
 /// Throws where gap or strength is negative at a point of a rule.
 template <int dim>
-void DiscreteData<dim>::check_signs(const mesh::BoundaryFacet& facet,
+void DiscreteData<dim>::check_signs(const ContactSegment<dim>& segment,
                                     const DatumOnSimplex<dim - 1, dim>& found) const
 {
-  const problem::Contact& contact = *problem_.boundary(facet.tag).contact;
-  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
     {
       if (part.values[q].minCoeff() >= 0) continue;
       const Point<dim> x = map(fem::point_in<dim - 1>(part.part, facet_rule().points[q]));
-      (void)problem::gap_at<dim>(contact, x);
-      (void)problem::strength_at<dim>(contact.law, x);
+      if (segment.contact->gap) (void)problem::gap_at<dim>(*segment.contact, x);
+      (void)problem::strength_at<dim>(segment.contact->law, x);
     }
 }
 
@@ -317,33 +305,28 @@ void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values
 }
 
 template <int dim>
-void DiscreteData<dim>::contact(std::size_t facet, std::span<double> gap, std::span<double> strength) const
+void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t k, std::span<double> gap,
+                                std::span<double> strength) const
 {
-  if (const auto found = contact_.moments.find(facet); found != contact_.moments.end())
-  {
-    std::vector<Point<dim>> values(facet_rule().size());
-    facet_moments_.evaluate(found->second, values);
-    for (int q = 0; q < facet_rule().size(); ++q)  // a polynomial in place of a jump overshoots
-    {
-      gap[q] = std::max(values[q][0], 0.0);
-      strength[q] = std::max(values[q][1], 0.0);
-    }
-    return;
-  }
-  const problem::Contact& contact = *problem_.boundary(mesh_.boundary()[facet].tag).contact;
-  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
+  const auto found = contact_.moments.find(k);
+  std::vector<Point<dim>> values(found == contact_.moments.end() ? 0 : facet_rule().size());
+  if (!values.empty()) facet_moments_.evaluate(found->second, values);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
   for (int q = 0; q < facet_rule().size(); ++q)
   {
-    const Point<dim> x = map(facet_rule().points[q]);
-    gap[q] = problem::gap_at<dim>(contact, x);
-    strength[q] = problem::strength_at<dim>(contact.law, x);
+    const Point<dim - 1>& s = facet_rule().points[q];
+    const Point<dim> x = map(s);
+    const bool is_polynomial = !values.empty();  // in place of a jump, where it overshoots
+    gap[q] = is_polynomial && segment.contact->gap ? std::max(values[q][0], 0.0) : segment.gap(s, x);
+    strength[q] =
+        is_polynomial ? std::max(values[q][1], 0.0) : problem::strength_at<dim>(segment.contact->law, x);
   }
 }
 
 template <int dim>
-std::span<const ContactDatumPart<dim>> DiscreteData<dim>::contact_parts(std::size_t facet) const
+std::span<const ContactDatumPart<dim>> DiscreteData<dim>::contact_parts(std::size_t segment) const
 {
-  const auto found = contact_parts_.find(facet);
+  const auto found = contact_parts_.find(segment);
   return found == contact_parts_.end() ? std::span<const ContactDatumPart<dim>>() : found->second;
 }
 

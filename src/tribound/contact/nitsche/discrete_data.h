@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tribound/contact/nitsche/datum_moments.h"
+#include "tribound/contact/nitsche/segment.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
@@ -25,8 +26,8 @@ struct LoadRemainder
   double mean = 0;  ///< >= |integral of f - what the rule makes of it|, also times affine weights of size 1
 };
 
-/// A part of a contact facet on which a rule integrates gap and threshold, up to the remainders: upper bounds
-/// of their distances from P^{p+2}.
+/// A part of a contact segment on which a rule integrates gap and threshold, up to the remainders: upper
+/// bounds of their distances from P^{p+2}.
 template <int dim>
 struct ContactDatumPart
 {
@@ -45,26 +46,28 @@ struct DataAccuracy
 /// How far the data were looked into.
 struct DataEffort
 {
-  std::int64_t formulas = 0;  ///< cells and boundary facets with data that are no polynomials of degree p + 2
-  std::int64_t loads = 0;     ///< of these, those whose data are loads
+  std::int64_t formulas =
+      0;  ///< cells, boundary facets and contact segments with data that are no polynomials of degree p + 2
+  std::int64_t loads = 0;       ///< of these, those whose data are loads
   std::int64_t subdivided = 0;  ///< of these
   std::int64_t parts = 0;       ///< into which these were cut
   std::int64_t unenclosed = 0;  ///< cells and facets with functions of which only values at points are known
 };
 
 /// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
-/// in the reference coordinates of Mesh::cell. Where a formula is subdivided they are those of the polynomial
-/// of degree p + 1 with the same moments. Boundary facets have their numbers in Mesh::boundary(). Keeps
-/// references to problem and mesh. On several ranks, which construct it together, ghosts have data, too.
+/// in the reference coordinates of Mesh::cell, on contact segments in their own. Where a formula is
+/// subdivided they are those of the polynomial of degree p + 1 with the same moments. Boundary facets have
+/// their numbers in Mesh::boundary(). Keeps references to problem and mesh. On several ranks, which construct
+/// it together, ghosts have data, too.
 template <int dim>
 class DiscreteData
 {
  public:
   /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count with the
-  /// stress gamma g, gamma Nitsche's parameter with the given gamma0. Throws InputError for
-  /// a negative gap or threshold and for data that are not finite, naming the place.
-  DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree, double gamma0,
-               const DataAccuracy& accuracy = {});
+  /// stress gamma g. Throws InputError for a negative gap or threshold and for data that are not finite,
+  /// naming the place. Without segments loads alone are known.
+  DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
+               std::span<const ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
   [[nodiscard]] const fem::Quadrature<dim>& cell_rule() const { return cell_moments_.rule(); }
   [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return facet_moments_.rule(); }
@@ -81,8 +84,9 @@ class DiscreteData
   void body_force(Index cell, std::span<Point<dim>> values) const;
   /// g_N on a boundary facet; fixed components are 0.
   void traction(std::size_t facet, std::span<Point<dim>> values) const;
-  /// g and the strength s of the law (0 where it has none) on a contact facet; both >= 0.
-  void contact(std::size_t facet, std::span<double> gap, std::span<double> strength) const;
+  /// g and the strength s >= 0 of the law (0 where it has none) on segment k.
+  void contact(const ContactSegment<dim>& segment, std::size_t k, std::span<double> gap,
+               std::span<double> strength) const;
 
   [[nodiscard]] LoadRemainder body_remainder(Index cell) const
   {
@@ -92,8 +96,8 @@ class DiscreteData
   {
     return traction_.remainders.empty() ? LoadRemainder{} : traction_.remainders[facet];
   }
-  /// Empty where gap and threshold are integrated exactly on the whole facet.
-  [[nodiscard]] std::span<const ContactDatumPart<dim>> contact_parts(std::size_t facet) const;
+  /// In the coordinates of the segment; empty where gap and threshold are integrated exactly on all of it.
+  [[nodiscard]] std::span<const ContactDatumPart<dim>> contact_parts(std::size_t segment) const;
   [[nodiscard]] const DataEffort& effort() const { return effort_; }
 
  private:
@@ -106,8 +110,8 @@ class DiscreteData
 
   [[nodiscard]] Datum<dim> body_datum(Index cell) const;
   [[nodiscard]] Datum<dim> traction_datum(const mesh::BoundaryFacet& facet) const;
-  /// g in direction 0, as the stress `stiffness` g, and s in direction 1.
-  [[nodiscard]] Datum<dim> contact_datum(const mesh::BoundaryFacet& facet, double stiffness) const;
+  /// g in direction 0, as the stress gamma g, where it is given, and s in direction 1.
+  [[nodiscard]] Datum<dim> contact_datum(const ContactSegment<dim>& segment) const;
 
   /// Of the body, its boundary and the contact boundary.
   struct Measures
@@ -117,21 +121,26 @@ class DiscreteData
     double contact;
   };
 
-  [[nodiscard]] Measures measures() const;
-  void count_formulas();
+  using Segments = std::span<const ContactSegment<dim>>;
+
+  [[nodiscard]] bool is_owned(const ContactSegment<dim>& segment) const
+  {
+    return segment.slave.facet.cell < mesh_.n_owned_cells();
+  }
+  [[nodiscard]] Measures measures(Segments segments) const;
+  void count_formulas(Segments segments);
   [[nodiscard]] double largest_effect() const;
   // A cell or facet may leave out `density` times the root of its measure.
   void represent_body_forces(double density);
   void represent_tractions(double density);
-  void represent_contact(double density);
-  void check_signs(const mesh::BoundaryFacet& facet, const DatumOnSimplex<dim - 1, dim>& found) const;
+  void represent_contact(Segments segments, double density);
+  void check_signs(const ContactSegment<dim>& segment, const DatumOnSimplex<dim - 1, dim>& found) const;
   template <int k>
-  void keep(Represented& represented, std::size_t index, DatumOnSimplex<k, dim>&& found);
+  void keep(Represented& represented, std::size_t index, bool is_owned, DatumOnSimplex<k, dim>&& found);
 
   const problem::Problem<dim>& problem_;
   const mesh::Mesh<dim>& mesh_;
   int degree_;
-  double gamma0_;
   DatumMoments<dim, dim> cell_moments_;
   DatumMoments<dim - 1, dim> facet_moments_;
   double size_;        ///< of the bounding box

@@ -135,7 +135,7 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   const auto is_loaded = [&]
   {
     const std::vector<double> load =
-        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), 1.0), space);
+        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), {}), space);
     return mesh.ranks().any(std::ranges::any_of(load, [](double force) { return force != 0; }));
   };
   if (norms.sigma <= round_off && round_off <= negligible * stress_that_matters(problem, space, u) &&

@@ -14,7 +14,7 @@ namespace tribound::contact
 template <int dim>
 NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                               double gamma0, const DataAccuracy& accuracy)
-    : NitscheForm(problem, space, gamma0, obstacle_segments(problem, space.mesh(), gamma0), accuracy)
+    : NitscheForm(problem, space, gamma0, contact_segments(problem, space.mesh(), gamma0), accuracy)
 {
 }
 
@@ -26,9 +26,9 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       space_(&space),
       gamma0_(gamma0),
       constraints_(fem::dirichlet(problem, space)),
-      data_(problem, space.mesh(), space.degree(), gamma0, accuracy),
-      load_(assemble_load(data_, space)),
       segments_(std::move(segments)),
+      data_(problem, space.mesh(), space.degree(), segments_, accuracy),
+      load_(assemble_load(data_, space)),
       n_owned_segments_(
           std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
                                 { return segment.slave.facet.cell < space.mesh().n_owned_cells(); })),
@@ -53,21 +53,14 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
   points.reserve(segments_.size() * facet_rule().size());
   std::vector<double> gap(facet_rule().size());
   std::vector<double> strength(facet_rule().size());
-  for (const ContactSegment<dim>& segment : segments_)
+  for (std::size_t k = 0; k < segments_.size(); ++k)
   {
-    const SegmentSide<dim>& slave = segment.slave;
-    const mesh::FacetMap<dim> map = mesh::facet_map(space_->mesh(), slave.facet.cell, slave.facet.local);
-    if (!slave.part) data_.contact(slave.number, gap, strength);
+    const ContactSegment<dim>& segment = segments_[k];
+    const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment);
+    data_.contact(segment, k, gap, strength);
     for (int q = 0; q < facet_rule().size(); ++q)
-    {
-      const Point<dim> x = map(slave.on_facet(facet_rule().points[q]));
-      if (slave.part)
-      {
-        gap[q] = problem::gap_at<dim>(*segment.contact, x);
-        strength[q] = problem::strength_at<dim>(segment.contact->law, x);
-      }
-      points.push_back({x, segment.det() * facet_rule().weights[q], segment.normal, gap[q], strength[q]});
-    }
+      points.push_back({map(facet_rule().points[q]), segment.det() * facet_rule().weights[q], segment.normal,
+                        gap[q], strength[q]});
   }
   return points;
 }
@@ -241,23 +234,22 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
                                                                 const SegmentTable<dim>& table) const
 {
   const ContactSegment<dim>& segment = segments_[k];
-  const mesh::BoundaryFacet& facet = segment.slave.facet;
   const Point<dim>& n = segment.normal;
-  const mesh::FacetMap<dim> map = mesh::facet_map(space_->mesh(), facet.cell, facet.local);
+  const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment);
   const SegmentValues<dim> on_segment(*problem_, *space_, segment, table);
 
   std::vector<ContactState<dim>> states;
   states.reserve(table.points.size());
   for (int q = 0; q < static_cast<int>(table.points.size()); ++q)
   {
-    const Point<dim> x = map(segment.slave.on_facet(table.points[q]));
-    const double gap = problem::gap_at<dim>(*segment.contact, x);
+    const Point<dim> x = map(table.points[q]);
+    const double gap = segment.gap(table.points[q], x);
     const problem::LawPoint<dim> point{n, problem::strength_at<dim>(segment.contact->law, x)};
     const Point<dim> p = on_segment.augmented_traction(u, q) + segment.gamma * gap * n;
     const auto [traction, limit, status] = problem::respond<dim>(segment.contact->law, point, p);
     const Point<dim> jump = on_segment.jump(u, q);
     const Point<dim> displacement =
-        fem::value_at<dim>(space_->cell_nodes(facet.cell), u, table.slave->values_at(q));
+        fem::value_at<dim>(space_->cell_nodes(segment.slave.facet.cell), u, table.slave->values_at(q));
     states.push_back({x, n, -traction.dot(n), traction, limit, status, gap - jump.dot(n),
                       jump - jump.dot(n) * n, displacement});
   }

@@ -63,11 +63,10 @@ template <int dim>
 class NitscheForm
 {
  public:
-  /// Contact with rigid obstacles. `accuracy` and errors: as DiscreteData.
+  /// Contact on contact_segments(). `accuracy` and errors: as DiscreteData and contact_segments().
   NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
               const DataAccuracy& accuracy = {});
-  /// Contact on the given segments of the mesh. Gaps and strengths on parts of facets are those of the
-  /// formulas at the points.
+  /// Contact on the given segments of the mesh.
   NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
               std::vector<ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
@@ -153,9 +152,9 @@ class NitscheForm
   const fem::LagrangeSpace<dim>* space_;
   double gamma0_;
   fem::Constraints constraints_;
+  std::vector<ContactSegment<dim>> segments_;
   DiscreteData<dim> data_;
   std::vector<double> load_;
-  std::vector<ContactSegment<dim>> segments_;
   std::size_t n_owned_segments_;
   std::vector<ContactPoint<dim>> points_;
   SegmentTables<dim> tables_;  ///< at the contact points

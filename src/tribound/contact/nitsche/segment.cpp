@@ -1,8 +1,8 @@
 #include "tribound/contact/nitsche/segment.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "tribound/base/error.h"
 #include "tribound/contact/nitsche/penalty.h"
 
 namespace tribound::contact
@@ -34,22 +34,49 @@ WeighedSide<dim> weigh(const problem::Problem<dim>& problem, const mesh::Mesh<di
           penalty_modulus(problem.material(mesh.region(facet.cell))) / geometry.diameter};
 }
 
+/// (Pi(x) - x).n at the corners.
+template <int dim>
+std::array<double, dim> distances(const mesh::Mesh<dim>& mesh, const WeighedSide<dim>& slave,
+                                  const WeighedSide<dim>& master)
+{
+  const auto map_of = [&](const WeighedSide<dim>& side)
+  { return mesh::facet_map(mesh, side.side.facet.cell, side.side.facet.local); };
+  const mesh::FacetMap<dim> on_slave = map_of(slave);
+  const mesh::FacetMap<dim> on_master = map_of(master);
+  std::array<double, dim> result;
+  const auto corners = fem::reference_simplex<dim - 1>();
+  for (int i = 0; i < dim; ++i)
+    result[i] = slave.geometry.normal.dot(on_master(master.side.on_facet(corners[i])) -
+                                          on_slave(slave.side.on_facet(corners[i])));
+  return result;
+}
+
 }  // namespace
 
 template <int dim>
+SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment)
+{
+  SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave.facet);
+  if (!segment.slave.part) return map;
+  const fem::Part<dim - 1>& part = *segment.slave.part;
+  Eigen::Matrix<double, dim - 1, dim - 1> edges;
+  for (int i = 1; i < dim; ++i) edges.col(i - 1) = part[i] - part[0];
+  return {map(part[0]), map.jacobian * edges, segment.measure};
+}
+
+template <int dim>
 ContactSegment<dim> make_segment(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                                 double gamma0, const FacetPart<dim>& slave,
+                                 double gamma0, const problem::Contact& contact, const FacetPart<dim>& slave,
                                  const std::optional<FacetPart<dim>>& master)
 {
   WeighedSide<dim> s = weigh(problem, mesh, slave, 1);
-  const auto& contact = problem.boundary(s.side.facet.tag).contact;
-  assert(contact);
   ContactSegment<dim> segment{.slave = {},
                               .normal = s.geometry.normal,
                               .measure = s.measure,
                               .h = s.geometry.diameter,
                               .gamma = gamma0 * s.stiffness,
-                              .contact = &*contact};
+                              .contact = &contact,
+                              .distance = {}};
   s.side.stress_direction = s.geometry.normal;
   if (master)
   {
@@ -61,6 +88,7 @@ ContactSegment<dim> make_segment(const problem::Problem<dim>& problem, const mes
     m.side.stress_direction = -(s.stiffness / sum * stretch) * m.geometry.normal;
     segment.gamma = gamma0 * s.stiffness * c_m / sum;
     segment.h = std::min(segment.h, m.geometry.diameter);
+    segment.distance = distances(mesh, s, m);
     segment.master = std::move(m.side);
   }
   segment.slave = std::move(s.side);
@@ -68,23 +96,42 @@ ContactSegment<dim> make_segment(const problem::Problem<dim>& problem, const mes
 }
 
 template <int dim>
-std::vector<ContactSegment<dim>> obstacle_segments(const problem::Problem<dim>& problem,
-                                                   const mesh::Mesh<dim>& mesh, double gamma0)
+std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& problem,
+                                                  const mesh::Mesh<dim>& mesh, double gamma0)
 {
   std::vector<ContactSegment<dim>> segments;
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
-    if (problem.boundary(mesh.boundary()[number].tag).contact)
-      segments.push_back(make_segment<dim>(problem, mesh, gamma0, {number}));
+    if (const auto& contact = problem.boundary(mesh.boundary()[number].tag).contact)
+      segments.push_back(make_segment<dim>(problem, mesh, gamma0, *contact, {number}));
+  for (std::size_t k = 0; k < problem.pairs().size(); ++k)
+  {
+    const problem::ContactPair<dim>& pair = problem.pairs()[k];
+    if (mesh.partition())
+      throw InputError(pair.where, "contact between bodies runs on one process", "start one process");
+    const std::vector<FacetPair<dim>> parts =
+        overlay<dim>(mesh, mesh::facets_named(mesh, pair.slave), mesh::facets_named(mesh, pair.master),
+                     pair.pairing, pair.where);
+    if (parts.empty())
+      throw InputError(pair.where, "nothing of the master lies opposite the slave",
+                       "the outward normals of slave and master must face each other, within reach");
+    for (const auto& [slave, master] : parts)
+      segments.emplace_back(make_segment<dim>(problem, mesh, gamma0, pair.contact, slave, master)).pair =
+          static_cast<int>(k);
+  }
   return segments;
 }
 
+template SimplexMap<1, 2> simplex_map(const mesh::Mesh<2>&, const ContactSegment<2>&);
+template SimplexMap<2, 3> simplex_map(const mesh::Mesh<3>&, const ContactSegment<3>&);
 template ContactSegment<2> make_segment(const problem::Problem<2>&, const mesh::Mesh<2>&, double,
-                                        const FacetPart<2>&, const std::optional<FacetPart<2>>&);
+                                        const problem::Contact&, const FacetPart<2>&,
+                                        const std::optional<FacetPart<2>>&);
 template ContactSegment<3> make_segment(const problem::Problem<3>&, const mesh::Mesh<3>&, double,
-                                        const FacetPart<3>&, const std::optional<FacetPart<3>>&);
-template std::vector<ContactSegment<2>> obstacle_segments(const problem::Problem<2>&, const mesh::Mesh<2>&,
-                                                          double);
-template std::vector<ContactSegment<3>> obstacle_segments(const problem::Problem<3>&, const mesh::Mesh<3>&,
-                                                          double);
+                                        const problem::Contact&, const FacetPart<3>&,
+                                        const std::optional<FacetPart<3>>&);
+template std::vector<ContactSegment<2>> contact_segments(const problem::Problem<2>&, const mesh::Mesh<2>&,
+                                                         double);
+template std::vector<ContactSegment<3>> contact_segments(const problem::Problem<3>&, const mesh::Mesh<3>&,
+                                                         double);
 
 }  // namespace tribound::contact

@@ -4,10 +4,13 @@
 /// The contact boundary in segments: parts of a facet of the body with what it may touch there, a rigid
 /// obstacle or one facet of a body. All contact integrals are sums over segments.
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "tribound/base/types.h"
+#include "tribound/contact/nitsche/simplex_map.h"
+#include "tribound/contact/pairing/pairing.h"
 #include "tribound/fem/simplex_parts.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/problem/problem.h"
@@ -51,6 +54,17 @@ struct ContactSegment
   double h;        ///< the smaller diameter of the facets
   double gamma;    ///< gamma_0 c, c the harmonic sum of modulus / diameter of the sides
   const problem::Contact* contact;
+  int pair = -1;                     ///< number in Problem::pairs(); -1: an obstacle
+  std::array<double, dim> distance;  ///< (Pi(x) - x).n at the corners; 0 against an obstacle
+
+  /// g at the point with coordinates s on the segment, which is x.
+  [[nodiscard]] double gap(const Point<dim - 1>& s, const Point<dim>& x) const
+  {
+    if (contact->gap) return problem::gap_at<dim>(*contact, x);
+    double sum = distance[0];
+    for (int i = 1; i < dim; ++i) sum += s[i - 1] * (distance[i] - distance[0]);
+    return sum;
+  }
 
   /// |segment| / |reference facet|.
   [[nodiscard]] double det() const { return mesh::factorial<dim - 1> * measure; }
@@ -65,27 +79,25 @@ struct ContactSegment
   [[nodiscard]] bool is_obstacle_facet() const { return !master && !slave.part; }
 };
 
-/// A boundary facet, or the part of it with the given corners.
+/// The points of a segment on the slave, by their coordinates on the segment.
 template <int dim>
-struct FacetPart
-{
-  std::size_t number;  ///< in Mesh::boundary()
-  std::optional<fem::Part<dim - 1>> part{};
-};
+[[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh,
+                                                   const ContactSegment<dim>& segment);
 
-/// The segment between parts of the slave, whose boundary has contact, and of the master, or an obstacle. The
-/// sides are weighted by their stiffness, with M = the penalty modulus of a side, J = dM/dS:
+/// The segment between parts of the slave and of the master, or an obstacle. It keeps a pointer to `contact`.
+/// The sides are weighted by their stiffness, with M = the penalty modulus of a side, J = dM/dS:
 ///     c_s = M_s/h_s,  c_m = J M_m/h_m,  w_s = c_m/(c_s + c_m),  w_m = c_s/(c_s + c_m),
 ///     gamma = gamma_0 c_s c_m/(c_s + c_m);  against an obstacle w_s = 1, gamma = gamma_0 c_s.
 template <int dim>
 [[nodiscard]] ContactSegment<dim> make_segment(const problem::Problem<dim>& problem,
                                                const mesh::Mesh<dim>& mesh, double gamma0,
-                                               const FacetPart<dim>& slave,
+                                               const problem::Contact& contact, const FacetPart<dim>& slave,
                                                const std::optional<FacetPart<dim>>& master = {});
 
-/// The facets of Gamma_C against rigid obstacles, each a segment.
+/// All of Gamma_C: the facets against rigid obstacles, each a segment, then the overlays of the pairs. Throws
+/// InputError as overlay() does, where nothing of a slave is covered, and for pairs on several ranks.
 template <int dim>
-[[nodiscard]] std::vector<ContactSegment<dim>> obstacle_segments(const problem::Problem<dim>& problem,
-                                                                 const mesh::Mesh<dim>& mesh, double gamma0);
+[[nodiscard]] std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& problem,
+                                                                const mesh::Mesh<dim>& mesh, double gamma0);
 
 }  // namespace tribound::contact

@@ -68,11 +68,12 @@ template <int dim>
 class SlaveFacet
 {
  public:
-  SlaveFacet(const Side<dim>& slave, const Pairing<dim>& pairing) : slave_(slave), reach_(pairing.reach)
+  SlaveFacet(const Side<dim>& slave, const problem::Pairing<dim>& pairing, const Where& where)
+      : slave_(slave), reach_(pairing.reach), where_(where)
   {
     e_ = pairing.direction ? pairing.direction->normalized() : slave.geometry.normal;
     if (!(e_.dot(slave.geometry.normal) > facing))
-      throw InputError({},
+      throw InputError(where_,
                        fmt::format("the direction of a pairing does not point out of the slave at {}",
                                    mesh::describe(slave.centre())),
                        "a direction within 84 degrees of every outward normal of the slave");
@@ -210,7 +211,7 @@ class SlaveFacet
                                                    { return lead(corner.slave) >= -size; });
     if (!is_nearer)
       throw InputError(
-          {},
+          where_,
           fmt::format("the pairing is ambiguous: opposite {} two facets of the master lie {:.6g} and "
                       "{:.6g} away, and neither is the nearer throughout",
                       mesh::describe(slave_.map(centre)), near.distance_at(centre), far.distance_at(centre)),
@@ -219,6 +220,7 @@ class SlaveFacet
 
   const Side<dim>& slave_;
   double reach_;
+  const Where& where_;
   Point<dim> e_;
   Tensor<dim> to_frame_;  ///< of x - x_0: s on the plane of the facet, and l
   std::vector<Candidate<dim>> candidates_;
@@ -228,7 +230,8 @@ class SlaveFacet
 
 template <int dim>
 std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh, std::span<const std::size_t> slave,
-                                    std::span<const std::size_t> master, const Pairing<dim>& pairing)
+                                    std::span<const std::size_t> master, const problem::Pairing<dim>& pairing,
+                                    const Where& where)
 {
   std::vector<Side<dim>> masters;
   std::vector<mesh::BoundingBox<dim>> boxes;
@@ -238,7 +241,7 @@ std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh, std::span<const
   for (const std::size_t number : slave)
   {
     const Side<dim> side(mesh, number);
-    SlaveFacet<dim> facet(side, pairing);
+    SlaveFacet<dim> facet(side, pairing, where);
     // Whatever lies opposite a point of the facet is within its diameter of the line through its centre.
     const double radius = side.geometry.diameter;
     const double farthest = pairing.reach + radius / facing;  // by so much l may change on the facet
@@ -256,8 +259,10 @@ std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh, std::span<const
 }
 
 template std::vector<FacetPair<2>> overlay(const mesh::Mesh<2>&, std::span<const std::size_t>,
-                                           std::span<const std::size_t>, const Pairing<2>&);
+                                           std::span<const std::size_t>, const problem::Pairing<2>&,
+                                           const Where&);
 template std::vector<FacetPair<3>> overlay(const mesh::Mesh<3>&, std::span<const std::size_t>,
-                                           std::span<const std::size_t>, const Pairing<3>&);
+                                           std::span<const std::size_t>, const problem::Pairing<3>&,
+                                           const Where&);
 
 }  // namespace tribound::contact

@@ -4,17 +4,25 @@
 /// What lies opposite what: the overlay of two boundaries whose meshes need not match.
 
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "tribound/base/types.h"
-#include "tribound/contact/nitsche/segment.h"
+#include "tribound/fem/simplex_parts.h"
 #include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
 
 namespace tribound::contact
 {
+
+/// A boundary facet, or the part of it with the given corners.
+template <int dim>
+struct FacetPart
+{
+  std::size_t number;  ///< in Mesh::boundary()
+  std::optional<fem::Part<dim - 1>> part{};
+};
 
 /// A part of a slave facet, and the part of a master facet onto which Pi takes it corner by corner.
 template <int dim>
@@ -22,15 +30,6 @@ struct FacetPair
 {
   FacetPart<dim> slave;
   FacetPart<dim> master;
-};
-
-/// How Pi finds a partner.
-template <int dim>
-struct Pairing
-{
-  /// e, of any length; absent: the outward normal of each slave facet.
-  std::optional<Point<dim>> direction{};
-  double reach = std::numeric_limits<double>::infinity();  ///< largest |Pi(x) - x|
 };
 
 /// The overlay of the boundary facets with the given numbers, in the undeformed configuration:
@@ -45,11 +44,12 @@ struct Pairing
 /// harms no guarantee. In the order of the slave facets, then of the numbers of the master's. O(n log n).
 ///
 /// InputError where e.n_F <= 0.1, and where two master facets are equally far or change their order: the
-/// pairing is then ambiguous.
+/// pairing is then ambiguous. `where` is for messages.
 template <int dim>
 [[nodiscard]] std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh,
                                                   std::span<const std::size_t> slave,
                                                   std::span<const std::size_t> master,
-                                                  const Pairing<dim>& pairing = {});
+                                                  const problem::Pairing<dim>& pairing = {},
+                                                  const Where& where = {});
 
 }  // namespace tribound::contact

@@ -131,19 +131,20 @@ auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::Vect
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
   const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
-  for (std::size_t k = 0; k < body_.facets.size(); ++k)
+  for (std::size_t k = 0; k < segments_.size(); ++k)
   {
-    const mesh::BoundaryFacet& facet = body_.facets[k];
-    const auto& contact = problem_.boundary(facet.tag).contact;
-    if (!contact || problem::cone(contact->law).strength == nullptr) continue;
-    const mesh::FacetMap<dim> map = mesh::facet_map(mesh_, facet.cell, facet.local);
-    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh_, facet.cell, facet.local);
+    const ContactSegment<dim>& segment = segments_[k];
+    const problem::ContactLaw& law = segment.contact->law;
+    if (problem::cone(law).strength == nullptr ||
+        !std::ranges::binary_search(body_.numbers, segment.slave.number))
+      continue;
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
     const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
-    { return z_x - z_x.dot(geometry.normal) * geometry.normal; };
-    const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(body_.numbers[k]);
+    { return z_x - z_x.dot(segment.normal) * segment.normal; };
+    const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(k);
     for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
     {
-      const double measure = geometry.measure * fem::fraction<dim - 1>(part);
+      const double measure = segment.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
       for (const Point<dim - 1>& s : part)
         largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
@@ -155,7 +156,7 @@ auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::Vect
         const Point<dim> z_t = tangential(at_x * z);
         if (z_t.norm() <= 1e-12 * z.norm()) continue;
         const double force =
-            measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(contact->law, x);
+            measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(law, x);
         result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
         result.most += force * z_t.norm();
       }

@@ -24,10 +24,12 @@ class BodyCheck
  public:
   using Coefficients = typename RigidModes<dim>::Coefficients;
 
-  BodyCheck(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, const DiscreteData<dim>& data,
+  BodyCheck(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+            std::span<const ContactSegment<dim>> segments, const DiscreteData<dim>& data,
             const Body<dim>& body, std::string name)
       : problem_(problem),
         mesh_(mesh),
+        segments_(segments),
         data_(data),
         body_(body),
         support_(problem, mesh, body),
@@ -74,6 +76,7 @@ class BodyCheck
 
   const problem::Problem<dim>& problem_;
   const mesh::Mesh<dim>& mesh_;
+  std::span<const ContactSegment<dim>> segments_;
   const DiscreteData<dim>& data_;
   const Body<dim>& body_;
   BodySupport<dim> support_;

@@ -13,7 +13,8 @@ namespace tribound::contact
 
 template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                         const DiscreteData<dim>& data, std::span<const double> load)
+                         std::span<const ContactSegment<dim>> segments, const DiscreteData<dim>& data,
+                         std::span<const double> load)
 {
   assert(!space.mesh().partition());
   constexpr double relative_round_off = 1e-11;
@@ -21,7 +22,8 @@ void check_rigid_motions(const problem::Problem<dim>& problem, const fem::Lagran
   const std::vector<Point<dim>> points = space.node_points();
   for (const Body<dim>& body : bodies)
   {
-    const BodyCheck<dim> check(problem, space.mesh(), data, body, describe(body, problem, bodies.size() > 1));
+    const BodyCheck<dim> check(problem, space.mesh(), segments, data, body,
+                               describe(body, problem, bodies.size() > 1));
     check.check_held();
 
     typename BodyCheck<dim>::Coefficients work =
@@ -41,14 +43,17 @@ template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree)
 {
   const fem::LagrangeSpace<dim> space(mesh, degree);
-  const DiscreteData<dim> data(problem, mesh, degree, 1.0);
-  check_rigid_motions<dim>(problem, space, data, assemble_load<dim>(data, space));
+  const std::vector<ContactSegment<dim>> segments = contact_segments(problem, mesh, 1.0);
+  const DiscreteData<dim> data(problem, mesh, degree, segments);
+  check_rigid_motions<dim>(problem, space, segments, data, assemble_load<dim>(data, space));
 }
 
 template void check_rigid_motions(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                  const DiscreteData<2>&, std::span<const double>);
+                                  std::span<const ContactSegment<2>>, const DiscreteData<2>&,
+                                  std::span<const double>);
 template void check_rigid_motions(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                  const DiscreteData<3>&, std::span<const double>);
+                                  std::span<const ContactSegment<3>>, const DiscreteData<3>&,
+                                  std::span<const double>);
 template void check_rigid_motions(const problem::Problem<2>&, const mesh::Mesh<2>&, int);
 template void check_rigid_motions(const problem::Problem<3>&, const mesh::Mesh<3>&, int);
 

@@ -24,11 +24,12 @@ namespace tribound::contact
 ///    an eight-sided one around it, and integrals of loads and of s |z^t| count with their quadrature error.
 ///    So what is refused has no solution, but some cases without one pass.
 /// Bodies that displacement conditions hold by themselves pass at once. The mesh is a whole one: before it is
-/// shared out or later, since refinement changes neither bodies nor supports. `load`: L(phi_i) for every
-/// degree of freedom, up to the remainders of the data.
+/// shared out or later, since refinement changes neither bodies nor supports. `data` is that of the segments,
+/// `load` L(phi_i) for every degree of freedom, up to the remainders of the data.
 template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                         const DiscreteData<dim>& data, std::span<const double> load);
+                         std::span<const ContactSegment<dim>> segments, const DiscreteData<dim>& data,
+                         std::span<const double> load);
 
 /// The same from the mesh alone.
 template <int dim>

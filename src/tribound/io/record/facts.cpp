@@ -93,7 +93,7 @@ std::string describe(const problem::BoundaryCondition<dim>& condition)
     add("traction " + vector([&](int i) { return text(condition.traction[i]); }));
   if (condition.pressure) add("pressure " + text(*condition.pressure));
   if (condition.contact)
-    add("contact, " + problem::words(condition.contact->law) + ", gap " + text(condition.contact->gap));
+    add("contact, " + problem::words(condition.contact->law) + ", gap " + text(*condition.contact->gap));
   return words.empty() ? "traction-free" : words;
 }
 
