@@ -101,16 +101,21 @@ class Merger
     const Pair<dim> pair(cell, fields_.cells[other]);
     unite_u(pair, u_of(n), u_of(other));
     unite_stress(stress_of(n), stress_of(other));
-    if (!fields_.components.empty())
-      for (const certify::Component& c : certify::all_components)
-        fields_.components[n].*c.value =
-            std::hypot(fields_.components[n].*c.value, fields_.components[other].*c.value);
+    if (!fields_.components.empty()) unite_components(fields_.components[n], fields_.components[other]);
     mesh::CellRecord<dim> whole = cell;
     whole.name = cell.name.parent();
     whole.vertices[0] = cell.vertices[pair.order[0][0]];
     whole.vertices[1] = fields_.cells[other].vertices[pair.order[1][0]];
     for (int k = 2; k <= dim; ++k) whole.vertices[k] = cell.vertices[pair.order[0][k]];
     cell = whole;
+  }
+
+  static void unite_components(certify::BoundComponents& first, const certify::BoundComponents& second)
+  {
+    const double stress = std::hypot(first.stress(), second.stress());
+    for (const certify::Component& c : certify::all_components)
+      first.*c.value = std::hypot(first.*c.value, second.*c.value);
+    if (first.mor > 0) first.str_mor = stress;
   }
 
   void unite_u(const Pair<dim>& pair, std::span<double> first, std::span<const double> second)

@@ -41,7 +41,8 @@ void add_data(const SolvedFigures& solved, std::vector<Finding>& warnings)
   if (solved.bound->total_sharp <= round_off * solved.sigma_norm) return;
   const certify::BoundComponents& eta = solved.bound->global;
   double squares = 0;
-  for (const certify::Component& c : certify::all_components) squares += eta.*c.value * eta.*c.value;
+  for (const certify::Component& c : certify::all_components)
+    if (c.is_summand()) squares += eta.*c.value * eta.*c.value;
   const auto add = [&](const char* code, double component, const char* name, const char* text)
   {
     const double share = component * component / squares;

@@ -38,28 +38,29 @@ DiscreteProblem<dim> unit_block(int p, const problem::Field& gap,
           {.degree = p, .gamma0 = 1}};
 }
 
-/// No stress at all: what is left of cnt and frc is the norm of T(u).
 template <int dim>
-certify::Stress<dim> no_stress(const DiscreteProblem<dim>& c)
+using Tractions = typename certify::Stress<dim>::Tractions;
+
+/// The same traction everywhere in the place of T(u), by default none: what is left of cnt and frc is the
+/// norm of T(u).
+template <int dim>
+Tractions<dim> constant_traction(const DiscreteProblem<dim>& c, const Point<dim>& t = Point<dim>::Zero())
 {
-  certify::Stress<dim> stress;
-  stress.degree = c.method.degree;
-  stress.n = fem::polynomial_dimension(dim, stress.degree);
-  stress.dis.assign(c.mesh.n_cells() * stress.block_size(), 0.0);
-  stress.lin_block.assign(c.mesh.n_cells(), -1);
-  return stress;
+  return {std::vector<Point<dim>>(c.form.n_contact_points(), t),
+          std::vector<Point<dim>>(c.form.n_contact_points(), Point<dim>::Zero()),
+          {}};
 }
 
 template <int dim>
 certify::ContactSquares sum_over_facets(const DiscreteProblem<dim>& c, const std::vector<double>& u,
                                         certify::ContactRule rule)
 {
-  const certify::Stress<dim> stress = no_stress(c);
+  const Tractions<dim> none = constant_traction(c);
   const certify::ContactTerms<dim> terms(c.form, rule);
   certify::ContactSquares sum;
   for (std::size_t k = 0; k < c.form.segments().size(); ++k)
   {
-    const certify::ContactSquares squares = terms(static_cast<int>(k), u, stress);
+    const certify::ContactSquares squares = terms(static_cast<int>(k), u, none);
     const double h = c.form.segments()[k].h;
     sum.cnt += squares.cnt / h;
     sum.frc += squares.frc / h;
@@ -117,16 +118,13 @@ TEST(ContactTerms, TheDirectionOfSlipIsResolvedIn3D)
   const DiscreteProblem<3> block = unit_block<3>(1, 0, Tresca(s));
   const std::vector<double> u =
       interpolate<3>(block.space, [](const Point<3>& x) { return Point<3>(1, 0, 2 * x[2] - 1); });
-  certify::Stress<3> stress = no_stress(block);
-  for (Index cell = 0; cell < block.mesh.n_cells(); ++cell)  // sigma_xy = -c, the normal is -e_y
-    stress.dis[cell * stress.block_size() + stress.n] =
-        -c * std::sqrt(mesh::cell_map(block.mesh, cell).measure());
+  const Tractions<3> given = constant_traction(block, Point<3>(c, 0, 0));
   const double exact = s * s + 2 * s * c * std::asinh(1) + c * c;
   const auto frc = [&](certify::ContactRule rule)
   {
     const certify::ContactTerms<3> terms(block.form, rule);
     double sum = 0;
-    for (int k = 0; k < 2; ++k) sum += terms(k, u, stress).frc / block.form.segments()[k].h;
+    for (int k = 0; k < 2; ++k) sum += terms(k, u, given).frc / block.form.segments()[k].h;
     return sum;
   };
   EXPECT_NEAR(frc(certify::ContactRule::resolved), exact, 1e-6 * exact);
@@ -140,13 +138,9 @@ TEST(ContactTerms, UniformSlipIn3DLeavesRounding)
   const DiscreteProblem<3> block = unit_block<3>(1, 0, Tresca(s));
   const Point<3> direction = Point<3>(0.6, 0, 0.8);
   const std::vector<double> u = interpolate<3>(block.space, [&](const Point<3>&) { return direction; });
-  certify::Stress<3> stress = no_stress(block);
-  for (Index cell = 0; cell < block.mesh.n_cells(); ++cell)  // sigma n = -s direction: the normal is -e_y
-    for (const int row : {0, 2})
-      stress.dis[cell * stress.block_size() + (3 * row + 1) * stress.n] =
-          s * direction[row] * std::sqrt(mesh::cell_map(block.mesh, cell).measure());
+  const Tractions<3> own = constant_traction<3>(block, -s * direction);
   const certify::ContactTerms<3> terms(block.form, certify::ContactRule::resolved);
-  for (int k = 0; k < 2; ++k) EXPECT_LE(terms(k, u, stress).frc, 1e-26);
+  for (int k = 0; k < 2; ++k) EXPECT_LE(terms(k, u, own).frc, 1e-26);
 }
 
 TEST(ContactTerms, WithoutAKinkBothRulesAgreeToTheLastBit)

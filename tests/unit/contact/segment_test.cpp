@@ -22,7 +22,6 @@
 #include "support/problem_data.h"
 #include "tribound/base/error.h"
 #include "tribound/certify/bound/checks.h"
-#include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/penalty.h"
@@ -322,12 +321,6 @@ TEST(ContactSegments, ASlaveWithoutAnythingOppositeIsAnError)
                                     {{{"bottom"}, {"right_below"}, problem::Contact(Frictionless())}});
   EXPECT_THAT(message_of([&] { (void)contact::contact_segments<2>(problem, mesh, 10); }),
               HasSubstr("nothing of the master lies opposite the slave"));
-}
-
-TEST(ContactSegments, NoBoundBetweenBodies)
-{
-  const Blocks<2> c({});
-  EXPECT_THROW(certify::Estimator<2>{c.form}, InputError);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace tribound::certify
 
 double BoundComponents::body() const
 {
-  return osc + str + neu + lin1 + reg1;
+  return osc + stress() + neu + lin1 + reg1;
 }
 
 double BoundComponents::contact() const
@@ -17,7 +17,7 @@ double BoundComponents::contact() const
 
 double BoundComponents::total() const
 {
-  return std::hypot(body(), cnt + frc + lin2n + lin2t + reg2n + reg2t);
+  return std::hypot(osc + str + mor + neu + lin1 + reg1, cnt + frc + lin2n + lin2t + reg2n + reg2t);
 }
 
 double BoundComponents::total_sharp() const
@@ -35,6 +35,8 @@ const char* to_string(BoundPart part)
       return "normal";
     case BoundPart::tangential:
       return "tangential";
+    case BoundPart::combined:
+      return "combined";
     case BoundPart::whole:
       break;
   }

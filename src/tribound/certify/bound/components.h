@@ -23,20 +23,26 @@ struct BoundComponents
   double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
   double quad =
       0;  ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
-  double reg1 = 0;   ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
-  double reg2n = 0;  ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
-  double reg2t = 0;  ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
+  double reg1 = 0;     ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
+  double reg2n = 0;    ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
+  double reg2t = 0;    ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
+  double mor = 0;      ///< ||tau||: what tractions lose between meshes that do not match; 0 without pairs
+  double str_mor = 0;  ///< ||sigma_dis + tau - sigma(u)|| <= str + mor, in total_sharp() in their place; 0
+                       ///< where mor is
 
-  /// osc + str + neu + lin1 + reg1: what belongs to the body.
+  /// ||sigma_dis + tau - sigma(u)||: str where nothing is lost between meshes.
+  [[nodiscard]] double stress() const { return mor > 0 ? str_mor : str; }
+  /// osc + stress() + neu + lin1 + reg1: what belongs to the body.
   [[nodiscard]] double body() const;
   /// ((cnt + lin2n + reg2n)^2 + (frc + lin2t + reg2t)^2)^{1/2}: what belongs to the contact conditions.
   [[nodiscard]] double contact() const;
-  /// (a^2 + b^2)^{1/2} with a = body() and b = cnt + frc + lin2n + lin2t + reg2n + reg2t [FD24].
+  /// (a^2 + b^2)^{1/2} with a = osc + str + mor + neu + lin1 + reg1 and b = cnt + frc + lin2n + lin2t + reg2n
+  /// + reg2t [FD24].
   [[nodiscard]] double total() const;
-  /// The same with b = contact(): normal and tangential part are orthogonal.
+  /// The same with a = body() and b = contact(): normal and tangential part are orthogonal.
   [[nodiscard]] double total_sharp() const;
-  /// osc + str + neu + cnt + frc + quad: neither Newton's method nor the regularisation.
-  [[nodiscard]] double discretisation() const { return osc + str + neu + cnt + frc + quad; }
+  /// osc + str + mor + neu + cnt + frc + quad: neither Newton's method nor the regularisation.
+  [[nodiscard]] double discretisation() const { return osc + str + mor + neu + cnt + frc + quad; }
   [[nodiscard]] double linearisation() const { return lin1 + lin2n + lin2t; }
   [[nodiscard]] double regularisation() const { return reg1 + reg2n + reg2t; }
 };
@@ -47,6 +53,7 @@ enum class BoundPart
   body,        ///< of the cells
   normal,      ///< of the cells on Gamma_C
   tangential,  ///< of the cells on Gamma_C
+  combined,    ///< of the cells: the norm of a sum, in the place of those of its terms
   whole        ///< of no single cell
 };
 
@@ -70,6 +77,7 @@ struct Component
   BoundPart part;
   BoundCause cause;
 
+  [[nodiscard]] constexpr bool is_summand() const { return part != BoundPart::combined; }
   [[nodiscard]] constexpr bool is_of_cells() const { return part != BoundPart::whole; }
   [[nodiscard]] constexpr bool is_on_contact() const
   {
@@ -78,7 +86,7 @@ struct Component
 };
 
 /// In the order of all files and tables.
-inline constexpr std::array<Component, 12> all_components = {{
+inline constexpr std::array<Component, 14> all_components = {{
     {"osc", &BoundComponents::osc, "data oscillation", BoundPart::body, BoundCause::discretisation},
     {"str", &BoundComponents::str, "stress", BoundPart::body, BoundCause::discretisation},
     {"neu", &BoundComponents::neu, "Neumann data", BoundPart::body, BoundCause::discretisation},
@@ -95,18 +103,22 @@ inline constexpr std::array<Component, 12> all_components = {{
      BoundCause::regularisation},
     {"reg2t", &BoundComponents::reg2t, "regularisation, tangential", BoundPart::tangential,
      BoundCause::regularisation},
+    {"mor", &BoundComponents::mor, "transfer between meshes", BoundPart::body, BoundCause::discretisation},
+    {"str_mor", &BoundComponents::str_mor, "stress with transfer", BoundPart::combined,
+     BoundCause::discretisation},
 }};
 
 /// Those of every run.
 inline constexpr std::span plain_components = std::span(all_components).first<9>();
 
 /// Those that a regularised run has beside them.
-inline constexpr std::span regularisation_components = std::span(all_components).last<3>();
+inline constexpr std::span regularisation_components = std::span(all_components).subspan<9, 3>();
 
 /// Those that a run has.
 [[nodiscard]] constexpr std::span<const Component> components_of_run(bool regularised)
 {
-  return std::span(all_components).first(regularised ? all_components.size() : plain_components.size());
+  return std::span(all_components)
+      .first(plain_components.size() + (regularised ? regularisation_components.size() : 0));
 }
 
 }  // namespace tribound::certify

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tribound/certify/bound/obstacles.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
@@ -45,14 +44,14 @@ bool is_rough(const Kinks& kinks)
   return kinks.possible || (dim == 3 && kinks.slips);
 }
 
-/// h_F |F| / |Fhat|.
+/// h_k |k| / |reference simplex|.
 template <int dim>
 double norm_scale(const contact::ContactSegment<dim>& segment)
 {
   return segment.h * segment.det();
 }
 
-/// Adds h_F ||t^n||_F^2 and h_F ||t^t||_F^2 of a traction with the given coefficients.
+/// Adds h_k ||t^n||_k^2 and h_k ||t^t||_k^2 of a traction with the given coefficients.
 template <int dim>
 void add_squares(std::span<const Point<dim>> traction, const contact::ContactSegment<dim>& segment,
                  double& normal_part, double& tangential_part)
@@ -76,17 +75,13 @@ ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRu
       kinks_(form.facet_rule(), form.space().degree() + 2)
 {
   fem::require_degree(form.space().degree());
-  require_obstacles(form, "the bound");
   const fem::Quadrature<dim - 1>& points = form.facet_rule();
-  for (int local = 0; local <= dim; ++local)
-    stress_table_.emplace_back(form.space().degree(), fem::points_on_facet<dim>(local, points.points));
   theta_.resize(static_cast<std::size_t>(n_) * points.size());
   for (int q = 0; q < points.size(); ++q)
     fem::orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
                                      std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
 }
 
-/// Coefficients of a polynomial of degree p on the facet from its values at the points of the rule.
 template <int dim>
 std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> values) const
 {
@@ -98,37 +93,20 @@ std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> v
 }
 
 template <int dim>
-std::vector<Point<dim>> ContactTerms<dim>::normal_trace(int k, std::span<const double> block) const
+auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions& t) const -> Fields
 {
-  const contact::SegmentSide<dim>& slave = form_.segments()[k].slave;
-  const int n_points = form_.n_segment_points();
-  std::vector<double> entries(static_cast<std::size_t>(dim) * dim * n_points);
-  stress_table_[slave.facet.local].evaluate(make_sorted_cell(form_.space().mesh(), slave.facet.cell), block,
-                                            entries);
-  std::vector<Point<dim>> values(n_points, Point<dim>::Zero());
-  for (int q = 0; q < n_points; ++q)
-    for (int r = 0; r < dim; ++r)
-      for (int c = 0; c < dim; ++c)
-        values[q][r] += entries[(dim * r + c) * n_points + q] * slave.stress_direction[c];
-  return project(values);
-}
-
-template <int dim>
-auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Stress<dim>& stress) const -> Fields
-{
-  const contact::SegmentValues<dim> on_segment = form_.values(k);
+  const contact::SegmentValues<dim> values = form_.values(k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
-  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = on_segment.augmented_traction(u, q);
-  return {project(augmented), normal_trace(k, stress.dis_in(form_.segments()[k].slave.facet.cell))};
+  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = values.augmented_traction(u, q);
+  return {project(augmented), project(on_segment(t.dis, k))};
 }
 
 template <int dim>
 auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece) const -> Integrals
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  const mesh::BoundaryFacet& facet = segment.slave.facet;
   const Point<dim>& n = segment.normal;
-  const mesh::FacetMap<dim> map = mesh::facet_map(form_.space().mesh(), facet.cell, facet.local);
+  const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form_.space().mesh(), segment);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
   const problem::ContactLaw& law = segment.contact->law;
@@ -151,7 +129,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     }
     augmented[q] = p;
     strengths[q] = problem::strength_at<dim>(law, x);
-    round_off = std::max(round_off, 1e-14 * (p.norm() + closing));
+    round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing)));
 
     const Point<dim> difference = problem::respond<dim>(law, {n, strengths[q]}, p).traction - dis;
     const double normal = difference.dot(n);
@@ -227,21 +205,20 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
 }
 
 template <int dim>
-ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u,
-                                             const Stress<dim>& stress) const
+ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, const Tractions& t) const
 {
-  const Fields on_facet = fields(k, u, stress);
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  ContactSquares result = linearisation(k, stress);
+  ContactSquares result = linearisation(k, t);
+  if (!t.reg.empty()) add_squares<dim>(project(on_segment(t.reg, k)), segment, result.reg2n, result.reg2t);
+  if (is_linear(segment.contact->law)) return result;  // T = P is its own projection
+  const Fields on_k = fields(k, u, t);
   const contact::ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
   std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(k);
   if (parts.empty()) parts = std::span(&whole, 1);
   std::vector<Integrals> integrals;
-  for (const auto& part : parts) integrals.push_back(integrate(k, on_facet, part.part));
-  if (rule_ == ContactRule::resolved) settle(k, on_facet, parts, integrals);
+  for (const auto& part : parts) integrals.push_back(integrate(k, on_k, part.part));
+  if (rule_ == ContactRule::resolved) settle(k, on_k, parts, integrals);
   for (std::size_t i = 0; i < parts.size(); ++i) add_part(segment, parts[i], integrals[i], result);
-  if (const auto reg = stress.reg_in(segment.slave.facet.cell); !reg.empty())
-    add_squares<dim>(normal_trace(k, reg), segment, result.reg2n, result.reg2t);
   return result;
 }
 
@@ -265,12 +242,10 @@ void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment,
 }
 
 template <int dim>
-ContactSquares ContactTerms<dim>::linearisation(int k, const Stress<dim>& stress) const
+ContactSquares ContactTerms<dim>::linearisation(int k, const Tractions& t) const
 {
-  const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result;
-  add_squares<dim>(normal_trace(k, stress.lin_in(segment.slave.facet.cell)), segment, result.lin2n,
-                   result.lin2t);
+  add_squares<dim>(project(on_segment(t.lin, k)), form_.segments()[k], result.lin2n, result.lin2t);
   return result;
 }
 

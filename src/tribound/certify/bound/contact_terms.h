@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tribound/certify/bound/kinks.h"
-#include "tribound/certify/equilibrate/stress_tabulation.h"
+#include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
@@ -20,15 +20,15 @@ enum class ContactRule
   reference
 };
 
-/// Squares of the components on one segment, a whole facet F of Gamma_C.
+/// Squares of the components on one segment k; Pi_k is the projection on P^p(k)^d by the points of the rule.
 struct ContactSquares
 {
-  double cnt = 0;    ///< h_F ||[P^n]_- - sigma_dis^n||_F^2
-  double frc = 0;    ///< h_F ||[P^t]_S - sigma_dis^t||_F^2
-  double lin2n = 0;  ///< h_F ||sigma_lin^n||_F^2
-  double lin2t = 0;  ///< h_F ||sigma_lin^t||_F^2
-  double reg2n = 0;  ///< h_F ||sigma_reg^n||_F^2
-  double reg2t = 0;  ///< h_F ||sigma_reg^t||_F^2
+  double cnt = 0;    ///< h_k ||[P^n]_- - Pi_k [P^n]_-||_k^2
+  double frc = 0;    ///< h_k ||[P^t]_S - Pi_k [P^t]_S||_k^2
+  double lin2n = 0;  ///< h_k ||Pi_k (t^k - T_delta)^n||_k^2
+  double lin2t = 0;  ///< h_k ||Pi_k (t^k - T_delta)^t||_k^2
+  double reg2n = 0;  ///< h_k ||Pi_k (T_delta - T)^n||_k^2
+  double reg2t = 0;  ///< h_k ||Pi_k (T_delta - T)^t||_k^2
 };
 
 /// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
@@ -39,30 +39,33 @@ template <int dim>
 class ContactTerms
 {
  public:
-  /// Throws InputError for segments other than whole facets against rigid obstacles, on which the bound is
-  /// not known.
   ContactTerms(const contact::NitscheForm<dim>& form, ContactRule rule);
 
+  using Tractions = typename Stress<dim>::Tractions;
+
   /// On segment k of the form for the iterate u.
-  [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Stress<dim>& stress) const;
-  /// lin2n and lin2t alone, from sigma_lin alone; the others are 0.
-  [[nodiscard]] ContactSquares linearisation(int k, const Stress<dim>& stress) const;
+  [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Tractions& t) const;
+  /// lin2n and lin2t alone; the others are 0.
+  [[nodiscard]] ContactSquares linearisation(int k, const Tractions& t) const;
+  /// Coefficients of Pi_k t in the orthonormal basis of the reference simplex, t given at the contact points
+  /// of segment k.
+  [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> t) const;
 
  private:
   using FacetPoint = Point<dim - 1>;
-  using Piece = fem::Part<dim - 1>;  ///< of the reference facet
+  using Piece = fem::Part<dim - 1>;  ///< of the segment, in its coordinates
 
-  /// Vector polynomials of degree p on a facet in the orthonormal basis of the reference facet.
+  /// Vector polynomials of degree p on a segment in the orthonormal basis of the reference simplex.
   struct Fields
   {
-    std::vector<Point<dim>> augmented;  ///< sigma(u) n - gamma u: P(u) without the gap
-    std::vector<Point<dim>> dis;        ///< sigma_dis n
+    std::vector<Point<dim>> augmented;  ///< {sigma(u)} - gamma [u]: P(u) without the gap
+    std::vector<Point<dim>> dis;        ///< Pi_k T
   };
-  /// Integrals over a part of the reference facet.
+  /// Integrals over a part of the reference simplex.
   struct Integrals
   {
-    double normal = 0;      ///< of ([P^n]_- - sigma_dis^n)^2
-    double tangential = 0;  ///< of |[P^t]_S - sigma_dis^t|^2
+    double normal = 0;      ///< of ([P^n]_- - Pi_k [P^n]_-)^2
+    double tangential = 0;  ///< of |[P^t]_S - Pi_k [P^t]_S|^2
     Kinks kinks{};          ///< up to what gap and threshold leave out
     double round_off = 0;   ///< of P, at most
 
@@ -77,16 +80,19 @@ class ContactTerms
   /// A piece halved along each edge.
   struct Halved
   {
-    std::size_t part;  ///< number of the part of the facet
+    std::size_t part;  ///< number of the part of the segment
     std::array<Piece, 1 << (dim - 1)> pieces;
     std::array<Integrals, 1 << (dim - 1)> values;
     double change;  ///< of the integrals, and what no point has seen
   };
 
-  /// Coefficients of sigma n on the facet from those of sigma on its cell.
-  [[nodiscard]] std::vector<Point<dim>> normal_trace(int k, std::span<const double> block) const;
-  [[nodiscard]] Fields fields(int k, std::span<const double> u, const Stress<dim>& stress) const;
-  [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> values) const;
+  /// Those at the points of segment k.
+  [[nodiscard]] std::span<const Point<dim>> on_segment(std::span<const Point<dim>> t, int k) const
+  {
+    const auto n = static_cast<std::size_t>(form_.n_segment_points());
+    return t.subspan(k * n, n);
+  }
+  [[nodiscard]] Fields fields(int k, std::span<const double> u, const Tractions& t) const;
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
   void add_part(const contact::ContactSegment<dim>& segment, const contact::ContactDatumPart<dim>& part,
                 const Integrals& integrals, ContactSquares& squares) const;
@@ -97,10 +103,8 @@ class ContactTerms
 
   const contact::NitscheForm<dim>& form_;
   ContactRule rule_;
-  std::vector<StressTabulation<dim>>
-      stress_table_;           ///< of the stress at the points of the facet rule, per local facet
-  std::vector<double> theta_;  ///< basis on the facet there, [q * n + i]
-  int n_;                      ///< dim P^p(F)
+  std::vector<double> theta_;  ///< basis at the points of the rule, [q * n + i]
+  int n_;                      ///< dim P^p(k)
   KinkFinder<dim> kinks_;      ///< for P^{p+2}, in which P^n is up to the remainder of the gap
 };
 

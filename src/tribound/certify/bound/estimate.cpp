@@ -1,5 +1,6 @@
 #include "tribound/certify/bound/estimate.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -7,6 +8,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/polynomials.h"
 
 namespace tribound::certify
 {
@@ -18,19 +20,22 @@ namespace
 /// has.
 void add_up(Estimate& estimate, double quad, const Ranks& ranks)
 {
-  std::array<double, std::size(all_components) + 2> sums{};
+  std::array<double, std::size(all_components) + 3> sums{};
   auto& total = sums[std::size(all_components)];
   auto& total_sharp = sums[std::size(all_components) + 1];
+  auto& stresses = sums[std::size(all_components) + 2];
   for (const BoundComponents& cell : estimate.cells)
   {
     for (std::size_t i = 0; i < std::size(all_components); ++i)
       sums[i] += std::pow(cell.*all_components[i].value, 2);
     total += std::pow(cell.total(), 2);
     total_sharp += std::pow(cell.total_sharp(), 2);
+    stresses += std::pow(cell.stress(), 2);
   }
   ranks.sum(std::span(sums));
   for (std::size_t i = 0; i < std::size(all_components); ++i)
     estimate.global.*all_components[i].value = std::sqrt(sums[i]);
+  if (estimate.global.mor > 0) estimate.global.str_mor = std::sqrt(stresses);
   estimate.global.quad = quad;
   estimate.total = std::sqrt(total) + quad;
   estimate.total_sharp = std::sqrt(total_sharp) + quad;
@@ -75,6 +80,7 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
       {
         stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
         contact_terms(u, stress, result);
+        transfer_terms(u, stress, result);
       });
   add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0, mesh.ranks());
   return result;
@@ -88,7 +94,7 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
   for (const double x : stress.lin) lin1 += x * x;
   for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
   {
-    const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress);
+    const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress.tractions);
     lin2n += facet.lin2n;
     lin2t += facet.lin2t;
   }
@@ -100,54 +106,62 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
   return result;
 }
 
-/// ||sigma_dis - sigma(u)||_T at quadrature points, which shares nothing with the way sigma_dis is made, and
-/// ||sigma_lin||_T and ||sigma_reg||_T from their coefficients.
+/// sigma_dis - sigma(u) at quadrature points, which shares nothing with the way sigma_dis is made.
+template <int dim>
+void Estimator<dim>::evaluate(std::span<const double> u, const Stress<dim>& stress, Index cell,
+                              CellFields& fields) const
+{
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  const int n_points = rule_.size();
+  auto& [dis, derivative, difference] = fields;
+  dis.resize(static_cast<std::size_t>(dim) * dim * n_points);
+  derivative.assign(dis.size(), 0);
+  difference.resize(n_points);
+  stress_table_.evaluate(make_sorted_cell(space.mesh(), cell), stress.dis_in(cell), dis);
+  const std::span<const Index> nodes = space.cell_nodes(cell);
+  for (int a = 0; a < dim; ++a)
+    for (int k = 0; k < dim; ++k)
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+      {
+        const double value = u[static_cast<std::size_t>(dim) * nodes[i] + a];
+        const double* const row = &gradient_[(k * nodes.size() + i) * n_points];
+        double* const sum = &derivative[(a * dim + k) * n_points];
+        for (int q = 0; q < n_points; ++q) sum[q] += value * row[q];
+      }
+
+  const Tensor<dim> to_physical = cell_map(space.mesh(), cell).inverse_transpose.transpose();
+  const problem::Material& material = form_.problem().material(space.mesh().region(cell));
+  for (int q = 0; q < n_points; ++q)
+  {
+    Tensor<dim> reference;
+    Tensor<dim> equilibrated;
+    for (int r = 0; r < dim; ++r)
+      for (int s = 0; s < dim; ++s)
+      {
+        reference(r, s) = derivative[(r * dim + s) * n_points + q];
+        equilibrated(r, s) = dis[(r * dim + s) * n_points + q];
+      }
+    difference[q] = equilibrated - contact::sigma<dim>(material, reference * to_physical);
+  }
+}
+
+/// ||sigma_dis - sigma(u)||_T, and ||sigma_lin||_T and ||sigma_reg||_T from their coefficients.
 template <int dim>
 void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                                   Estimate& result) const
 {
-  const fem::LagrangeSpace<dim>& space = form_.space();
-  const mesh::Mesh<dim>& mesh = space.mesh();
-  const int n_points = rule_.size();
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
   const auto on_thread = [&](int thread)
   {
-    std::vector<double> dis(static_cast<std::size_t>(dim) * dim * n_points);
-    std::vector<double> derivative(dis.size());  // [(a dim + k) n_points + q]: d_k u_a, reference coordinates
+    CellFields fields;
     const auto first = [&](int i)
     { return static_cast<Index>(std::int64_t{mesh.n_owned_cells()} * i / n_threads); };
     for (Index c = first(thread); c < first(thread + 1); ++c)
     {
-      stress_table_.evaluate(make_sorted_cell(mesh, c), stress.dis_in(c), dis);
-      const std::span<const Index> nodes = space.cell_nodes(c);
-      std::ranges::fill(derivative, 0);
-      for (int a = 0; a < dim; ++a)
-        for (int k = 0; k < dim; ++k)
-          for (std::size_t i = 0; i < nodes.size(); ++i)
-          {
-            const double value = u[static_cast<std::size_t>(dim) * nodes[i] + a];
-            const double* const row = &gradient_[(k * nodes.size() + i) * n_points];
-            double* const sum = &derivative[(a * dim + k) * n_points];
-            for (int q = 0; q < n_points; ++q) sum[q] += value * row[q];
-          }
-
-      const mesh::CellMap<dim> map = cell_map(mesh, c);
-      const problem::Material& material = form_.problem().material(mesh.region(c));
+      evaluate(u, stress, c, fields);
       double squares = 0;
-      for (int q = 0; q < n_points; ++q)
-      {
-        Tensor<dim> reference;
-        Tensor<dim> equilibrated;
-        for (int r = 0; r < dim; ++r)
-          for (int s = 0; s < dim; ++s)
-          {
-            reference(r, s) = derivative[(r * dim + s) * n_points + q];
-            equilibrated(r, s) = dis[(r * dim + s) * n_points + q];
-          }
-        const Tensor<dim> discrete =
-            contact::sigma<dim>(material, reference * map.inverse_transpose.transpose());
-        squares += rule_.weights[q] * (equilibrated - discrete).squaredNorm();
-      }
-      result.cells[c].str = std::sqrt(map.det * squares);
+      for (int q = 0; q < rule_.size(); ++q) squares += rule_.weights[q] * fields.difference[q].squaredNorm();
+      result.cells[c].str = std::sqrt(cell_map(mesh, c).det * squares);
       result.cells[c].lin1 = norm(stress.lin_in(c));
       result.cells[c].reg1 = norm(stress.reg_in(c));
     }
@@ -155,23 +169,81 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
   in_threads(n_threads, on_thread);
 }
 
+/// A cell with several facets: the one that loses most is added to the stress, the norms of the others after
+/// that.
+template <int dim>
+void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>& stress,
+                                    Estimate& result) const
+{
+  for (const auto& [cell, transfers] : facet_transfers<dim>(form_, contact_, stress.tractions))
+  {
+    BoundComponents& eta = result.cells[cell];
+    for (const FacetTransfer<dim>& transfer : transfers) eta.mor += transfer.norm;
+    if (eta.mor == 0) continue;
+    const FacetTransfer<dim>& most = *std::ranges::max_element(transfers, {}, &FacetTransfer<dim>::norm);
+    double together = eta.str + most.norm;
+    if constexpr (dim == 2)
+      together =
+          std::min(together, std::sqrt(std::max(0.0, eta.str * eta.str + transfer_change(u, stress, most))));
+    eta.str_mor = together + (eta.mor - most.norm);
+  }
+}
+
+/// What adding tau changes of ||sigma_dis - sigma(u)||_T^2, in 2D.
+template <int dim>
+double Estimator<dim>::transfer_change(std::span<const double> u, const Stress<dim>& stress,
+                                       const FacetTransfer<dim>& transfer) const
+{
+  const int degree = form_.space().degree();
+  CellFields fields;
+  evaluate(u, stress, transfer.facet.cell, fields);
+  std::vector<double> phi(fem::polynomial_dimension(dim, degree));
+  std::vector<Tensor<dim>> coefficients(phi.size(), Tensor<dim>::Zero());
+  for (int q = 0; q < rule_.size(); ++q)
+  {
+    fem::orthonormal_values<dim>(degree, rule_.points[q], phi);
+    for (std::size_t i = 0; i < phi.size(); ++i)
+      coefficients[i] += rule_.weights[q] * phi[i] * fields.difference[q];
+  }
+  const auto difference = [&](const Point<dim>& x)
+  {
+    fem::orthonormal_values<dim>(degree, x, phi);
+    Tensor<dim> sum = Tensor<dim>::Zero();
+    for (std::size_t i = 0; i < phi.size(); ++i) sum += phi[i] * coefficients[i];
+    return sum;
+  };
+  if constexpr (dim == 2)
+    return certify::transfer_change(form_.space().mesh(), transfer.facet, degree, transfer.groups.front(),
+                                    difference);
+  else
+    return 0;
+}
+
+/// Half of the square of a segment between bodies belongs to either cell.
 template <int dim>
 void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>& stress,
                                    Estimate& result) const
 {
-  const auto segments = form_.segments();
   std::vector<Index> touched;
-  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)  // squares first: a cell may have several
+  const auto add = [&](Index cell, double share, const ContactSquares& squares)  // of which it may have more
   {
-    const ContactSquares squares = contact_(static_cast<int>(k), u, stress);
-    BoundComponents& cell = result.cells[segments[k].slave.facet.cell];
-    cell.cnt += squares.cnt;
-    cell.frc += squares.frc;
-    cell.lin2n += squares.lin2n;
-    cell.lin2t += squares.lin2t;
-    cell.reg2n += squares.reg2n;
-    cell.reg2t += squares.reg2t;
-    touched.push_back(segments[k].slave.facet.cell);
+    if (cell >= static_cast<Index>(result.cells.size())) return;
+    BoundComponents& eta = result.cells[cell];
+    eta.cnt += share * squares.cnt;
+    eta.frc += share * squares.frc;
+    eta.lin2n += share * squares.lin2n;
+    eta.lin2t += share * squares.lin2t;
+    eta.reg2n += share * squares.reg2n;
+    eta.reg2t += share * squares.reg2t;
+    touched.push_back(cell);
+  };
+  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form_.segments()[k];
+    const ContactSquares squares = contact_(static_cast<int>(k), u, stress.tractions);
+    const double share = segment.master ? 0.5 : 1;
+    segment.for_each_side([&](const contact::SegmentSide<dim>& side)
+                          { add(side.facet.cell, share, squares); });
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());

@@ -11,6 +11,8 @@
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/data_terms.h"
 #include "tribound/certify/bound/friedrichs.h"
+#include "tribound/certify/bound/transfer_terms.h"
+#include "tribound/certify/equilibrate/stress_tabulation.h"
 
 namespace tribound::certify
 {
@@ -54,8 +56,20 @@ class Estimator
   [[nodiscard]] BoundComponents linearisation(const Stress<dim>& stress) const;
 
  private:
+  /// Working space for one cell.
+  struct CellFields
+  {
+    std::vector<double> dis;              ///< sigma_dis, [(a dim + k) n_points + q]
+    std::vector<double> derivative;       ///< d_k u_a in reference coordinates, the same way
+    std::vector<Tensor<dim>> difference;  ///< sigma_dis - sigma(u) at the points
+  };
+
+  void evaluate(std::span<const double> u, const Stress<dim>& stress, Index cell, CellFields& fields) const;
   void stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                     Estimate& result) const;
+  void transfer_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
+  [[nodiscard]] double transfer_change(std::span<const double> u, const Stress<dim>& stress,
+                                       const FacetTransfer<dim>& transfer) const;
   void contact_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
 
   const contact::NitscheForm<dim>& form_;

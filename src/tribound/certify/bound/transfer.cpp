@@ -49,6 +49,9 @@ class Facet
   [[nodiscard]] double height() const { return height_; }
   [[nodiscard]] double det() const { return geometry_.det(); }
   [[nodiscard]] double diameter() const { return geometry_.diameter; }
+  [[nodiscard]] const Point<dim>& normal() const { return geometry_.normal; }
+  /// Along the first edge.
+  [[nodiscard]] Point<dim> tangent() const { return map_.jacobian.col(0).normalized(); }
   /// xi - a_F.
   [[nodiscard]] Point<dim> from_foot(const Point<dim - 1>& s) const { return map_(s) - foot_; }
   /// Of a piece, by its own coordinates.
@@ -89,13 +92,19 @@ class Facet
   std::vector<Point<dim>> projection_;
 };
 
-/// min_m square(m).
+/// The m with the smallest square(m).
 template <class Square>
-double smallest_root(const Square& square)
+int best_exponent(const Square& square)
 {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (int m = 1; m <= largest_exponent; ++m) smallest = std::min(smallest, square(m));
-  return std::sqrt(std::max(0.0, smallest));
+  int best = 1;
+  double smallest = square(1);
+  for (int m = 2; m <= largest_exponent; ++m)
+    if (const double value = square(m); value < smallest)
+    {
+      smallest = value;
+      best = m;
+    }
+  return best;
 }
 
 /// The ends of all parts between those of the facet.
@@ -122,16 +131,22 @@ Point<2> sum_of_tractions(Facet<2>& facet, std::span<const TractionPiece<2>> pie
   return sum;
 }
 
-double transfer_norm_2d(Facet<2>& facet, int degree, std::span<const TractionPiece<2>> pieces)
+/// r and R = int r, from the first end of F on, at a point of a rule.
+struct Loss
+{
+  double s;       ///< on the reference facet
+  double weight;  ///< with the length of the facet
+  double x;       ///< xi - a_F along the tangent
+  Point<2> r;
+  Point<2> rho;
+};
+
+std::vector<Loss> losses(Facet<2>& facet, int degree, std::span<const TractionPiece<2>> pieces)
 {
   const fem::Quadrature<1> rule = fem::quadrature<1>(2 * degree + 2);
   const std::vector<double> ends = ends_of(pieces);
-  const Point<2> tangent = (facet.from_foot(Point<1>(1)) - facet.from_foot(Point<1>(0))) / facet.det();
-  Point<2> at_first = Point<2>::Zero();  // R = int r, from the first end of F
-  double r_r = 0;
-  double xr_xr = 0;
-  double xr_rho = 0;
-  double rho_rho = 0;
+  std::vector<Loss> result;
+  Point<2> at_first = Point<2>::Zero();
   for (std::size_t k = 0; k + 1 < ends.size(); ++k)
   {
     const double first = ends[k];
@@ -148,20 +163,44 @@ double transfer_norm_2d(Facet<2>& facet, int degree, std::span<const TractionPie
     for (int q = 0; q < rule.size(); ++q)
     {
       const double s = first + length * rule.points[q][0];
-      const double weight = length * facet.det() * rule.weights[q];
-      const double x = tangent.dot(facet.from_foot(Point<1>(s)));
-      const Point<2> at = r(s);
-      const Point<2> rho = at_first + integral(s);
-      r_r += weight * at.squaredNorm();
-      xr_xr += weight * x * x * at.squaredNorm();
-      xr_rho += weight * x * at.dot(rho);
-      rho_rho += weight * rho.squaredNorm();
+      const double x = facet.tangent().dot(facet.from_foot(Point<1>(s)));
+      result.push_back({s, length * facet.det() * rule.weights[q], x, r(s), at_first + integral(s)});
     }
     at_first += integral(ends[k + 1]);
   }
+  return result;
+}
+
+/// ||tau||^2 for m.
+double square(const Facet<2>& facet, std::span<const Loss> losses, int m)
+{
   const double h = facet.height();
-  return smallest_root([&](int m)
-                       { return (h * r_r + (xr_xr - 2 * m * xr_rho + m * m * rho_rho) / h) / (2 * m); });
+  double sum = 0;
+  for (const auto& [s, weight, x, r, rho] : losses)
+    sum += weight * (h * r.squaredNorm() + (x * r - m * rho).squaredNorm() / h);
+  return sum / (2 * m);
+}
+
+/// (s, tau)_T = int_0^1 int_F H (1 - z)^m s : {r n^T + [(xi - a_F) r - m R] / H t^T}, t the tangent.
+double inner_product(const Facet<2>& facet, int local, int degree, std::span<const Loss> losses,
+                     const std::function<Tensor<2>(const Point<2>&)>& s, int m)
+{
+  const fem::Quadrature<1> rule = fem::quadrature<1>(degree + m);
+  const Point<2> apex = fem::reference_simplex<2>()[local];
+  double sum = 0;
+  for (const auto& [at, weight, x, r, rho] : losses)
+  {
+    const Point<2> base = mesh::facet_to_cell<2>(local, Point<1>(at));
+    const Tensor<2> tau =
+        facet.height() * r * facet.normal().transpose() + (x * r - m * rho) * facet.tangent().transpose();
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      const double z = rule.points[q][0];
+      sum += weight * rule.weights[q] * std::pow(1 - z, m) *
+             s((1 - z) * base + z * apex).cwiseProduct(tau).sum();
+    }
+  }
+  return sum;
 }
 
 /// int |r|^2 and int |xi - a_F|^2 |r|^2.
@@ -208,9 +247,9 @@ double transfer_norm_3d(Facet<3>& facet, int degree, std::span<const TractionPie
   const double h = facet.height();
   const double norm = std::sqrt(sums.plain);
   const double of_rho = poincare_constant(facet.diameter()) * norm;
-  return smallest_root(
-      [&](int m)
-      { return h / (2 * m - 1) * (sums.plain + std::pow((std::sqrt(sums.weighted) + m * of_rho) / h, 2)); });
+  const auto square_of = [&](int m)
+  { return h / (2 * m - 1) * (sums.plain + std::pow((std::sqrt(sums.weighted) + m * of_rho) / h, 2)); };
+  return std::sqrt(square_of(best_exponent(square_of)));
 }
 
 }  // namespace
@@ -220,10 +259,30 @@ double transfer_norm(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& fac
                      std::span<const TractionPiece<dim>> pieces)
 {
   Facet<dim> in_cell(mesh, facet, degree, pieces);
+  if constexpr (dim == 3) return transfer_norm_3d(in_cell, degree, pieces);
   if constexpr (dim == 2)
-    return transfer_norm_2d(in_cell, degree, pieces);
-  else
-    return transfer_norm_3d(in_cell, degree, pieces);
+  {
+    const std::vector<Loss> lost = losses(in_cell, degree, pieces);
+    const auto square_of = [&](int m) { return square(in_cell, lost, m); };
+    return std::sqrt(square_of(best_exponent(square_of)));
+  }
+}
+
+double transfer_change(const mesh::Mesh<2>& mesh, const mesh::BoundaryFacet& facet, int degree,
+                       std::span<const TractionPiece<2>> pieces,
+                       const std::function<Tensor<2>(const Point<2>&)>& s)
+{
+  Facet<2> in_cell(mesh, facet, degree, pieces);
+  const std::vector<Loss> lost = losses(in_cell, degree, pieces);
+  const auto square_of = [&](int m) { return square(in_cell, lost, m); };
+  const int best = best_exponent(square_of);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const int near : {1, best / 2, best, best + 1, 2 * best})
+  {
+    const int m = std::clamp(near, 1, largest_exponent);
+    smallest = std::min(smallest, square_of(m) + 2 * inner_product(in_cell, facet.local, degree, lost, s, m));
+  }
+  return smallest;
 }
 
 template double transfer_norm(const mesh::Mesh<2>&, const mesh::BoundaryFacet&, int,

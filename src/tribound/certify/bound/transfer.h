@@ -3,6 +3,7 @@
 /// @file transfer.h
 /// What is lost where contact tractions pass between meshes that do not match.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,5 +38,11 @@ struct TractionPiece
 template <int dim>
 [[nodiscard]] double transfer_norm(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, int degree,
                                    std::span<const TractionPiece<dim>> pieces);
+
+/// In 2D the smallest ||s + tau||_T^2 - ||s||_T^2 over some of these m, for a field s of degree `degree` on
+/// the cell, given by its value at a reference point.
+[[nodiscard]] double transfer_change(const mesh::Mesh<2>& mesh, const mesh::BoundaryFacet& facet, int degree,
+                                     std::span<const TractionPiece<2>> pieces,
+                                     const std::function<Tensor<2>(const Point<2>&)>& s);
 
 }  // namespace tribound::certify

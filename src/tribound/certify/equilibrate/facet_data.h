@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tribound/certify/equilibrate/reference.h"
+#include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
@@ -58,6 +59,7 @@ class FacetData
     const int index = conditions_[number_[facet]].contact;
     return index < 0 ? nullptr : &regularisation_[index];
   }
+  [[nodiscard]] const typename Stress<dim>::Tractions& tractions() const { return tractions_; }
   /// Whether the vertex lies on Gamma_C.
   [[nodiscard]] bool on_contact(Index vertex) const { return on_contact_[vertex]; }
 
@@ -68,26 +70,19 @@ class FacetData
     int moments = -1;  ///< index in discretisation_
     int contact = -1;  ///< index in linearisation_ and regularisation_
   };
-  /// At the contact points.
-  struct Tractions
-  {
-    std::span<const Point<dim>> of_u;         ///< T(u)
-    std::span<const Point<dim>> regularised;  ///< T_delta(u)
-    std::span<const Point<dim>> running;      ///< t^k
-  };
-
   [[nodiscard]] Moments& discretisation_of(Condition& condition);
   /// g_N on a boundary facet.
   void add_load(const contact::NitscheForm<dim>& form, std::size_t number);
   /// What segment k exerts on the facet of one of its sides.
   void add_contact(const contact::NitscheForm<dim>& form, std::size_t k,
-                   const contact::SegmentSide<dim>& side, const Tractions& t);
+                   const contact::SegmentSide<dim>& side);
 
   std::vector<int> number_;            ///< per facet: number in Mesh::boundary(), or -1 inside Omega
   std::vector<Condition> conditions_;  ///< of the boundary facets
   std::vector<Moments> discretisation_;
   std::vector<Moments> linearisation_;
   std::vector<Moments> regularisation_;
+  typename Stress<dim>::Tractions tractions_;
   std::vector<char> on_contact_;
   int n_parts_;
 };

@@ -79,13 +79,15 @@ FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<co
     for (int c = 0; c < dim; ++c) condition.fixed[c] = form.problem().boundary(facet.tag).fixes(c);
     if (form.data().has_traction(number)) add_load(form, number);
   }
-  const std::vector<Point<dim>> t_u = form.traction(u);
-  const std::vector<Point<dim>> t_delta = delta > 0 ? form.traction(u, delta) : t_u;
+  auto& [dis, lin, reg] = tractions_;
+  dis = form.traction(u);
+  if (delta > 0) reg = form.traction(u, delta);
+  lin.assign(t.begin(), t.end());
+  for (std::size_t i = 0; i < lin.size(); ++i) lin[i] -= delta > 0 ? reg[i] : dis[i];
+  for (std::size_t i = 0; i < reg.size(); ++i) reg[i] -= dis[i];
   for (std::size_t k = 0; k < form.segments().size(); ++k)
-    form.segments()[k].for_each_side(
-        [&](const contact::SegmentSide<dim>& side) {
-          add_contact(form, k, side, {t_u, t_delta, t});
-        });
+    form.segments()[k].for_each_side([&](const contact::SegmentSide<dim>& side)
+                                     { add_contact(form, k, side); });
 }
 
 template <int dim, int p>
@@ -118,7 +120,7 @@ void FacetData<dim, p>::add_load(const contact::NitscheForm<dim>& form, std::siz
 
 template <int dim, int p>
 void FacetData<dim, p>::add_contact(const contact::NitscheForm<dim>& form, std::size_t k,
-                                    const contact::SegmentSide<dim>& side, const Tractions& t)
+                                    const contact::SegmentSide<dim>& side)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   Condition& condition = conditions_[side.number];
@@ -137,9 +139,9 @@ void FacetData<dim, p>::add_contact(const contact::NitscheForm<dim>& form, std::
     const std::size_t i = k * form.n_segment_points() + q;
     const double weight = side.sign * form.contact_points()[i].weight;
     on_facet.at(side.on_facet(form.facet_rule().points[q]));
-    on_facet.add(weight, t.of_u[i], discretisation);
-    on_facet.add(weight, t.running[i] - t.regularised[i], linearisation_[condition.contact]);
-    if (n_parts_ == 3) on_facet.add(weight, t.regularised[i] - t.of_u[i], regularisation_[condition.contact]);
+    on_facet.add(weight, tractions_.dis[i], discretisation);
+    on_facet.add(weight, tractions_.lin[i], linearisation_[condition.contact]);
+    if (n_parts_ == 3) on_facet.add(weight, tractions_.reg[i], regularisation_[condition.contact]);
   }
 }
 

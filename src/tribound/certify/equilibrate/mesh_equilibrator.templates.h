@@ -188,7 +188,9 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
     const CellSource<dim, p> source{form_, u, body_, shapes_};
-    return Equilibration<dim, p>(mesh_, data, source, *partition, with_dis).run();
+    Stress<dim> stress = Equilibration<dim, p>(mesh_, data, source, *partition, with_dis).run();
+    stress.tractions = data.tractions();
+    return stress;
   }
 
  private:

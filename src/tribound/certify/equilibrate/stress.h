@@ -24,6 +24,13 @@ struct Stress
   std::vector<int> lin_block;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
   std::vector<double> lin;     ///< the cells with a vertex on Gamma_C
   std::vector<double> reg;     ///< the same cells; empty unless T was regularised
+  /// What the parts carry on Gamma_C up to projection, at the contact points.
+  struct Tractions
+  {
+    std::vector<Point<dim>> dis;  ///< T(u^k)
+    std::vector<Point<dim>> lin;  ///< t^k - T_delta(u^k)
+    std::vector<Point<dim>> reg;  ///< T_delta(u^k) - T(u^k); empty unless T was regularised
+  } tractions;
 
   [[nodiscard]] std::size_t block_size() const { return static_cast<std::size_t>(dim) * dim * n; }
   [[nodiscard]] std::span<const double> dis_in(Index cell) const

@@ -1,0 +1,126 @@
+#include "tribound/certify/bound/transfer_terms.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tribound/contact/pairing/polygon.h"
+
+namespace tribound::certify
+{
+
+namespace
+{
+
+/// The parts that one slave facet covers of a facet: they do not overlap.
+template <int dim>
+struct Covered
+{
+  std::size_t slave;  ///< number of the facet
+  std::vector<TractionPiece<dim>> pieces;
+};
+
+/// Whether two parts have more than rounding in common.
+bool overlap(const fem::Part<2>& a, const fem::Part<2>& b)
+{
+  constexpr double rounding = 1e-11;
+  contact::Polygon<3> common;
+  contact::Polygon<3> sides;
+  for (const Point<2>& x : a) common.push_back({x, x});
+  for (const Point<2>& x : b) sides.push_back({x, x});
+  contact::for_each_side<3>(
+      sides, [&](const auto& distance) { common = contact::clip<3>(common, distance, 1e-12); });
+  return !common.empty() && contact::fraction<3>(common) > rounding;
+}
+
+bool overlap(const Covered<3>& a, const Covered<3>& b)
+{
+  return std::ranges::any_of(a.pieces,
+                             [&](const TractionPiece<3>& x)
+                             {
+                               return std::ranges::any_of(b.pieces, [&](const TractionPiece<3>& y)
+                                                          { return overlap(x.part, y.part); });
+                             });
+}
+
+/// Where slaves are concave, the images of their facets along the normals may overlap.
+template <int dim>
+std::vector<std::vector<TractionPiece<dim>>> grouped(std::vector<Covered<dim>>&& covered)
+{
+  std::vector<std::vector<Covered<dim>>> groups;
+  for (Covered<dim>& next : covered)
+  {
+    auto group = groups.begin();
+    if constexpr (dim == 3)
+      group = std::ranges::find_if(groups,
+                                   [&](const std::vector<Covered<3>>& others) {
+                                     return std::ranges::none_of(others, [&](const Covered<3>& other)
+                                                                 { return overlap(other, next); });
+                                   });
+    if (group == groups.end()) group = groups.emplace(groups.end());
+    group->push_back(std::move(next));
+  }
+  std::vector<std::vector<TractionPiece<dim>>> result;
+  for (std::vector<Covered<dim>>& group : groups)
+  {
+    auto& pieces = result.emplace_back();
+    for (Covered<dim>& part : group) std::ranges::move(part.pieces, std::back_inserter(pieces));
+  }
+  return result;
+}
+
+}  // namespace
+
+template <int dim>
+std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(const contact::NitscheForm<dim>& form,
+                                                                 const ContactTerms<dim>& terms,
+                                                                 const typename Stress<dim>::Tractions& t)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  std::map<std::size_t, std::vector<Covered<dim>>> of_facet;
+  std::vector<Point<dim>> running(form.n_segment_points());
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    if (!segment.master) continue;
+    for (std::size_t q = 0; q < running.size(); ++q)
+    {
+      const std::size_t i = k * running.size() + q;
+      running[q] = t.dis[i] + t.lin[i];
+      if (!t.reg.empty()) running[q] += t.reg[i];
+    }
+    const std::vector<Point<dim>> q_k = terms.project(running);
+    segment.for_each_side(
+        [&](const contact::SegmentSide<dim>& side)
+        {
+          if (side.facet.cell >= mesh.n_owned_cells()) return;
+          const double measure = mesh::facet_geometry(mesh, side.facet.cell, side.facet.local).measure *
+                                 fem::fraction<dim - 1>(*side.part);
+          TractionPiece<dim> piece{*side.part, q_k};
+          for (Point<dim>& coefficient : piece.coefficients)
+            coefficient *= side.sign * segment.measure / measure;
+          std::vector<Covered<dim>>& covered = of_facet[side.number];
+          if (covered.empty() || covered.back().slave != segment.slave.number)
+            covered.push_back({segment.slave.number, {}});
+          covered.back().pieces.push_back(std::move(piece));
+        });
+  }
+  std::map<Index, std::vector<FacetTransfer<dim>>> result;
+  for (auto& [number, covered] : of_facet)
+  {
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    FacetTransfer<dim> transfer{facet, grouped(std::move(covered))};
+    for (const auto& pieces : transfer.groups)
+      transfer.norm += transfer_norm<dim>(mesh, facet, form.space().degree(), pieces);
+    result[facet.cell].push_back(std::move(transfer));
+  }
+  return result;
+}
+
+template std::map<Index, std::vector<FacetTransfer<2>>> facet_transfers(const contact::NitscheForm<2>&,
+                                                                        const ContactTerms<2>&,
+                                                                        const Stress<2>::Tractions&);
+template std::map<Index, std::vector<FacetTransfer<3>>> facet_transfers(const contact::NitscheForm<3>&,
+                                                                        const ContactTerms<3>&,
+                                                                        const Stress<3>::Tractions&);
+
+}  // namespace tribound::certify

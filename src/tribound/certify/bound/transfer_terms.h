@@ -1,0 +1,33 @@
+#pragma once
+
+/// @file transfer_terms.h
+/// mor of the cells below contact between bodies, method section 5.
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "tribound/certify/bound/contact_terms.h"
+#include "tribound/certify/bound/transfer.h"
+
+namespace tribound::certify
+{
+
+/// What the running traction t^k loses on one boundary facet.
+template <int dim>
+struct FacetTransfer
+{
+  mesh::BoundaryFacet facet;
+  /// q = Pi_k t^k on the slave, -q |k| / |Pi(k)| on the master, by the parts that the segments k cover. Each
+  /// group has parts that do not overlap; in 2D there is one.
+  std::vector<std::vector<TractionPiece<dim>>> groups;
+  double norm = 0;  ///< >= ||tau||, the sum over the groups
+};
+
+/// Of the own cells with segments of pairs, by cell.
+template <int dim>
+[[nodiscard]] std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(
+    const contact::NitscheForm<dim>& form, const ContactTerms<dim>& terms,
+    const typename Stress<dim>::Tractions& t);
+
+}  // namespace tribound::certify
