@@ -140,7 +140,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
-  contact::check_rigid_motions<dim>(problem, space, form.segments(), form.data(), form.load());
+  contact::check_rigid_motions(form);
   require_mesh_elsewhere(config);
   try_output_directory(config.output.directory);
   print_check(case_file::case_facts(config, dim), io::mesh_facts<dim>(problem, space, form.constraints()),

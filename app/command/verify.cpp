@@ -117,7 +117,7 @@ ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
   const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
-  contact::check_rigid_motions<dim>(problem, space, form.segments(), form.data(), form.load());
+  contact::check_rigid_motions(form);
   check_size(config, mesh, refinements);
   const OutputDirectory directory(config.output.directory);
   remove_results(config.output.directory, {"verify.json"});

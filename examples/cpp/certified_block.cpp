@@ -45,7 +45,7 @@ bool certify_on_one_mesh(const adapt::Method& method, const mesh::Mesh<2>& mesh,
   // The discrete problem: a(u, v) - (T(u), v)_C = L(v) in the Lagrange elements of the degree.
   const fem::LagrangeSpace<2> space(mesh, method.degree);
   const contact::NitscheForm<2> form(problem, space, method.gamma_0());
-  contact::check_rigid_motions<2>(problem, space, form.segments(), form.data(), form.load());
+  contact::check_rigid_motions(form);
 
   // Its solution u^k by Newton's method, from scratch, with the traction t^k in equilibrium with it.
   const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, method.newton, method.solver);

@@ -98,8 +98,7 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
     ask(whole.get());
   }
   else
-    contact::check_rigid_motions<dim>(problem_, current_->space, current_->form.segments(),
-                                      current_->form.data(), current_->form.load());
+    contact::check_rigid_motions(current_->form);
 }
 
 template <int dim>

@@ -156,11 +156,6 @@ bool is_minimum(const ContactLaw& law)
   return std::visit([](const auto& l) { return l.is_minimum; }, law);
 }
 
-bool is_linear(const ContactLaw& law)
-{
-  return std::holds_alternative<Tied>(law);
-}
-
 std::span<const LawKind> obstacle_law_kinds()
 {
   static_assert(kinds.back().name == Tied::name);

@@ -174,9 +174,6 @@ template <int dim>
 /// Whether the exact solution is the minimum of a strictly convex energy.
 [[nodiscard]] bool is_minimum(const ContactLaw& law);
 
-/// Whether T(P) = P, whatever P is.
-[[nodiscard]] bool is_linear(const ContactLaw& law);
-
 /// A law as the case file names it.
 struct LawKind
 {

@@ -97,7 +97,7 @@ void check_pairs(std::span<const std::string> names, const std::vector<BoundaryC
                            "where bodies touch, nothing else holds; split the group in the mesh");
       }
     }
-    if (is_linear(pair.contact.law) && !(pair.contact.gap && pair.contact.gap->is_zero()))
+    if (cone(pair.contact.law).is_tied && !(pair.contact.gap && pair.contact.gap->is_zero()))
       throw InputError(pair.where, "a tied contact has no gap", "give the gap 0");
   }
 }

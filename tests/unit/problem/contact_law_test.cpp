@@ -114,8 +114,8 @@ TEST(ContactLaw, WhatIsTiedCarriesAnything)
     EXPECT_EQ(response.status, ContactStatus::tied);
     EXPECT_EQ(problem::tangent<3>(tied, point, P, delta), Tensor<3>(Tensor<3>::Identity()));
   }
-  EXPECT_TRUE(problem::is_linear(tied));
-  for (const ContactLaw& law : laws()) EXPECT_FALSE(problem::is_linear(law));
+  EXPECT_TRUE(problem::cone(tied).is_tied);
+  for (const ContactLaw& law : laws()) EXPECT_FALSE(problem::cone(law).is_tied);
 }
 
 TEST(ContactLaw, OnlyFrictionResistsSliding)

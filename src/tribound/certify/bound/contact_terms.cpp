@@ -210,7 +210,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result = linearisation(k, t);
   if (!t.reg.empty()) add_squares<dim>(project(on_segment(t.reg, k)), segment, result.reg2n, result.reg2t);
-  if (is_linear(segment.contact->law)) return result;  // T = P is its own projection
+  if (problem::cone(segment.contact->law).is_tied) return result;  // T = P is its own projection
   const Fields on_k = fields(k, u, t);
   const contact::ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
   std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(k);

@@ -79,7 +79,7 @@ auto DiscreteData<dim>::measures(Segments segments) const -> Measures
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
     sums[1] += simplex_map(mesh_, facet).measure;
   for (const ContactSegment<dim>& segment : segments)
-    if (is_owned(segment)) sums[2] += segment.measure;
+    if (is_owned(mesh_, segment)) sums[2] += segment.measure;
   mesh_.ranks().sum(std::span(sums));
   return {sums[0], sums[1], sums[2]};
 }
@@ -137,7 +137,7 @@ void DiscreteData<dim>::count_formulas(Segments segments)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c), true);
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary()) count(traction_datum(facet), true);
   for (const ContactSegment<dim>& segment : segments)
-    if (is_owned(segment)) count(contact_datum(segment), false);
+    if (is_owned(mesh_, segment)) count(contact_datum(segment), false);
   std::array<std::int64_t, 3> sums{effort_.formulas, effort_.loads, effort_.unenclosed};
   mesh_.ranks().sum(std::span(sums));
   effort_.formulas = sums[0];
@@ -258,7 +258,7 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
 #pragma omp critical(tribound_discrete_data)
                    contact_parts_.emplace(k, std::move(parts));
                  }
-                 keep(contact_, k, is_owned(segment), std::move(found));
+                 keep(contact_, k, is_owned(mesh_, segment), std::move(found));
                });
 }
 

@@ -123,10 +123,6 @@ class DiscreteData
 
   using Segments = std::span<const ContactSegment<dim>>;
 
-  [[nodiscard]] bool is_owned(const ContactSegment<dim>& segment) const
-  {
-    return segment.slave.facet.cell < mesh_.n_owned_cells();
-  }
   [[nodiscard]] Measures measures(Segments segments) const;
   void count_formulas(Segments segments);
   [[nodiscard]] double largest_effect() const;

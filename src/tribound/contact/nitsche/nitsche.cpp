@@ -29,9 +29,8 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       segments_(std::move(segments)),
       data_(problem, space.mesh(), space.degree(), segments_, accuracy),
       load_(assemble_load(data_, space)),
-      n_owned_segments_(
-          std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
-                                { return segment.slave.facet.cell < space.mesh().n_owned_cells(); })),
+      n_owned_segments_(std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
+                                              { return is_owned(space.mesh(), segment); })),
       points_(make_points()),
       tables_(space.basis(), segments_, facet_rule().points)
 {

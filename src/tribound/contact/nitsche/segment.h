@@ -84,6 +84,13 @@ template <int dim>
 [[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh,
                                                    const ContactSegment<dim>& segment);
 
+/// On several ranks: whether its slave is a facet of an own cell.
+template <int dim>
+[[nodiscard]] bool is_owned(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment)
+{
+  return segment.slave.facet.cell < mesh.n_owned_cells();
+}
+
 /// The segment between parts of the slave and of the master, or an obstacle. It keeps a pointer to `contact`.
 /// The sides are weighted by their stiffness, with M = the penalty modulus of a side, J = dM/dS:
 ///     c_s = M_s/h_s,  c_m = J M_m/h_m,  w_s = c_m/(c_s + c_m),  w_m = c_s/(c_s + c_m),

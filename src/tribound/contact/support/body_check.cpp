@@ -131,9 +131,9 @@ auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::Vect
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
   const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
-  for (std::size_t k = 0; k < segments_.size(); ++k)
+  for (std::size_t k = 0; k < form_.segments().size(); ++k)
   {
-    const ContactSegment<dim>& segment = segments_[k];
+    const ContactSegment<dim>& segment = form_.segments()[k];
     const problem::ContactLaw& law = segment.contact->law;
     if (problem::cone(law).strength == nullptr ||
         !std::ranges::binary_search(body_.numbers, segment.slave.number))
@@ -141,7 +141,7 @@ auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::Vect
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
     const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
     { return z_x - z_x.dot(segment.normal) * segment.normal; };
-    const std::span<const ContactDatumPart<dim>> parts = data_.contact_parts(k);
+    const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(k);
     for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
     {
       const double measure = segment.measure * fem::fraction<dim - 1>(part);
@@ -179,9 +179,10 @@ double BodyCheck<dim>::missed_work(const Coefficients& motion) const
   };
   double missed = 0;
   for (const Index c : body_.cells)
-    if (const double mean = data_.body_remainder(c).mean; mean > 0) missed += mean * largest(mesh_.cell(c));
+    if (const double mean = form_.data().body_remainder(c).mean; mean > 0)
+      missed += mean * largest(mesh_.cell(c));
   for (std::size_t k = 0; k < body_.facets.size(); ++k)
-    if (const double mean = data_.traction_remainder(body_.numbers[k]).mean; mean > 0)
+    if (const double mean = form_.data().traction_remainder(body_.numbers[k]).mean; mean > 0)
       missed += mean * largest(mesh::facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
   return std::sqrt(dim) * missed;  // by components
 }
@@ -210,12 +211,12 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
   {
     const Eigen::VectorXd r = project_on_polar_cone(columns, target).head(m);
     if (r.norm() <= tolerance) return {};
-    const FrictionWork friction = strength_work(motions, r, data_.facet_rule());
+    const FrictionWork friction = strength_work(motions, r, form_.data().facet_rule());
     const double driving = r.dot(loads) - missed_work(motions * r);
     if (driving > (1 + relative) * friction.most + tolerance * r.norm())
     {
       // |z^t| has kinks: refuse only what refinement of the rule does not change.
-      const double finer = strength_work(motions, r, on_halves(on_halves(data_.facet_rule()))).most;
+      const double finer = strength_work(motions, r, on_halves(on_halves(form_.data().facet_rule()))).most;
       const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
       return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
     }
@@ -266,7 +267,7 @@ void BodyCheck<dim>::check_balanced(const Coefficients& work, double round_off) 
 
   if (const std::optional<Eigen::VectorXd> z = beyond_tresca(motions, c, tolerance))
   {
-    const FrictionWork friction = strength_work(motions, *z, data_.facet_rule());
+    const FrictionWork friction = strength_work(motions, *z, form_.data().facet_rule());
     fail(motions * *z, fmt::format("the friction threshold takes up only {:.3g} % of their work in it",
                                    100 * (friction.most + friction.missed) / z->dot(c)));
   }

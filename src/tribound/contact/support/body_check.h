@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "tribound/contact/nitsche/discrete_data.h"
+#include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/support/body.h"
 #include "tribound/contact/support/body_support.h"
 #include "tribound/fem/quadrature.h"
@@ -24,15 +24,12 @@ class BodyCheck
  public:
   using Coefficients = typename RigidModes<dim>::Coefficients;
 
-  BodyCheck(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-            std::span<const ContactSegment<dim>> segments, const DiscreteData<dim>& data,
-            const Body<dim>& body, std::string name)
-      : problem_(problem),
-        mesh_(mesh),
-        segments_(segments),
-        data_(data),
+  BodyCheck(const NitscheForm<dim>& form, const Body<dim>& body, std::string name)
+      : form_(form),
+        problem_(form.problem()),
+        mesh_(form.space().mesh()),
         body_(body),
-        support_(problem, mesh, body),
+        support_(problem_, mesh_, body),
         name_(std::move(name))
   {
   }
@@ -74,10 +71,9 @@ class BodyCheck
   [[nodiscard]] std::string hint(std::span<const Coefficients> free) const;
   [[noreturn]] void fail(const Coefficients& motion, const std::string& reason) const;
 
+  const NitscheForm<dim>& form_;
   const problem::Problem<dim>& problem_;
   const mesh::Mesh<dim>& mesh_;
-  std::span<const ContactSegment<dim>> segments_;
-  const DiscreteData<dim>& data_;
   const Body<dim>& body_;
   BodySupport<dim> support_;
   std::string name_;

@@ -3,27 +3,24 @@
 #include <cassert>
 #include <vector>
 
-#include "tribound/contact/nitsche/discrete_data.h"
-#include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/support/body.h"
 #include "tribound/contact/support/body_check.h"
+#include "tribound/fem/space.h"
 
 namespace tribound::contact
 {
 
 template <int dim>
-void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                         std::span<const ContactSegment<dim>> segments, const DiscreteData<dim>& data,
-                         std::span<const double> load)
+void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> load)
 {
+  const fem::LagrangeSpace<dim>& space = form.space();
   assert(!space.mesh().partition());
   constexpr double relative_round_off = 1e-11;
   const std::vector<Body<dim>> bodies = find_bodies(space);
   const std::vector<Point<dim>> points = space.node_points();
   for (const Body<dim>& body : bodies)
   {
-    const BodyCheck<dim> check(problem, space.mesh(), segments, data, body,
-                               describe(body, problem, bodies.size() > 1));
+    const BodyCheck<dim> check(form, body, describe(body, form.problem(), bodies.size() > 1));
     check.check_held();
 
     typename BodyCheck<dim>::Coefficients work =
@@ -43,17 +40,11 @@ template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree)
 {
   const fem::LagrangeSpace<dim> space(mesh, degree);
-  const std::vector<ContactSegment<dim>> segments = contact_segments(problem, mesh, 1.0);
-  const DiscreteData<dim> data(problem, mesh, degree, segments);
-  check_rigid_motions<dim>(problem, space, segments, data, assemble_load<dim>(data, space));
+  check_rigid_motions(NitscheForm<dim>(problem, space, 1.0));
 }
 
-template void check_rigid_motions(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                  std::span<const ContactSegment<2>>, const DiscreteData<2>&,
-                                  std::span<const double>);
-template void check_rigid_motions(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                  std::span<const ContactSegment<3>>, const DiscreteData<3>&,
-                                  std::span<const double>);
+template void check_rigid_motions(const NitscheForm<2>&, std::span<const double>);
+template void check_rigid_motions(const NitscheForm<3>&, std::span<const double>);
 template void check_rigid_motions(const problem::Problem<2>&, const mesh::Mesh<2>&, int);
 template void check_rigid_motions(const problem::Problem<3>&, const mesh::Mesh<3>&, int);
 

@@ -6,8 +6,8 @@
 
 #include <span>
 
-#include "tribound/contact/nitsche/discrete_data.h"
-#include "tribound/fem/space.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::contact
@@ -24,12 +24,17 @@ namespace tribound::contact
 ///    an eight-sided one around it, and integrals of loads and of s |z^t| count with their quadrature error.
 ///    So what is refused has no solution, but some cases without one pass.
 /// Bodies that displacement conditions hold by themselves pass at once. The mesh is a whole one: before it is
-/// shared out or later, since refinement changes neither bodies nor supports. `data` is that of the segments,
-/// `load` L(phi_i) for every degree of freedom, up to the remainders of the data.
+/// shared out or later, since refinement changes neither bodies nor supports. `load` is L(phi_i) for every
+/// degree of freedom, up to the remainders of the data of the form.
 template <int dim>
-void check_rigid_motions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                         std::span<const ContactSegment<dim>> segments, const DiscreteData<dim>& data,
-                         std::span<const double> load);
+void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> load);
+
+/// The same with the load of the form.
+template <int dim>
+void check_rigid_motions(const NitscheForm<dim>& form)
+{
+  check_rigid_motions(form, form.load());
+}
 
 /// The same from the mesh alone.
 template <int dim>
