@@ -17,6 +17,7 @@ namespace tribound::test
 using problem::Coulomb;
 using problem::Frictionless;
 using problem::lame;
+using problem::Tied;
 using problem::Tresca;
 
 /// A component of the displacement that is not prescribed.
@@ -101,6 +102,18 @@ template <int dim>
   return obstacle<dim>(name, contact.law, *contact.gap);
 }
 
+/// Contact between bodies without a gap.
+template <int dim>
+[[nodiscard]] problem::ContactPair<dim> pair(const std::string& slave, const std::string& master,
+                                             problem::ContactLaw law = Frictionless())
+{
+  return {.slave = {slave},
+          .master = {master},
+          .contact = problem::Contact(std::move(law)),
+          .pairing = {},
+          .where = {.file = {}, .key = "contact"}};
+}
+
 /// A problem before it meets a mesh. No member is initialised with {}: GCC 12 ends there with an internal
 /// error.
 template <int dim>
@@ -110,13 +123,14 @@ struct ProblemData
   problem::Material material = lame(1.0, 0.3);  ///< of every region without an entry of its own
   std::array<problem::Field, dim> body_force;   ///< the same
   std::vector<problem::Region<dim>> regions;    ///< those with an entry of their own
+  std::vector<problem::ContactPair<dim>> pairs;
 
   template <class Mesh>
   [[nodiscard]] problem::Problem<dim> on(const Mesh& mesh) const
   {
     std::vector<problem::Region<dim>> all = regions;
     all.push_back({.name = {}, .material = material, .body_force = body_force});
-    return {mesh, all, boundaries};
+    return {mesh, all, boundaries, pairs};
   }
 };
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <variant>
 
-#include "tribound/contact/support/body_support.h"
+#include "tribound/contact/support/support.h"
 #include "tribound/doctor/contact_facts.h"
 
 namespace tribound::doctor

@@ -80,30 +80,61 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
   for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.fixes(c);
 }
 
-/// Per boundary number the mean normal of a contact boundary whose facets are within 10 degrees of it.
+/// Per boundary number the mean normal of an obstacle or slave whose segments are within 10 degrees of it.
 template <int dim>
-std::vector<std::optional<Point<dim>>> normals_of_planes(const problem::Problem<dim>& problem,
-                                                         const mesh::Mesh<dim>& mesh)
+std::vector<std::optional<Point<dim>>> normals_of_planes(
+    std::size_t n_boundaries, std::span<const contact::ContactSegment<dim>> segments)
 {
   constexpr double cos_limit = 0.985;
-  const auto for_each_facet = [&](const auto& visit)
-  {
-    for (const mesh::BoundaryFacet& facet : mesh.boundary())
-      if (problem.boundary(facet.tag).contact)
-        visit(facet.tag, mesh::facet_geometry(mesh, facet.cell, facet.local));
-  };
-  std::vector<Point<dim>> sum(problem.boundaries().size(), Point<dim>::Zero());
-  for_each_facet([&](int tag, const mesh::FacetGeometry<dim>& facet)
-                 { sum[tag] += facet.measure * facet.normal; });
+  std::vector<Point<dim>> sum(n_boundaries, Point<dim>::Zero());
+  for (const contact::ContactSegment<dim>& segment : segments)
+    sum[segment.slave.facet.tag] += segment.measure * segment.normal;
   std::vector<std::optional<Point<dim>>> normals(sum.size());
   for (std::size_t tag = 0; tag < sum.size(); ++tag)
     if (sum[tag].norm() > 0) normals[tag] = sum[tag].normalized();
-  for_each_facet(
-      [&](int tag, const mesh::FacetGeometry<dim>& facet)
-      {
-        if (auto& normal = normals[tag]; normal && facet.normal.dot(*normal) < cos_limit) normal.reset();
-      });
+  for (const contact::ContactSegment<dim>& segment : segments)
+    if (auto& normal = normals[segment.slave.facet.tag]; normal && segment.normal.dot(*normal) < cos_limit)
+      normal.reset();
   return normals;
+}
+
+/// Marks the boundaries along which the bodies of an assembly slide, see slides_as_a_whole().
+template <int dim>
+void mark_sliding(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                  std::span<const contact::ContactSegment<dim>> segments,
+                  std::span<const std::optional<Point<dim>>> plane, const contact::Assembly<dim>& assembly,
+                  std::vector<bool>& slides)
+{
+  constexpr double negligible = 1e-6;  // motions have size 1
+  const auto for_each_corner = [&](const auto& visit)
+  {
+    for (const contact::AssemblySegment& entry : assembly.segments)
+    {
+      const contact::ContactSegment<dim>& segment = segments[entry.number];
+      const contact::MotionJump<dim> jump(mesh, assembly, entry, segment);
+      for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
+        visit(segment, jump.coefficients(), jump(s));
+    }
+  };
+  const contact::MotionBasis left = contact::Support<dim>(problem, mesh, segments, assembly).left_by_fixing();
+  if (left.cols() == 0) return;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(assembly.n_motions(), assembly.n_motions());
+  for_each_corner(
+      [&](const contact::ContactSegment<dim>& segment, const std::vector<int>& coefficients, const auto& z)
+      {
+        const Point<dim> n = plane[segment.slave.facet.tag].value_or(segment.normal);
+        const Eigen::RowVectorXd z_n = n.transpose() * z;
+        gram(coefficients, coefficients) += z_n.transpose() * z_n;
+      });
+  const contact::MotionBasis motions =
+      left * contact::null_space(left.transpose() * gram * left, gram.trace());
+  for_each_corner(
+      [&](const contact::ContactSegment<dim>& segment, const std::vector<int>& coefficients, const auto& z)
+      {
+        const int tag = segment.slave.facet.tag;
+        slides[tag] =
+            slides[tag] || (plane[tag] && (z * motions(coefficients, Eigen::all)).norm() > negligible);
+      });
 }
 
 }  // namespace
@@ -117,55 +148,32 @@ bool OverconstrainedCorner::contradicts() const
 template <int dim>
 std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
-  constexpr double negligible = 1e-6;  // motions have size 1
   const fem::LagrangeSpace<dim> space(mesh, 1);
+  const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
   std::vector<bool> slides(problem.boundaries().size(), false);
-  const std::vector<std::optional<Point<dim>>> plane = normals_of_planes(problem, mesh);
-  for (const contact::Body<dim>& body : contact::find_bodies(space))
-  {
-    const contact::BodySupport<dim> support(problem, mesh, body);
-    Eigen::MatrixXd gram = support.dirichlet_gram();
-    const auto for_each_contact_vertex = [&](const auto& visit)
-    {
-      for (const mesh::BoundaryFacet& facet : body.facets)
-        if (problem.boundary(facet.tag).contact)
-          for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
-            visit(facet, body.modes.at(mesh.vertex(v)));
-    };
-    for_each_contact_vertex(
-        [&](const mesh::BoundaryFacet& facet, const auto& modes)
-        {
-          const Point<dim> n =
-              plane[facet.tag].value_or(mesh::facet_geometry(mesh, facet.cell, facet.local).normal);
-          const auto z_n = n.transpose() * modes;
-          gram += z_n.transpose() * z_n;
-        });
-    const contact::MotionBasis motions = contact::null_space(gram, gram.trace());
-    for_each_contact_vertex(
-        [&](const mesh::BoundaryFacet& facet, const auto& modes) {
-          slides[facet.tag] =
-              slides[facet.tag] || (plane[facet.tag] && (modes * motions).norm() > negligible);
-        });
-  }
+  const std::vector<std::optional<Point<dim>>> plane =
+      normals_of_planes<dim>(problem.boundaries().size(), segments);
+  for (const contact::Assembly<dim>& assembly : contact::find_assemblies<dim>(space, segments))
+    mark_sliding<dim>(problem, mesh, segments, plane, assembly, slides);
   return slides;
 }
 
 template <int dim>
 std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<dim>& form)
 {
-  const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const std::vector<contact::Body<dim>> bodies = contact::find_bodies(form.space());
+  const std::vector<contact::Assembly<dim>> assemblies =
+      contact::find_assemblies<dim>(form.space(), form.segments());
   std::vector<ContactHeldMotion> result;
-  for (const contact::Body<dim>& body : bodies)
+  for (const contact::Assembly<dim>& assembly : assemblies)
   {
-    const contact::BodySupport<dim> support(form.problem(), mesh, body);
-    const contact::MotionBasis left = support.left_by_displacements();
+    const contact::Support<dim> support(form.problem(), form.space().mesh(), form.segments(), assembly);
+    const contact::MotionBasis left = support.left_by_fixing();
     const contact::MotionBasis sliding = support.left_by_contact(false);
     const auto add = [&](const contact::MotionBasis& motions, bool by_friction)
     {
-      for (const auto& z : contact::readable_basis<dim>(motions))
-        result.push_back({contact::describe(body, form.problem(), bodies.size() > 1), body.modes.describe(z),
-                          by_friction, support.remedy(z)});
+      for (const Eigen::VectorXd& z : assembly.readable_basis(motions))
+        result.push_back({assembly.describe(form.problem(), assemblies.size() > 1),
+                          assembly.describe(form.problem(), z), by_friction, support.remedy(z)});
     };
     add(complement(left, sliding), false);
     add(sliding, true);
@@ -183,6 +191,7 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const contact::Nitsch
   std::map<std::pair<int, int>, std::set<Index>> seen;
   for (const contact::ContactSegment<dim>& segment : form.segments())
   {
+    if (segment.master) continue;  // the other body gives way
     const mesh::BoundaryFacet& facet = segment.slave.facet;
     for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
     {

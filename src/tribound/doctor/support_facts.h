@@ -8,29 +8,29 @@
 #include <vector>
 
 #include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/contact/support/body_support.h"
+#include "tribound/contact/support/support.h"
 #include "tribound/doctor/place.h"
 
 namespace tribound::doctor
 {
 
-/// A rigid motion that displacement conditions leave and only contact stops.
+/// A rigid motion that displacement conditions and ties leave and only contact stops.
 struct ContactHeldMotion
 {
-  std::string body;
+  std::string body;                       ///< or bodies
   std::string motion;                     ///< such as "translation along x"
   bool by_friction = false;               ///< nothing but friction stops it; else pressure, one way
   std::optional<contact::Remedy> remedy;  ///< what would stop it without contact
 };
 
-/// The motions of every body that only contact stops: first those stopped by pressure, then by friction.
+/// The motions of every assembly that only contact stops: first those stopped by pressure, then by friction.
 template <int dim>
 [[nodiscard]] std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<dim>& form);
 
-/// Per boundary number, whether a body would slide along it as a whole without its friction: the facets of
-/// the boundary are within 10 degrees of a plane, and a rigid motion along the plane is stopped neither by
-/// displacement conditions nor by closed contact without friction. There, and only there, resultants tell how
-/// far sliding is. Refinement does not change it; the mesh is a whole one.
+/// Per boundary number, whether a body would slide along this obstacle or slave as a whole without its
+/// friction: the facets of the boundary are within 10 degrees of a plane, and a rigid motion along the plane
+/// is stopped neither by displacement conditions and ties nor by closed contact without friction. There, and
+/// only there, resultants tell how far sliding is. Refinement does not change it; the mesh is a whole one.
 template <int dim>
 [[nodiscard]] std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh);

@@ -72,10 +72,12 @@ std::vector<BoundaryCondition<dim>> of_each_boundary(std::span<const std::string
   return boundaries;
 }
 
-/// Each boundary stands in one pair, on one side of it, and has no condition.
+/// Whether each boundary is in a pair. It stands in one at most, on one side of it, and has then no
+/// condition.
 template <int dim>
-void check_pairs(std::span<const std::string> names, const std::vector<BoundaryCondition<dim>>& conditions,
-                 std::span<const ContactPair<dim>> pairs)
+std::vector<bool> paired(std::span<const std::string> names,
+                         const std::vector<BoundaryCondition<dim>>& conditions,
+                         std::span<const ContactPair<dim>> pairs)
 {
   std::vector<bool> is_paired(names.size(), false);
   for (const ContactPair<dim>& pair : pairs)
@@ -100,6 +102,7 @@ void check_pairs(std::span<const std::string> names, const std::vector<BoundaryC
     if (cone(pair.contact.law).is_tied && !(pair.contact.gap && pair.contact.gap->is_zero()))
       throw InputError(pair.where, "a tied contact has no gap", "give the gap 0");
   }
+  return is_paired;
 }
 
 }  // namespace
@@ -195,9 +198,15 @@ Problem<dim>::Problem(std::span<const std::string> region_names, std::span<const
                       std::vector<ContactPair<dim>> pairs)
     : regions_(of_each_region(region_names, regions)),
       boundaries_(of_each_boundary(boundary_names, boundaries)),
-      pairs_(std::move(pairs))
+      pairs_(std::move(pairs)),
+      is_paired_(paired<dim>(boundary_names, boundaries, pairs_))
 {
-  check_pairs<dim>(boundary_names, boundaries, pairs_);
+}
+
+template <int dim>
+bool Problem<dim>::is_in_contact(int tag) const
+{
+  return boundary(tag).contact || (tag >= 0 && is_paired_[tag]);
 }
 
 template <int dim>

@@ -144,6 +144,8 @@ class Problem
   /// In the order of the mesh, each with the name it has there.
   [[nodiscard]] std::span<const Region<dim>> regions() const { return regions_; }
   [[nodiscard]] std::span<const ContactPair<dim>> pairs() const { return pairs_; }
+  /// Whether boundary number `tag` touches an obstacle or is the slave or the master of a pair.
+  [[nodiscard]] bool is_in_contact(int tag) const;
   /// Whether there are obstacles or pairs.
   [[nodiscard]] bool has_contact() const;
 
@@ -151,6 +153,7 @@ class Problem
   std::vector<Region<dim>> regions_;
   std::vector<BoundaryCondition<dim>> boundaries_;
   std::vector<ContactPair<dim>> pairs_;
+  std::vector<bool> is_paired_;
   BoundaryCondition<dim> unnamed_;
 };
 

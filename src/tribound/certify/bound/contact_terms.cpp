@@ -106,7 +106,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const Point<dim>& n = segment.normal;
-  const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form_.space().mesh(), segment);
+  const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form_.space().mesh(), segment.slave);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
   const problem::ContactLaw& law = segment.contact->law;

@@ -244,7 +244,7 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                  const ContactSegment<dim>& segment = segments[k];
                  const Datum<dim> datum = contact_datum(segment);
                  if (datum.terms.empty()) return;
-                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
+                 const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
                  DatumOnSimplex<dim - 1, dim> found = facet_moments_(
                      datum, map, {std::sqrt(segment.h), 0}, density * std::sqrt(map.measure), max_parts_);
                  for (auto& moment : found.moments) moment[0] /= segment.gamma;
@@ -267,7 +267,7 @@ template <int dim>
 void DiscreteData<dim>::check_signs(const ContactSegment<dim>& segment,
                                     const DatumOnSimplex<dim - 1, dim>& found) const
 {
-  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
     {
@@ -311,7 +311,7 @@ void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t 
   const auto found = contact_.moments.find(k);
   std::vector<Point<dim>> values(found == contact_.moments.end() ? 0 : facet_rule().size());
   if (!values.empty()) facet_moments_.evaluate(found->second, values);
-  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
+  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
   for (int q = 0; q < facet_rule().size(); ++q)
   {
     const Point<dim - 1>& s = facet_rule().points[q];

@@ -55,7 +55,7 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
   for (std::size_t k = 0; k < segments_.size(); ++k)
   {
     const ContactSegment<dim>& segment = segments_[k];
-    const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment);
+    const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
     data_.contact(segment, k, gap, strength);
     for (int q = 0; q < facet_rule().size(); ++q)
       points.push_back({map(facet_rule().points[q]), segment.det() * facet_rule().weights[q], segment.normal,
@@ -234,7 +234,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
 {
   const ContactSegment<dim>& segment = segments_[k];
   const Point<dim>& n = segment.normal;
-  const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment);
+  const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
   const SegmentValues<dim> on_segment(*problem_, *space_, segment, table);
 
   std::vector<ContactState<dim>> states;

@@ -39,29 +39,26 @@ template <int dim>
 std::array<double, dim> distances(const mesh::Mesh<dim>& mesh, const WeighedSide<dim>& slave,
                                   const WeighedSide<dim>& master)
 {
-  const auto map_of = [&](const WeighedSide<dim>& side)
-  { return mesh::facet_map(mesh, side.side.facet.cell, side.side.facet.local); };
-  const mesh::FacetMap<dim> on_slave = map_of(slave);
-  const mesh::FacetMap<dim> on_master = map_of(master);
+  const SimplexMap<dim - 1, dim> on_slave = simplex_map(mesh, slave.side);
+  const SimplexMap<dim - 1, dim> on_master = simplex_map(mesh, master.side);
   std::array<double, dim> result;
   const auto corners = fem::reference_simplex<dim - 1>();
   for (int i = 0; i < dim; ++i)
-    result[i] = slave.geometry.normal.dot(on_master(master.side.on_facet(corners[i])) -
-                                          on_slave(slave.side.on_facet(corners[i])));
+    result[i] = slave.geometry.normal.dot(on_master(corners[i]) - on_slave(corners[i]));
   return result;
 }
 
 }  // namespace
 
 template <int dim>
-SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment)
+SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const SegmentSide<dim>& side)
 {
-  SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave.facet);
-  if (!segment.slave.part) return map;
-  const fem::Part<dim - 1>& part = *segment.slave.part;
+  SimplexMap<dim - 1, dim> map = simplex_map(mesh, side.facet);
+  if (!side.part) return map;
+  const fem::Part<dim - 1>& part = *side.part;
   Eigen::Matrix<double, dim - 1, dim - 1> edges;
   for (int i = 1; i < dim; ++i) edges.col(i - 1) = part[i] - part[0];
-  return {map(part[0]), map.jacobian * edges, segment.measure};
+  return {map(part[0]), map.jacobian * edges, fem::fraction<dim - 1>(part) * map.measure};
 }
 
 template <int dim>
@@ -121,8 +118,8 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
   return segments;
 }
 
-template SimplexMap<1, 2> simplex_map(const mesh::Mesh<2>&, const ContactSegment<2>&);
-template SimplexMap<2, 3> simplex_map(const mesh::Mesh<3>&, const ContactSegment<3>&);
+template SimplexMap<1, 2> simplex_map(const mesh::Mesh<2>&, const SegmentSide<2>&);
+template SimplexMap<2, 3> simplex_map(const mesh::Mesh<3>&, const SegmentSide<3>&);
 template ContactSegment<2> make_segment(const problem::Problem<2>&, const mesh::Mesh<2>&, double,
                                         const problem::Contact&, const FacetPart<2>&,
                                         const std::optional<FacetPart<2>>&);

@@ -79,10 +79,9 @@ struct ContactSegment
   [[nodiscard]] bool is_obstacle_facet() const { return !master && !slave.part; }
 };
 
-/// The points of a segment on the slave, by their coordinates on the segment.
+/// The points of a segment on one of its sides, by their coordinates on the segment.
 template <int dim>
-[[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh,
-                                                   const ContactSegment<dim>& segment);
+[[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const SegmentSide<dim>& side);
 
 /// On several ranks: whether its slave is a facet of an own cell.
 template <int dim>

@@ -51,28 +51,6 @@ std::vector<int> spread(std::span<const int> cell_label, Index n, Numbers number
   return label;
 }
 
-/// Sets centre and size of the modes of every body.
-template <int dim>
-void measure(const mesh::Mesh<dim>& mesh, std::span<const int> vertex_label, std::vector<Body<dim>>& bodies)
-{
-  std::vector<Index> n_vertices(bodies.size(), 0);
-  for (Index v = 0; v < mesh.n_vertices(); ++v)
-  {
-    bodies[vertex_label[v]].modes.centre += mesh.vertex(v);
-    ++n_vertices[vertex_label[v]];
-  }
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-  {
-    bodies[b].modes.centre /= n_vertices[b];
-    bodies[b].modes.size = 0;
-  }
-  for (Index v = 0; v < mesh.n_vertices(); ++v)
-  {
-    RigidModes<dim>& modes = bodies[vertex_label[v]].modes;
-    modes.size = std::max(modes.size, (mesh.vertex(v) - modes.centre).norm());
-  }
-}
-
 }  // namespace
 
 template <int dim>
@@ -82,10 +60,14 @@ std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space)
   const std::vector<int> cell_label = label_cells(mesh.topology());
   if (cell_label.empty()) return {};
   std::vector<Body<dim>> bodies(std::ranges::max(cell_label) + 1);
-  measure<dim>(mesh,
-               spread(
-                   cell_label, mesh.n_vertices(), [&](Index c) -> const auto& { return mesh.cell(c); }),
-               bodies);
+  const std::vector<int> vertex_label = spread(
+      cell_label, mesh.n_vertices(), [&](Index c) -> const auto& { return mesh.cell(c); });
+  for (Index v = 0; v < mesh.n_vertices(); ++v) bodies[vertex_label[v]].vertices.push_back(v);
+  for (Body<dim>& body : bodies)
+  {
+    for (const Index v : body.vertices) body.centre += mesh.vertex(v);
+    body.centre /= static_cast<double>(body.vertices.size());
+  }
 
   const std::vector<int> node_label =
       spread(cell_label, space.n_nodes(), [&](Index c) { return space.cell_nodes(c); });
@@ -111,7 +93,7 @@ std::string describe(const Body<dim>& body, const problem::Problem<dim>& problem
 {
   std::vector<std::string> names;
   for (const int region : body.regions) names.push_back("\"" + problem.regions()[region].name + "\"");
-  const std::string place = several ? fmt::format(" around {}", mesh::describe(body.modes.centre)) : "";
+  const std::string place = several ? fmt::format(" around {}", mesh::describe(body.centre)) : "";
   return fmt::format("the body{} (region{} {})", place, names.size() > 1 ? "s" : "", fmt::join(names, ", "));
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tribound/contact/support/rigid_modes.h"
+#include "tribound/base/types.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
@@ -18,9 +18,10 @@ namespace tribound::contact
 template <int dim>
 struct Body
 {
-  RigidModes<dim> modes;     ///< about the mean of the vertices, scaled by the farthest of them
-  std::vector<int> regions;  ///< ascending
-  std::vector<Index> nodes;  ///< of the space
+  Point<dim> centre = Point<dim>::Zero();   ///< the mean of the vertices
+  std::vector<int> regions;                 ///< ascending
+  std::vector<Index> vertices;              ///< of the mesh
+  std::vector<Index> nodes;                 ///< of the space
   std::vector<mesh::BoundaryFacet> facets;  ///< its part of the boundary
   std::vector<std::size_t> numbers;         ///< of these facets in Mesh::boundary()
   std::vector<Index> cells;

@@ -109,21 +109,27 @@ MotionBasis null_space(const Eigen::MatrixXd& gram, double scale)
 }
 
 template <int dim>
-std::vector<typename RigidModes<dim>::Coefficients> readable_basis(const MotionBasis& motions)
+std::vector<Eigen::VectorXd> readable_basis(const MotionBasis& motions)
 {
   constexpr int n_modes = RigidModes<dim>::n_modes;
-  if (motions.cols() == 0) return {};
   Eigen::MatrixXd rows = motions.transpose();
-  const std::vector<Eigen::Index> rotations = eliminate(rows, 0, dim, n_modes);
-  const auto n_rotations = static_cast<Eigen::Index>(rotations.size());
-  rows.bottomRightCorner(rows.rows() - n_rotations, n_modes - dim).setZero();
-  const std::vector<Eigen::Index> translations = eliminate(rows, n_rotations, 0, dim);
-
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> order;  // pivot column, row: translations come first
-  for (std::size_t i = 0; i < rotations.size(); ++i) order.emplace_back(rotations[i], i);
-  for (std::size_t i = 0; i < translations.size(); ++i) order.emplace_back(translations[i], n_rotations + i);
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> order;  // pivot column, row
+  const auto eliminate_block = [&](Eigen::Index begin, Eigen::Index end)
+  {
+    const auto first = static_cast<Eigen::Index>(order.size());
+    if (first == rows.rows()) return;
+    for (const Eigen::Index pivot : eliminate(rows, first, begin, end))
+      order.emplace_back(pivot, static_cast<Eigen::Index>(order.size()));
+    const auto done = static_cast<Eigen::Index>(order.size());
+    rows.block(done, begin, rows.rows() - done, end - begin).setZero();
+  };
+  for (Eigen::Index body = rows.cols() - n_modes; body >= 0; body -= n_modes)
+  {
+    eliminate_block(body + dim, body + n_modes);
+    eliminate_block(body, body + dim);
+  }
   std::ranges::sort(order);
-  std::vector<typename RigidModes<dim>::Coefficients> basis;
+  std::vector<Eigen::VectorXd> basis;
   basis.reserve(order.size());
   for (const auto& [pivot, row] : order) basis.emplace_back(rows.row(row).transpose());
   return basis;
@@ -131,7 +137,7 @@ std::vector<typename RigidModes<dim>::Coefficients> readable_basis(const MotionB
 
 template struct RigidModes<2>;
 template struct RigidModes<3>;
-template std::vector<RigidModes<2>::Coefficients> readable_basis<2>(const MotionBasis&);
-template std::vector<RigidModes<3>::Coefficients> readable_basis<3>(const MotionBasis&);
+template std::vector<Eigen::VectorXd> readable_basis<2>(const MotionBasis&);
+template std::vector<Eigen::VectorXd> readable_basis<3>(const MotionBasis&);
 
 }  // namespace tribound::contact

@@ -32,15 +32,16 @@ struct RigidModes
   [[nodiscard]] std::string describe(const Coefficients& motion) const;
 };
 
-/// Motions as columns of a matrix with RigidModes::n_modes rows.
+/// Motions as columns of a matrix with RigidModes::n_modes rows for each body.
 using MotionBasis = Eigen::MatrixXd;
 
 /// An orthonormal basis of the null space of a Gram matrix: eigenvalues up to 1e-14 of `scale` count as 0.
 [[nodiscard]] MotionBasis null_space(const Eigen::MatrixXd& gram, double scale);
 
-/// A basis of the same space for people to read: first its translations, then its rotations, each along the
-/// coordinate axes where possible.
+/// A basis of the same space for people to read: first what moves the first body, there first translations,
+/// then rotations, each along the coordinate axes where possible; then what moves the second and not the
+/// first, and so on, where such motions span what is left.
 template <int dim>
-[[nodiscard]] std::vector<typename RigidModes<dim>::Coefficients> readable_basis(const MotionBasis& motions);
+[[nodiscard]] std::vector<Eigen::VectorXd> readable_basis(const MotionBasis& motions);
 
 }  // namespace tribound::contact

@@ -3,8 +3,8 @@
 #include <cassert>
 #include <vector>
 
-#include "tribound/contact/support/body.h"
-#include "tribound/contact/support/body_check.h"
+#include "tribound/contact/support/assembly.h"
+#include "tribound/contact/support/assembly_check.h"
 #include "tribound/fem/space.h"
 
 namespace tribound::contact
@@ -16,22 +16,24 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
   const fem::LagrangeSpace<dim>& space = form.space();
   assert(!space.mesh().partition());
   constexpr double relative_round_off = 1e-11;
-  const std::vector<Body<dim>> bodies = find_bodies(space);
+  constexpr int n_modes = RigidModes<dim>::n_modes;
+  const std::vector<Assembly<dim>> assemblies = find_assemblies<dim>(space, form.segments());
   const std::vector<Point<dim>> points = space.node_points();
-  for (const Body<dim>& body : bodies)
+  for (const Assembly<dim>& assembly : assemblies)
   {
-    const BodyCheck<dim> check(form, body, describe(body, form.problem(), bodies.size() > 1));
+    const AssemblyCheck<dim> check(form, assembly, assembly.describe(form.problem(), assemblies.size() > 1));
     check.check_held();
 
-    typename BodyCheck<dim>::Coefficients work =
-        BodyCheck<dim>::Coefficients::Zero();  // L(z) for each rigid motion z
+    Eigen::VectorXd work = Eigen::VectorXd::Zero(assembly.n_motions());  // L(z) for each rigid motion z
     double terms = 0;
-    for (const Index i : body.nodes)
-    {
-      const Point<dim> force(load.data() + static_cast<std::size_t>(dim) * i);
-      work += body.modes.at(points[i]).transpose() * force;
-      terms += force.norm();
-    }
+    for (std::size_t b = 0; b < assembly.bodies.size(); ++b)
+      for (const Index i : assembly.bodies[b].nodes)
+      {
+        const Point<dim> force(load.data() + static_cast<std::size_t>(dim) * i);
+        work.template segment<n_modes>(n_modes * static_cast<int>(b)) +=
+            assembly.modes.at(points[i]).transpose() * force;
+        terms += force.norm();
+      }
     check.check_balanced(work, relative_round_off * terms);
   }
 }

@@ -13,16 +13,17 @@
 namespace tribound::contact
 {
 
-/// Throws InputError naming the body and the motion when a part of the mesh that is connected through facets
+/// Throws InputError naming the bodies and the motion when an assembly, bodies that pairs join or one alone,
 ///  * can move rigidly although its displacement conditions hold and all contact is closed (and sticking,
 ///    where there is friction): the first Newton step would be singular; or
 ///  * is driven by its loads into a rigid motion that contact, which only pushes and whose friction is
-///    limited, cannot resist: there is no solution. There is one only if L(z) <= (s, |z^t|)_C for every
-///    rigid motion z with z^n <= 0 on frictionless and Tresca contact and z^n + mu_F |z^t| <= 0 on Coulomb
-///    contact, where (s, .) is over Tresca contact: take z as test function. Exact up to rounding in 2D and
-///    for constant s without friction of Coulomb; for Coulomb's law in 3D the cone of friction is replaced by
-///    an eight-sided one around it, and integrals of loads and of s |z^t| count with their quadrature error.
-///    So what is refused has no solution, but some cases without one pass.
+///    limited, cannot resist: there is no solution. There is one only if L(z) <= (s, |[z]^t|)_C for every
+///    rigid motion z, one of each body, with [z] = 0 on ties, [z]^n <= 0 on frictionless and Tresca contact
+///    and [z]^n + mu_F |[z]^t| <= 0 on Coulomb contact, where (s, .) is over Tresca contact: take z as test
+///    function. Exact up to rounding in 2D and for constant s without friction of Coulomb; for Coulomb's law
+///    in 3D the cone of friction is replaced by an eight-sided one around it, and integrals of loads and of
+///    s |[z]^t| count with their quadrature error. So what is refused has no solution, but some cases without
+///    one pass.
 /// Bodies that displacement conditions hold by themselves pass at once. The mesh is a whole one: before it is
 /// shared out or later, since refinement changes neither bodies nor supports. `load` is L(phi_i) for every
 /// degree of freedom, up to the remainders of the data of the form.

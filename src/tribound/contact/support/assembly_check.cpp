@@ -1,4 +1,4 @@
-#include "tribound/contact/support/body_check.h"
+#include "tribound/contact/support/assembly_check.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -60,35 +60,33 @@ fem::Quadrature<k> on_halves(const fem::Quadrature<k>& rule)
 }  // namespace
 
 template <int dim>
-std::string BodyCheck<dim>::hint(std::span<const Coefficients> free) const
+std::string AssemblyCheck<dim>::hint(std::span<const Eigen::VectorXd> free) const
 {
   std::vector<std::string> remedies;
-  for (const Coefficients& z : free)
+  for (const Eigen::VectorXd& z : free)
     if (const std::optional<Remedy> remedy = support_.remedy(z))
       if (const std::string words = describe(*remedy); std::ranges::find(remedies, words) == remedies.end())
         remedies.push_back(words);
-  const auto has_smooth_contact = [&](const mesh::BoundaryFacet& facet)
-  {
-    const auto& contact = problem_.boundary(facet.tag).contact;
-    return contact && !cone(contact->law).resists_sliding();
-  };
-  const bool friction_may_help = std::ranges::any_of(body_.facets, has_smooth_contact);
+  const bool friction_may_help =
+      std::ranges::any_of(assembly_.segments, [&](const AssemblySegment& entry)
+                          { return !cone(form_.segments()[entry.number].contact->law).resists_sliding(); });
   return fmt::format(
       "fix a displacement component that such a motion would change{} (symmetry: the component normal to the "
       "plane of symmetry){}",
-      remedies.empty() ? ", on a boundary of this body"
+      remedies.empty() ? assembly_.bodies.size() > 1 ? ", on a boundary of one of these bodies"
+                                                     : ", on a boundary of this body"
                        : fmt::format(", for example {}", fmt::join(remedies, ", ")),
       friction_may_help ? ", or give its contact friction" : "");
 }
 
 template <int dim>
-void BodyCheck<dim>::check_held() const
+void AssemblyCheck<dim>::check_held() const
 {
-  const std::vector<Coefficients> free = readable_basis<dim>(support_.left_by_contact(true));
+  const std::vector<Eigen::VectorXd> free = assembly_.readable_basis(support_.left_by_contact(true));
   if (free.empty()) return;
   std::vector<std::string> motions;
   motions.reserve(free.size());
-  for (const Coefficients& z : free) motions.push_back(body_.modes.describe(z));
+  for (const Eigen::VectorXd& z : free) motions.push_back(assembly_.describe(problem_, z));
   const auto named = std::ranges::find_if(
       problem_.boundaries(), [](const auto& boundary) { return boundary.where.line > 0; });  // not a --set
   const std::string file = named == problem_.boundaries().end() ? "" : named->where.file;
@@ -97,67 +95,75 @@ void BodyCheck<dim>::check_held() const
 }
 
 template <int dim>
-Eigen::MatrixXd BodyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
+Eigen::MatrixXd AssemblyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
 {
   std::vector<Eigen::VectorXd> generators;
-  const auto add = [&](const Point<dim>& push, const Point<dim>& x)
+  for (const AssemblySegment& entry : assembly_.segments)
   {
-    const Eigen::VectorXd work = motions.transpose() * (body_.modes.at(x).transpose() * push);
-    if (work.norm() > 1e-12) generators.push_back(work.normalized());
-  };
-  support_.for_each_facet_vertex(
-      [&](const problem::BoundaryCondition<dim>& condition, const Point<dim>& n, const Point<dim>& x)
+    const ContactSegment<dim>& segment = form_.segments()[entry.number];
+    const problem::FrictionCone law = problem::cone(segment.contact->law);
+    if (law.is_tied) continue;  // the motions obey it
+    const Point<dim>& n = segment.normal;
+    const bool holds =
+        friction == ConeFriction::unlimited || (friction == ConeFriction::strong && law.strength != nullptr);
+    const bool sticks =
+        law.resists_sliding() && (law.coefficient != 0 || friction != ConeFriction::no_strength);
+    const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
+    const MotionJump<dim> jump(mesh_, assembly_, entry, segment);
+    const Eigen::MatrixXd of_segment = motions(jump.coefficients(), Eigen::all);
+    for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
+    {
+      const Eigen::MatrixXd jumps = jump(s) * of_segment;
+      const auto add = [&](const Point<dim>& push)
       {
-        if (!condition.contact) return;
-        const problem::FrictionCone law = problem::cone(condition.contact->law);
-        add(n, x);
-        if (!law.resists_sliding()) return;
-        if (law.coefficient == 0 && friction == ConeFriction::no_strength) return;
-        const bool holds = friction == ConeFriction::unlimited ||
-                           (friction == ConeFriction::strong && law.strength != nullptr);
-        const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
+        const Eigen::VectorXd work = jumps.transpose() * push;
+        if (work.norm() > 1e-12) generators.push_back(work.normalized());
+      };
+      add(n);
+      if (sticks)
         for (const Point<dim>& t : tangents<dim>(n))
-          add(holds ? t : Point<dim>(n + law.coefficient / around * t), x);
-      });
+          add(holds ? t : Point<dim>(n + law.coefficient / around * t));
+    }
+  }
   Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
   for (Eigen::Index j = 0; j < cone.cols(); ++j) cone.col(j) = generators[j];
   return cone;
 }
 
-/// On the parts of the facets on which the rule integrates s; |z^t| is convex, the largest at a vertex.
+/// On the parts of the segments on which the rule integrates s; |[z]^t| is convex, the largest at a vertex.
 template <int dim>
-auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
-                                   const fem::Quadrature<dim - 1>& rule) const -> FrictionWork
+auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
+                                       const fem::Quadrature<dim - 1>& rule) const -> FrictionWork
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
   const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
-  for (std::size_t k = 0; k < form_.segments().size(); ++k)
+  for (const AssemblySegment& entry : assembly_.segments)
   {
-    const ContactSegment<dim>& segment = form_.segments()[k];
+    const ContactSegment<dim>& segment = form_.segments()[entry.number];
     const problem::ContactLaw& law = segment.contact->law;
-    if (problem::cone(law).strength == nullptr ||
-        !std::ranges::binary_search(body_.numbers, segment.slave.number))
-      continue;
-    const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment);
-    const auto tangential = [&](const Point<dim>& z_x) -> Point<dim>
-    { return z_x - z_x.dot(segment.normal) * segment.normal; };
-    const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(k);
+    if (problem::cone(law).strength == nullptr) continue;
+    const MotionJump<dim> jump(mesh_, assembly_, entry, segment);
+    const Eigen::MatrixXd of_segment = motions(jump.coefficients(), Eigen::all);
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
+    const Point<dim>& n = segment.normal;
+    const auto tangential = [&](const Point<dim>& v) -> Point<dim> { return v - v.dot(n) * n; };
+    const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(entry.number);
     for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
     {
       const double measure = segment.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
       for (const Point<dim - 1>& s : part)
-        largest = std::max(largest, tangential(body_.modes.at(map(s)) * motions * z).norm());
+        largest = std::max(largest, tangential(jump(s) * (of_segment * z)).norm());
       result.missed += 2 * strength * measure * largest;
       for (int q = 0; q < rule.size(); ++q)
       {
-        const Point<dim> x = map(fem::point_in<dim - 1>(part, rule.points[q]));
-        const Eigen::MatrixXd at_x = body_.modes.at(x) * motions;
-        const Point<dim> z_t = tangential(at_x * z);
+        const Point<dim - 1> s = fem::point_in<dim - 1>(part, rule.points[q]);
+        const Eigen::MatrixXd jumps = jump(s) * of_segment;
+        const Point<dim> z_t = tangential(jumps * z);
         if (z_t.norm() <= 1e-12 * z.norm()) continue;
         const double force =
-            measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(law, x);
-        result.in_motions += force / z_t.norm() * (at_x.transpose() * z_t);
+            measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(law, map(s));
+        result.in_motions += force / z_t.norm() * (jumps.transpose() * z_t);
         result.most += force * z_t.norm();
       }
     }
@@ -168,22 +174,27 @@ auto BodyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::Vect
 /// The remainders of the integrals hold those against affine weights, the values of which are the largest at
 /// vertices.
 template <int dim>
-double BodyCheck<dim>::missed_work(const Coefficients& motion) const
+double AssemblyCheck<dim>::missed_work(const Eigen::VectorXd& motion) const
 {
-  const auto largest = [&](const auto& vertices)
-  {
-    double size = 0;
-    for (const Index v : vertices)
-      size = std::max(size, Point<dim>(body_.modes.at(mesh_.vertex(v)) * motion).norm());
-    return size;
-  };
+  const DiscreteData<dim>& data = form_.data();
   double missed = 0;
-  for (const Index c : body_.cells)
-    if (const double mean = form_.data().body_remainder(c).mean; mean > 0)
-      missed += mean * largest(mesh_.cell(c));
-  for (std::size_t k = 0; k < body_.facets.size(); ++k)
-    if (const double mean = form_.data().traction_remainder(body_.numbers[k]).mean; mean > 0)
-      missed += mean * largest(mesh::facet_vertices(mesh_.cell(body_.facets[k].cell), body_.facets[k].local));
+  for (int b = 0; b < static_cast<int>(assembly_.bodies.size()); ++b)
+  {
+    const Body<dim>& body = assembly_.bodies[b];
+    const auto largest = [&](const auto& vertices)
+    {
+      double size = 0;
+      for (const Index v : vertices)
+        size = std::max(size,
+                        Point<dim>(assembly_.modes.at(mesh_.vertex(v)) * assembly_.part(motion, b)).norm());
+      return size;
+    };
+    for (const Index c : body.cells)
+      if (const double mean = data.body_remainder(c).mean; mean > 0) missed += mean * largest(mesh_.cell(c));
+    for (std::size_t k = 0; k < body.facets.size(); ++k)
+      if (const double mean = data.traction_remainder(body.numbers[k]).mean; mean > 0)
+        missed += mean * largest(mesh::facet_vertices(mesh_.cell(body.facets[k].cell), body.facets[k].local));
+  }
   return std::sqrt(dim) * missed;  // by components
 }
 
@@ -193,9 +204,9 @@ double BodyCheck<dim>::missed_work(const Coefficients& motion) const
 // is one more row. What is left of c is a motion r that K can do nothing against, and c is outside as soon
 // as c.r exceeds what Z can do.
 template <int dim>
-std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& motions,
-                                                             const Eigen::VectorXd& loads,
-                                                             double tolerance) const
+std::optional<Eigen::VectorXd> AssemblyCheck<dim>::beyond_tresca(const MotionBasis& motions,
+                                                                 const Eigen::VectorXd& loads,
+                                                                 double tolerance) const
 {
   constexpr int max_points = 200;
   constexpr double relative = 1e-8;
@@ -227,23 +238,23 @@ std::optional<Eigen::VectorXd> BodyCheck<dim>::beyond_tresca(const MotionBasis& 
 }
 
 template <int dim>
-void BodyCheck<dim>::fail(const Coefficients& motion, const std::string& reason) const
+void AssemblyCheck<dim>::fail(const Eigen::VectorXd& motion, const std::string& reason) const
 {
-  const auto facet = std::ranges::find_if(body_.facets, [&](const mesh::BoundaryFacet& f)
-                                          { return problem_.boundary(f.tag).contact.has_value(); });
-  throw InputError(problem_.boundary(facet->tag).where,
-                   fmt::format("contact cannot hold {}: the loads drive it into {}; {}", name_,
-                               body_.modes.describe(motion), reason),
-                   "fix a displacement component that this motion would change, or mend the loads "
-                   "(tractions are forces on the body, a pressure acts against the outward normal)");
+  const ContactSegment<dim>& first = form_.segments()[assembly_.segments.front().number];
+  throw InputError(
+      first.pair < 0 ? problem_.boundary(first.slave.facet.tag).where : problem_.pairs()[first.pair].where,
+      fmt::format("contact cannot hold {}: the loads drive it into {}; {}", name_,
+                  assembly_.describe(problem_, motion), reason),
+      "fix a displacement component that this motion would change, or mend the loads "
+      "(tractions are forces on the body, a pressure acts against the outward normal)");
 }
 
 template <int dim>
-void BodyCheck<dim>::check_balanced(const Coefficients& work, double round_off) const
+void AssemblyCheck<dim>::check_balanced(const Eigen::VectorXd& work, double round_off) const
 {
   constexpr double relative = 1e-8;
-  const MotionBasis motions = support_.left_by_displacements();  // what contact alone has to stop
-  const Eigen::VectorXd c = motions.transpose() * work;          // L(z) for each of them
+  const MotionBasis motions = support_.left_by_fixing();  // what contact alone has to stop
+  const Eigen::VectorXd c = motions.transpose() * work;   // L(z) for each of them
   if (motions.cols() == 0 || c.norm() <= round_off) return;
 
   const double tolerance = relative * c.norm() + round_off;
@@ -260,8 +271,8 @@ void BodyCheck<dim>::check_balanced(const Coefficients& work, double round_off) 
     const Eigen::MatrixXd pressed = support_.contact_gram(false);
     const MotionBasis sliding =
         motions * null_space(motions.transpose() * pressed * motions, pressed.trace());
-    const Coefficients slide = sliding * (sliding.transpose() * work);
-    fail(slide.norm() > tolerance ? slide : Coefficients(motions * slipped),
+    const Eigen::VectorXd slide = sliding * (sliding.transpose() * work);
+    fail(slide.norm() > tolerance ? slide : Eigen::VectorXd(motions * slipped),
          "friction is too weak for the load along the contact boundary");
   }
 
@@ -273,7 +284,7 @@ void BodyCheck<dim>::check_balanced(const Coefficients& work, double round_off) 
   }
 }
 
-template class BodyCheck<2>;
-template class BodyCheck<3>;
+template class AssemblyCheck<2>;
+template class AssemblyCheck<3>;
 
 }  // namespace tribound::contact

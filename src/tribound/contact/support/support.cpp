@@ -1,0 +1,183 @@
+#include "tribound/contact/support/support.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <variant>
+
+namespace tribound::contact
+{
+
+namespace
+{
+
+/// What is known of fixing a component of a boundary against a motion z.
+struct Candidate
+{
+  double into = 0;   ///< integral of (z_c n_c)^2
+  double along = 0;  ///< integral of z_c^2
+  double measure = 0;
+  bool loaded = false;
+};
+
+/// Whether `a` is the better choice. A component tangential to its boundary stops a motion as well, but
+/// ranks below every normal one.
+bool better(const Candidate& a, const Candidate& b)
+{
+  constexpr double tie = 1e-9;
+  if (a.loaded != b.loaded) return !a.loaded;
+  const double into = a.into / a.measure - b.into / b.measure;
+  if (std::abs(into) > tie) return into > 0;
+  return a.along / a.measure - b.along / b.measure > tie;
+}
+
+/// r^T r for rows r at points of boundaries and pairs: of each of them the mean, so that one with few facets
+/// counts beside one with many.
+class MeanGrams
+{
+ public:
+  using Key = std::pair<int, int>;
+
+  /// Rows with the given coefficients of motions, at one more point of `key`.
+  template <class Rows>
+  void add(const Key& key, const std::vector<int>& coefficients, const Rows& rows)
+  {
+    auto [it, is_new] = sums_.try_emplace(key);
+    auto& [gram, count] = it->second;
+    if (is_new) gram.setZero(n_, n_);
+    gram(coefficients, coefficients) += rows.transpose() * rows;
+    ++count;
+  }
+
+  explicit MeanGrams(int n_motions) : n_(n_motions) {}
+
+  [[nodiscard]] Eigen::MatrixXd sum() const
+  {
+    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n_, n_);
+    for (const auto& [key, entry] : sums_) total += entry.first / static_cast<double>(entry.second);
+    return total;
+  }
+
+ private:
+  int n_;
+  std::map<Key, std::pair<Eigen::MatrixXd, long>> sums_;
+};
+
+/// Adds rows(law, n, M) with [z] = M z at the corners of the segments.
+template <int dim, class Rows>
+void add_segments(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
+                  const Assembly<dim>& assembly, MeanGrams& grams, const Rows& rows)
+{
+  for (const AssemblySegment& entry : assembly.segments)
+  {
+    const ContactSegment<dim>& segment = segments[entry.number];
+    const problem::FrictionCone law = problem::cone(segment.contact->law);
+    const MotionJump<dim> jump(mesh, assembly, entry, segment);
+    const auto key = segment.pair < 0 ? MeanGrams::Key(segment.slave.facet.tag, entry.slave)
+                                      : MeanGrams::Key(segment.pair, -1);
+    for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
+      grams.add(key, jump.coefficients(), rows(law, segment.normal, jump(s)));
+  }
+}
+
+}  // namespace
+
+std::string describe(const Remedy& remedy)
+{
+  return fmt::format("{} on boundary \"{}\"", "xyz"[remedy.component], remedy.boundary);
+}
+
+template <int dim>
+Eigen::MatrixXd Support<dim>::fixed_gram() const
+{
+  MeanGrams grams(assembly_.n_motions());
+  for (int b = 0; b < static_cast<int>(assembly_.bodies.size()); ++b)
+    for (const mesh::BoundaryFacet& facet : assembly_.bodies[b].facets)
+    {
+      const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
+      if (!condition.fixes_any()) continue;
+      for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
+      {
+        Eigen::MatrixXd z = Eigen::MatrixXd::Zero(dim, RigidModes<dim>::n_modes);
+        const auto modes = assembly_.modes.at(mesh_.vertex(v));
+        for (int a = 0; a < dim; ++a)
+          if (condition.fixes(a)) z.row(a) = modes.row(a);
+        grams.add({facet.tag, b}, assembly_.coefficients(b), z);
+      }
+    }
+  add_segments(mesh_, segments_, assembly_, grams,
+               [](const problem::FrictionCone& law, const Point<dim>&, const auto& z)
+               { return law.is_tied ? Eigen::MatrixXd(z) : Eigen::MatrixXd(0, z.cols()); });
+  return grams.sum();
+}
+
+template <int dim>
+Eigen::MatrixXd Support<dim>::contact_gram(bool with_friction) const
+{
+  MeanGrams grams(assembly_.n_motions());
+  add_segments(mesh_, segments_, assembly_, grams,
+               [&](const problem::FrictionCone& law, const Point<dim>& n, const auto& z)
+               {
+                 if (law.is_tied) return Eigen::MatrixXd(0, z.cols());
+                 return with_friction && law.resists_sliding() ? Eigen::MatrixXd(z)
+                                                               : Eigen::MatrixXd(n.transpose() * z);
+               });
+  return grams.sum();
+}
+
+template <int dim>
+MotionBasis Support<dim>::left_by_fixing() const
+{
+  const Eigen::MatrixXd gram = fixed_gram();
+  return null_space(gram, gram.trace());
+}
+
+template <int dim>
+MotionBasis Support<dim>::left_by_contact(bool with_friction) const
+{
+  const Eigen::MatrixXd gram = fixed_gram() + contact_gram(with_friction);
+  return null_space(gram, gram.trace());
+}
+
+template <int dim>
+std::optional<Remedy> Support<dim>::remedy(const Eigen::VectorXd& motion) const
+{
+  constexpr double negligible = 1e-12;
+  std::map<std::pair<int, int>, Candidate> candidates;  // by boundary and component
+  for (int b = 0; b < static_cast<int>(assembly_.bodies.size()); ++b)
+    for (const mesh::BoundaryFacet& facet : assembly_.bodies[b].facets)
+    {
+      if (facet.tag < 0 || problem_.is_in_contact(facet.tag)) continue;
+      const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
+      const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh_, facet.cell, facet.local);
+      for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
+      {
+        const Point<dim> z = assembly_.modes.at(mesh_.vertex(v)) * assembly_.part(motion, b);
+        for (int c = 0; c < dim; ++c)
+        {
+          if (condition.fixes(c)) continue;
+          Candidate& candidate = candidates[{facet.tag, c}];
+          candidate.along += geometry.measure * z[c] * z[c];
+          candidate.into += geometry.measure * z[c] * z[c] * geometry.normal[c] * geometry.normal[c];
+          candidate.measure += geometry.measure;
+          candidate.loaded = condition.is_loaded();
+        }
+      }
+    }
+  std::optional<Remedy> best;
+  Candidate score;
+  for (const auto& [key, candidate] : candidates)
+  {
+    if (candidate.along <= negligible * motion.squaredNorm() * candidate.measure) continue;
+    if (best && !better(candidate, score)) continue;
+    best = Remedy{problem_.boundary(key.first).name, key.second};
+    score = candidate;
+  }
+  return best;
+}
+
+template class Support<2>;
+template class Support<3>;
+
+}  // namespace tribound::contact
