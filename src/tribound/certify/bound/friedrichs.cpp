@@ -9,7 +9,9 @@
 
 #include "tribound/algebra/cholesky.h"
 #include "tribound/certify/bound/friedrichs_flux.h"
-#include "tribound/contact/support/body.h"
+#include "tribound/certify/bound/friedrichs_pairs.h"
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/contact/support/assembly.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/partition.h"
@@ -38,6 +40,7 @@ struct ProofMesh
 {
   const mesh::Mesh<dim>& mesh;
   double facet_scale;  ///< h_F of the facet of the given mesh / diameter of its part here
+  PairTerms pairs{};   ///< empty where no body needs the others
 };
 
 /// A and M over the facet means that are not fixed, with the same sparsity pattern.
@@ -61,8 +64,9 @@ std::vector<char> fixed_facets(const problem::Problem<dim>& problem, const mesh:
   return fixed;
 }
 
-/// A = sum_T (grad ., grad .)_T + sum_{F in C} (|F|/h_F) mean_F(.) mean_F(.), M = sum_T (., .)_T of the
-/// Crouzeix-Raviart functions phi_i = 1 - d lambda_i, which have mean 1 on facet i and 0 on the others.
+/// A = sum_T w_T (grad ., grad .)_T + sum_{F in C} (|F|/h_F) mean_F(.) mean_F(.) + the couplings of pairs,
+/// M = sum_T (., .)_T of the Crouzeix-Raviart functions phi_i = 1 - d lambda_i, which have mean 1 on facet i
+/// and 0 on the others; C the obstacles.
 template <int dim>
 Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof,
                 const std::vector<char>& fixed)
@@ -90,13 +94,13 @@ Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proo
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     const double volume = map.measure();
+    const double stiffness = dim * dim * volume * (proof.pairs.cells.empty() ? 1 : proof.pairs.cells[c]);
     std::array<Point<dim>, dim + 1> gradients;  // of -lambda_i
     gradients[0] = map.inverse_transpose.rowwise().sum();
     for (int i = 0; i < dim; ++i) gradients[i + 1] = -map.inverse_transpose.col(i);
     for (int i = 0; i <= dim; ++i)
       for (int j = 0; j <= dim; ++j)
-        add(number[cell_facets[c][i]], number[cell_facets[c][j]],
-            dim * dim * volume * gradients[i].dot(gradients[j]),
+        add(number[cell_facets[c][i]], number[cell_facets[c][j]], stiffness * gradients[i].dot(gradients[j]),
             volume * (1 - 2.0 * dim / (dim + 1) + mass * (i == j ? 2 : 1)));
   }
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
@@ -105,6 +109,13 @@ Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proo
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const Index i = number[cell_facets[facet.cell][facet.local]];
     add(i, i, geometry.measure / (proof.facet_scale * geometry.diameter), 0);
+  }
+  for (const auto& [slave, master, weight] : proof.pairs.couplings)
+  {
+    add(number[slave], number[slave], weight, 0);
+    add(number[master], number[master], weight, 0);
+    add(number[slave], number[master], -weight, 0);
+    add(number[master], number[slave], -weight, 0);
   }
   return pencil;
 }
@@ -251,7 +262,8 @@ double theta_of_components(const problem::Problem<dim>& problem, const ProofMesh
 
 /// C^2 <= 1/theta + kappa^2 H^2 [CG14, Liu15], without separation of eigenvalues since only the supremum is
 /// needed: the interpolant I w with the facet means of w has ||w - I w|| <= kappa H ||grad(w - I w)||, grad I
-/// w is the cell means of grad w, and ||w||_F^2 >= |F| mean_F(w)^2.
+/// w is the cell means of grad w, and ||w||_F^2 >= |F| mean_F(w)^2. Of the gradients there may be no more
+/// than w_T.
 template <int dim>
 FriedrichsConstant constant_on(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof)
 {
@@ -262,25 +274,41 @@ FriedrichsConstant constant_on(const problem::Problem<dim>& problem, const Proof
   result.cells = proof.mesh.n_cells();
   for (Index c = 0; c < result.cells; ++c)
     result.mesh_size = std::max(result.mesh_size, mesh::cell_diameter(proof.mesh, c));
-  result.value = std::sqrt(1 / result.theta + kappa_squared<dim>() * result.mesh_size * result.mesh_size);
+  const double least = proof.pairs.cells.empty() ? 1 : std::ranges::min(proof.pairs.cells);
+  result.value =
+      std::sqrt(1 / result.theta + kappa_squared<dim>() * result.mesh_size * result.mesh_size / least);
   return result;
 }
 
-/// Whether every body has Gamma_D or Gamma_C in every component.
-template <int dim>
-bool holds_every_component(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+/// What holds the bodies in every component: Gamma_D and obstacles, or only by way of pairs.
+enum class Held
 {
-  const std::vector<contact::Body<dim>> bodies = contact::find_bodies(fem::LagrangeSpace<dim>(mesh, 1));
-  return std::ranges::all_of(bodies,
-                             [&](const contact::Body<dim>& body)
-                             {
-                               std::array<bool, dim> held{};
-                               for (const mesh::BoundaryFacet& facet : body.facets)
-                                 for (int a = 0; a < dim; ++a)
-                                   held[a] = held[a] || problem.boundary(facet.tag).fixes(a) ||
-                                             problem.boundary(facet.tag).contact;
-                               return std::ranges::count(held, false) == 0;
-                             });
+  not_all,
+  with_pairs,
+  each
+};
+
+template <int dim>
+Held held(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+{
+  const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
+  Held result = Held::each;
+  for (const auto& assembly : contact::find_assemblies<dim>(fem::LagrangeSpace<dim>(mesh, 1), segments))
+  {
+    std::array<bool, dim> of_any{};
+    for (const contact::Body<dim>& body : assembly.bodies)
+    {
+      std::array<bool, dim> of_body{};
+      for (const mesh::BoundaryFacet& facet : body.facets)
+        for (int a = 0; a < dim; ++a)
+          of_body[a] =
+              of_body[a] || problem.boundary(facet.tag).fixes(a) || problem.boundary(facet.tag).contact;
+      for (int a = 0; a < dim; ++a) of_any[a] = of_any[a] || of_body[a];
+      if (std::ranges::count(of_body, false) > 0) result = Held::with_pairs;
+    }
+    if (std::ranges::count(of_any, false) > 0) return Held::not_all;
+  }
+  return result;
 }
 
 template <int dim>
@@ -295,14 +323,19 @@ FriedrichsConstant without_factors(const problem::Problem<dim>& problem, const m
 
 template <int dim>
 FriedrichsConstant with_factors(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                                Index most_cells)
+                                Index most_cells, bool with_pairs)
 {
-  const FriedrichsConstant here = constant_on<dim>(problem, {mesh, 1});
+  const auto on = [&](const mesh::Mesh<dim>& proof, double scale)
+  {
+    return constant_on<dim>(
+        problem, {proof, scale, with_pairs ? pair_terms<dim>(problem, proof, scale) : PairTerms{}});
+  };
+  const FriedrichsConstant here = on(mesh, 1);
   if (here.value * here.value <= 2 / here.theta) return here;
   // kappa^2 H^2 > 1/theta: a finer mesh, for the proof alone. The norm keeps the h_F of the given mesh.
   if (mesh::count_after_refinement(mesh, 1).cells > most_cells) return here;
   const mesh::Refined<dim> refined = mesh::refine_uniformly(mesh);
-  const FriedrichsConstant finer = constant_on<dim>(problem, {refined.mesh, 2});
+  const FriedrichsConstant finer = on(refined.mesh, 2);
   return finer.value < here.value ? finer : here;
 }
 
@@ -312,16 +345,18 @@ template <int dim>
 FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                        Index most_cells_factorised)
 {
-  if (mesh.partition() || !holds_every_component(problem, mesh))
-    return {std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
-  if (mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);
+  const FriedrichsConstant none{std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
+  if (mesh.partition()) return none;
+  const Held bodies = held(problem, mesh);
+  if (bodies == Held::not_all) return none;
+  if (bodies == Held::each && mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);
   try
   {
-    return with_factors(problem, mesh, most_cells_factorised);
+    return with_factors(problem, mesh, most_cells_factorised, bodies == Held::with_pairs);
   }
-  catch (const SolveError&)  // such as memory for the factors: there is a bound without them
+  catch (const SolveError&)  // such as memory for the factors: there is a bound without them, but for pairs
   {
-    return without_factors(problem, mesh);
+    return bodies == Held::each ? without_factors(problem, mesh) : none;
   }
 }
 

@@ -28,12 +28,13 @@ struct FriedrichsConstant
 inline constexpr Index most_cells_factorised_3d = 100'000;
 
 /// C_F with ||v|| <= C_F ||v||_{C,h} for all v that vanish in the components that Gamma_D fixes,
-///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2,
-/// on this mesh and on all its refinements, whose h_F are not larger. Infinite (and theta = 0) where a body
-/// has a component with neither Gamma_D nor Gamma_C, which check_rigid_motions() refuses as a free
-/// translation, and where no theta could be proved. Where the factorisation fails, for example for lack
-/// of memory, the proof does without it, too. Infinite for a mesh that is shared out: that of the whole mesh
-/// which it was made of is known before.
+///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2 + sum_k (1/h_k) ||[v]||_k^2,
+/// C the obstacles, k the segments of pairs, on this mesh and on all its refinements, whose h_F and h_k are
+/// not larger. Pairs count where a body needs them (friedrichs_pairs.h). Infinite (and theta = 0) where
+/// bodies that are joined have a component with neither Gamma_D nor C, which check_rigid_motions() refuses as
+/// a free translation, and where no theta could be proved. Where the factorisation fails, for example for
+/// lack of memory, the proof does without it, too. Infinite for a mesh that is shared out: that of the whole
+/// mesh which it was made of is known before.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(
     const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,

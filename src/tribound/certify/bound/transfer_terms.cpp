@@ -19,26 +19,13 @@ struct Covered
   std::vector<TractionPiece<dim>> pieces;
 };
 
-/// Whether two parts have more than rounding in common.
-bool overlap(const fem::Part<2>& a, const fem::Part<2>& b)
-{
-  constexpr double rounding = 1e-11;
-  contact::Polygon<3> common;
-  contact::Polygon<3> sides;
-  for (const Point<2>& x : a) common.push_back({x, x});
-  for (const Point<2>& x : b) sides.push_back({x, x});
-  contact::for_each_side<3>(
-      sides, [&](const auto& distance) { common = contact::clip<3>(common, distance, 1e-12); });
-  return !common.empty() && contact::fraction<3>(common) > rounding;
-}
-
 bool overlap(const Covered<3>& a, const Covered<3>& b)
 {
   return std::ranges::any_of(a.pieces,
                              [&](const TractionPiece<3>& x)
                              {
                                return std::ranges::any_of(b.pieces, [&](const TractionPiece<3>& y)
-                                                          { return overlap(x.part, y.part); });
+                                                          { return contact::overlap<3>(x.part, y.part); });
                              });
 }
 

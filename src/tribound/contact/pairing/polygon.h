@@ -118,4 +118,17 @@ void for_each_side(const Polygon<dim>& polygon, const Visit& visit)
   }
 }
 
+/// Whether two parts of one facet have more than rounding in common.
+template <int dim>
+[[nodiscard]] bool overlap(const fem::Part<dim - 1>& a, const fem::Part<dim - 1>& b)
+{
+  constexpr double rounding = 1e-11;
+  Polygon<dim> common;
+  Polygon<dim> sides;
+  for (const Point<dim - 1>& x : a) common.push_back({x, x});
+  for (const Point<dim - 1>& x : b) sides.push_back({x, x});
+  for_each_side<dim>(sides, [&](const auto& distance) { common = clip<dim>(common, distance, 1e-12); });
+  return !common.empty() && fraction<dim>(common) > rounding;
+}
+
 }  // namespace tribound::contact

@@ -1,0 +1,42 @@
+#pragma once
+
+/// @file friedrichs_pairs.h
+/// What contact between bodies does for the Friedrichs constant: a body that only others hold has one, too.
+
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::certify
+{
+
+/// Numbers with
+///     ||grad v||^2 + sum_k (1/h_k) ||[v]||_k^2
+///         >= sum_T w_T ||grad v||_T^2 + sum_k c_k (mean_F(v^s) - mean_G(v^m))^2      for all v in H^1,
+/// k the segments of all pairs, each between a slave facet F and a master facet G.
+struct PairTerms
+{
+  struct Coupling
+  {
+    Index slave;    ///< number of the facet in the topology
+    Index master;   ///< the same
+    double weight;  ///< c_k
+  };
+
+  std::vector<double> cells;  ///< w_T, from 1/2 to 1
+  std::vector<Coupling> couplings;
+};
+
+/// With h_k `facet_scale` times what it is on this mesh. The mean of [v] over k differs from that of the
+/// facet means by at most what v differs from these, ||v - mean_F(v)||_F <= C_{T,F} ||grad v||_T; so much of
+/// the gradients is spent on it. From (a + b)^2 >= a^2/2 - b^2, t in (0, 1], and m_G segments at most over
+/// one point of G:
+///     w_T = 1 - 2 t sum_{F in T} C_{T,F}^2 m_F max_{k in F} (s_k / h_k),      c_k = t |k| / (2 h_k),
+/// s_k = 1 on slaves, |k| / |Pi(k)| on masters.
+template <int dim>
+[[nodiscard]] PairTerms pair_terms(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                   double facet_scale);
+
+}  // namespace tribound::certify
