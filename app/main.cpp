@@ -92,7 +92,7 @@ ExitCode run_command(const Arguments& arguments)
     return run_on_ranks({arguments.case_file, arguments.restart, arguments.overrides, arguments.quiet});
   const Progress progress(arguments.quiet);
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, &stop_on_signals());
+  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config), &stop_on_signals());
   const algebra::Environment environment;  // behind the input: bad input then fails at once
   if (Ranks::world().size() > 1)
     throw InputError(
@@ -104,7 +104,7 @@ ExitCode run_command(const Arguments& arguments)
 void check_command(const Arguments& arguments)
 {
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh);
+  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config));
   std::visit([&](const auto& m) { app::check(config, m, arguments.json); }, mesh);
 }
 
@@ -112,7 +112,7 @@ ExitCode verify_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh);
+  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config));
   const algebra::Environment environment;
   return std::visit([&](const auto& m) { return verify(config, m, arguments.refinements, progress); }, mesh);
 }
@@ -121,7 +121,7 @@ ExitCode study_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, &stop_on_signals());
+  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config), &stop_on_signals());
   const algebra::Environment environment;
   return std::visit([&](auto& m) { return study(config, std::move(m), progress); }, mesh);
 }

@@ -15,10 +15,10 @@ namespace
 class CellComponents
 {
  public:
-  CellComponents(const certify::Estimate& estimate, bool regularised)
+  CellComponents(const certify::Estimate& estimate, const certify::RunKind& kind)
   {
     add("eta_tot", estimate, [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
-    for (const certify::Component& c : certify::components_of_run(regularised))
+    for (const certify::Component& c : certify::components_of_run(kind))
       if (c.is_of_cells())
         add(std::string("eta_") + c.name, estimate,
             [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
@@ -50,7 +50,8 @@ void write_level_fields(const std::filesystem::path& directory, int number,
                         const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
                         std::span<const io::CellField> further)
 {
-  const CellComponents components(level.estimate, level.delta_updates.has_value());
+  const CellComponents components(level.estimate, {.regularised = level.delta_updates.has_value(),
+                                                   .paired = !discrete.form.problem().pairs().empty()});
   std::vector<io::CellField> fields = components.fields();
   fields.insert(fields.end(), further.begin(), further.end());
   const std::array tensors = {io::equilibrated_stress_field(discrete.space, level.stress)};

@@ -89,10 +89,11 @@ std::string paragraph(std::string_view caption, std::string_view text)
 }
 
 /// Component by component with its share of the sum of squares.
-std::string component_lines(const certify::BoundComponents& components, bool regularised)
+std::string component_lines(const certify::BoundComponents& components, const certify::RunKind& kind)
 {
   constexpr double round_off = 1e-12;
-  const std::span<const certify::Component> all = certify::components_of_run(regularised);
+  std::vector<certify::Component> all = certify::components_of_run(kind);
+  std::erase_if(all, [](const certify::Component& c) { return !c.is_summand(); });
   double squares = 0;
   for (const certify::Component& c : all) squares += components.*c.value * components.*c.value;
   std::string text;
@@ -150,7 +151,7 @@ std::string certificate_text(const io::RunRecord& run)
                                 : io::is_round_off(level) ? std::string("rounding, as the stress is")
                                                           : std::string("of a stress that is zero"),
                                 bound.total));
-  text += component_lines(bound.global, level.delta_updates.has_value());
+  text += component_lines(bound.global, io::run_kind(level));
   if (level.identities)
     text +=
         line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",

@@ -66,7 +66,7 @@ std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form
   std::vector<ContactProfile> profiles;
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (boundaries[tag].contact) profiles.push_back(contact_profile(form, u, tag, n_points));
+    if (form.problem().contact(tag) != nullptr) profiles.push_back(contact_profile(form, u, tag, n_points));
   return profiles;
 }
 

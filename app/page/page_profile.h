@@ -14,8 +14,8 @@ namespace tribound::app
 {
 
 /// The state along the contact boundary number `tag`; entry i of every column belongs to point i. The points
-/// are evenly spread over each facet, ends included, facets in the order of contact_chains(): where two join,
-/// the point is there twice, since tractions may jump.
+/// are evenly spread over each segment, ends included, in the order of contact_chains(): where two join, the
+/// point is there twice, since tractions may jump.
 struct ContactProfile
 {
   int tag = 0;
@@ -31,7 +31,7 @@ struct ContactProfile
   std::vector<Index> status;  ///< ContactStatus
 };
 
-/// The profile of every boundary with contact, of about `n_points` points each, at least p + 1 per facet.
+/// The profile of every boundary with contact, of about `n_points` points each, at least p + 1 per segment.
 [[nodiscard]] std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form,
                                                            std::span<const double> u,
                                                            std::size_t n_points = 2000);

@@ -23,12 +23,21 @@ struct Face
   int local;  ///< 3D: local facet
 };
 
+/// The segments against rigid obstacles, each a facet; they stand before all others.
+template <int dim>
+std::span<const contact::ContactSegment<dim>> obstacle_segments(const contact::NitscheForm<dim>& form)
+{
+  const auto end =
+      std::ranges::partition_point(form.segments(), &contact::ContactSegment<dim>::is_obstacle_facet);
+  return form.segments().first(end - form.segments().begin());
+}
+
 template <int dim>
 std::vector<Face> contact_faces(const contact::NitscheForm<dim>& form)
 {
   std::vector<Face> faces;
   if constexpr (dim == 3)
-    for (const contact::ContactSegment<3>& segment : form.segments())
+    for (const contact::ContactSegment<3>& segment : obstacle_segments(form))
       faces.push_back({segment.slave.facet.cell, segment.slave.facet.local});
   return faces;
 }
@@ -191,22 +200,23 @@ SurfaceContact sample_contact(const contact::NitscheForm<3>& form, std::span<con
 {
   const fem::LagrangeBasis<3> lattice(k);
   SurfaceContact contact;
+  const std::span<const contact::ContactSegment<3>> segments = obstacle_segments(form);
   for (int local = 0; local <= 3; ++local)
   {
     // Facets with the same local number share their tables; they are put in their places afterwards.
-    const contact::SegmentTables<3> at_points(form.space().basis(), form.segments(),
+    const contact::SegmentTables<3> at_points(form.space().basis(), segments,
                                               face_lattice<3>(lattice, local).on_face);
-    const contact::SegmentTables<3> at_middles(form.space().basis(), form.segments(),
+    const contact::SegmentTables<3> at_middles(form.space().basis(), segments,
                                                triangle_middles(k, local % 2 == 1));
     const std::size_t n = at_points.n_points();
     const std::size_t n_middles = at_middles.n_points();
     for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})
-      column->resize(form.segments().size() * n);
-    contact.point_status.resize(form.segments().size() * n);
-    contact.status.resize(form.segments().size() * n_middles);
-    for (std::size_t segment = 0; segment < form.segments().size(); ++segment)
+      column->resize(segments.size() * n);
+    contact.point_status.resize(segments.size() * n);
+    contact.status.resize(segments.size() * n_middles);
+    for (std::size_t segment = 0; segment < segments.size(); ++segment)
     {
-      if (form.segments()[segment].slave.facet.local != local) continue;
+      if (segments[segment].slave.facet.local != local) continue;
       std::size_t i = segment * n;
       for (const contact::ContactState<3>& state : form.contact_states(u, segment, at_points[segment]))
       {

@@ -64,10 +64,10 @@ io::Json machine_json()
           {"written", date_and_time()}};
 }
 
-io::Json components_json(bool regularised)
+io::Json components_json(const certify::RunKind& kind)
 {
   io::Json components = io::Json::array();
-  for (const certify::Component& c : certify::components_of_run(regularised))
+  for (const certify::Component& c : certify::components_of_run(kind))
     components.push_back({{"name", c.name},
                           {"meaning", c.meaning},
                           {"part", certify::to_string(c.part)},

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "tribound/certify/bound/components.h"
 #include "tribound/io/file/json_forward.h"
 
 namespace tribound::app
@@ -43,8 +44,8 @@ class PageTemplate
 /// This computer, and when it writes.
 [[nodiscard]] io::Json machine_json();
 
-/// What is said of the components of the bound that a run has, plain or regularised.
-[[nodiscard]] io::Json components_json(bool regularised);
+/// What is said of the components of the bound that a run has.
+[[nodiscard]] io::Json components_json(const certify::RunKind& kind);
 
 /// Those of the files that are in the directory, in this order.
 [[nodiscard]] io::Json files_json(const std::filesystem::path& directory, std::span<const std::string> names);

@@ -106,13 +106,14 @@ io::Json contact_json(const SurfaceContact& contact, double displacement)
       {"status", pack_integers(contact.status)}};
 }
 
-io::Json profile_json(const ContactProfile& profile, const std::string& boundary)
+io::Json profile_json(const ContactProfile& profile, const std::string& boundary, bool paired)
 {
   const double stress = std::max(largest(profile.pressure), largest(profile.limit));
   const double length = largest(profile.displacement);
   const auto column = [](const std::vector<double>& values, double scale)
   { return pack_values(values, scale, profile_bits); };
   return {{"boundary", boundary},
+          {"paired", paired},
           {"arc", pack_linear(profile.arc, profile_bits)},
           {"points", column(profile.points, largest(profile.points))},
           {"displacement", column(profile.displacement, length)},
@@ -129,7 +130,8 @@ io::Json profiles_json(const contact::NitscheForm<2>& form, std::span<const doub
 {
   io::Json profiles = io::Json::array();
   for (const ContactProfile& profile : contact_profiles(form, u))
-    profiles.push_back(profile_json(profile, form.problem().boundary(profile.tag).name));
+    profiles.push_back(profile_json(profile, form.problem().boundary(profile.tag).name,
+                                    form.problem().pair_of_slave(profile.tag) != nullptr));
   return profiles;
 }
 
@@ -271,7 +273,7 @@ void ReportPage::write(const std::filesystem::path& directory, const io::RunReco
   template_.write(
       directory / "report.html", "run-data",
       {{"certificate", io::certificate(run)},
-       {"components", components_json(std::ranges::any_of(run.levels, io::is_regularised))},
+       {"components", components_json(io::run_kind(run.levels))},
        {"case", case_json(run)},
        {"newton", newton_json(run)},
        {"tables",

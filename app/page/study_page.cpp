@@ -46,7 +46,7 @@ void write_study_page(const std::filesystem::path& page_template, const std::fil
   if (page.empty()) return;
   page.write(directory / "report.html", "study-data",
              {{"study", study_object(study)},
-              {"components", components_json(is_regularised(study))},
+              {"components", components_json(run_kind(study))},
               {"machine", machine_json()},
               {"files", files_json(directory, study_files(directory, study))}});
 }

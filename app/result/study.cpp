@@ -45,7 +45,7 @@ std::vector<adapt::RatePoint> rate_points(std::span<const StudiedLevel> levels, 
 }
 
 /// What study.csv, behind `variant`, and study.json say of a level.
-io::TableRow columns(const StudyVariant& variant, std::size_t number, bool regularised)
+io::TableRow columns(const StudyVariant& variant, std::size_t number, const certify::RunKind& kind)
 {
   const StudiedLevel& level = variant.levels[number];
   const Rates rates = level_rates(variant, number);
@@ -62,7 +62,7 @@ io::TableRow columns(const StudyVariant& variant, std::size_t number, bool regul
           {"t_solve", level.record.times.stages.solve},
           {"t_certify", level.record.times.stages.certify},
           {"t_level", level.record.times.level}});
-  if (regularised) append(io::regularisation_columns(level.record));
+  append(io::further_columns(level.record, kind));
   return row;
 }
 
@@ -78,7 +78,7 @@ io::Json json(const StudyVariant& variant)
   io::Json levels = io::Json::array();
   for (std::size_t i = 0; i < variant.levels.size(); ++i)
   {
-    levels.push_back(io::row_json(columns(variant, i, io::is_regularised(variant.levels[i].record))));
+    levels.push_back(io::row_json(columns(variant, i, io::run_kind(variant.levels[i].record))));
   }
   const Rates rates = fitted_rates(variant);
   return {{"status", certify::to_string(variant.status)},
@@ -169,11 +169,16 @@ const StudyVariant* find_variant(const Study& study, std::string_view name)
   return found == study.variants.end() ? nullptr : &*found;
 }
 
-bool is_regularised(const Study& study)
+certify::RunKind run_kind(const Study& study)
 {
-  return std::ranges::any_of(
-      study.variants, [](const StudyVariant& variant)
-      { return std::ranges::any_of(variant.levels, io::is_regularised, &StudiedLevel::record); });
+  certify::RunKind kind;
+  for (const StudyVariant& variant : study.variants)
+    for (const StudiedLevel& level : variant.levels)
+    {
+      const certify::RunKind one = io::run_kind(level.record);
+      kind = {.regularised = kind.regularised || one.regularised, .paired = kind.paired || one.paired};
+    }
+  return kind;
 }
 
 Rates level_rates(const StudyVariant& variant, std::size_t number)
@@ -222,9 +227,9 @@ std::string violation(const Study& study)
 
 std::string study_csv(const Study& study)
 {
-  const auto row = [regularised = is_regularised(study)](const StudyVariant& variant, std::size_t number)
+  const auto row = [kind = run_kind(study)](const StudyVariant& variant, std::size_t number)
   {
-    io::TableRow cells = columns(variant, number, regularised);
+    io::TableRow cells = columns(variant, number, kind);
     cells.insert(cells.begin(), {"variant", variant.name});
     return cells;
   };

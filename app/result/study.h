@@ -72,8 +72,8 @@ struct Study
 /// The variant of this name, or null.
 [[nodiscard]] const StudyVariant* find_variant(const Study& study, std::string_view name);
 
-/// Whether it is one of the regularised variant, method section 7.
-[[nodiscard]] bool is_regularised(const Study& study);
+/// Of which kind its runs are.
+[[nodiscard]] certify::RunKind run_kind(const Study& study);
 
 /// The exponents of energy error and bound in the degrees of freedom.
 struct Rates

@@ -2,7 +2,7 @@
 // too), and their shares; what else the pictures have in common.
 
 const palettes = {
-  discretisation: ["#56b4e9", "#0072b2", "#009e73", "#d55e00", "#e69f00", "#5b6b7a"],
+  discretisation: ["#56b4e9", "#0072b2", "#009e73", "#d55e00", "#e69f00", "#5b6b7a", "#b0413e"],
   linearisation: ["#cc79a7", "#a84f8c", "#8458a3"],
   regularisation: ["#7a7a2e", "#a5a058", "#c9c48a"],
 };
@@ -13,8 +13,8 @@ export function coloured(components) {
   return components.map((component, i) => ({ ...component, colour: palettes[component.cause][place(component, i)] }));
 }
 
-export const statusColours = ["#9aa3ad", "#0072b2", "#d55e00"];
-export const statusNames = ["open", "stick", "slip"];
+export const statusColours = ["#9aa3ad", "#0072b2", "#d55e00", "#009e73"];
+export const statusNames = ["open", "stick", "slip", "tied"];
 
 /** The unit of the bound. */
 export function boundUnit(dimension) {

@@ -58,7 +58,7 @@ function profileCharts(profile) {
     pressure: profile.pressure[i], friction: profile.friction[i], limit: profile.limit[i], gap: profile.gap[i],
     slip: profile.slip[i], status: profile.status[i] }));
   const zones = zonesOf(profile);
-  const present = [0, 1, 2].filter((kind) => zones.some(({ status }) => status === kind));
+  const present = [0, 1, 2, 3].filter((kind) => zones.some(({ status }) => status === kind));
   return element("figure", {}, element("h3", {}, profile.boundary),
     element("ul", { class: "legend" }, present.map((kind) =>
       element("li", {}, element("span", { class: "swatch swatch-zone", style: `--colour:${statusColours[kind]}` }), statusNames[kind]))),
@@ -129,7 +129,7 @@ function scatterCharts(surface) {
   return element("figure", {}, element("div", { class: "controls screen-only" },
     element("label", { class: "control" }, element("span", {}, "Show"), quantity),
     element("label", { class: "control" }, element("span", {}, "over"), coordinate)),
-    element("ul", { class: "legend" }, statusNames.map((name, i) => element("li", {}, element("span", { class: "swatch", style: `--colour:${statusColours[i]}` }), name))),
+    element("ul", { class: "legend" }, statusNames.slice(0, 3).map((name, i) => element("li", {}, element("span", { class: "swatch", style: `--colour:${statusColours[i]}` }), name))),
     contactPlan(surface, quantity), place, element("figcaption", {}, "The boundary in plan, and its points over a coordinate."));
 }
 

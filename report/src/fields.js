@@ -171,7 +171,7 @@ class FieldView {
     const names = this.data.certificate.mesh.regions.map(({ name }) => name);
     this.legend.replaceChildren(fieldLegend(field, this.range, names));
     if (surface.profiles) this.legend.append(element("p", { class: "legend-title" }, "contact boundary"),
-      element("ul", { class: "legend legend-column" }, statusNames.map((name, i) =>
+      element("ul", { class: "legend legend-column" }, statusNames.slice(0, 3).map((name, i) =>
         element("li", {}, element("span", { class: "swatch swatch-line", style: `--colour:${statusColours[i]}` }), name))));
   }
 

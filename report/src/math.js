@@ -50,7 +50,10 @@ const display = (...children) => element("math:math", { display: "block" }, ...c
 
 /** The bound from its components, sums over the cells T but for those of the whole body, which are shown where they have a value. */
 export function boundFormula(components, values) {
-  const namesOf = (part) => components.filter((component) => component.part === part).map(({ name }) => name);
+  // Of stress and transfer the norm of the sum counts.
+  const isPaired = components.some(({ name }) => name === "mor");
+  const namesOf = (part) => components.filter((component) => component.part === part && component.name !== "mor")
+    .map(({ name }) => (isPaired && name === "str" ? "str+mor" : name));
   const sum = ["body", "normal", "tangential"].flatMap((part, k) => (k === 0 ? [squared(namesOf(part))] : [o("+"), squared(namesOf(part))]));
   const cells = [sumOver("T"), bracket("[", sum, "]")];
   const whole = namesOf("whole").filter((name) => values[name] > 0);

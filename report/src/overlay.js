@@ -64,7 +64,7 @@ function obstacleLine(profile, box, factor, pixel) {
 function statusLines(profile, box, factor, pixel) {
   const { points, displacement, status } = profile;
   const at = (i) => pixel(...[0, 1].map((c) => points[2 * i + c] + factor * displacement[2 * i + c] - box.centre[c]));
-  const paths = ["", "", ""];
+  const paths = statusColours.map(() => "");
   for (let i = 0; i + 1 < status.length; ++i) {
     if (!isStretch(profile, i, box)) continue;
     const [a, b] = [at(i), at(i + 1)];
@@ -99,7 +99,7 @@ function overlay2d(surface, camera, place, { factor, obstacle }) {
     height: place.clientHeight };
   const inside = element("svg:svg", { x: frame.left, y: frame.top, width: frame.width, height: frame.height },
     factor > 0 ? outline(surface, pixel) : null,
-    obstacle ? (surface.profiles ?? []).map((profile) => obstacleLine(profile, surface.box, factor, pixel)) : null,
+    obstacle ? (surface.profiles ?? []).filter(({ paired }) => !paired).map((profile) => obstacleLine(profile, surface.box, factor, pixel)) : null,
     (surface.profiles ?? []).map((profile) => statusLines(profile, surface.box, factor, pixel)));
   return [inside, ...axes(surface, camera, frame)];
 }

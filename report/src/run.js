@@ -14,7 +14,7 @@ export function runPage(data, trueErrors) {
   const { certificate: run, machine } = data;
   for (const { level, ...errors } of trueErrors ?? [])
     Object.assign(run.levels.find((other) => other.level === level) ?? {}, errors);
-  const components = coloured(data.components);
+  const components = coloured(data.components.filter(({ part }) => part !== "combined"));
   const fields = fieldsSection(data, components);
   const contact = contactSection(data);
   const { element: top, showContact } = header(data);

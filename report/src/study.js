@@ -67,7 +67,7 @@ function referenceSection(study) {
 }
 
 export function studyPage({ study, components, machine, files }) {
-  const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study, coloured(components)), variantsSection(study, files),
+  const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study, coloured(components.filter(({ part }) => part !== "combined"))), variantsSection(study, files),
     newtonSection(study), referenceSection(study),
     section("times", "Times", "Times and machine", null, timesAndMachine(study.times, machine, study.program)), filesSection(files)].filter(Boolean);
   return { title: `${study.title || study.file}, study`, header: studyHeader(study, machine), sections, start: async () => {}, machine,

@@ -175,6 +175,9 @@ certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form, st
   stress.dis.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   for (Index c = 0; c < given.mesh.n_cells(); ++c) stress.lin_block.push_back(c);
+  stress.tractions.dis = form.traction(u);
+  stress.tractions.lin.assign(t.begin(), t.end());
+  for (std::size_t i = 0; i < t.size(); ++i) stress.tractions.lin[i] -= stress.tractions.dis[i];
   const mesh::BoundaryFacet& first = form.segments().front().slave.facet;
   const Index left_out = given.mesh.cell(first.cell)[(first.local + 1) % (dim + 1)];
   for (Index a = 0; a < given.mesh.n_vertices(); ++a)

@@ -44,15 +44,42 @@ mesh::BoxMesh read_box(const Node& node)
   return box;
 }
 
+/// One box for each name.
+mesh::Boxes read_boxes(const Node& node)
+{
+  constexpr auto hint =
+      "one box for each body: boxes.upper = { lower = [0, 1], upper = [2, 2], cells = [4, 2] }";
+  const auto* table = std::get_if<Node::Table>(&node.value);
+  if (table == nullptr) fail_type(node, "a table", hint);
+  if (table->empty()) throw InputError(node.where, "is empty", hint);
+  mesh::Boxes boxes;
+  for (const Entry& entry : *table)
+  {
+    boxes.push_back({entry.name, read_box(entry.node)});
+    if (boxes.back().box.lower.size() != boxes.front().box.lower.size())
+      throw InputError(entry.where, "has another dimension than the first box",
+                       "the boxes of a case are all 2D or all 3D");
+  }
+  return boxes;
+}
+
 mesh::MeshSource read_mesh_source(const Node& node, const std::filesystem::path& case_directory)
 {
-  const TableReader table(node, {"file", "box"});
+  const TableReader table(node, {"file", "box", "boxes"});
   const Node* file = table.find("file");
-  const Node* box = table.find("box");
   const std::string hint = fmt::format("one of them: {}", mesh_hint);
-  if (file == nullptr && box == nullptr) throw InputError(node.where, "neither file nor box is given", hint);
-  if (file != nullptr && box != nullptr) throw InputError(box->where, "box stands beside file", hint);
-  if (box != nullptr) return read_box(*box);
+  const Node* made = nullptr;  // by this program
+  for (const std::string_view key : {"box", "boxes"})
+    if (const Node* other = table.find(key))
+    {
+      if (file != nullptr || made != nullptr)
+        throw InputError(other->where,
+                         fmt::format("{} stands beside {}", key, file != nullptr ? "file" : "box"), hint);
+      made = other;
+    }
+  if (file == nullptr && made == nullptr) throw InputError(node.where, "neither file nor box is given", hint);
+  if (made != nullptr && made == table.find("boxes")) return read_boxes(*made);
+  if (made != nullptr) return read_box(*made);
   const std::string path = to_text(*file);
   if (path.empty()) throw InputError(file->where, "is empty", mesh_hint);
   return mesh::MeshFile{case_directory / path, file->where};
@@ -195,9 +222,9 @@ io::EffectiveCase effective_case(Node document, const Config& config, std::span<
 
 Config read_document(const Node& document, std::string file)
 {
-  const TableReader root(document,
-                         {"title", "degree", "mesh", "material", "load", "boundary", "nitsche", "newton",
-                          "regularisation", "adapt", "certify", "solver", "study", "output"});
+  const TableReader root(
+      document, {"title", "degree", "mesh", "material", "load", "boundary", "contact", "nitsche", "newton",
+                 "regularisation", "adapt", "certify", "solver", "study", "output"});
   Config config;
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
@@ -208,6 +235,7 @@ Config read_document(const Node& document, std::string file)
   config.materials = read_materials(root.require("material", "[material] with E = 210e9 and nu = 0.3"));
   root.read("load", config.loads, read_loads);
   root.read("boundary", config.boundaries, read_boundaries);
+  root.read("contact", config.contacts, read_contacts);
   const auto read_method = [&](std::string_view key, const auto& read)
   {
     if (const Node* node = root.find(key)) read(*node, config.method);
@@ -221,6 +249,9 @@ Config read_document(const Node& document, std::string file)
   root.read("study", config.study, [&](const Node& node) { return read_study(node, config.method.degree); });
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
+  if (config.output.checkpoint && !config.contacts.empty())
+    throw InputError(config.contacts.front().where, "a run with contact between bodies cannot be restarted",
+                     "without output.checkpoint");
   return config;
 }
 
@@ -231,12 +262,36 @@ std::filesystem::path default_directory(const std::filesystem::path& case_file)
   return std::filesystem::path("out") / case_file.stem();
 }
 
+mesh::FindSeams find_seams(const Config& config)
+{
+  return [&config](std::span<const std::string> boundary_names)
+  {
+    mesh::Seams seams;
+    for (const ContactConfig& contact : config.contacts)
+    {
+      const auto require = [&](const std::string& name)
+      { (void)problem::group_number(name, boundary_names, contact.where, "boundary"); };
+      std::ranges::for_each(contact.slave, require);
+      if (!contact.joint.empty())
+      {
+        seams.joints.push_back(contact.joint);
+        continue;
+      }
+      std::ranges::for_each(contact.master, require);
+      seams.interfaces.push_back({{contact.slave, contact.master}});
+    }
+    return seams;
+  };
+}
+
 std::string friction_name(const Config& config)
 {
   std::string text;
-  for (const problem::LawKind& kind : problem::obstacle_law_kinds())
+  for (const problem::LawKind& kind : problem::law_kinds())
     if (std::ranges::any_of(config.boundaries, [&](const BoundaryConfig& boundary)
-                            { return boundary.contact && name(boundary.contact->law) == kind.name; }))
+                            { return boundary.contact && name(boundary.contact->law) == kind.name; }) ||
+        std::ranges::any_of(config.contacts, [&](const ContactConfig& contact)
+                            { return name(contact.contact.law) == kind.name; }))
       text += (text.empty() ? "" : "+") + std::string(kind.name);
   return text;
 }

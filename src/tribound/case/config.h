@@ -5,6 +5,7 @@
 /// against a mesh. The format is described in docs/case-format.md.
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "tribound/adapt/method.h"
 #include "tribound/base/error.h"
 #include "tribound/io/record/facts.h"
+#include "tribound/mesh/seams.h"
 #include "tribound/mesh/source.h"
 #include "tribound/problem/problem.h"
 
@@ -47,6 +49,18 @@ struct BoundaryConfig
   std::vector<problem::Field> traction;                     ///< empty: none given
   std::optional<problem::Field> pressure;                   ///< acts against the outward normal
   std::optional<problem::Contact> contact;
+  Where where;
+};
+
+/// One [[contact]] table.
+struct ContactConfig
+{
+  std::vector<std::string> slave;   ///< of a joint, its name
+  std::vector<std::string> master;  ///< of a joint, the name of its other side
+  std::string joint;                ///< empty: none
+  problem::Contact contact{problem::Frictionless()};
+  std::vector<double> direction;  ///< of the pairing; empty: along the normals of the slave
+  double reach = std::numeric_limits<double>::infinity();
   Where where;
 };
 
@@ -90,12 +104,17 @@ struct Config
   std::vector<MaterialConfig> materials;
   std::vector<LoadConfig> loads;
   std::vector<BoundaryConfig> boundaries;
+  std::vector<ContactConfig> contacts;
   adapt::Method method;
   adapt::AdaptOptions adapt;
   StudyConfig study;
   OutputConfig output;
   io::EffectiveCase effective;
 };
+
+/// Tells where the contacts of the case separate the bodies of a mesh, and throws InputError for a boundary
+/// that the mesh does not have. Keeps a reference.
+[[nodiscard]] mesh::FindSeams find_seams(const Config& config);
 
 /// The names of the friction laws in use, such as "tresca", "none+coulomb", or "" without contact.
 [[nodiscard]] std::string friction_name(const Config& config);

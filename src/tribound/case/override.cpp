@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <charconv>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -93,6 +94,20 @@ std::pair<Node, int> parse_assignment(const std::string& assignment, const Where
   return {std::move(with_zero), depth};
 }
 
+/// The item of the array that a key such as 0 names.
+Node& item_of(Node::Array& items, const Entry& entry, const Where& array)
+{
+  std::size_t number = 0;
+  const char* end = entry.name.data() + entry.name.size();
+  if (const auto [stop, error] = std::from_chars(entry.name.data(), end, number);
+      error != std::errc{} || stop != end || number >= items.size())
+    throw InputError(
+        entry.where,
+        fmt::format("{} is an array of {}, where \"{}\" is no item", array.key, items.size(), entry.name),
+        fmt::format("{}.0 is the first one", array.key));
+  return items[number];
+}
+
 /// Puts `entry`, which is one table per level with one key each down to `depth`, into `table`.
 void merge(Node::Table& table, Entry& entry, int depth)
 {
@@ -104,6 +119,15 @@ void merge(Node::Table& table, Entry& entry, int depth)
   else if (existing->node.is_table())
     merge(std::get<Node::Table>(existing->node.value), std::get<Node::Table>(entry.node.value).front(),
           depth - 1);
+  else if (auto* items = std::get_if<Node::Array>(&existing->node.value))
+  {
+    Entry& inner = std::get<Node::Table>(entry.node.value).front();
+    Node& item = item_of(*items, inner, existing->where);
+    if (depth > 1 && item.is_table())
+      merge(std::get<Node::Table>(item.value), std::get<Node::Table>(inner.node.value).front(), depth - 2);
+    else
+      item = std::move(inner.node);
+  }
   else
   {
     const Node& inner = std::get<Node::Table>(entry.node.value).front().node;

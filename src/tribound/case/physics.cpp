@@ -61,9 +61,8 @@ problem::Field read_law_value(const TableReader& table, const problem::LawKey& k
 }
 
 /// `friction` and the keys that belong to the law it names.
-problem::ContactLaw read_law(const TableReader& table)
+problem::ContactLaw read_law(const TableReader& table, std::span<const problem::LawKind> kinds)
 {
-  const std::span<const problem::LawKind> kinds = problem::obstacle_law_kinds();
   std::vector<std::string> names;
   for (const problem::LawKind& kind : kinds) names.emplace_back(kind.name);
   std::size_t chosen = 0;
@@ -78,16 +77,103 @@ problem::ContactLaw read_law(const TableReader& table)
   return kinds[chosen].make(values);
 }
 
-problem::Contact read_contact(const Node& node)
+/// `friction`, the keys of all laws, and the given ones.
+std::vector<std::string_view> law_keys(std::initializer_list<std::string_view> others)
 {
   std::vector<std::string_view> keys = {"friction"};
-  for (const problem::LawKind& kind : problem::obstacle_law_kinds())
+  for (const problem::LawKind& kind : problem::law_kinds())
     for (const problem::LawKey& key : kind.keys) keys.push_back(key.key);
-  keys.push_back("gap");
-  const TableReader table(node, keys);
-  problem::Contact contact(read_law(table), problem::Field(0.0, node.where));
-  table.read("gap", *contact.gap, to_nonnegative_field);
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
+}
+
+problem::Contact read_obstacle(const Node& node)
+{
+  const TableReader table(node, law_keys({"gap"}));
+  problem::Contact contact(read_law(table, problem::obstacle_law_kinds()), problem::Field(0.0, node.where));
+  table.read("gap", *contact.gap, to_field);
   return contact;
+}
+
+/// A name, or an array of them.
+std::vector<std::string> read_names(const Node& node)
+{
+  constexpr auto hint = "a boundary of the mesh, or an array of them: [\"top\", \"arc\"]";
+  const auto* items = std::get_if<Node::Array>(&node.value);
+  if (items == nullptr && !std::holds_alternative<std::string>(node.value))
+    fail_type(node, "a string or an array", hint);
+  if (items != nullptr && items->empty()) throw InputError(node.where, "is empty", hint);
+  std::vector<std::string> names;
+  for (const Node& item : items != nullptr ? std::span(*items) : std::span(&node, 1))
+    names.push_back(to_text(item));
+  return names;
+}
+
+/// Absent for "geometry".
+std::optional<problem::Field> read_gap(const Node& node)
+{
+  const auto* text = std::get_if<std::string>(&node.value);
+  if (text != nullptr && *text == "geometry") return std::nullopt;
+  return to_field(node);
+}
+
+/// Empty for "normal".
+std::vector<double> read_direction(const Node& node)
+{
+  const auto* text = std::get_if<std::string>(&node.value);
+  if (text != nullptr && *text == "normal") return {};
+  constexpr auto hint = "\"normal\", or a direction out of the slave, such as [0, -1]";
+  if (text != nullptr) throw InputError(node.where, fmt::format("is \"{}\"", *text), hint);
+  std::vector<double> direction;
+  for (const Node& item : to_components(node, "\"normal\" or one number per dimension"))
+    direction.push_back(to_number(item));
+  if (std::ranges::count(direction, 0.0) == std::ssize(direction))
+    throw InputError(node.where, "has no length", hint);
+  return direction;
+}
+
+/// The sides: slave and master, or a joint.
+void read_sides(const TableReader& table, ContactConfig& config)
+{
+  if (const Node* joint = table.find("joint"))
+  {
+    for (const std::string_view key : {"slave", "master"})
+      if (const Node* side = table.find(key))
+        throw InputError(side->where, "stands beside joint",
+                         "a joint is cut open and makes both sides itself; for two boundaries give slave and "
+                         "master");
+    config.joint = to_text(*joint);
+    config.slave = {config.joint};
+    config.master = {config.joint + ".other"};
+    return;
+  }
+  constexpr auto hint = "slave = \"...\" and master = \"...\", two boundaries, or joint = \"...\"";
+  config.slave = read_names(table.require("slave", hint));
+  config.master = read_names(table.require("master", hint));
+  for (const std::string& name : config.master)
+    if (std::ranges::find(config.slave, name) != config.slave.end())
+      throw InputError(table.find("master")->where, fmt::format("\"{}\" is the slave, too", name),
+                       "two boundaries, or parts of one that are groups of their own");
+}
+
+ContactConfig read_pair(const Node& node)
+{
+  const TableReader table(node, law_keys({"slave", "master", "joint", "gap", "pairing", "reach"}));
+  ContactConfig config;
+  config.where = node.where;
+  read_sides(table, config);
+  config.contact = problem::Contact(read_law(table, problem::law_kinds()), std::nullopt);
+  if (!cone(config.contact.law).is_tied)
+    table.read("gap", config.contact.gap, read_gap);
+  else if (const Node* gap = table.find("gap"))
+    throw InputError(gap->where, "does not belong to friction = \"tied\"",
+                     "what is tied moves as one, whatever lies between");
+  else
+    config.contact.gap = problem::Field(0.0, node.where);
+  table.read("pairing", config.direction, read_direction);
+  table.read("reach", config.reach,
+             number_in(positive, "the largest distance between the sides, a length, such as 0.1"));
+  return config;
 }
 
 /// Conditions that exclude each other.
@@ -130,7 +216,7 @@ BoundaryConfig read_boundary(const Entry& entry)
   table.read("displacement", boundary.displacement, read_displacement);
   table.read("traction", boundary.traction, to_fields);
   table.read("pressure", boundary.pressure, to_field);
-  table.read("contact", boundary.contact, read_contact);
+  table.read("contact", boundary.contact, read_obstacle);
   check_boundary(table, boundary);
   return boundary;
 }
@@ -168,6 +254,16 @@ std::vector<BoundaryConfig> read_boundaries(const Node& node)
   std::vector<BoundaryConfig> boundaries;
   for (const Entry& entry : *table) boundaries.push_back(read_boundary(entry));
   return boundaries;
+}
+
+std::vector<ContactConfig> read_contacts(const Node& node)
+{
+  const auto* items = std::get_if<Node::Array>(&node.value);
+  if (items == nullptr)
+    fail_type(node, "an array of tables", "one [[contact]] for each pair, with two brackets on each side");
+  std::vector<ContactConfig> contacts;
+  for (const Node& item : *items) contacts.push_back(read_pair(item));
+  return contacts;
 }
 
 }  // namespace tribound::case_file

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file physics.h
-/// The tables [material], [load] and [boundary] of a case file.
+/// The tables [material], [load], [boundary] and [[contact]] of a case file.
 
 #include <vector>
 
@@ -19,5 +19,8 @@ namespace tribound::case_file
 
 /// One table for each boundary.
 [[nodiscard]] std::vector<BoundaryConfig> read_boundaries(const Node& table);
+
+/// One entry for each [[contact]].
+[[nodiscard]] std::vector<ContactConfig> read_contacts(const Node& array);
 
 }  // namespace tribound::case_file

@@ -47,18 +47,35 @@ std::array<problem::Field, dim> vector_of(std::span<const problem::Field> compon
 }
 
 template <int dim>
+void check_dimension(const problem::Contact& contact)
+{
+  if (contact.gap) (void)in_dimension<dim>(*contact.gap);
+  if (const problem::Field* strength = cone(contact.law).strength) (void)in_dimension<dim>(*strength);
+}
+
+template <int dim>
+problem::ContactPair<dim> resolve(const ContactConfig& config)
+{
+  check_dimension<dim>(config.contact);
+  problem::ContactPair<dim> pair{.slave = config.slave,
+                                 .master = config.master,
+                                 .contact = config.contact,
+                                 .pairing = {.reach = config.reach},
+                                 .where = config.where};
+  if (config.direction.empty()) return pair;
+  check_length<dim>(config.direction.size(), inside(config.where, "pairing"));
+  pair.pairing.direction = Point<dim>(config.direction.data());
+  return pair;
+}
+
+template <int dim>
 problem::BoundaryCondition<dim> resolve(const BoundaryConfig& config)
 {
   problem::BoundaryCondition<dim> boundary;
   boundary.name = config.name;
   boundary.where = config.where;
   boundary.contact = config.contact;
-  if (config.contact)
-  {
-    (void)in_dimension<dim>(*config.contact->gap);
-    if (const problem::Field* strength = cone(config.contact->law).strength)
-      (void)in_dimension<dim>(*strength);
-  }
+  if (config.contact) check_dimension<dim>(*config.contact);
   if (config.pressure) boundary.pressure = in_dimension<dim>(*config.pressure);
   if (!config.traction.empty())
     boundary.traction = vector_of<dim>(config.traction, inside(config.where, "traction"));
@@ -113,10 +130,20 @@ std::vector<problem::Region<dim>> regions_of(const Config& config, std::span<con
 template <int dim>
 void check_all_mentioned(const Config& config, std::span<const std::string> groups)
 {
-  if (std::holds_alternative<mesh::BoxMesh>(config.mesh)) return;
+  if (!std::holds_alternative<mesh::MeshFile>(config.mesh)) return;
+  const auto is_paired = [&](const std::string& group)
+  {
+    return std::ranges::any_of(config.contacts,
+                               [&](const ContactConfig& contact)
+                               {
+                                 return std::ranges::find(contact.slave, group) != contact.slave.end() ||
+                                        std::ranges::find(contact.master, group) != contact.master.end();
+                               });
+  };
   std::vector<std::string> forgotten;
   for (const std::string& group : groups)
-    if (std::ranges::find(config.boundaries, group, &BoundaryConfig::name) == config.boundaries.end())
+    if (std::ranges::find(config.boundaries, group, &BoundaryConfig::name) == config.boundaries.end() &&
+        !is_paired(group))
       forgotten.push_back(group);
   if (!forgotten.empty())
     throw InputError(
@@ -141,7 +168,9 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
     boundaries.push_back(resolve<dim>(boundary));
   }
   check_all_mentioned<dim>(config, boundary_names);
-  return problem::Problem<dim>(region_names, boundary_names, regions, boundaries);
+  std::vector<problem::ContactPair<dim>> pairs;
+  for (const ContactConfig& contact : config.contacts) pairs.push_back(resolve<dim>(contact));
+  return problem::Problem<dim>(region_names, boundary_names, regions, boundaries, std::move(pairs));
 }
 
 io::CaseFacts case_facts(const Config& config, int dimension)

@@ -116,7 +116,7 @@ problem::Field to_nonnegative_field(const Node& node)
   problem::Field field = to_field(node);
   if (field.is_constant() && field.constant() < 0)
     throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
-                     problem::nonnegative_hint(node.where));
+                     problem::nonnegative_hint);
   return field;
 }
 

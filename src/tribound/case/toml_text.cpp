@@ -58,21 +58,36 @@ struct InlineText
   }
 };
 
+/// Whether it is written as one [[name]] for each item.
+bool is_array_of_tables(const Node& node)
+{
+  const auto* items = std::get_if<Node::Array>(&node.value);
+  return items != nullptr && !items->empty() && std::ranges::all_of(*items, &Node::is_table);
+}
+
 /// The keys of the table with their values, then its tables.
 void append(std::string& text, const Node::Table& table, const std::string& name)
 {
   for (const Entry& entry : table)
-    if (!entry.node.is_table())
+    if (!entry.node.is_table() && !is_array_of_tables(entry.node))
       text += fmt::format("{} = {}\n", key_text(entry.name), to_inline_toml(entry.node));
   for (const Entry& entry : table)
+  {
+    const std::string inner = name + (name.empty() ? "" : ".") + key_text(entry.name);
+    if (is_array_of_tables(entry.node))
+      for (const Node& item : std::get<Node::Array>(entry.node.value))
+      {
+        text += fmt::format("{}[[{}]]\n", text.empty() ? "" : "\n", inner);
+        append(text, std::get<Node::Table>(item.value), inner);
+      }
     if (entry.node.is_table())
     {
-      const std::string inner = name + (name.empty() ? "" : ".") + key_text(entry.name);
       const auto& content = std::get<Node::Table>(entry.node.value);
       if (content.empty() || !std::ranges::all_of(content, [](const Entry& e) { return e.node.is_table(); }))
         text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", inner);
       append(text, content, inner);
     }
+  }
 }
 
 }  // namespace

@@ -59,12 +59,13 @@ class Collector
     ++facts_.facets;
     facts_.measure += segment.measure;
     mean_ += segment.measure * segment.normal;
-    for (const auto& point : form_.contact_points(k)) add_gap(*segment.contact, point.x);
+    const auto points = form_.contact_points(k);
+    for (std::size_t q = 0; q < points.size(); ++q)
+      add_gap(segment.gap(form_.facet_rule().points[q], points[q].x), points[q].x);
   }
 
-  void add_gap(const problem::Contact& contact, const Point<dim>& x)
+  void add_gap(double gap, const Point<dim>& x)
   {
-    const double gap = problem::gap_at<dim>(contact, x);
     if (gap < facts_.smallest_gap)
     {
       facts_.smallest_gap = gap;
@@ -144,7 +145,7 @@ std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheF
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
   {
-    if (!boundaries[tag].contact) continue;
+    if (form.problem().contact(tag) == nullptr) continue;
     ContactBoundaryFacts facts = Collector<dim>(form, tag).collect(neighbours);
     if (facts.facets > 0) result.push_back(std::move(facts));
   }

@@ -80,7 +80,7 @@ Finding gap_finding(const ContactBoundaryFacts& contact, double size)
 {
   Finding finding{.code = "gap", .where = contact.smallest_gap_at};
   finding.numbers = {{"smallest", contact.smallest_gap}, {"largest", contact.largest_gap}};
-  if (contact.largest_gap == 0)
+  if (contact.largest_gap == 0 && contact.smallest_gap == 0)
     finding.text = fmt::format("contact \"{}\" is closed everywhere at the start", contact.name);
   else if (contact.smallest_gap == contact.largest_gap)
     finding.text = fmt::format("contact \"{}\" starts with the gap {:.4g} everywhere", contact.name,

@@ -112,7 +112,7 @@ double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     const problem::BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
-    if (condition.contact || condition.fixes_any())
+    if (problem.is_in_contact(facet.tag) || condition.fixes_any())
       measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
   return measure;

@@ -69,7 +69,7 @@ template <int dim>
 void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
 {
   corner.vertices += meeting.new_vertex ? 1 : 0;
-  const double gap = problem::gap_at<dim>(*meeting.contact.contact, meeting.x);
+  const double gap = (*meeting.contact.contact->gap)(meeting.x);
   if (!corner.where.empty() && meeting.normal - gap <= corner.normal - corner.gap) return;
   corner.contact = meeting.contact.name;
   corner.displacement = meeting.displacement.name;

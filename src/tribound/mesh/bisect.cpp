@@ -80,9 +80,7 @@ class Forest
       const auto root_local = static_cast<int>(opposite - root.vertices.begin());
       add_facets({marked_facet(root, root_local), tag}, data.facets);
     }
-    data.region_names.assign(mesh_->region_names().begin(), mesh_->region_names().end());
-    data.boundary_names.assign(mesh_->boundary_names().begin(), mesh_->boundary_names().end());
-    data.source = mesh_->source();
+    copy_labels(*mesh_, data);
     data.ancestry = ancestry_;
     return data;
   }

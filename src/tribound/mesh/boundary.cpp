@@ -11,16 +11,6 @@ namespace tribound::mesh
 namespace
 {
 
-/// The number of the facet with these vertices, or -1.
-template <int dim>
-Index facet_number(const Topology<dim>& topology, std::array<Index, dim> vertices)
-{
-  std::sort(vertices.begin(), vertices.end());
-  const auto found = std::lower_bound(topology.facets.begin(), topology.facets.end(), vertices);
-  if (found == topology.facets.end() || *found != vertices) return -1;
-  return static_cast<Index>(found - topology.facets.begin());
-}
-
 template <int dim>
 [[noreturn]] void throw_misplaced(const MeshData<dim>& data, const TaggedFacet<dim>& tagged,
                                   const std::string& problem, const std::string& hint)
@@ -38,7 +28,7 @@ std::vector<int> facet_tags(const MeshData<dim>& data, const Topology<dim>& topo
   std::vector<int> tags(topology.facets.size(), -1);
   for (const TaggedFacet<dim>& tagged : data.facets)
   {
-    const Index f = facet_number<dim>(topology, tagged.vertices);
+    const Index f = topology.facet(tagged.vertices);
     if (f < 0)
       throw_misplaced(data, tagged, fmt::format("is not {} of any cell", dim == 2 ? "an edge" : "a face"),
                       "the boundary must be meshed together with the domain");

@@ -181,6 +181,34 @@ MeshData<dim> box_mesh(const BoxMesh& box)
   return data;
 }
 
+template <int dim>
+MeshData<dim> box_meshes(const Boxes& boxes)
+{
+  MeshData<dim> all;
+  for (const auto& [name, box] : boxes)
+  {
+    MeshData<dim> data = box_mesh<dim>(box);
+    const auto first_vertex = static_cast<Index>(all.vertices.size());
+    const auto first_group = static_cast<int>(all.boundary_names.size());
+    const auto region = static_cast<int>(all.region_names.size());
+    all.vertices.insert(all.vertices.end(), data.vertices.begin(), data.vertices.end());
+    for (Cell<dim>& cell : data.cells)
+      for (Index& v : cell) v += first_vertex;
+    all.cells.insert(all.cells.end(), data.cells.begin(), data.cells.end());
+    all.regions.resize(all.cells.size(), region);
+    for (auto& [vertices, tag] : data.facets)
+    {
+      for (Index& v : vertices) v += first_vertex;
+      all.facets.push_back({vertices, tag + first_group});
+    }
+    all.region_names.push_back(name);
+    for (const std::string& side : data.boundary_names)
+      all.boundary_names.push_back(fmt::format("{}.{}", name, side));
+    if (all.source.file.empty()) all.source = data.source;
+  }
+  return all;
+}
+
 std::int64_t n_box_cells(const BoxMesh& box)
 {
   std::int64_t n = box.lower.size() == 2 ? 2 : 6;
@@ -235,6 +263,8 @@ template MeshLabels box_labels<3>(const BoxMesh&);
 template std::vector<CellRecord<2>> box_records<2>(const BoxMesh&, std::int64_t, std::int64_t);
 template std::vector<CellRecord<3>> box_records<3>(const BoxMesh&, std::int64_t, std::int64_t);
 template MeshData<2> box_mesh<2>(const BoxMesh&);
+template MeshData<2> box_meshes<2>(const Boxes&);
+template MeshData<3> box_meshes<3>(const Boxes&);
 template MeshData<3> box_mesh<3>(const BoxMesh&);
 
 }  // namespace tribound::mesh

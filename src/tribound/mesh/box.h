@@ -24,6 +24,11 @@ void require_valid(const BoxMesh& box);
 template <int dim>
 [[nodiscard]] MeshData<dim> box_mesh(const BoxMesh& box);
 
+/// Boxes of one dimension, one after the other. Throws as require_valid() does, and for boxes of different
+/// dimensions.
+template <int dim>
+[[nodiscard]] MeshData<dim> box_meshes(const Boxes& boxes);
+
 /// Its names. Throws as require_valid() does.
 template <int dim>
 [[nodiscard]] MeshLabels box_labels(const BoxMesh& box);

@@ -24,7 +24,22 @@ struct OuterFacet
   std::array<Index, dim> vertices;
   std::array<Point<dim>, dim> points;
   double diameter;
+  Point<dim> normal;  ///< unit vector out of the cell
+  Index number;       ///< in the topology
 };
+
+/// The unit normal of a facet that points away from the apex.
+template <int dim>
+Point<dim> outward(const std::array<Point<dim>, dim>& points, const Point<dim>& apex)
+{
+  const Point<dim> edge = points[1] - points[0];
+  Point<dim> normal;
+  if constexpr (dim == 2)
+    normal = Point<2>(edge[1], -edge[0]).normalized();
+  else
+    normal = cross(edge, points[2] - points[0]).normalized();
+  return normal.dot(apex - points[0]) > 0 ? Point<dim>(-normal) : normal;
+}
 
 template <int dim>
 std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topology<dim>& topology)
@@ -34,7 +49,11 @@ std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topol
   {
     if (topology.facet_cells[f][1] >= 0) continue;
     const auto points = points_of<dim>(data.vertices, topology.facets[f]);
-    outer.push_back({topology.facets[f], points, diameter(points)});
+    const Index cell = topology.facet_cells[f][0];
+    const Point<dim>& apex =
+        data.vertices[data.cells[cell][topology.local_facet(cell, static_cast<Index>(f))]];
+    outer.push_back(
+        {topology.facets[f], points, diameter(points), outward<dim>(points, apex), static_cast<Index>(f)});
   }
   return outer;
 }
@@ -161,60 +180,115 @@ template <int dim>
 {
   for (const Index w : facet.vertices)
     if ((data.vertices[w] - data.vertices[v]).norm() <= 2 * coincidence * facet.diameter)
-      throw InputError(
-          data.source,
-          fmt::format("the mesh is not conforming: vertices {} and {} are both at {}", std::min(v, w),
-                      std::max(v, w), describe(data.vertices[v])),
-          "merge coincident points and meshes: \"Coherence;\" in a .geo, or \"Coherence Mesh;\"");
-  throw InputError(data.source,
-                   fmt::format("the mesh is not conforming: {} lies on the {} without being a vertex of it",
-                               describe_vertex(data, v), describe_facet<dim>(data, facet.vertices)),
-                   "parts that touch must share their points, curves and surfaces before they are meshed: "
-                   "\"Coherence;\" or BooleanFragments in a .geo");
+      throw InputError(data.source,
+                       fmt::format("the mesh is not conforming: vertices {} and {} are both at {}",
+                                   std::min(v, w), std::max(v, w), describe(data.vertices[v])),
+                       "merge coincident points and meshes: \"Coherence;\" in a .geo, or \"Coherence "
+                       "Mesh;\"; where bodies "
+                       "touch without being joined, name the two sides in a [[contact]]");
+  throw InputError(
+      data.source,
+      fmt::format("the mesh is not conforming: {} lies on the {} without being a vertex of it",
+                  describe_vertex(data, v), describe_facet<dim>(data, facet.vertices)),
+      "parts that touch must share their points, curves and surfaces before they are meshed: "
+      "\"Coherence;\" or BooleanFragments in a .geo; where bodies touch without being joined, name "
+      "the two sides in a [[contact]]");
 }
 
-}  // namespace
+/// Points of a facet by which it is seen to overlap another one: its centre and, where vertices may hang,
+/// points beside its corners.
+template <int dim>
+std::vector<Point<dim>> inner_points(const OuterFacet<dim>& facet, bool with_corners)
+{
+  constexpr double beside = 1e-3;
+  Point<dim> centre = Point<dim>::Zero();
+  for (const Point<dim>& x : facet.points) centre += x / dim;
+  std::vector<Point<dim>> points = {centre};
+  if (with_corners)
+    for (const Point<dim>& x : facet.points) points.push_back(x + beside * (centre - x));
+  return points;
+}
+
+/// Whether facets that share an inner point of one of them may: in planes of different directions it is no
+/// more than a line that they share; opposite sides of an interface lie on each other; and the sides of two
+/// bodies that overlap may lie in one plane.
+template <int dim>
+bool may_overlap(const OuterFacet<dim>& a, const OuterFacet<dim>& b, const Interfaces<dim>& interfaces)
+{
+  constexpr double parallel = 1e-10;  // of the cosine from 1: an angle of 1e-5
+  const double cosine = a.normal.dot(b.normal);
+  if (1 - std::abs(cosine) > parallel || interfaces.are_opposite(a.number, b.number)) return true;
+  return cosine > 0 && interfaces.may_cross(a.number, b.number);
+}
 
 template <int dim>
-void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology)
+void check_touching(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
+                    const FacetSearch<dim>& search, const Interfaces<dim>& interfaces)
 {
-  const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
-  if (facets.empty()) throw InputError(data.source, "the mesh has no boundary", "cells overlap");
-  const FacetSearch<dim> search(facets);
-
   std::vector<Index> vertices;
   for (const auto& facet : facets)
     vertices.insert(vertices.end(), facet.vertices.begin(), facet.vertices.end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Index> touched;  // their numbers in the topology
+  std::vector<const OuterFacet<dim>*> touched_facets;
   for (const Index v : vertices)
+  {
+    touched.clear();
+    touched_facets.clear();
     search.near(data.vertices[v],
                 [&](Index f)
                 {
                   const auto& corners = facets[f].vertices;
                   if (std::find(corners.begin(), corners.end(), v) != corners.end()) return;
-                  if (lies_on(data.vertices[v], facets[f])) throw_hanging(data, v, facets[f]);
+                  if (!lies_on(data.vertices[v], facets[f])) return;
+                  touched.push_back(facets[f].number);
+                  touched_facets.push_back(&facets[f]);
                 });
-
-  if constexpr (dim == 3)  // two triangulations with the same vertices: only the faces tell them apart
-    for (std::size_t g = 0; g < facets.size(); ++g)
-    {
-      const auto& [a, b, c] = facets[g].points;
-      const Point<dim> centre = (a + b + c) / 3.0;
-      search.near(centre,
-                  [&](Index f)
-                  {
-                    if (static_cast<std::size_t>(f) == g || !lies_on(centre, facets[f])) return;
-                    throw InputError(data.source,
-                                     fmt::format("the mesh is not conforming: {} and {} overlap",
-                                                 describe_facet<dim>(data, facets[f].vertices),
-                                                 describe_facet<dim>(data, facets[g].vertices)),
-                                     "the two sides of a surface must carry the same triangles");
-                  });
-    }
+    for (const OuterFacet<dim>* facet : touched_facets)
+      if (!interfaces.may_touch(v, facet->number, touched)) throw_hanging(data, v, *facet);
+  }
 }
 
-template void check_conformity<2>(const MeshData<2>&, const Topology<2>&);
-template void check_conformity<3>(const MeshData<3>&, const Topology<3>&);
+/// In 3D two triangulations may have the same vertices: only the faces tell them apart. Interfaces excuse
+/// vertices, but only opposite facets.
+template <int dim>
+void check_overlapping(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
+                       const FacetSearch<dim>& search, const Interfaces<dim>& interfaces)
+{
+  if (dim == 2 && interfaces.empty()) return;
+  for (const OuterFacet<dim>& facet : facets)
+    for (const Point<dim>& x : inner_points(facet, !interfaces.empty()))
+      search.near(
+          x,
+          [&](Index f)
+          {
+            const OuterFacet<dim>& other = facets[f];
+            if (other.number == facet.number || !lies_on(x, other) || may_overlap(facet, other, interfaces))
+              return;
+            throw InputError(data.source,
+                             fmt::format("the mesh is not conforming: {} and {} overlap",
+                                         describe_facet<dim>(data, other.vertices),
+                                         describe_facet<dim>(data, facet.vertices)),
+                             "the two sides of a surface must carry the same triangles, or be the "
+                             "slave and the master of one [[contact]]");
+          });
+}
+
+}  // namespace
+
+template <int dim>
+void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology,
+                      const Interfaces<dim>& interfaces)
+{
+  const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
+  if (facets.empty()) throw InputError(data.source, "the mesh has no boundary", "cells overlap");
+  const FacetSearch<dim> search(facets);
+  check_touching<dim>(data, facets, search, interfaces);
+  check_overlapping<dim>(data, facets, search, interfaces);
+}
+
+template void check_conformity<2>(const MeshData<2>&, const Topology<2>&, const Interfaces<2>&);
+template void check_conformity<3>(const MeshData<3>&, const Topology<3>&, const Interfaces<3>&);
 
 }  // namespace tribound::mesh

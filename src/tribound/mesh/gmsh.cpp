@@ -10,6 +10,7 @@
 #include "tribound/base/apart.h"
 #include "tribound/base/memory.h"
 #include "tribound/mesh/box.h"
+#include "tribound/mesh/cut_open.h"
 #include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/gmsh_session.h"
@@ -165,21 +166,37 @@ AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* sto
   }
 }
 
-}  // namespace
-
-AnyMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, double patience)
+AnyMesh verified(AnyMeshData any, const FindSeams& find_seams)
 {
-  check_mesh_file(source.path, source.where);
-  return std::visit([]<int dim>(MeshData<dim>&& data) -> AnyMesh { return Mesh<dim>(std::move(data)); },
-                    load(source.path, stop, patience));
+  return std::visit(
+      [&]<int dim>(MeshData<dim>& data) -> AnyMesh
+      {
+        const Seams seams = find_seams ? find_seams(data.boundary_names) : Seams{};
+        cut_open<dim>(data, seams.joints);
+        data.interfaces.insert(data.interfaces.end(), seams.interfaces.begin(), seams.interfaces.end());
+        return Mesh<dim>(std::move(data));
+      },
+      any);
 }
 
-AnyMesh read_mesh(const MeshSource& source, const std::atomic<bool>* stop)
+}  // namespace
+
+AnyMesh read_gmsh(const MeshFile& source, const FindSeams& find_seams, const std::atomic<bool>* stop,
+                  double patience)
 {
-  if (const auto* file = std::get_if<MeshFile>(&source)) return read_gmsh(*file, stop);
-  const auto& box = std::get<BoxMesh>(source);
-  if (box.cells.size() == 3) return Mesh<3>(box_mesh<3>(box));
-  return Mesh<2>(box_mesh<2>(box));
+  check_mesh_file(source.path, source.where);
+  return verified(load(source.path, stop, patience), find_seams);
+}
+
+AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const std::atomic<bool>* stop)
+{
+  if (const auto* file = std::get_if<MeshFile>(&source)) return read_gmsh(*file, find_seams, stop);
+  if (const auto* box = std::get_if<BoxMesh>(&source))
+    return box->cells.size() == 3 ? verified(box_mesh<3>(*box), find_seams)
+                                  : verified(box_mesh<2>(*box), find_seams);
+  const auto& boxes = std::get<Boxes>(source);
+  return boxes.front().box.cells.size() == 3 ? verified(box_meshes<3>(boxes), find_seams)
+                                             : verified(box_meshes<2>(boxes), find_seams);
 }
 
 std::string gmsh_version()

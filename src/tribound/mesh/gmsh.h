@@ -22,13 +22,14 @@ using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
 /// Gmsh works in a copy of this process (base/apart.h): whatever it does with a file, crash, hang, use up
 /// memory, is answered by an InputError. It is given up after `patience` seconds without a sign of progress,
 /// or as soon as `stop` is true, which ends in a SolveError. Gmsh's state in this process is not touched.
-[[nodiscard]] AnyMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop = nullptr,
-                                double patience = 300);
+[[nodiscard]] AnyMesh read_gmsh(const MeshFile& source, const FindSeams& seams = {},
+                                const std::atomic<bool>* stop = nullptr, double patience = 300);
 
 /// The version of Gmsh's library.
 [[nodiscard]] std::string gmsh_version();
 
 /// The mesh a case asks for; `stop` as above.
-[[nodiscard]] AnyMesh read_mesh(const MeshSource& source, const std::atomic<bool>* stop = nullptr);
+[[nodiscard]] AnyMesh read_mesh(const MeshSource& source, const FindSeams& seams = {},
+                                const std::atomic<bool>* stop = nullptr);
 
 }  // namespace tribound::mesh

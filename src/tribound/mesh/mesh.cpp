@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "tribound/mesh/interfaces.h"
 #include "tribound/mesh/partition.h"
 #include "tribound/mesh/verify.h"
 
@@ -42,8 +43,9 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   check_shapes(data);
   Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
   check_facets(data, topology);
-  check_conformity(data, topology);
-  if (data.bisection_types.empty()) check_overlap(data, topology);  // bisection keeps the domain
+  const Interfaces<dim> interfaces(data, topology);
+  check_conformity(data, topology, interfaces);
+  if (data.bisection_types.empty()) check_overlap(data, topology, interfaces);  // bisection keeps the domain
   boundary_ = find_boundary(data, topology);
   check_vertices(data, topology);
   n_owned_cells_ = static_cast<Index>(data.cells.size());
@@ -95,7 +97,17 @@ void Mesh<dim>::take(MeshData<dim> data, Topology<dim> topology)
   source_ = std::move(data.source);
   bisection_types_ = std::move(data.bisection_types);
   ancestry_ = std::move(data.ancestry);
+  interfaces_ = std::move(data.interfaces);
   topology_ = std::make_unique<const Topology<dim>>(std::move(topology));
+}
+
+template <int dim>
+void copy_labels(const Mesh<dim>& from, MeshData<dim>& to)
+{
+  to.region_names.assign(from.region_names().begin(), from.region_names().end());
+  to.boundary_names.assign(from.boundary_names().begin(), from.boundary_names().end());
+  to.interfaces.assign(from.interfaces().begin(), from.interfaces().end());
+  to.source = from.source();
 }
 
 template <int dim>
@@ -111,6 +123,8 @@ std::vector<std::size_t> facets_named(const Mesh<dim>& mesh, std::span<const std
 
 template class Mesh<2>;
 template class Mesh<3>;
+template void copy_labels(const Mesh<2>&, MeshData<2>&);
+template void copy_labels(const Mesh<3>&, MeshData<3>&);
 template std::vector<std::size_t> facets_named(const Mesh<2>&, std::span<const std::string>);
 template std::vector<std::size_t> facets_named(const Mesh<3>&, std::span<const std::string>);
 

@@ -14,6 +14,7 @@
 #include "tribound/base/error.h"
 #include "tribound/base/ranks.h"
 #include "tribound/base/types.h"
+#include "tribound/mesh/seams.h"
 
 namespace tribound::mesh
 {
@@ -62,6 +63,7 @@ struct MeshData
   /// bisect(), which then starts from the longest edges.
   std::vector<std::uint8_t> bisection_types{};
   Ancestry ancestry{};  ///< empty for a mesh that does not come from bisect()
+  std::vector<Interface> interfaces{};
 };
 
 /// The vertices of a local facet: those of the cell but number `local`, in ascending local order.
@@ -90,6 +92,13 @@ struct Topology
   std::vector<Index> vertex_cells_begin;  ///< CSR offsets, size n_vertices + 1
   std::vector<Index> vertex_cells;        ///< cells around each vertex, ascending
 
+  /// The number of the facet with these vertices, in any order; -1 if there is none.
+  [[nodiscard]] Index facet(std::array<Index, dim> vertices) const
+  {
+    std::ranges::sort(vertices);
+    const auto found = std::ranges::lower_bound(facets, vertices);
+    return found == facets.end() || *found != vertices ? -1 : static_cast<Index>(found - facets.begin());
+  }
   /// The local number of a facet of a cell.
   [[nodiscard]] int local_facet(Index cell, Index facet) const
   {
@@ -130,7 +139,8 @@ class Mesh
  public:
   /// Verifies `data` (see docs/case-format.md, "Mesh") and finds the boundary. Throws InputError: inverted,
   /// degenerate or duplicate cells, unused vertices, a facet shared by more than two cells, hanging nodes,
-  /// cells that overlap across a facet, tagged facets that are not on the boundary or in two groups, a vertex
+  /// cells that overlap across a facet, boundaries that touch or cross elsewhere than on
+  /// interfaces, tagged facets that are not on the boundary or in two groups, a vertex
   /// whose cells are not connected through facets.
   explicit Mesh(MeshData<dim> data);
   /// Verifies what can be seen from here. Throws InputError, on this rank alone.
@@ -150,6 +160,7 @@ class Mesh
   /// As in MeshData.
   [[nodiscard]] std::span<const std::uint8_t> bisection_types() const { return bisection_types_; }
   [[nodiscard]] const Ancestry& ancestry() const { return ancestry_; }
+  [[nodiscard]] std::span<const Interface> interfaces() const { return interfaces_; }
 
   [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
 
@@ -183,6 +194,7 @@ class Mesh
   Where source_;
   std::vector<std::uint8_t> bisection_types_;
   Ancestry ancestry_;
+  std::vector<Interface> interfaces_;
   std::unique_ptr<const Topology<dim>> topology_;
   std::shared_ptr<const Partition<dim>> partition_;
   Ranks ranks_;
@@ -190,6 +202,10 @@ class Mesh
   std::size_t n_owned_boundary_ = 0;
   std::span<const char> has_patch_;  ///< of the partition
 };
+
+/// What a mesh made from this one inherits: names, interfaces and the source.
+template <int dim>
+void copy_labels(const Mesh<dim>& from, MeshData<dim>& to);
 
 /// The numbers in Mesh::boundary() of the facets of the named boundaries, ascending.
 template <int dim>
@@ -200,5 +216,10 @@ template <int dim>
 /// share a facet, facet_cells holds the first two.
 template <int dim>
 [[nodiscard]] Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells);
+
+/// For each cell the number of its part that is connected through facets, parts numbered by their first
+/// cells.
+template <int dim>
+[[nodiscard]] std::vector<int> connected_parts(const Topology<dim>& topology);
 
 }  // namespace tribound::mesh

@@ -31,6 +31,7 @@ struct OuterFacet
   std::array<Point<dim>, dim> points;
   Point<dim> normal;
   BoundingBox<dim> box;
+  Index number;  ///< in the topology
 };
 
 template <int dim>
@@ -54,6 +55,7 @@ std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topol
     {
       if (topology.facet_cells[topology.cell_facets[c][i]][1] >= 0) continue;
       OuterFacet<dim>& facet = outer.emplace_back();
+      facet.number = topology.cell_facets[c][i];
       facet.vertices = facet_vertices(data.cells[c], i);
       facet.points = points_of<dim>(data.vertices, facet.vertices);
       facet.normal = normal_of<dim>(facet.points);
@@ -128,13 +130,13 @@ constexpr auto hint =
 
 template <int dim>
 void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
-                     const BoxTree<dim>& tree)
+                     const BoxTree<dim>& tree, const Interfaces<dim>& interfaces)
 {
   for (std::size_t f = 0; f < facets.size(); ++f)
     tree.traverse([&](const BoundingBox<dim>& box) { return meet(box, facets[f].box); },
                   [&](std::size_t g)
                   {
-                    if (f == g) return;
+                    if (f == g || interfaces.may_cross(facets[f].number, facets[g].number)) return;
                     if (const auto x = crossing(facets[f], facets[g]))
                       throw InputError(
                           data.source,
@@ -146,10 +148,11 @@ void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>>
 }
 
 /// How many cells cover the points just outside the facet: a ray from there leaves as many cells more than it
-/// enters. Nothing where it meets the rim of a facet.
+/// enters. Nothing where it meets the rim of a facet. Bodies that an interface joins with that of the facet
+/// do not count.
 template <int dim>
-std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<dim>& tree, std::size_t start,
-                         const Point<dim>& direction)
+std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<dim>& tree,
+                         const Interfaces<dim>& interfaces, std::size_t start, const Point<dim>& direction)
 {
   Point<dim> from = Point<dim>::Zero();
   for (const Point<dim>& x : facets[start].points) from += x / dim;
@@ -165,7 +168,7 @@ std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<
                 {
                   const OuterFacet<dim>& facet = facets[f];
                   const double slope = facet.normal.dot(direction);
-                  if (f == start) return;
+                  if (f == start || interfaces.may_cross(facets[start].number, facet.number)) return;
                   const double distance = facet.normal.dot(facet.points[0] - from);
                   if (slope == 0 || distance / slope <= 0) return;
                   const auto coordinates = barycentric<dim>(facet, from + distance / slope * direction);
@@ -176,9 +179,11 @@ std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<
   return is_clear ? std::optional(sum) : std::nullopt;
 }
 
-/// The first facet of every connected part of the boundary.
+/// A facet of every connected part of the boundary, from which it is seen what lies outside: not one of a
+/// slit, outside of which its own body goes on.
 template <int dim>
-std::vector<std::size_t> parts(std::span<const OuterFacet<dim>> facets, std::size_t n_vertices)
+std::vector<std::size_t> parts(std::span<const OuterFacet<dim>> facets, std::size_t n_vertices,
+                               const Interfaces<dim>& interfaces)
 {
   std::vector<Index> parent(n_vertices);
   std::iota(parent.begin(), parent.end(), Index{0});
@@ -193,6 +198,7 @@ std::vector<std::size_t> parts(std::span<const OuterFacet<dim>> facets, std::siz
   std::vector<bool> seen(n_vertices, false);
   for (std::size_t f = 0; f < facets.size(); ++f)
   {
+    if (interfaces.is_of_slit(facets[f].number)) continue;
     const Index r = root(facets[f].vertices[0]);
     if (!seen[r]) first.push_back(f);
     seen[r] = true;
@@ -203,15 +209,15 @@ std::vector<std::size_t> parts(std::span<const OuterFacet<dim>> facets, std::siz
 /// Boundaries that do not cross are inside other cells as a whole, or not at all.
 template <int dim>
 void check_covers(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
-                  const BoxTree<dim>& tree)
+                  const BoxTree<dim>& tree, const Interfaces<dim>& interfaces)
 {
-  for (const std::size_t f : parts(facets, data.vertices.size()))
+  for (const std::size_t f : parts(facets, data.vertices.size(), interfaces))
     for (int attempt = 1; attempt <= 8; ++attempt)
     {
       // Outwards, and in no direction that a mesh has.
       Point<dim> direction = facets[f].normal / facets[f].normal.norm();
       for (int i = 0; i < dim; ++i) direction[i] += 0.2 * std::sin(attempt + 0.7 * i);
-      const std::optional<int> n = cover(facets, tree, f, direction);
+      const std::optional<int> n = cover(facets, tree, interfaces, f, direction);
       if (!n) continue;
       if (*n == 0) break;
       throw InputError(data.source,
@@ -224,15 +230,16 @@ void check_covers(const MeshData<dim>& data, std::span<const OuterFacet<dim>> fa
 }  // namespace
 
 template <int dim>
-void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology)
+void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology,
+                   const Interfaces<dim>& interfaces)
 {
   const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
   const BoxTree<dim> tree = tree_of<dim>(facets);
-  check_crossings<dim>(data, facets, tree);
-  check_covers<dim>(data, facets, tree);
+  check_crossings<dim>(data, facets, tree, interfaces);
+  check_covers<dim>(data, facets, tree, interfaces);
 }
 
-template void check_overlap<2>(const MeshData<2>&, const Topology<2>&);
-template void check_overlap<3>(const MeshData<3>&, const Topology<3>&);
+template void check_overlap<2>(const MeshData<2>&, const Topology<2>&, const Interfaces<2>&);
+template void check_overlap<3>(const MeshData<3>&, const Topology<3>&, const Interfaces<3>&);
 
 }  // namespace tribound::mesh

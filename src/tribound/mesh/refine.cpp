@@ -131,9 +131,7 @@ Mesh<dim> refine_once(const Mesh<dim>& mesh)
   for (const BoundaryFacet& facet : mesh.boundary())
     if (facet.tag >= 0) add_facet_children<dim>(mesh.cell(facet.cell), middles(facet.cell), facet, data);
 
-  data.region_names.assign(mesh.region_names().begin(), mesh.region_names().end());
-  data.boundary_names.assign(mesh.boundary_names().begin(), mesh.boundary_names().end());
-  data.source = mesh.source();
+  copy_labels(mesh, data);
   return Mesh<dim>(std::move(data));
 }
 

@@ -4,6 +4,7 @@
 /// Where a mesh comes from.
 
 #include <filesystem>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -29,6 +30,14 @@ struct BoxMesh
   Where where = {};  ///< for messages
 };
 
-using MeshSource = std::variant<MeshFile, BoxMesh>;
+/// Several boxes, each a body of its own: region NAME, boundaries NAME.left, NAME.right, ...
+struct NamedBox
+{
+  std::string name;
+  BoxMesh box;
+};
+using Boxes = std::vector<NamedBox>;
+
+using MeshSource = std::variant<MeshFile, BoxMesh, Boxes>;
 
 }  // namespace tribound::mesh

@@ -168,7 +168,36 @@ Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells)
   return topology;
 }
 
+template <int dim>
+std::vector<int> connected_parts(const Topology<dim>& topology)
+{
+  std::vector<int> label(topology.cell_facets.size(), -1);
+  int n_parts = 0;
+  for (std::size_t seed = 0; seed < label.size(); ++seed)
+  {
+    if (label[seed] >= 0) continue;
+    std::vector<Index> front{static_cast<Index>(seed)};
+    label[seed] = n_parts;
+    while (!front.empty())
+    {
+      const Index cell = front.back();
+      front.pop_back();
+      for (const Index facet : topology.cell_facets[cell])
+        for (const Index next : topology.facet_cells[facet])
+        {
+          if (next < 0 || label[next] >= 0) continue;
+          label[next] = n_parts;
+          front.push_back(next);
+        }
+    }
+    ++n_parts;
+  }
+  return label;
+}
+
 template Topology<2> build_topology<2>(Index, std::span<const Cell<2>>);
 template Topology<3> build_topology<3>(Index, std::span<const Cell<3>>);
+template std::vector<int> connected_parts(const Topology<2>&);
+template std::vector<int> connected_parts(const Topology<3>&);
 
 }  // namespace tribound::mesh

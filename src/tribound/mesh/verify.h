@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/mesh/interfaces.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/partition.h"
 
@@ -27,15 +28,18 @@ template <int dim>
 void check_facets(const MeshData<dim>& data, const Topology<dim>& topology);
 
 /// The cells meet in whole facets: no vertex and, in 3D, no face centre on a facet of the topological
-/// boundary that it does not belong to, and no two boundary vertices at one place. Only facets with one cell
-/// are looked at, because a hanging vertex leaves such facets on both sides.
+/// boundary that it does not belong to, and no two boundary vertices at one place, but on interfaces; no two
+/// facets overlap that are not opposite there. Only facets with one cell are looked at, because a hanging
+/// vertex leaves such facets on both sides.
 template <int dim>
-void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology);
+void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology,
+                      const Interfaces<dim>& interfaces);
 
-/// No two cells overlap: the boundary does not cross itself, and no part of it lies inside other cells.
-/// O(n log n) in the facets of the boundary.
+/// No two cells overlap, but those of bodies that an interface joins: the boundary does not cross itself, and
+/// no part of it lies inside other cells. O(n log n) in the facets of the boundary.
 template <int dim>
-void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology);
+void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology,
+                   const Interfaces<dim>& interfaces);
 
 /// The facets with one cell, in the order of their numbers, with the tags of data.facets. Every tagged facet
 /// must be one of them, in one group only.

@@ -156,6 +156,11 @@ bool is_minimum(const ContactLaw& law)
   return std::visit([](const auto& l) { return l.is_minimum; }, law);
 }
 
+std::span<const LawKind> law_kinds()
+{
+  return kinds;
+}
+
 std::span<const LawKind> obstacle_law_kinds()
 {
   static_assert(kinds.back().name == Tied::name);

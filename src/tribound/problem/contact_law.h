@@ -182,7 +182,8 @@ struct LawKind
   ContactLaw (*make)(std::span<const Field> values);  ///< a value for each key
 };
 
-/// The laws of contact with an obstacle, in the order of the variant.
+/// All laws, in the order of the variant; and those of contact with an obstacle.
+[[nodiscard]] std::span<const LawKind> law_kinds();
 [[nodiscard]] std::span<const LawKind> obstacle_law_kinds();
 
 }  // namespace tribound::problem

@@ -15,16 +15,6 @@
 namespace tribound::problem
 {
 
-std::string nonnegative_hint(const Where& where)
-{
-  const std::string cut = "a formula that changes sign can be cut off: \"max(0, ...)\"";
-  if (!where.key.ends_with("gap")) return "0 or more; " + cut;
-  return "0 or more; for an interference (a press fit) mesh the body clear of the obstacle and press it on "
-         "by a "
-         "prescribed displacement; " +
-         cut;
-}
-
 Field::Field() = default;
 
 Field::Field(double value, Where where) : value_(value), where_(std::move(where)) {}

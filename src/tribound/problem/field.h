@@ -19,8 +19,9 @@ struct Enclosure;
 class Formula;
 enum class Sides;
 
-/// What would be right where the gap or the threshold found there is negative.
-[[nodiscard]] std::string nonnegative_hint(const Where& where);
+/// What to do about a negative value where none is allowed.
+inline constexpr const char* nonnegative_hint =
+    "0 or more; a formula that changes sign can be cut off: \"max(0, ...)\"";
 
 /// A function given by a program, at many points at once.
 struct FieldFunction

@@ -28,7 +28,7 @@ double nonnegative_at(const Field& field, const Point<dim>& x)
     throw InputError(field.where(),
                      fmt::format("is negative, {:.9g}, at the point ({:.9g})", value,
                                  fmt::join(x.data(), x.data() + dim, ", ")),
-                     nonnegative_hint(field.where()));
+                     nonnegative_hint);
   return 0;
 }
 
@@ -179,12 +179,6 @@ BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Fie
 }
 
 template <int dim>
-double gap_at(const Contact& contact, const Point<dim>& x)
-{
-  return nonnegative_at<dim>(*contact.gap, x);
-}
-
-template <int dim>
 double strength_at(const ContactLaw& law, const Point<dim>& x)
 {
   const Field* strength = cone(law).strength;
@@ -207,6 +201,24 @@ template <int dim>
 bool Problem<dim>::is_in_contact(int tag) const
 {
   return boundary(tag).contact || (tag >= 0 && is_paired_[tag]);
+}
+
+template <int dim>
+const ContactPair<dim>* Problem<dim>::pair_of_slave(int tag) const
+{
+  if (tag < 0 || !is_paired_[tag]) return nullptr;
+  const auto found = std::ranges::find_if(
+      pairs_, [&](const ContactPair<dim>& pair)
+      { return std::ranges::find(pair.slave, boundaries_[tag].name) != pair.slave.end(); });
+  return found == pairs_.end() ? nullptr : &*found;
+}
+
+template <int dim>
+const Contact* Problem<dim>::contact(int tag) const
+{
+  if (boundary(tag).contact) return &*boundary(tag).contact;
+  const ContactPair<dim>* pair = pair_of_slave(tag);
+  return pair == nullptr ? nullptr : &pair->contact;
 }
 
 template <int dim>
@@ -246,8 +258,6 @@ template BoundaryCondition<2> with_contact<2>(const std::string&, ContactLaw, Fi
 template BoundaryCondition<3> with_contact<3>(const std::string&, ContactLaw, Field);
 template class Problem<2>;
 template class Problem<3>;
-template double gap_at<2>(const Contact&, const Point<2>&);
-template double gap_at<3>(const Contact&, const Point<3>&);
 template double strength_at<2>(const ContactLaw&, const Point<2>&);
 template double strength_at<3>(const ContactLaw&, const Point<3>&);
 

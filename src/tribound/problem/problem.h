@@ -33,8 +33,8 @@ struct Region
 struct Contact
 {
   ContactLaw law;
-  /// Initial distance g >= 0 along the outward normal. Absent, between bodies alone: the distance that the
-  /// meshes have, which may be negative.
+  /// Initial distance g along the outward normal; negative: interference, as of a press fit. Absent, between
+  /// bodies alone: the distance that the meshes have.
   std::optional<Field> gap;
 
   explicit Contact(ContactLaw l, std::optional<Field> g = Field(0.0)) : law(std::move(l)), gap(std::move(g))
@@ -93,11 +93,9 @@ template <int dim>
 template <int dim>
 [[nodiscard]] BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Field gap = 0.0);
 
-/// The given gap g(x) >= 0 and the strength s(x) >= 0 of the law's friction cone, 0 where it has none. Values
-/// that may be 0 within the rounding of x are: "y" on a floor y = 0 whose points have rounded coordinates.
-/// Throw InputError naming the point where the value is negative.
-template <int dim>
-[[nodiscard]] double gap_at(const Contact& contact, const Point<dim>& x);
+/// The strength s(x) >= 0 of the law's friction cone, 0 where it has none. A value that may be 0 within the
+/// rounding of x is: "y" on a floor y = 0 whose points have rounded coordinates. Throws InputError naming the
+/// point where it is negative.
 template <int dim>
 [[nodiscard]] double strength_at(const ContactLaw& law, const Point<dim>& x);
 
@@ -141,6 +139,10 @@ class Problem
     return tag < 0 ? unnamed_ : boundaries_[tag];
   }
   [[nodiscard]] std::span<const BoundaryCondition<dim>> boundaries() const { return boundaries_; }
+  /// The contact of boundary number `tag` with an obstacle or, as a slave, with its master; null for others.
+  [[nodiscard]] const Contact* contact(int tag) const;
+  /// The pair whose slave the boundary is, or null.
+  [[nodiscard]] const ContactPair<dim>* pair_of_slave(int tag) const;
   /// In the order of the mesh, each with the name it has there.
   [[nodiscard]] std::span<const Region<dim>> regions() const { return regions_; }
   [[nodiscard]] std::span<const ContactPair<dim>> pairs() const { return pairs_; }

@@ -48,11 +48,13 @@ inline std::vector<std::string> quoted(const std::string& text, const std::strin
   return words;
 }
 
-/// The table a section is about: "## [boundary.NAME]" is tried out on the boundary "top".
+/// The table a section is about: "## [boundary.NAME]" is tried out on the boundary "top", "## [[contact]]" on
+/// the first one.
 inline std::string section_table(const std::string& heading)
 {
   const auto open = heading.find('[');
   if (open == std::string::npos) return {};
+  if (heading.substr(open, 2) == "[[") return heading.substr(open + 2, heading.find(']') - open - 2) + ".0";
   const std::string table = heading.substr(open + 1, heading.find(']') - open - 1);
   return table == "boundary.NAME" ? "boundary.top" : table;
 }

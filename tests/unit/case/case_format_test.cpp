@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -33,15 +34,16 @@ std::string valid_case(const std::string& table)
   if (table == "boundary.top") text += "boundary.top.traction = [0, 0]\n";
   if (table == "regularisation") text += "regularisation = {}\n";
   if (table == "boundary.top.contact") text += "boundary.top.contact = {}\n";
+  if (table == "contact.0") text += "contact = [{slave = 'a', master = 'b'}]\n";
   return text;
 }
 
 /// What must be set beside a key so that it is allowed.
 std::vector<std::string> companions(const Row& row)
 {
-  if (row.key == "threshold") return {"boundary.top.contact.friction=tresca"};
+  if (row.key == "threshold") return {row.table + ".friction=tresca"};
   if (row.key == "reference_degree") return {"degree=1"};
-  if (row.key == "coefficient") return {"boundary.top.contact.friction=coulomb"};
+  if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
   return {};
 }
 
@@ -54,6 +56,7 @@ std::optional<InputError> refusal(const Row& row, const std::string& value)
   std::string text = valid_case(row.table);
   if (row.name() == "mesh.file") text = "mesh.file = " + value + "\nmaterial = { E = 1, nu = 0 }\n";
   if (row.name() == "boundary.top.contact") text = valid_case("") + "boundary.top.contact = " + value + "\n";
+  if (row.name() == "contact.0.joint") text = valid_case("") + "contact = [{}]\n";
   try
   {
     (void)case_file::parse_config(text, "case", overrides);
@@ -147,8 +150,9 @@ void try_out(const Row& row)
     const bool has_free = row.type.find("\"free\"") != std::string::npos;
     has_free ? expect_accepted(row, "[0, \"free\"]") : expect_refused(row, "[0, \"free\"]");
   }
-  else if (row.type == "datum")
+  else if (row.type == "datum" || row.type.starts_with("datum, or"))
   {
+    for (const std::string& word : quoted(row.type, "\"")) expect_accepted(row, "\"" + word + "\"");
     expect_accepted(row, "\"2*x\"");
     expect_accepted(row, "-1");
     expect_refused(row, "[1, 2]");
@@ -156,7 +160,10 @@ void try_out(const Row& row)
   else if (row.type == "table")
     expect_refused(row, "1");
   else if (row.type.starts_with("2 or 3"))
+  {
+    for (const std::string& word : quoted(row.type, "\"")) expect_accepted(row, "\"" + word + "\"");
     expect_refused(row, "[1]");
+  }
   else
     try_out_numbers(row);
 }
@@ -188,7 +195,7 @@ TEST(CaseFormat, KeysAreThoseOfTheProgram)
     documented[row.table].insert(row.key);
     if (row.table.find('.') == std::string::npos && !row.table.empty()) documented[""].insert(row.table);
   }
-  documented[""].insert("boundary");
+  documented[""].insert({"boundary", "contact"});
   for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
 }
 
@@ -226,6 +233,14 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
        { return choice(row, static_cast<int>(c.boundaries[0].contact->law.index())); }},
       {"boundary.top.contact.gap", [](const case_file::Config& c, const Row&)
        { return c.boundaries[0].contact->gap->is_zero() ? "0" : "not 0"; }},
+      {"contact.0.friction", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.contacts[0].contact.law.index())); }},
+      {"contact.0.gap", [](const case_file::Config& c, const Row&)
+       { return c.contacts[0].contact.gap ? "given" : "`\"geometry\"`"; }},
+      {"contact.0.pairing", [](const case_file::Config& c, const Row&)
+       { return c.contacts[0].direction.empty() ? "`\"normal\"`" : "given"; }},
+      {"contact.0.reach", [](const case_file::Config& c, const Row&)
+       { return std::isinf(c.contacts[0].reach) ? "no limit" : "given"; }},
       {"nitsche.gamma0",
        [](const case_file::Config&, const Row&) {
          return fmt::format("{}; {} for degree 4", contact::default_gamma0(3), contact::default_gamma0(4));

@@ -226,6 +226,52 @@ TEST(Config, ReadsABox)
   EXPECT_THAT(box.cells, ElementsAre(2, 3, 4));
 }
 
+TEST(Config, ReadsBoxes)
+{
+  const case_file::Config config = case_file::parse_config(
+      "mesh.boxes.low = {lower = [0, 0], upper = [2, 1], cells = [3, 1]}\n"
+      "mesh.boxes.\"top one\" = {lower = [0, 1], upper = [1, 2], cells = [1, 2]}\nmaterial = {E = 1, nu = "
+      "0}\n");
+  const auto& boxes = std::get<mesh::Boxes>(config.mesh);
+  ASSERT_EQ(boxes.size(), 2U);
+  EXPECT_EQ(boxes[1].name, "top one");
+  EXPECT_THAT(boxes[1].box.cells, ElementsAre(1, 2));
+}
+
+TEST(Config, ReadsContactsBetweenBodies)
+{
+  const case_file::Config config = case_file::parse_config(
+      "mesh.file = 'a.msh'\nmaterial = {E = 1, nu = 0}\n"
+      "[[contact]]\nslave = 'a'\nmaster = ['b', 'c']\nfriction = 'coulomb'\ncoefficient = 0.3\ngap = "
+      "'-0.1*x'\n"
+      "pairing = [0, -1]\nreach = 0.5\n"
+      "[[contact]]\njoint = 'j'\nfriction = 'tied'\n[[contact]]\nslave = 'd'\nmaster = 'e'\n");
+  ASSERT_EQ(config.contacts.size(), 3U);
+  const case_file::ContactConfig& first = config.contacts[0];
+  EXPECT_THAT(first.slave, ElementsAre("a"));
+  EXPECT_THAT(first.master, ElementsAre("b", "c"));
+  EXPECT_EQ(std::get<problem::Coulomb>(first.contact.law).coefficient, 0.3);
+  EXPECT_EQ((*first.contact.gap)(Point<2>(2, 0)), -0.2);
+  EXPECT_THAT(first.direction, ElementsAre(0, -1));
+  EXPECT_EQ(first.reach, 0.5);
+  EXPECT_THAT(config.contacts[1].slave, ElementsAre("j"));
+  EXPECT_THAT(config.contacts[1].master, ElementsAre("j.other"));
+  EXPECT_TRUE(cone(config.contacts[1].contact.law).is_tied);
+  EXPECT_FALSE(config.contacts[2].contact.gap) << "that of the meshes";
+  EXPECT_TRUE(config.contacts[2].direction.empty());
+  EXPECT_EQ(config.contacts[2].reach, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(case_file::friction_name(config), "none+coulomb+tied");
+
+  const mesh::Seams seams =
+      case_file::find_seams(config)(std::vector<std::string>{"a", "b", "c", "d", "e", "j"});
+  EXPECT_THAT(seams.joints, ElementsAre("j"));
+  ASSERT_EQ(seams.interfaces.size(), 2U);
+  EXPECT_THAT(seams.interfaces[0].sides[1], ElementsAre("b", "c"));
+  const case_file::Config again = case_file::parse_config(config.effective.text, "out/case/case.toml");
+  EXPECT_EQ(again.contacts.size(), 3U);
+  EXPECT_EQ(again.effective.text, config.effective.text);
+}
+
 TEST(Config, ReadsMaterialsOfRegions)
 {
   const case_file::Config config = case_file::parse_config(small_case);

@@ -70,6 +70,19 @@ TEST(Override, TakesABareWordAsAString)
   EXPECT_EQ(with({"boundary.right.pressure=10*max(0, 9-y)"}).boundaries[2].pressure.value()(somewhere), 60.0);
 }
 
+TEST(Override, ReachesIntoArrays)
+{
+  EXPECT_EQ(with({"boundary.top.traction.1=-0.5"}).boundaries[1].traction[1].constant(), -0.5);
+  constexpr auto pairs =
+      "mesh.file = 'a.msh'\nmaterial = {E = 1, nu = 0.3}\n[[contact]]\nslave = 'a'\nmaster = 'b'\n"
+      "[[contact]]\nslave = 'c'\nmaster = 'd'\nfriction = 'coulomb'\ncoefficient = 0.1\n";
+  const std::vector<std::string> overrides = {"contact.1.coefficient=0.4",
+                                              "contact.0={slave='e', master='f'}"};
+  const case_file::Config config = case_file::parse_config(pairs, "case", overrides);
+  EXPECT_EQ(config.contacts[0].slave.front(), "e");
+  EXPECT_EQ(std::get<problem::Coulomb>(config.contacts[1].contact.law).coefficient, 0.4);
+}
+
 TEST(Override, TakesQuotedNames)
 {
   EXPECT_EQ(with({"boundary.\"a.b = c\".pressure=1"}).boundaries[2].name, "a.b = c");
@@ -114,8 +127,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"adapt.tolerence=1", "adapt.tolerence: unknown key", "did you mean \"tolerance\"?"},
         BadOverride{"boundary.top.traction=[1]", "boundary.top.traction: must be an array of 2 or 3", ""},
         BadOverride{"boundary.top.traction=[1, true]", "boundary.top.traction[1]: must be a number", ""},
-        BadOverride{"boundary.bottom.contact={gap=-1}", "boundary.bottom.contact.gap: must not be negative",
-                    ""},
+        BadOverride{"boundary.bottom.contact={friction=\"tresca\", threshold=-1}",
+                    "boundary.bottom.contact.threshold: must not be negative", ""},
+        BadOverride{"boundary.top.traction.2=1",
+                    "boundary.top.traction.2: boundary.top.traction is an array of 2",
+                    "boundary.top.traction.0 is the first one"},
+        BadOverride{"boundary.top.traction.x=1",
+                    "boundary.top.traction.x: boundary.top.traction is an array of 2", ""},
         BadOverride{"boundary.top.traction=[1, 2", "not valid TOML", "quotes"},
         BadOverride{"degree", "there is no \"=\"", "--set key=value"},
         BadOverride{"degree=", "there is no value", "\"\""},

@@ -22,13 +22,12 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// (0.5, 1.5) x (1.2, 2.2) above (0, 2) x (0, 1), in 3D 1 deep.
+/// (0.4, 1.6) x (1, 2) on (0, 2) x (0, 1), in 3D 1 deep.
 template <int dim>
 mesh::MeshData<dim> two_blocks()
 {
-  const auto up = components<dim>(1.5, 2.2, 1.0);
-  const auto low = components<dim>(0.5, 1.2, 0.0);
-  const auto below = block<dim>({3, 1}, {2, 1, 1});
+  const auto low = components<dim>(0.4, 1.0, 0.0);
+  const auto up = components<dim>(1.6, 2.0, 1.0);
   const auto cells = []
   {
     if constexpr (dim == 2)
@@ -36,13 +35,16 @@ mesh::MeshData<dim> two_blocks()
     else
       return std::array{1, 1, 1};
   }();
-  return side_by_side(below, box<dim>(Point<dim>(low.data()), Point<dim>(up.data()), cells), "_up");
+  mesh::MeshData<dim> data = side_by_side(
+      block<dim>({3, 1}, {2, 1, 1}), box<dim>(Point<dim>(low.data()), Point<dim>(up.data()), cells), "_up");
+  data.interfaces = {{{{{"bottom_up"}, {"top"}}}}};
+  return data;
 }
 
 /// A third block of the size of the upper one above it.
 mesh::MeshData<2> three_blocks()
 {
-  return side_by_side(two_blocks<2>(), box<2>({0.5, 2.4}, {1.5, 3.4}, {1, 2}), "_top");
+  return side_by_side(two_blocks<2>(), box<2>({0.4, 2.2}, {1.6, 3.2}, {1, 2}), "_top");
 }
 
 template <int dim>
@@ -65,8 +67,8 @@ TEST(RigidMotionOfAssemblies, ClosedContactHoldsWithFriction)
   };
   EXPECT_THAT(on_clamped(Frictionless()),
               AllOf(HasSubstr("nothing stops the body around (1, 0.5) (region \"box\"), the body around (1, "
-                              "1.7) (region \"box_up\") in contact from: translation along x of the body "
-                              "around (1, 1.7) (region \"box_up\")\n"),
+                              "1.5) (region \"box_up\") in contact from: translation along x of the body "
+                              "around (1, 1.5) (region \"box_up\")\n"),
                     HasSubstr("or give its contact friction")));
   EXPECT_EQ(on_clamped(Coulomb(0)), on_clamped(Frictionless()));
   EXPECT_EQ(on_clamped(Coulomb(0.1)), "held");
@@ -78,18 +80,18 @@ TEST(RigidMotionOfAssemblies, BodiesThatNothingHoldsMoveTogether)
 {
   const auto alone = [](const problem::ContactLaw& law)
   { return verdict<2>(two_blocks<2>(), {.pairs = {interface<2>(law)}}); };
-  const std::string together = "from: translation along x; translation along y; rotation about (1, 0.9571)";
+  const std::string together = "from: translation along x; translation along y; rotation about (1, 0.9286)";
   EXPECT_THAT(alone(Tied()), AllOf(HasSubstr(together + "\n"), Not(HasSubstr("friction"))));
   EXPECT_THAT(
       alone(Frictionless()),
-      HasSubstr(together + "; translation along x of the body around (1, 1.7) (region \"box_up\")\n"));
+      HasSubstr(together + "; translation along x of the body around (1, 1.5) (region \"box_up\")\n"));
 }
 
 TEST(RigidMotionOfAssemblies, ABodyInNoPairStandsAlone)
 {
   EXPECT_THAT(
       verdict<2>(three_blocks(), {.boundaries = {clamped<2>("bottom")}, .pairs = {interface<2>(Tied())}}),
-      HasSubstr("nothing stops the body around (1, 2.9) (region \"box_top\") from: translation"));
+      HasSubstr("nothing stops the body around (1, 2.7) (region \"box_top\") from: translation"));
 }
 
 /// Number of motions that closed and sticking contact leaves, and of zero singular values of the matrix of
@@ -174,7 +176,7 @@ TEST(RigidMotionOfAssemblies, ContactPassesPressureOnButNoTension)
   EXPECT_EQ(loaded_by(0.199, -1, Coulomb(0.2)), "held");
   EXPECT_THAT(loaded_by(0.201, -1, Coulomb(0.2)),
               AllOf(HasSubstr("contact cannot hold the body around (1, 0.5)"), HasSubstr("drive it into "),
-                    HasSubstr("translation along x of the body around (1, 1.7) (region \"box_up\"); friction "
+                    HasSubstr("translation along x of the body around (1, 1.5) (region \"box_up\"); friction "
                               "is too weak")));
   EXPECT_THAT(loaded_by(0, 1, Coulomb(0.2)), HasSubstr("contact only pushes"));
   EXPECT_THAT(loaded_by(0, 1, Tied()), HasSubstr("translation along y; contact only pushes"));
@@ -192,11 +194,22 @@ TEST(RigidMotionOfAssemblies, MomentsActThroughTheWholeStack)
                       {.boundaries = {loaded<2>("top_up", x, -1), obstacle<2>("bottom", Coulomb(5))},
                        .pairs = {interface<2>(law)}});
   };
-  // resultant (x, -1) at (1, 2.2): about the right end (2, 0) of the floor, about (1.5, 1.2) of the interface
-  EXPECT_EQ(pushed(0.999 / 2.2, Tied()), "held");
-  EXPECT_THAT(pushed(1.001 / 2.2, Tied()), HasSubstr("drive it into rotation about (2, 0); contact only"));
-  EXPECT_EQ(pushed(0.999 / 2.2, Coulomb(5)), "held");
-  EXPECT_THAT(pushed(1.001 / 2.2, Coulomb(5)), HasSubstr("contact only pushes"));
+  // resultant (x, -1) at (1, 2): about the right end (2, 0) of the floor; about (1.6, 1) from 0.6 on
+  EXPECT_EQ(pushed(0.4995, Tied()), "held");
+  EXPECT_THAT(pushed(0.5005, Tied()), HasSubstr("drive it into rotation about (2, 0); contact only"));
+  EXPECT_EQ(pushed(0.4995, Coulomb(5)), "held");
+  EXPECT_THAT(pushed(0.5005, Coulomb(5)), HasSubstr("contact only pushes"));
+}
+
+/// A tie across a distance keeps the points opposite: bodies turn about centres that lie as far apart.
+TEST(RigidMotionOfAssemblies, ATieAcrossADistanceIsNoBond)
+{
+  const std::string said = verdict<2>(three_blocks(), {.boundaries = {clamped<2>("bottom")},
+                                                       .pairs = {pair<2>("bottom_top", "top_up", Tied())}});
+  EXPECT_THAT(
+      said,
+      HasSubstr("rotation about (1, 2.1) of the body around (1, 1.5) (region \"box_up\") with rotation about "
+                "(1, 2.3) of the body around (1, 2.7) (region \"box_top\")"));
 }
 
 TEST(RigidMotionOfAssemblies, In3D)
@@ -206,9 +219,9 @@ TEST(RigidMotionOfAssemblies, In3D)
     return verdict<3>(two_blocks<3>(), {.boundaries = {loaded<3>("top_up", x, -1, 0), clamped<3>("bottom")},
                                         .pairs = {interface<3>(law)}});
   };
-  EXPECT_EQ(pushed(0.499, Coulomb(1)), "held");
-  EXPECT_THAT(pushed(0.501, Coulomb(1)),
-              HasSubstr("drive it into rotation about the axis through (1.5, 1.2, 0.5) along (0, 0, -1)"));
+  EXPECT_EQ(pushed(0.599, Coulomb(1)), "held");
+  EXPECT_THAT(pushed(0.601, Coulomb(1)),
+              HasSubstr("drive it into rotation about the axis through (1.6, 1, 0.5) along (0, 0, -1)"));
   EXPECT_THAT(pushed(0.12, Coulomb(0.1)), HasSubstr("friction is too weak"));
   EXPECT_THAT(pushed(0.12, Frictionless()), HasSubstr("nothing stops"));
   EXPECT_EQ(pushed(3, Tied()), "held");

@@ -252,7 +252,7 @@ TEST(ContactCsv, InThreeDimensions)
   const std::string csv = io::contact_csv(box.form, u, 0);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
-            "slip_y,slip_z,weight,level");
+            "slip_y,slip_z,weight,level,pair");
   const Table table(csv);
   ASSERT_EQ(table.size(), box.form.n_contact_points());
   for (std::size_t row = 0; row < table.size(); ++row)

@@ -202,7 +202,7 @@ TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
 {
   const Directory directory;
   const mesh::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
-  expect_input_error([&] { (void)mesh::read_gmsh(source, nullptr, 0.3); },
+  expect_input_error([&] { (void)mesh::read_gmsh(source, {}, nullptr, 0.3); },
                      {"loop.geo: Gmsh shows no progress for 0.3 s and was ended", "gmsh -2"});
 }
 
@@ -211,7 +211,7 @@ TEST(Gmsh, CanBeInterrupted)
   const Directory directory;
   const mesh::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
   const std::atomic<bool> stop = true;
-  EXPECT_THROW((void)mesh::read_gmsh(source, &stop), SolveError);
+  EXPECT_THROW((void)mesh::read_gmsh(source, {}, &stop), SolveError);
 }
 
 TEST(Gmsh, ADirectoryIsNotAFile)

@@ -121,7 +121,8 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     const problem::BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
-    if (facet.tag < 0 || (!condition.contact && !condition.fixes_any())) continue;
+    const bool in_contact = form.problem().is_in_contact(facet.tag);
+    if (facet.tag < 0 || (!in_contact && !condition.fixes_any())) continue;
     std::ranges::copy(stress.dis_in(facet.cell), block.begin());
     for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
       for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
@@ -131,7 +132,7 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
     {
       Point<dim> t = Point<dim>::Zero();
       for (int r = 0; r < dim; ++r)
-        for (int c = 0; c < dim && (condition.contact || condition.fixes(r)); ++c)
+        for (int c = 0; c < dim && (in_contact || condition.fixes(r)); ++c)
           t[r] += sigma[(dim * r + c) * n + facet.local * rule.size() + q] * normal[c];
       result[facet.tag].add(x - about, dx * t);
     }
@@ -217,18 +218,18 @@ Balance balance(const contact::NitscheForm<dim>& form, const Stress<dim>& stress
       [&](BalanceKind kind, const auto& applies, const auto& source, const auto& resultants, bool has_moment)
   {
     for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
-      if (applies(boundaries[tag]))
+      if (applies(boundaries[tag], static_cast<int>(tag)))
         result.rows.push_back(
             row(kind, boundaries[tag].name, source(boundaries[tag]), resultants[tag], has_moment));
   };
   add(
-      BalanceKind::load, [](const auto& b) { return b.is_loaded(); }, load_source<dim>, loads.boundaries,
+      BalanceKind::load, [](const auto& b, int) { return b.is_loaded(); }, load_source<dim>, loads.boundaries,
       true);
   add(
-      BalanceKind::reaction, [](const auto& b) { return b.fixes_any(); },
+      BalanceKind::reaction, [](const auto& b, int) { return b.fixes_any(); },
       [](const auto&) { return "displacement"; }, tractions, stress.degree > 1);
   add(
-      BalanceKind::contact, [](const auto& b) { return b.contact.has_value(); },
+      BalanceKind::contact, [&](const auto&, int tag) { return problem.is_in_contact(tag); },
       [](const auto&) { return "contact"; }, tractions, true);
   add_sum(result.rows, dim, Resultant<dim>::n_moments);
   return result;

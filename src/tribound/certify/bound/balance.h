@@ -18,7 +18,7 @@ enum class BalanceKind
 {
   load,      ///< integral of f over a region, or of g_N over a boundary
   reaction,  ///< integral of sigma_h n over a boundary, in the components that are fixed there
-  contact,   ///< integral of sigma_h n over a boundary in contact: that of t^k
+  contact,   ///< integral of sigma_h n over a boundary in contact, slave or master: that of t^k
   sum        ///< of all rows
 };
 

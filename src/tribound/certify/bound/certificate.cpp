@@ -75,9 +75,13 @@ template <int dim>
 std::string describe_law(const problem::Problem<dim>& problem)
 {
   if (!problem.has_contact()) return "linear elasticity: the solution exists and is unique";
-  const bool minimum =
-      std::ranges::all_of(problem.boundaries(), [](const auto& boundary)
-                          { return !boundary.contact || is_minimum(boundary.contact->law); });
+  std::vector<problem::ContactLaw> laws;
+  for (const auto& boundary : problem.boundaries())
+    if (boundary.contact) laws.push_back(boundary.contact->law);
+  for (const auto& pair : problem.pairs()) laws.push_back(pair.contact.law);
+  if (std::ranges::all_of(laws, [](const auto& law) { return cone(law).is_tied; }))
+    return "linear elasticity of bodies tied to each other: the solution exists and is unique";
+  const bool minimum = std::ranges::all_of(laws, problem::is_minimum);
   if (!minimum)
     return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "
            "residual is bounded in any case";
@@ -97,6 +101,20 @@ std::string describe_data(const contact::DataEffort& effort, int degree)
                      "; other formulas are enclosed by intervals on {} cells and boundary facets{}, and "
                      "what their integrals may miss is in osc, neu, cnt, frc and quad",
                      effort.formulas, cut);
+}
+
+/// What the model of contact between bodies leaves out.
+template <int dim>
+std::vector<std::string> outside_of_pairs(const problem::Problem<dim>& problem)
+{
+  if (problem.pairs().empty()) return {};
+  std::vector<std::string> outside = {
+      "pairing and gap are those of the undeformed configuration; sliding must be small against the facets "
+      "and the radius of curvature",
+      "the facets of both sides are flat; between them the geometric gap is part of the data"};
+  if (std::ranges::any_of(problem.pairs(), [](const auto& pair) { return cone(pair.contact.law).is_tied; }))
+    outside.emplace_back("tied interfaces are not opened: tension is transmitted");
+  return outside;
 }
 
 /// How the integrals in the bound are evaluated.
@@ -214,9 +232,17 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       "the dual norm of the residual of the computed displacement: the largest <R(u_h), v> over all v in "
       "H^1, "
       "zero where displacements are prescribed, with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
-      "facets F; no unknown constant",
+      "facets F" +
+          std::string(form.problem().pairs().empty()
+                          ? "; no unknown constant"
+                          : ", between bodies with the jump of v over the segments on which a facet of one "
+                            "lies opposite a facet of the other; no unknown constant"),
       "the errors of discretisation, of the data, of the contact and friction conditions, and of stopping "
       "Newton's method"};
+  if (!form.problem().pairs().empty())
+    result.covered.emplace_back(
+        "what contact tractions lose between meshes that do not match (mor); forces on slave and master are "
+        "equal and opposite");
   result.law = describe_law(form.problem());
   result.constants = {{"poincare", poincare_constant(1)},
                       {"trace_squared", trace_constant_squared<dim>()},
@@ -240,6 +266,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       {"geometry", "facets are straight"},
       {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
 
+  for (const std::string& outside : outside_of_pairs(form.problem())) result.not_covered.push_back(outside);
   if (rule == ContactRule::reference && form.problem().has_contact())
     result.not_covered.emplace_back(
         "contact and friction conditions on facets where the contact law has a kink: there the plain rule is "

@@ -25,6 +25,16 @@ double BoundComponents::total_sharp() const
   return std::hypot(body(), contact());
 }
 
+std::vector<Component> components_of_run(const RunKind& kind)
+{
+  std::vector<Component> components(plain_components.begin(), plain_components.end());
+  const auto add = [&](std::span<const Component> others)
+  { components.insert(components.end(), others.begin(), others.end()); };
+  if (kind.regularised) add(regularisation_components);
+  if (kind.paired) add(transfer_components);
+  return components;
+}
+
 const char* to_string(BoundPart part)
 {
   switch (part)

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace tribound::certify
 {
@@ -114,11 +115,17 @@ inline constexpr std::span plain_components = std::span(all_components).first<9>
 /// Those that a regularised run has beside them.
 inline constexpr std::span regularisation_components = std::span(all_components).subspan<9, 3>();
 
-/// Those that a run has.
-[[nodiscard]] constexpr std::span<const Component> components_of_run(bool regularised)
+/// Those that a run with pairs of bodies has behind all others.
+inline constexpr std::span transfer_components = std::span(all_components).subspan<12, 2>();
+
+/// What a run is beside the plain method and contact with obstacles.
+struct RunKind
 {
-  return std::span(all_components)
-      .first(plain_components.size() + (regularised ? regularisation_components.size() : 0));
-}
+  bool regularised = false;  ///< method section 7
+  bool paired = false;       ///< bodies touch each other
+};
+
+/// The components that it has.
+[[nodiscard]] std::vector<Component> components_of_run(const RunKind& kind);
 
 }  // namespace tribound::certify

@@ -262,7 +262,7 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                });
 }
 
-/// Throws where gap or strength is negative at a point of a rule.
+/// Throws where the strength is negative at a point of a rule.
 template <int dim>
 void DiscreteData<dim>::check_signs(const ContactSegment<dim>& segment,
                                     const DatumOnSimplex<dim - 1, dim>& found) const
@@ -271,9 +271,8 @@ void DiscreteData<dim>::check_signs(const ContactSegment<dim>& segment,
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
     {
-      if (part.values[q].minCoeff() >= 0) continue;
+      if (part.values[q][1] >= 0) continue;
       const Point<dim> x = map(fem::point_in<dim - 1>(part.part, facet_rule().points[q]));
-      if (segment.contact->gap) (void)problem::gap_at<dim>(*segment.contact, x);
       (void)problem::strength_at<dim>(segment.contact->law, x);
     }
 }
@@ -316,10 +315,10 @@ void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t 
   {
     const Point<dim - 1>& s = facet_rule().points[q];
     const Point<dim> x = map(s);
-    const bool is_polynomial = !values.empty();  // in place of a jump, where it overshoots
-    gap[q] = is_polynomial && segment.contact->gap ? std::max(values[q][0], 0.0) : segment.gap(s, x);
-    strength[q] =
-        is_polynomial ? std::max(values[q][1], 0.0) : problem::strength_at<dim>(segment.contact->law, x);
+    const bool is_polynomial = !values.empty();
+    gap[q] = is_polynomial && segment.contact->gap ? values[q][0] : segment.gap(s, x);
+    strength[q] = is_polynomial ? std::max(values[q][1], 0.0)  // in place of a jump it overshoots
+                                : problem::strength_at<dim>(segment.contact->law, x);
   }
 }
 

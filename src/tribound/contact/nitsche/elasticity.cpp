@@ -145,6 +145,31 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
 }
 
 template <int dim>
+std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                  std::span<const double> u)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
+  const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
+  std::vector<double> energies(mesh.n_owned_cells(), 0.0);
+  parallel_for(energies.size(),
+               [&](std::size_t c)
+               {
+                 const auto cell = static_cast<Index>(c);
+                 const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
+                 for (int q = 0; q < rule.size(); ++q)
+                 {
+                   const Tensor<dim> gradient = fem::gradient_at<dim>(
+                       space.cell_nodes(cell), u, table.gradients_at(q), map.inverse_transpose);
+                   energies[c] +=
+                       rule.weights[q] * map.det *
+                       sigma<dim>(problem.material(mesh.region(cell)), gradient).cwiseProduct(gradient).sum();
+                 }
+               });
+  return energies;
+}
+
+template <int dim>
 std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
@@ -187,6 +212,10 @@ template StressNorms stress_norms(const problem::Problem<2>&, const fem::Lagrang
                                   std::span<const double>);
 template StressNorms stress_norms(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                   std::span<const double>);
+template std::vector<double> cell_energies(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                           std::span<const double>);
+template std::vector<double> cell_energies(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                           std::span<const double>);
 template std::vector<double> assemble_load(const DiscreteData<2>&, const fem::LagrangeSpace<2>&);
 template std::vector<double> assemble_load(const DiscreteData<3>&, const fem::LagrangeSpace<3>&);
 

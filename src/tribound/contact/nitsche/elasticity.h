@@ -57,6 +57,12 @@ template <int dim>
 [[nodiscard]] StressNorms stress_norms(const problem::Problem<dim>& problem,
                                        const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
+/// (sigma(u), grad u)_T of every own cell, not halved.
+template <int dim>
+[[nodiscard]] std::vector<double> cell_energies(const problem::Problem<dim>& problem,
+                                                const fem::LagrangeSpace<dim>& space,
+                                                std::span<const double> u);
+
 /// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included; not for all of
 /// ghosts. The data are those for the degree of the space.
 template <int dim>

@@ -60,7 +60,7 @@ struct ContactSegment
   /// g at the point with coordinates s on the segment, which is x.
   [[nodiscard]] double gap(const Point<dim - 1>& s, const Point<dim>& x) const
   {
-    if (contact->gap) return problem::gap_at<dim>(*contact, x);
+    if (contact->gap) return (*contact->gap)(x);
     double sum = distance[0];
     for (int i = 1; i < dim; ++i) sum += s[i - 1] * (distance[i] - distance[0]);
     return sum;

@@ -13,34 +13,6 @@ namespace tribound::contact
 namespace
 {
 
-/// The number of its body for each cell, by flooding across facets.
-template <int dim>
-std::vector<int> label_cells(const mesh::Topology<dim>& topology)
-{
-  std::vector<int> label(topology.cell_facets.size(), -1);
-  int n_bodies = 0;
-  for (std::size_t seed = 0; seed < label.size(); ++seed)
-  {
-    if (label[seed] >= 0) continue;
-    std::vector<Index> front{static_cast<Index>(seed)};
-    label[seed] = n_bodies;
-    while (!front.empty())
-    {
-      const Index cell = front.back();
-      front.pop_back();
-      for (const Index facet : topology.cell_facets[cell])
-        for (const Index next : topology.facet_cells[facet])
-        {
-          if (next < 0 || label[next] >= 0) continue;
-          label[next] = n_bodies;
-          front.push_back(next);
-        }
-    }
-    ++n_bodies;
-  }
-  return label;
-}
-
 /// The label of the cell of each vertex or node, of which there are n.
 template <class Numbers>
 std::vector<int> spread(std::span<const int> cell_label, Index n, Numbers numbers_of)
@@ -57,7 +29,7 @@ template <int dim>
 std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
-  const std::vector<int> cell_label = label_cells(mesh.topology());
+  const std::vector<int> cell_label = mesh::connected_parts(mesh.topology());
   if (cell_label.empty()) return {};
   std::vector<Body<dim>> bodies(std::ranges::max(cell_label) + 1);
   const std::vector<int> vertex_label = spread(

@@ -15,16 +15,22 @@ namespace tribound::io
 namespace
 {
 
-using Chain = std::vector<ChainLink>;
+/// A facet of a chain; reversed: against its reference coordinate.
+struct FacetLink
+{
+  std::size_t facet;  ///< number in Mesh::boundary()
+  bool reversed;
+};
+using Chain = std::vector<FacetLink>;
 
 /// The facets of one boundary group in 2D and how they hang together.
 class FacetGraph
 {
  public:
-  FacetGraph(const contact::NitscheForm<2>& form, int tag) : form_(form), visited_(form.segments().size(), 0)
+  FacetGraph(const mesh::Mesh<2>& mesh, int tag) : mesh_(mesh), visited_(mesh.boundary().size(), 0)
   {
-    for (int k = 0; k < static_cast<int>(visited_.size()); ++k)
-      if (form.segments()[k].slave.facet.tag == tag)
+    for (std::size_t k = 0; k < visited_.size(); ++k)
+      if (mesh.boundary()[k].tag == tag)
         for (const Index v : ends(k)) facets_at_[v].push_back(k);
   }
 
@@ -39,7 +45,7 @@ class FacetGraph
     for (const bool closed : {false, true})
       for (const Index v : vertices)
       {
-        const std::vector<int>& facets = facets_at_.at(v);
+        const std::vector<std::size_t>& facets = facets_at_.at(v);
         if (!visited_[facets.front()] && (closed || facets.size() == 1)) chains.push_back(follow(v));
       }
     std::ranges::sort(chains, {}, [this](const Chain& chain) { return position(first_vertex(chain[0])); });
@@ -48,22 +54,22 @@ class FacetGraph
 
  private:
   /// The vertices of a facet along its reference coordinate.
-  [[nodiscard]] std::array<Index, 2> ends(int facet) const
+  [[nodiscard]] std::array<Index, 2> ends(std::size_t facet) const
   {
-    const mesh::BoundaryFacet& f = form_.segments()[facet].slave.facet;
-    const mesh::Cell<2>& cell = form_.space().mesh().cell(f.cell);
+    const mesh::BoundaryFacet& f = mesh_.boundary()[facet];
+    const mesh::Cell<2>& cell = mesh_.cell(f.cell);
     return {cell[f.local == 0 ? 1 : 0], cell[f.local == 2 ? 1 : 2]};
   }
 
   [[nodiscard]] std::pair<double, double> position(Index vertex) const
   {
-    const Point<2>& x = form_.space().mesh().vertex(vertex);
+    const Point<2>& x = mesh_.vertex(vertex);
     return {x[0], x[1]};
   }
 
-  [[nodiscard]] Index first_vertex(const ChainLink& link) const
+  [[nodiscard]] Index first_vertex(const FacetLink& link) const
   {
-    return ends(link.segment)[link.reversed ? 1 : 0];
+    return ends(link.facet)[link.reversed ? 1 : 0];
   }
 
   /// From a vertex on, through facets not visited so far.
@@ -72,30 +78,36 @@ class FacetGraph
     Chain chain;
     for (;;)
     {
-      const std::vector<int>& facets = facets_at_.at(vertex);
-      const auto next = std::ranges::find_if(facets, [this](int k) { return !visited_[k]; });
+      const std::vector<std::size_t>& facets = facets_at_.at(vertex);
+      const auto next = std::ranges::find_if(facets, [this](std::size_t k) { return !visited_[k]; });
       if (next == facets.end()) return chain;
       visited_[*next] = 1;
       const std::array<Index, 2> v = ends(*next);
       const bool reversed = v[0] != vertex;
-      chain.push_back({*next, reversed, 0.0});
+      chain.push_back({*next, reversed});
       vertex = reversed ? v[0] : v[1];
     }
   }
 
-  const contact::NitscheForm<2>& form_;
+  const mesh::Mesh<2>& mesh_;
   std::vector<char> visited_;
-  std::map<Index, std::vector<int>> facets_at_;
+  std::map<Index, std::vector<std::size_t>> facets_at_;
 };
+
+/// Where a segment lies on its slave facet, in reference coordinates.
+std::array<double, 2> extent(const contact::ContactSegment<2>& segment)
+{
+  return {segment.slave.on_facet(Point<1>(0.0))[0], segment.slave.on_facet(Point<1>(1.0))[0]};
+}
 
 template <int dim>
 std::string columns()
 {
   return dim == 2
              ? "boundary,facet,x,y,nx,ny,arc,pressure,traction_x,traction_y,limit,status,gap,slip_x,slip_y,"
-               "weight,level"
+               "weight,level,pair"
              : "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,"
-               "slip_x,slip_y,slip_z,weight,level";
+               "slip_x,slip_y,slip_z,weight,level,pair";
 }
 
 template <int dim>
@@ -133,6 +145,8 @@ struct Rows
     add_point<dim>(table, state.slip);
     table.add(form.contact_points(segment)[q].weight);
     table.add(level);
+    const int pair = form.segments()[segment].pair;
+    table.add(pair < 0 ? std::string() : std::to_string(pair));
     table.end_row();
   }
 
@@ -179,14 +193,26 @@ void add_facets(CsvTable& table, const Rows<3>& rows, int tag)
 
 std::vector<ChainLink> contact_chains(const contact::NitscheForm<2>& form, int tag)
 {
+  const mesh::Mesh<2>& mesh = form.space().mesh();
+  std::map<std::size_t, std::vector<int>> segments_of;
+  for (int k = 0; k < static_cast<int>(form.segments().size()); ++k)
+    if (form.segments()[k].slave.facet.tag == tag) segments_of[form.segments()[k].slave.number].push_back(k);
   std::vector<ChainLink> links;
+  if (segments_of.empty()) return links;
   double arc = 0.0;
-  for (const Chain& chain : FacetGraph(form, tag).chains())
-    for (ChainLink link : chain)
+  for (const Chain& chain : FacetGraph(mesh, tag).chains())
+    for (const FacetLink& facet : chain)
     {
-      link.arc = arc;
-      arc += form.segments()[link.segment].measure;
-      links.push_back(link);
+      const double length = contact::simplex_map(mesh, mesh.boundary()[facet.facet]).measure;
+      const auto first = links.size();
+      for (const int k : segments_of[facet.facet])
+      {
+        const auto [from, to] = extent(form.segments()[k]);
+        const double before = facet.reversed ? 1 - std::max(from, to) : std::min(from, to);
+        links.push_back({k, facet.reversed != (to < from), arc + length * before});
+      }
+      std::ranges::sort(links.begin() + static_cast<std::ptrdiff_t>(first), links.end(), {}, &ChainLink::arc);
+      arc += length;
     }
   return links;
 }

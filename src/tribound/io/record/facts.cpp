@@ -1,6 +1,7 @@
 #include "tribound/io/record/facts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -43,12 +44,34 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   return regions;
 }
 
+/// What a pair does on boundary number `tag`, or nothing.
+template <int dim>
+std::string pair_words(const problem::Problem<dim>& problem, int tag)
+{
+  const auto is_among = [&](const std::vector<std::string>& names)
+  { return std::ranges::find(names, problem.boundaries()[tag].name) != names.end(); };
+  for (const problem::ContactPair<dim>& pair : problem.pairs())
+  {
+    if (is_among(pair.slave))
+      return fmt::format("contact with {}, {}, gap {}", fmt::join(pair.master, ", "),
+                         problem::words(pair.contact.law),
+                         pair.contact.gap ? text(*pair.contact.gap) : "of the meshes");
+    if (is_among(pair.master))
+      return fmt::format("contact with {}, whose master it is", fmt::join(pair.slave, ", "));
+  }
+  return {};
+}
+
 template <int dim>
 std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   std::vector<BoundaryFacts> boundaries;
-  for (const problem::BoundaryCondition<dim>& condition : problem.boundaries())
-    boundaries.push_back({condition.name, 0, 0.0, describe(condition)});
+  for (int tag = 0; tag < static_cast<int>(problem.boundaries().size()); ++tag)
+  {
+    const problem::BoundaryCondition<dim>& condition = problem.boundaries()[tag];
+    const std::string paired = pair_words(problem, tag);
+    boundaries.push_back({condition.name, 0, 0.0, paired.empty() ? describe(condition) : paired});
+  }
   boundaries.push_back({"(no group)", 0, 0.0, describe(problem.boundary(-1))});
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {

@@ -1,5 +1,7 @@
 #include "tribound/io/record/level_record.h"
 
+#include <algorithm>
+
 namespace tribound::io
 {
 
@@ -22,6 +24,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   record.newton = level.steps;
   record.finishing_steps = level.finishing_steps;
   record.delta_updates = level.delta_updates;
+  record.paired = !form.problem().pairs().empty();
   record.figures = solution_figures(form, level, slides);
   if (level.solved() && !certify::is_round_off(level.estimate, level.norms))
     record.identities = level.identities;  // relative to rounding they say nothing
@@ -51,6 +54,17 @@ int newton_steps(const LevelRecord& level)
 bool is_regularised(const LevelRecord& level)
 {
   return level.delta_updates.has_value();
+}
+
+certify::RunKind run_kind(const LevelRecord& level)
+{
+  return {.regularised = is_regularised(level), .paired = level.paired};
+}
+
+certify::RunKind run_kind(std::span<const LevelRecord> levels)
+{
+  return {.regularised = std::ranges::any_of(levels, is_regularised),
+          .paired = std::ranges::any_of(levels, &LevelRecord::paired)};
 }
 
 std::optional<double> last_delta(const LevelRecord& level)

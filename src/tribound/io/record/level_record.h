@@ -56,6 +56,7 @@ struct LevelRecord
   std::vector<adapt::CertifiedStep> newton;
   int finishing_steps = 0;           ///< the last of them, with which Newton's method has converged fully
   std::optional<int> delta_updates;  ///< of the regularised variant; absent in the plain method
+  bool paired = false;               ///< whether bodies touch each other
   SolutionFigures figures;
   std::optional<certify::Bound> bound;
   std::optional<certify::IdentityDefects> identities;
@@ -72,6 +73,10 @@ template <int dim>
 
 /// Whether it is one of the regularised variant, method section 7.
 [[nodiscard]] bool is_regularised(const LevelRecord& level);
+
+/// Of which kind the run is, by one level or by all.
+[[nodiscard]] certify::RunKind run_kind(const LevelRecord& level);
+[[nodiscard]] certify::RunKind run_kind(std::span<const LevelRecord> levels);
 
 /// Newton steps until the stopping criterion held, without those that finish the last level.
 [[nodiscard]] int newton_steps(const LevelRecord& level);

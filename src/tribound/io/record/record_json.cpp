@@ -16,11 +16,11 @@ std::optional<double> member(const std::optional<certify::Bound>& bound, double 
   return bound ? std::optional((*bound).*value) : std::nullopt;
 }
 
-Json json(const std::optional<certify::Bound>& bound, bool regularised)
+Json json(const std::optional<certify::Bound>& bound, const certify::RunKind& kind)
 {
   if (!bound) return nullptr;
   Json object;
-  for (const certify::Component& c : certify::components_of_run(regularised))
+  for (const certify::Component& c : certify::components_of_run(kind))
     object[c.name] = bound->global.*c.value;
   return object;
 }
@@ -52,6 +52,18 @@ Json json(const std::optional<Sliding>& sliding)
           {"safety_factor", number_or_null(sliding->safety_factor)}};
 }
 
+Json json(const PairFigures& pair)
+{
+  return {{"master", pair.master},
+          {"law", pair.law},
+          {"segments", pair.segments},
+          {"covered", pair.covered},
+          {"covered_share", pair.covered_share},
+          {"covered_master", pair.covered_master},
+          {"gap", {{"smallest", pair.smallest_gap}, {"largest", pair.largest_gap}}},
+          {"largest_tension", pair.largest_tension}};
+}
+
 Json json(const adapt::CertifiedStep& record, bool regularised)
 {
   Json object{{"step", record.step.step},
@@ -76,7 +88,7 @@ void add_results(Json& object, const LevelRecord& level)
   object["bound"] = number_or_null(member(level.bound, &certify::Bound::total_sharp));
   object["bound_plain"] = number_or_null(member(level.bound, &certify::Bound::total));
   object["relative"] = number_or_null(relative_bound(level));
-  object["components"] = json(level.bound, is_regularised(level));
+  object["components"] = json(level.bound, run_kind(level));
   if (is_regularised(level))
     object["regularisation"] = {{"delta", number_or_null(last_delta(level))},
                                 {"updates", *level.delta_updates}};
@@ -84,13 +96,21 @@ void add_results(Json& object, const LevelRecord& level)
   object["energy"] = level.figures.energy;
   object["sigma_norm"] = level.figures.sigma_norm;
   object["max_displacement"] = level.figures.max_displacement;
+  if (!level.figures.bodies.empty()) object["bodies"] = Json::array();
+  for (const BodyFigures& body : level.figures.bodies)
+    object["bodies"].push_back({{"name", body.name},
+                                {"cells", body.cells},
+                                {"energy", body.energy},
+                                {"bound", level.bound ? Json(body.bound) : Json(nullptr)}});
   object["contact"] = nullptr;
   if (level.figures.boundary_contact.empty()) return;
   Json contact = json(level.figures.contact);
   for (const Resultants& part : level.figures.boundary_contact)
   {
-    contact["boundaries"][part.boundary] = json(part);
-    contact["boundaries"][part.boundary]["sliding"] = json(sliding(part));
+    Json& boundary = contact["boundaries"][part.boundary];
+    boundary = json(part);
+    boundary["sliding"] = json(sliding(part));
+    if (part.pair) boundary.update(json(*part.pair));
   }
   object["contact"] = contact;
 }

@@ -4,6 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::io
 {
@@ -29,6 +35,73 @@ Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Poi
   result.tangential = known(r.tangential);
   result.abs_tangential = known(r.abs_tangential);
   return result;
+}
+
+template <int dim>
+PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const double> u, int tag,
+                         const problem::ContactPair<dim>& pair)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  PairFigures figures{.master = pair.master,
+                      .law = problem::words(pair.contact.law),
+                      .smallest_gap = std::numeric_limits<double>::infinity(),
+                      .largest_gap = -std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    if (segment.slave.facet.tag != tag) continue;
+    ++figures.segments;
+    figures.covered += segment.measure;
+    figures.covered_master += contact::simplex_map(mesh, *segment.master).measure;
+    for (const contact::ContactState<dim>& state : form.contact_states(u, k))
+    {
+      figures.smallest_gap = std::min(figures.smallest_gap, state.gap);
+      figures.largest_gap = std::max(figures.largest_gap, state.gap);
+      figures.largest_tension = std::max(figures.largest_tension, -state.pressure);
+    }
+  }
+  double all = 0;
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+    if (facet.tag == tag) all += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+  figures.covered_share = figures.covered / all;
+  return figures;
+}
+
+/// Parts of the mesh of one name get a number each.
+void number_alike(std::vector<BodyFigures>& bodies)
+{
+  std::map<std::string, std::vector<BodyFigures*>> of_name;
+  for (BodyFigures& body : bodies) of_name[body.name].push_back(&body);
+  for (const auto& [name, alike] : of_name)
+    for (std::size_t i = 0; alike.size() > 1 && i < alike.size(); ++i)
+      alike[i]->name += fmt::format(" {}", i + 1);
+}
+
+template <int dim>
+std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
+                                      const adapt::CertifiedLevel<dim>& level)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const std::vector<int> body_of = mesh::connected_parts(mesh.topology());
+  const std::vector<double> energies = contact::cell_energies<dim>(form.problem(), form.space(), level.u);
+  std::vector<BodyFigures> bodies(std::ranges::max(body_of) + 1);
+  std::vector<std::set<int>> regions(bodies.size());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    BodyFigures& body = bodies[body_of[c]];
+    ++body.cells;
+    body.energy += energies[c];
+    regions[body_of[c]].insert(mesh.region(c));
+    if (!level.estimate.cells.empty()) body.bound += std::pow(level.estimate.cells[c].total_sharp(), 2);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+  {
+    bodies[b].bound = std::sqrt(bodies[b].bound);
+    for (const int region : regions[b])
+      bodies[b].name += (bodies[b].name.empty() ? "" : "+") + mesh.region_names()[region];
+  }
+  number_alike(bodies);
+  return bodies;
 }
 
 }  // namespace
@@ -76,15 +149,19 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
   {
-    if (!boundaries[tag].contact) continue;
+    const problem::Contact* contact = form.problem().contact(tag);
+    if (contact == nullptr) continue;
     Resultants part = resultants<dim>(form, t, level.traction, tag);
     part.boundary = boundaries[tag].name;
-    const problem::FrictionCone friction = cone(boundaries[tag].contact->law);
+    if (const problem::ContactPair<dim>* pair = form.problem().pair_of_slave(tag))
+      part.pair = pair_figures(form, level.u, tag, *pair);
+    const problem::FrictionCone friction = cone(contact->law);
     const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
     if (coefficient_alone && slides[tag] && adapt::bound_holds(level, form.space().degree()))
       part.coefficient = friction.coefficient;
     figures.boundary_contact.push_back(std::move(part));
   }
+  if (!form.problem().pairs().empty()) figures.bodies = body_figures(form, level);
   return figures;
 }
 

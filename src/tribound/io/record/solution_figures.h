@@ -13,6 +13,29 @@
 namespace tribound::io
 {
 
+/// What else there is to know of a slave boundary and what it touches.
+struct PairFigures
+{
+  std::vector<std::string> master;  ///< names of its boundaries
+  std::string law;                  ///< in words
+  long segments = 0;
+  double covered = 0;  ///< length or area of the slave with a part of the master opposite
+  double covered_share = 0;
+  double covered_master = 0;  ///< what of the master these parts take up
+  double smallest_gap = 0;    ///< of g - [u]^n at the quadrature points
+  double largest_gap = 0;
+  double largest_tension = 0;  ///< largest T^n there; 0 but for ties
+};
+
+/// A body of several: a part of the mesh that is connected through facets.
+struct BodyFigures
+{
+  std::string name;  ///< of its regions, joined by +, and a number where several have the same
+  long cells = 0;
+  double energy = 0;  ///< its part of a(u, u)
+  double bound = 0;   ///< its part of the bound: the squares add up
+};
+
 /// What the contact traction adds up to; forces (per unit depth in 2D).
 struct Resultants
 {
@@ -24,7 +47,8 @@ struct Resultants
   /// mu_F of Coulomb's friction where it alone keeps a body from sliding along a boundary that is nearly
   /// plane.
   std::optional<double> coefficient{};
-  double resolution = 0.0;  ///< forces are known to this much: the distance of T(u^k) from t^k
+  double resolution = 0.0;            ///< forces are known to this much: the distance of T(u^k) from t^k
+  std::optional<PairFigures> pair{};  ///< of a slave
 };
 
 /// The value rounded to the decimal place of its resolution; 0 where it is not larger. Numbers that are not
@@ -51,7 +75,8 @@ struct SolutionFigures
   double sigma_norm = 0.0;        ///< ||sigma(u)||
   double max_displacement = 0.0;  ///< largest |u| at a node
   Resultants contact;
-  std::vector<Resultants> boundary_contact;  ///< of every boundary group with contact
+  std::vector<Resultants> boundary_contact;  ///< of every obstacle and slave among the boundary groups
+  std::vector<BodyFigures> bodies;           ///< where bodies touch each other
   double round_off = 0.0;                    ///< a stress below is nothing but rounding
 };
 

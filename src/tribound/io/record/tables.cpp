@@ -40,7 +40,7 @@ TableRow component_columns(const adapt::CertifiedStep& record)
   return row;
 }
 
-TableRow newton_row(int level, const adapt::CertifiedStep& record, bool regularised)
+TableRow newton_row(int level, const adapt::CertifiedStep& record, const certify::RunKind& kind)
 {
   TableRow row = {{"level", level},
                   {"step", record.step.step},
@@ -49,13 +49,16 @@ TableRow newton_row(int level, const adapt::CertifiedStep& record, bool regulari
   append(row, component_columns(record));
   append(row,
          {{"total", member(record.bound, &certify::Bound::total)}, {"accepted", record.accepted ? 1 : 0}});
-  if (!regularised) return row;
-  append(row, component_columns(certify::regularisation_components, record.bound));
-  row.push_back({"delta", record.step.delta});
+  if (kind.regularised)
+  {
+    append(row, component_columns(certify::regularisation_components, record.bound));
+    row.push_back({"delta", record.step.delta});
+  }
+  if (kind.paired) append(row, component_columns(certify::transfer_components, record.bound));
   return row;
 }
 
-TableRow convergence_row(const LevelRecord& level, bool regularised)
+TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind)
 {
   TableRow row = level_columns(level);
   append(row, {{"energy", level.figures.energy},
@@ -64,7 +67,7 @@ TableRow convergence_row(const LevelRecord& level, bool regularised)
                {"t_solve", level.times.stages.solve},
                {"t_certify", level.times.stages.certify},
                {"t_level", level.times.level}});
-  if (regularised) append(row, regularisation_columns(level));
+  append(row, further_columns(level, kind));
   return row;
 }
 
@@ -83,34 +86,39 @@ TableRow level_columns(const LevelRecord& level)
   return row;
 }
 
-TableRow regularisation_columns(const LevelRecord& level)
+TableRow further_columns(const LevelRecord& level, const certify::RunKind& kind)
 {
-  TableRow row = component_columns(certify::regularisation_components, level.bound);
-  append(row, {{"delta", last_delta(level)}, {"delta_updates", level.delta_updates.value_or(0)}});
+  TableRow row;
+  if (kind.regularised)
+  {
+    append(row, component_columns(certify::regularisation_components, level.bound));
+    append(row, {{"delta", last_delta(level)}, {"delta_updates", level.delta_updates.value_or(0)}});
+  }
+  if (kind.paired) append(row, component_columns(certify::transfer_components, level.bound));
   return row;
 }
 
 std::string convergence_csv(std::span<const LevelRecord> levels)
 {
-  const bool regularised = std::ranges::any_of(levels, is_regularised);
+  const certify::RunKind kind = run_kind(levels);
   std::vector<TableRow> rows;
-  for (const LevelRecord& level : levels) rows.push_back(convergence_row(level, regularised));
-  return csv_text(convergence_row({}, regularised), rows);
+  for (const LevelRecord& level : levels) rows.push_back(convergence_row(level, kind));
+  return csv_text(convergence_row({}, kind), rows);
 }
 
 std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels)
 {
-  const bool regularised = std::ranges::any_of(levels, is_regularised);
+  const certify::RunKind kind = run_kind(levels);
   std::vector<TableRow> rows;
   for (const LevelRecord& level : levels)
     for (const adapt::CertifiedStep& record : level.newton)
-      rows.push_back(newton_row(level.level, record, regularised));
+      rows.push_back(newton_row(level.level, record, kind));
   return rows;
 }
 
 std::string newton_csv(std::span<const LevelRecord> levels)
 {
-  return csv_text(newton_row(0, {}, std::ranges::any_of(levels, is_regularised)), newton_rows(levels));
+  return csv_text(newton_row(0, {}, run_kind(levels)), newton_rows(levels));
 }
 
 }  // namespace tribound::io

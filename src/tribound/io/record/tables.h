@@ -16,8 +16,9 @@ namespace tribound::io
 /// Size, Newton steps and bound: what every table of levels begins with.
 [[nodiscard]] TableRow level_columns(const LevelRecord& level);
 
-/// delta and its components: what the tables of a regularised run have at the end.
-[[nodiscard]] TableRow regularisation_columns(const LevelRecord& level);
+/// What the tables have at the end: of a regularised run its components and delta, of one with pairs what
+/// passes between meshes.
+[[nodiscard]] TableRow further_columns(const LevelRecord& level, const certify::RunKind& kind);
 
 /// A row per level.
 [[nodiscard]] std::string convergence_csv(std::span<const LevelRecord> levels);
