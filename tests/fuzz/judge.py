@@ -18,6 +18,7 @@ from verdict import Verdict, near
 
 STATUS_OF_EXIT = {0: ["certified"], 2: ["failed", "not certified"], 3: ["budget"]}
 COMPONENTS = ["osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t", "quad"]
+OF_A_LATER_LEVEL = object()  # contact.csv where a killed run has written it before the certificate of its level
 
 
 def judge(case_file, directory, exit_code, killed=False):
@@ -70,6 +71,8 @@ def keep_what_is_claimed(results):
     results.convergence = [row for row in results.convergence or [] if row["level"] < n]
     results.newton = [row for row in results.newton or [] if row["level"] < n]
     results.levels = results.levels[:n]
+    if any(row["level"] >= n for row in results.contact or []):
+        results.contact = OF_A_LATER_LEVEL
 
 
 def judge_arithmetic(verdict, certificate):
@@ -153,5 +156,6 @@ def judge_levels(verdict, case, results):
         judge_displacement(verdict, residual, entry, number)
         judge_residual(verdict, case, residual, entry, number)
         if number + 1 == len(bounds):
-            judge_contact(verdict, residual, results)
+            if results.contact is not OF_A_LATER_LEVEL:
+                judge_contact(verdict, residual, results)
             judge_mesh(verdict, case, residual)
