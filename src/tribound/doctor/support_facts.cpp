@@ -106,35 +106,28 @@ void mark_sliding(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& m
                   std::vector<bool>& slides)
 {
   constexpr double negligible = 1e-6;  // motions have size 1
-  const auto for_each_corner = [&](const auto& visit)
-  {
-    for (const contact::AssemblySegment& entry : assembly.segments)
-    {
-      const contact::ContactSegment<dim>& segment = segments[entry.number];
-      const contact::MotionJump<dim> jump(mesh, assembly, entry, segment);
-      for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
-        visit(segment, jump.coefficients(), jump(s));
-    }
-  };
   const contact::MotionBasis left = contact::Support<dim>(problem, mesh, segments, assembly).left_by_fixing();
   if (left.cols() == 0) return;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(assembly.n_motions(), assembly.n_motions());
-  for_each_corner(
-      [&](const contact::ContactSegment<dim>& segment, const std::vector<int>& coefficients, const auto& z)
-      {
-        const Point<dim> n = plane[segment.slave.facet.tag].value_or(segment.normal);
-        const Eigen::RowVectorXd z_n = n.transpose() * z;
-        gram(coefficients, coefficients) += z_n.transpose() * z_n;
-      });
+  contact::for_each_corner(mesh, segments, assembly,
+                           [&](const contact::AssemblySegment&, const contact::ContactSegment<dim>& segment,
+                               const std::vector<int>& coefficients, const auto& z)
+                           {
+                             const Point<dim> n = plane[segment.slave.facet.tag].value_or(segment.normal);
+                             const Eigen::RowVectorXd z_n = n.transpose() * z;
+                             gram(coefficients, coefficients) += z_n.transpose() * z_n;
+                           });
   const contact::MotionBasis motions =
       left * contact::null_space(left.transpose() * gram * left, gram.trace());
-  for_each_corner(
-      [&](const contact::ContactSegment<dim>& segment, const std::vector<int>& coefficients, const auto& z)
-      {
-        const int tag = segment.slave.facet.tag;
-        slides[tag] =
-            slides[tag] || (plane[tag] && (z * motions(coefficients, Eigen::all)).norm() > negligible);
-      });
+  contact::for_each_corner(mesh, segments, assembly,
+                           [&](const contact::AssemblySegment&, const contact::ContactSegment<dim>& segment,
+                               const std::vector<int>& coefficients, const auto& z)
+                           {
+                             const int tag = segment.slave.facet.tag;
+                             slides[tag] =
+                                 slides[tag] ||
+                                 (plane[tag] && (z * motions(coefficients, Eigen::all)).norm() > negligible);
+                           });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/outer_facets.h"
 #include "tribound/mesh/verify.h"
 
 namespace tribound::mesh
@@ -13,50 +14,6 @@ namespace tribound::mesh
 
 namespace
 {
-
-/// Points closer to a facet than this multiple of its diameter lie on it.
-constexpr double coincidence = 1e-9;
-
-/// A facet with one cell, ready for being searched.
-template <int dim>
-struct OuterFacet
-{
-  std::array<Index, dim> vertices;
-  std::array<Point<dim>, dim> points;
-  double diameter;
-  Point<dim> normal;  ///< unit vector out of the cell
-  Index number;       ///< in the topology
-};
-
-/// The unit normal of a facet that points away from the apex.
-template <int dim>
-Point<dim> outward(const std::array<Point<dim>, dim>& points, const Point<dim>& apex)
-{
-  const Point<dim> edge = points[1] - points[0];
-  Point<dim> normal;
-  if constexpr (dim == 2)
-    normal = Point<2>(edge[1], -edge[0]).normalized();
-  else
-    normal = cross(edge, points[2] - points[0]).normalized();
-  return normal.dot(apex - points[0]) > 0 ? Point<dim>(-normal) : normal;
-}
-
-template <int dim>
-std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topology<dim>& topology)
-{
-  std::vector<OuterFacet<dim>> outer;
-  for (std::size_t f = 0; f < topology.facets.size(); ++f)
-  {
-    if (topology.facet_cells[f][1] >= 0) continue;
-    const auto points = points_of<dim>(data.vertices, topology.facets[f]);
-    const Index cell = topology.facet_cells[f][0];
-    const Point<dim>& apex =
-        data.vertices[data.cells[cell][topology.local_facet(cell, static_cast<Index>(f))]];
-    outer.push_back(
-        {topology.facets[f], points, diameter(points), outward<dim>(points, apex), static_cast<Index>(f)});
-  }
-  return outer;
-}
 
 /// Boxes of facets, hashed into grids: a facet lives in the grid of spacing size / 2^level next above its
 /// diameter, in the few grid cells that its bounding box meets. A point looks into one cell per level in use.
@@ -180,12 +137,12 @@ template <int dim>
 {
   for (const Index w : facet.vertices)
     if ((data.vertices[w] - data.vertices[v]).norm() <= 2 * coincidence * facet.diameter)
-      throw InputError(data.source,
-                       fmt::format("the mesh is not conforming: vertices {} and {} are both at {}",
-                                   std::min(v, w), std::max(v, w), describe(data.vertices[v])),
-                       "merge coincident points and meshes: \"Coherence;\" in a .geo, or \"Coherence "
-                       "Mesh;\"; where bodies "
-                       "touch without being joined, name the two sides in a [[contact]]");
+      throw InputError(
+          data.source,
+          fmt::format("the mesh is not conforming: vertices {} and {} are both at {}", std::min(v, w),
+                      std::max(v, w), describe(data.vertices[v])),
+          "merge coincident points and meshes: \"Coherence;\" in a .geo, or \"Coherence Mesh;\"; where "
+          "bodies touch without being joined, name the two sides in a [[contact]]");
   throw InputError(
       data.source,
       fmt::format("the mesh is not conforming: {} lies on the {} without being a vertex of it",
@@ -278,17 +235,16 @@ void check_overlapping(const MeshData<dim>& data, std::span<const OuterFacet<dim
 }  // namespace
 
 template <int dim>
-void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology,
+void check_conformity(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                       const Interfaces<dim>& interfaces)
 {
-  const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
   if (facets.empty()) throw InputError(data.source, "the mesh has no boundary", "cells overlap");
   const FacetSearch<dim> search(facets);
   check_touching<dim>(data, facets, search, interfaces);
   check_overlapping<dim>(data, facets, search, interfaces);
 }
 
-template void check_conformity<2>(const MeshData<2>&, const Topology<2>&, const Interfaces<2>&);
-template void check_conformity<3>(const MeshData<3>&, const Topology<3>&, const Interfaces<3>&);
+template void check_conformity<2>(const MeshData<2>&, std::span<const OuterFacet<2>>, const Interfaces<2>&);
+template void check_conformity<3>(const MeshData<3>&, std::span<const OuterFacet<3>>, const Interfaces<3>&);
 
 }  // namespace tribound::mesh

@@ -44,8 +44,10 @@ Mesh<dim>::Mesh(MeshData<dim> data)
   Topology<dim> topology = build_topology<dim>(static_cast<Index>(data.vertices.size()), data.cells);
   check_facets(data, topology);
   const Interfaces<dim> interfaces(data, topology);
-  check_conformity(data, topology, interfaces);
-  if (data.bisection_types.empty()) check_overlap(data, topology, interfaces);  // bisection keeps the domain
+  const std::vector<OuterFacet<dim>> outer = outer_facets(data, topology);
+  check_conformity<dim>(data, outer, interfaces);
+  if (data.bisection_types.empty())
+    check_overlap<dim>(data, outer, interfaces);  // bisection keeps the domain
   boundary_ = find_boundary(data, topology);
   check_vertices(data, topology);
   n_owned_cells_ = static_cast<Index>(data.cells.size());

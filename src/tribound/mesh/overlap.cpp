@@ -11,6 +11,7 @@
 #include "tribound/mesh/box_tree.h"
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/outer_facets.h"
 #include "tribound/mesh/verify.h"
 
 namespace tribound::mesh
@@ -19,57 +20,11 @@ namespace tribound::mesh
 namespace
 {
 
-/// What is nearer to a facet than this multiple of its diameter touches it and does not cross;
-/// check_conformity looks at that.
-constexpr double coincidence = 1e-9;
-
-/// A facet with one cell, and the normal that points out of it (not of unit length).
-template <int dim>
-struct OuterFacet
-{
-  std::array<Index, dim> vertices;
-  std::array<Point<dim>, dim> points;
-  Point<dim> normal;
-  BoundingBox<dim> box;
-  Index number;  ///< in the topology
-};
-
-template <int dim>
-Point<dim> normal_of(const std::array<Point<dim>, dim>& points)
-{
-  if constexpr (dim == 2)
-  {
-    const Point<2> tangent = points[1] - points[0];
-    return {tangent[1], -tangent[0]};
-  }
-  else
-    return cross(points[1] - points[0], points[2] - points[0]);
-}
-
-template <int dim>
-std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data, const Topology<dim>& topology)
-{
-  std::vector<OuterFacet<dim>> outer;
-  for (std::size_t c = 0; c < data.cells.size(); ++c)
-    for (int i = 0; i <= dim; ++i)
-    {
-      if (topology.facet_cells[topology.cell_facets[c][i]][1] >= 0) continue;
-      OuterFacet<dim>& facet = outer.emplace_back();
-      facet.number = topology.cell_facets[c][i];
-      facet.vertices = facet_vertices(data.cells[c], i);
-      facet.points = points_of<dim>(data.vertices, facet.vertices);
-      facet.normal = normal_of<dim>(facet.points);
-      if (facet.normal.dot(data.vertices[data.cells[c][i]] - facet.points[0]) > 0) facet.normal *= -1;
-      for (const Point<dim>& x : facet.points) facet.box.add(x);
-    }
-  return outer;
-}
-
 template <int dim>
 BoxTree<dim> tree_of(std::span<const OuterFacet<dim>> facets)
 {
   std::vector<BoundingBox<dim>> boxes;
-  for (const OuterFacet<dim>& facet : facets) boxes.push_back(facet.box);
+  for (const OuterFacet<dim>& facet : facets) boxes.push_back(bounding_box<dim>(facet.points));
   return BoxTree<dim>(boxes);
 }
 
@@ -101,8 +56,7 @@ std::optional<Point<dim>> crossing(const Point<dim>& a, const Point<dim>& b, con
 {
   const double height_a = facet.normal.dot(a - facet.points[0]);
   const double height_b = facet.normal.dot(b - facet.points[0]);
-  const double clear =
-      coincidence * facet.normal.norm() * std::max((b - a).norm(), diameter<dim>(facet.points));
+  const double clear = coincidence * std::max((b - a).norm(), facet.diameter);
   if (height_a * height_b >= 0 || std::min(std::abs(height_a), std::abs(height_b)) <= clear)
     return std::nullopt;
   const Point<dim> x = a + height_a / (height_a - height_b) * (b - a);
@@ -133,7 +87,9 @@ void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>>
                      const BoxTree<dim>& tree, const Interfaces<dim>& interfaces)
 {
   for (std::size_t f = 0; f < facets.size(); ++f)
-    tree.traverse([&](const BoundingBox<dim>& box) { return meet(box, facets[f].box); },
+  {
+    const BoundingBox<dim> own = bounding_box<dim>(facets[f].points);
+    tree.traverse([&](const BoundingBox<dim>& box) { return meet(box, own); },
                   [&](std::size_t g)
                   {
                     if (f == g || interfaces.may_cross(facets[f].number, facets[g].number)) return;
@@ -145,6 +101,7 @@ void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>>
                                       describe_facet<dim>(data, facets[g].vertices), describe(*x)),
                           hint);
                   });
+  }
 }
 
 /// How many cells cover the points just outside the facet: a ray from there leaves as many cells more than it
@@ -215,7 +172,7 @@ void check_covers(const MeshData<dim>& data, std::span<const OuterFacet<dim>> fa
     for (int attempt = 1; attempt <= 8; ++attempt)
     {
       // Outwards, and in no direction that a mesh has.
-      Point<dim> direction = facets[f].normal / facets[f].normal.norm();
+      Point<dim> direction = facets[f].normal;
       for (int i = 0; i < dim; ++i) direction[i] += 0.2 * std::sin(attempt + 0.7 * i);
       const std::optional<int> n = cover(facets, tree, interfaces, f, direction);
       if (!n) continue;
@@ -230,16 +187,15 @@ void check_covers(const MeshData<dim>& data, std::span<const OuterFacet<dim>> fa
 }  // namespace
 
 template <int dim>
-void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology,
+void check_overlap(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                    const Interfaces<dim>& interfaces)
 {
-  const std::vector<OuterFacet<dim>> facets = outer_facets(data, topology);
   const BoxTree<dim> tree = tree_of<dim>(facets);
   check_crossings<dim>(data, facets, tree, interfaces);
   check_covers<dim>(data, facets, tree, interfaces);
 }
 
-template void check_overlap<2>(const MeshData<2>&, const Topology<2>&, const Interfaces<2>&);
-template void check_overlap<3>(const MeshData<3>&, const Topology<3>&, const Interfaces<3>&);
+template void check_overlap<2>(const MeshData<2>&, std::span<const OuterFacet<2>>, const Interfaces<2>&);
+template void check_overlap<3>(const MeshData<3>&, std::span<const OuterFacet<3>>, const Interfaces<3>&);
 
 }  // namespace tribound::mesh

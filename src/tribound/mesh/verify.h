@@ -9,6 +9,7 @@
 
 #include "tribound/mesh/interfaces.h"
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/outer_facets.h"
 #include "tribound/mesh/partition.h"
 
 namespace tribound::mesh
@@ -32,13 +33,13 @@ void check_facets(const MeshData<dim>& data, const Topology<dim>& topology);
 /// facets overlap that are not opposite there. Only facets with one cell are looked at, because a hanging
 /// vertex leaves such facets on both sides.
 template <int dim>
-void check_conformity(const MeshData<dim>& data, const Topology<dim>& topology,
+void check_conformity(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                       const Interfaces<dim>& interfaces);
 
 /// No two cells overlap, but those of bodies that an interface joins: the boundary does not cross itself, and
 /// no part of it lies inside other cells. O(n log n) in the facets of the boundary.
 template <int dim>
-void check_overlap(const MeshData<dim>& data, const Topology<dim>& topology,
+void check_overlap(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                    const Interfaces<dim>& interfaces);
 
 /// The facets with one cell, in the order of their numbers, with the tags of data.facets. Every tagged facet

@@ -72,37 +72,36 @@ std::vector<BoundaryCondition<dim>> of_each_boundary(std::span<const std::string
   return boundaries;
 }
 
-/// Whether each boundary is in a pair. It stands in one at most, on one side of it, and has then no
-/// condition.
+/// The side of each boundary. It stands in one pair at most, on one side of it, and has then no condition.
 template <int dim>
-std::vector<bool> paired(std::span<const std::string> names,
-                         const std::vector<BoundaryCondition<dim>>& conditions,
-                         std::span<const ContactPair<dim>> pairs)
+std::vector<PairSide> sides_of(std::span<const std::string> names,
+                               const std::vector<BoundaryCondition<dim>>& conditions,
+                               std::span<const ContactPair<dim>> pairs)
 {
-  std::vector<bool> is_paired(names.size(), false);
-  for (const ContactPair<dim>& pair : pairs)
+  std::vector<PairSide> sides(names.size());
+  const auto take = [&](const std::string& name, const PairSide& side)
   {
-    for (const std::vector<std::string>* side : {&pair.slave, &pair.master})
-    {
-      if (side->empty())
-        throw InputError(pair.where, "a side of the contact is empty", "name its boundaries");
-      for (const std::string& name : *side)
-      {
-        const int number = group_number(name, names, pair.where, "boundary");
-        if (is_paired[number])
-          throw InputError(
-              pair.where, fmt::format("boundary \"{}\" already is in contact", name),
-              "a boundary is the slave or the master of one contact; split the group in the mesh");
-        is_paired[number] = true;
-        if (std::ranges::find(conditions, name, &BoundaryCondition<dim>::name) != conditions.end())
-          throw InputError(pair.where, fmt::format("boundary \"{}\" has a condition of its own", name),
-                           "where bodies touch, nothing else holds; split the group in the mesh");
-      }
-    }
+    const Where& where = pairs[side.pair].where;
+    PairSide& of_boundary = sides[group_number(name, names, where, "boundary")];
+    if (of_boundary.pair >= 0)
+      throw InputError(where, fmt::format("boundary \"{}\" already is in contact", name),
+                       "a boundary is the slave or the master of one contact; split the group in the mesh");
+    of_boundary = side;
+    if (std::ranges::find(conditions, name, &BoundaryCondition<dim>::name) != conditions.end())
+      throw InputError(where, fmt::format("boundary \"{}\" has a condition of its own", name),
+                       "where bodies touch, nothing else holds; split the group in the mesh");
+  };
+  for (int k = 0; k < static_cast<int>(pairs.size()); ++k)
+  {
+    const ContactPair<dim>& pair = pairs[k];
+    if (pair.slave.empty() || pair.master.empty())
+      throw InputError(pair.where, "a side of the contact is empty", "name its boundaries");
+    for (const std::string& name : pair.slave) take(name, {k, true});
+    for (const std::string& name : pair.master) take(name, {k, false});
     if (cone(pair.contact.law).is_tied && !(pair.contact.gap && pair.contact.gap->is_zero()))
       throw InputError(pair.where, "a tied contact has no gap", "give the gap 0");
   }
-  return is_paired;
+  return sides;
 }
 
 }  // namespace
@@ -193,24 +192,26 @@ Problem<dim>::Problem(std::span<const std::string> region_names, std::span<const
     : regions_(of_each_region(region_names, regions)),
       boundaries_(of_each_boundary(boundary_names, boundaries)),
       pairs_(std::move(pairs)),
-      is_paired_(paired<dim>(boundary_names, boundaries, pairs_))
+      sides_(sides_of<dim>(boundary_names, boundaries, pairs_))
 {
 }
 
 template <int dim>
 bool Problem<dim>::is_in_contact(int tag) const
 {
-  return boundary(tag).contact || (tag >= 0 && is_paired_[tag]);
+  return boundary(tag).contact || (tag >= 0 && sides_[tag].pair >= 0);
 }
 
 template <int dim>
 const ContactPair<dim>* Problem<dim>::pair_of_slave(int tag) const
 {
-  if (tag < 0 || !is_paired_[tag]) return nullptr;
-  const auto found = std::ranges::find_if(
-      pairs_, [&](const ContactPair<dim>& pair)
-      { return std::ranges::find(pair.slave, boundaries_[tag].name) != pair.slave.end(); });
-  return found == pairs_.end() ? nullptr : &*found;
+  return tag >= 0 && sides_[tag].pair >= 0 && sides_[tag].is_slave ? &pairs_[sides_[tag].pair] : nullptr;
+}
+
+template <int dim>
+const ContactPair<dim>* Problem<dim>::pair_of_master(int tag) const
+{
+  return tag >= 0 && sides_[tag].pair >= 0 && !sides_[tag].is_slave ? &pairs_[sides_[tag].pair] : nullptr;
 }
 
 template <int dim>

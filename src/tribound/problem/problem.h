@@ -63,6 +63,13 @@ struct ContactPair
   Where where{};  ///< for messages
 };
 
+/// The side of a pair that a boundary is; pair -1: of none.
+struct PairSide
+{
+  int pair = -1;
+  bool is_slave = false;
+};
+
 /// What holds on one named part of the boundary.
 template <int dim>
 struct BoundaryCondition
@@ -141,8 +148,9 @@ class Problem
   [[nodiscard]] std::span<const BoundaryCondition<dim>> boundaries() const { return boundaries_; }
   /// The contact of boundary number `tag` with an obstacle or, as a slave, with its master; null for others.
   [[nodiscard]] const Contact* contact(int tag) const;
-  /// The pair whose slave the boundary is, or null.
+  /// The pair whose slave the boundary is, and that whose master it is, or null.
   [[nodiscard]] const ContactPair<dim>* pair_of_slave(int tag) const;
+  [[nodiscard]] const ContactPair<dim>* pair_of_master(int tag) const;
   /// In the order of the mesh, each with the name it has there.
   [[nodiscard]] std::span<const Region<dim>> regions() const { return regions_; }
   [[nodiscard]] std::span<const ContactPair<dim>> pairs() const { return pairs_; }
@@ -155,7 +163,7 @@ class Problem
   std::vector<Region<dim>> regions_;
   std::vector<BoundaryCondition<dim>> boundaries_;
   std::vector<ContactPair<dim>> pairs_;
-  std::vector<bool> is_paired_;
+  std::vector<PairSide> sides_;  ///< of each boundary
   BoundaryCondition<dim> unnamed_;
 };
 

@@ -289,9 +289,9 @@ enum class Held
 };
 
 template <int dim>
-Held held(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+Held held(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+          std::span<const contact::ContactSegment<dim>> segments)
 {
-  const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
   Held result = Held::each;
   for (const auto& assembly : contact::find_assemblies<dim>(fem::LagrangeSpace<dim>(mesh, 1), segments))
   {
@@ -323,19 +323,18 @@ FriedrichsConstant without_factors(const problem::Problem<dim>& problem, const m
 
 template <int dim>
 FriedrichsConstant with_factors(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                                Index most_cells, bool with_pairs)
+                                Index most_cells, const PairTerms& pairs)
 {
-  const auto on = [&](const mesh::Mesh<dim>& proof, double scale)
-  {
-    return constant_on<dim>(
-        problem, {proof, scale, with_pairs ? pair_terms<dim>(problem, proof, scale) : PairTerms{}});
-  };
-  const FriedrichsConstant here = on(mesh, 1);
+  const FriedrichsConstant here = constant_on<dim>(problem, {mesh, 1, pairs});
   if (here.value * here.value <= 2 / here.theta) return here;
   // kappa^2 H^2 > 1/theta: a finer mesh, for the proof alone. The norm keeps the h_F of the given mesh.
   if (mesh::count_after_refinement(mesh, 1).cells > most_cells) return here;
   const mesh::Refined<dim> refined = mesh::refine_uniformly(mesh);
-  const FriedrichsConstant finer = on(refined.mesh, 2);
+  const PairTerms finer_pairs =
+      pairs.cells.empty()
+          ? PairTerms{}
+          : pair_terms<dim>(refined.mesh, contact::contact_segments(problem, refined.mesh, 1.0), 2);
+  const FriedrichsConstant finer = constant_on<dim>(problem, {refined.mesh, 2, finer_pairs});
   return finer.value < here.value ? finer : here;
 }
 
@@ -347,12 +346,14 @@ FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, con
 {
   const FriedrichsConstant none{std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
   if (mesh.partition()) return none;
-  const Held bodies = held(problem, mesh);
+  const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
+  const Held bodies = held<dim>(problem, mesh, segments);
   if (bodies == Held::not_all) return none;
   if (bodies == Held::each && mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);
   try
   {
-    return with_factors(problem, mesh, most_cells_factorised, bodies == Held::with_pairs);
+    return with_factors(problem, mesh, most_cells_factorised,
+                        bodies == Held::with_pairs ? pair_terms<dim>(mesh, segments, 1) : PairTerms{});
   }
   catch (const SolveError&)  // such as memory for the factors: there is a bound without them, but for pairs
   {

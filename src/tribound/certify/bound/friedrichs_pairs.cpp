@@ -4,7 +4,6 @@
 #include <map>
 
 #include "tribound/certify/bound/constants.h"
-#include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/pairing/polygon.h"
 #include "tribound/mesh/geometry.h"
 
@@ -41,12 +40,13 @@ int multiplicity(const std::vector<fem::Part<dim - 1>>& parts)
 }  // namespace
 
 template <int dim>
-PairTerms pair_terms(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, double facet_scale)
+PairTerms pair_terms(const mesh::Mesh<dim>& mesh, std::span<const contact::ContactSegment<dim>> segments,
+                     double facet_scale)
 {
   const auto& cell_facets = mesh.topology().cell_facets;
   PairTerms terms;
   std::map<std::size_t, OnFacet<dim>> facets;
-  for (const contact::ContactSegment<dim>& segment : contact::contact_segments(problem, mesh, 1.0))
+  for (const contact::ContactSegment<dim>& segment : segments)
   {
     if (!segment.master) continue;
     const double h = facet_scale * segment.h;
@@ -79,7 +79,7 @@ PairTerms pair_terms(const problem::Problem<dim>& problem, const mesh::Mesh<dim>
   return terms;
 }
 
-template PairTerms pair_terms(const problem::Problem<2>&, const mesh::Mesh<2>&, double);
-template PairTerms pair_terms(const problem::Problem<3>&, const mesh::Mesh<3>&, double);
+template PairTerms pair_terms(const mesh::Mesh<2>&, std::span<const contact::ContactSegment<2>>, double);
+template PairTerms pair_terms(const mesh::Mesh<3>&, std::span<const contact::ContactSegment<3>>, double);
 
 }  // namespace tribound::certify

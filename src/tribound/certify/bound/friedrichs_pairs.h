@@ -3,11 +3,12 @@
 /// @file friedrichs_pairs.h
 /// What contact between bodies does for the Friedrichs constant: a body that only others hold has one, too.
 
+#include <span>
 #include <vector>
 
 #include "tribound/base/types.h"
+#include "tribound/contact/nitsche/segment.h"
 #include "tribound/mesh/mesh.h"
-#include "tribound/problem/problem.h"
 
 namespace tribound::certify
 {
@@ -29,14 +30,15 @@ struct PairTerms
   std::vector<Coupling> couplings;
 };
 
-/// With h_k `facet_scale` times what it is on this mesh. The mean of [v] over k differs from that of the
-/// facet means by at most what v differs from these, ||v - mean_F(v)||_F <= C_{T,F} ||grad v||_T; so much of
-/// the gradients is spent on it. From (a + b)^2 >= a^2/2 - b^2, t in (0, 1], and m_G segments at most over
-/// one point of G:
+/// Of the segments of the mesh, with h_k `facet_scale` times what it is on this mesh. The mean of [v] over k
+/// differs from that of the facet means by at most what v differs from these, ||v - mean_F(v)||_F <= C_{T,F}
+/// ||grad v||_T; so much of the gradients is spent on it. From (a + b)^2 >= a^2/2 - b^2, t in (0, 1], and m_G
+/// segments at most over one point of G:
 ///     w_T = 1 - 2 t sum_{F in T} C_{T,F}^2 m_F max_{k in F} (s_k / h_k),      c_k = t |k| / (2 h_k),
 /// s_k = 1 on slaves, |k| / |Pi(k)| on masters.
 template <int dim>
-[[nodiscard]] PairTerms pair_terms(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+[[nodiscard]] PairTerms pair_terms(const mesh::Mesh<dim>& mesh,
+                                   std::span<const contact::ContactSegment<dim>> segments,
                                    double facet_scale);
 
 }  // namespace tribound::certify

@@ -46,8 +46,8 @@ struct DataAccuracy
 /// How far the data were looked into.
 struct DataEffort
 {
-  std::int64_t formulas =
-      0;  ///< cells, boundary facets and contact segments with data that are no polynomials of degree p + 2
+  /// Cells, boundary facets and contact segments with data that are no polynomials of degree p + 2.
+  std::int64_t formulas = 0;
   std::int64_t loads = 0;       ///< of these, those whose data are loads
   std::int64_t subdivided = 0;  ///< of these
   std::int64_t parts = 0;       ///< into which these were cut

@@ -20,8 +20,7 @@ namespace tribound::contact
 namespace
 {
 
-constexpr double facing = 0.1;     ///< least cosine of an angle between e and n_F, e and -n_G, n_F and -n_G
-constexpr double snapped = 1e-12;  ///< of an edge, in barycentric coordinates: on it
+constexpr double facing = 0.1;  ///< least cosine of an angle between e and n_F, e and -n_G, n_F and -n_G
 constexpr double negligible = 1e-14;    ///< of the slave facet
 constexpr double overlapping = 1e-9;    ///< of the slave facet: more than rounding
 constexpr double same_distance = 1e-9;  ///< of the diameter of the slave facet
@@ -144,10 +143,8 @@ class SlaveFacet
   static void clip_to_slave(Polygon<dim>& polygon)
   {
     for (int i = 0; i < dim - 1; ++i)
-      polygon = clip<dim>(
-          polygon, [i](const CornerPair<dim>& x) { return x.slave[i]; }, snapped);
-    polygon = clip<dim>(
-        polygon, [](const CornerPair<dim>& x) { return 1 - x.slave.sum(); }, snapped);
+      polygon = clip<dim>(polygon, [i](const CornerPair<dim>& x) { return x.slave[i]; });
+    polygon = clip<dim>(polygon, [](const CornerPair<dim>& x) { return 1 - x.slave.sum(); });
   }
 
   /// What is visible of each candidate behind those before it: near ones hide what is farther away. Most have
@@ -186,8 +183,8 @@ class SlaveFacet
                          [&](const auto& side)
                          {
                            const auto opposite = [&](const CornerPair<dim>& x) { return -side(x); };
-                           outside.push_back(clip<dim>(common, opposite, snapped));
-                           common = clip<dim>(common, side, snapped);
+                           outside.push_back(clip<dim>(common, opposite));
+                           common = clip<dim>(common, side);
                          });
       if (fraction<dim>(common) <= overlapping)
       {

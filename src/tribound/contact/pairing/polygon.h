@@ -24,10 +24,12 @@ struct CornerPair
 template <int dim>
 using Polygon = std::vector<CornerPair<dim>>;
 
-/// The part of the polygon where an affine function of its corners is not negative. Values of size `zero` or
-/// less count as 0 and make no new corner.
+inline constexpr double snapped = 1e-12;  ///< of an edge, in barycentric coordinates: on it
+
+/// The part of the polygon where an affine function of its corners is not negative. Values of size `snapped`
+/// or less count as 0 and make no new corner.
 template <int dim, class Function>
-[[nodiscard]] Polygon<dim> clip(const Polygon<dim>& polygon, const Function& function, double zero)
+[[nodiscard]] Polygon<dim> clip(const Polygon<dim>& polygon, const Function& function)
 {
   Polygon<dim> result;
   const std::size_t n = polygon.size();
@@ -37,9 +39,9 @@ template <int dim, class Function>
     const CornerPair<dim>& b = polygon[(i + 1) % n];
     const double at_a = function(a);
     const double at_b = function(b);
-    if (at_a >= -zero) result.push_back(a);
+    if (at_a >= -snapped) result.push_back(a);
     const bool is_edge = dim == 3 || i == 0;  // an interval has one
-    const bool crosses = (at_a < -zero && at_b > zero) || (at_a > zero && at_b < -zero);
+    const bool crosses = (at_a < -snapped && at_b > snapped) || (at_a > snapped && at_b < -snapped);
     if (!is_edge || !crosses) continue;
     const double t = at_a / (at_a - at_b);
     result.push_back({a.slave + t * (b.slave - a.slave), a.master + t * (b.master - a.master)});
@@ -127,7 +129,7 @@ template <int dim>
   Polygon<dim> sides;
   for (const Point<dim - 1>& x : a) common.push_back({x, x});
   for (const Point<dim - 1>& x : b) sides.push_back({x, x});
-  for_each_side<dim>(sides, [&](const auto& distance) { common = clip<dim>(common, distance, 1e-12); });
+  for_each_side<dim>(sides, [&](const auto& distance) { common = clip<dim>(common, distance); });
   return !common.empty() && fraction<dim>(common) > rounding;
 }
 

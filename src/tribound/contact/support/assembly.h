@@ -76,6 +76,21 @@ class MotionJump
   std::vector<int> coefficients_;
 };
 
+/// Calls visit(entry, segment, coefficients, M) with [z] = M z(coefficients) at each corner of each segment
+/// of the assembly, `segments` those that its numbers refer to.
+template <int dim, class Visit>
+void for_each_corner(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
+                     const Assembly<dim>& assembly, const Visit& visit)
+{
+  for (const AssemblySegment& entry : assembly.segments)
+  {
+    const ContactSegment<dim>& segment = segments[entry.number];
+    const MotionJump<dim> jump(mesh, assembly, entry, segment);
+    for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
+      visit(entry, segment, jump.coefficients(), jump(s));
+  }
+}
+
 /// All assemblies, by the first body of each.
 template <int dim>
 [[nodiscard]] std::vector<Assembly<dim>> find_assemblies(const fem::LagrangeSpace<dim>& space,

@@ -98,33 +98,28 @@ template <int dim>
 Eigen::MatrixXd AssemblyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
 {
   std::vector<Eigen::VectorXd> generators;
-  for (const AssemblySegment& entry : assembly_.segments)
+  const auto add_corner = [&](const AssemblySegment&, const ContactSegment<dim>& segment,
+                              const std::vector<int>& coefficients, const auto& jump)
   {
-    const ContactSegment<dim>& segment = form_.segments()[entry.number];
     const problem::FrictionCone law = problem::cone(segment.contact->law);
-    if (law.is_tied) continue;  // the motions obey it
+    if (law.is_tied) return;  // the motions obey it
+    const Eigen::MatrixXd jumps = jump * motions(coefficients, Eigen::all);
+    const auto add = [&](const Point<dim>& push)
+    {
+      const Eigen::VectorXd work = jumps.transpose() * push;
+      if (work.norm() > 1e-12) generators.push_back(work.normalized());
+    };
     const Point<dim>& n = segment.normal;
+    add(n);
+    if (!law.resists_sliding()) return;
+    if (law.coefficient == 0 && friction == ConeFriction::no_strength) return;
     const bool holds =
         friction == ConeFriction::unlimited || (friction == ConeFriction::strong && law.strength != nullptr);
-    const bool sticks =
-        law.resists_sliding() && (law.coefficient != 0 || friction != ConeFriction::no_strength);
     const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
-    const MotionJump<dim> jump(mesh_, assembly_, entry, segment);
-    const Eigen::MatrixXd of_segment = motions(jump.coefficients(), Eigen::all);
-    for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
-    {
-      const Eigen::MatrixXd jumps = jump(s) * of_segment;
-      const auto add = [&](const Point<dim>& push)
-      {
-        const Eigen::VectorXd work = jumps.transpose() * push;
-        if (work.norm() > 1e-12) generators.push_back(work.normalized());
-      };
-      add(n);
-      if (sticks)
-        for (const Point<dim>& t : tangents<dim>(n))
-          add(holds ? t : Point<dim>(n + law.coefficient / around * t));
-    }
-  }
+    for (const Point<dim>& t : tangents<dim>(n))
+      add(holds ? t : Point<dim>(n + law.coefficient / around * t));
+  };
+  for_each_corner(mesh_, form_.segments(), assembly_, add_corner);
   Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
   for (Eigen::Index j = 0; j < cone.cols(); ++j) cone.col(j) = generators[j];
   return cone;

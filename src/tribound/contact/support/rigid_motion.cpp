@@ -16,7 +16,6 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
   const fem::LagrangeSpace<dim>& space = form.space();
   assert(!space.mesh().partition());
   constexpr double relative_round_off = 1e-11;
-  constexpr int n_modes = RigidModes<dim>::n_modes;
   const std::vector<Assembly<dim>> assemblies = find_assemblies<dim>(space, form.segments());
   const std::vector<Point<dim>> points = space.node_points();
   for (const Assembly<dim>& assembly : assemblies)
@@ -26,12 +25,11 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
 
     Eigen::VectorXd work = Eigen::VectorXd::Zero(assembly.n_motions());  // L(z) for each rigid motion z
     double terms = 0;
-    for (std::size_t b = 0; b < assembly.bodies.size(); ++b)
+    for (int b = 0; b < static_cast<int>(assembly.bodies.size()); ++b)
       for (const Index i : assembly.bodies[b].nodes)
       {
         const Point<dim> force(load.data() + static_cast<std::size_t>(dim) * i);
-        work.template segment<n_modes>(n_modes * static_cast<int>(b)) +=
-            assembly.modes.at(points[i]).transpose() * force;
+        work(assembly.coefficients(b)) += assembly.modes.at(points[i]).transpose() * force;
         terms += force.norm();
       }
     check.check_balanced(work, relative_round_off * terms);

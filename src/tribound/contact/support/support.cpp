@@ -69,16 +69,15 @@ template <int dim, class Rows>
 void add_segments(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
                   const Assembly<dim>& assembly, MeanGrams& grams, const Rows& rows)
 {
-  for (const AssemblySegment& entry : assembly.segments)
-  {
-    const ContactSegment<dim>& segment = segments[entry.number];
-    const problem::FrictionCone law = problem::cone(segment.contact->law);
-    const MotionJump<dim> jump(mesh, assembly, entry, segment);
-    const auto key = segment.pair < 0 ? MeanGrams::Key(segment.slave.facet.tag, entry.slave)
-                                      : MeanGrams::Key(segment.pair, -1);
-    for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
-      grams.add(key, jump.coefficients(), rows(law, segment.normal, jump(s)));
-  }
+  for_each_corner(mesh, segments, assembly,
+                  [&](const AssemblySegment& entry, const ContactSegment<dim>& segment,
+                      const std::vector<int>& coefficients, const auto& z)
+                  {
+                    const auto key = segment.pair < 0 ? MeanGrams::Key(segment.slave.facet.tag, entry.slave)
+                                                      : MeanGrams::Key(segment.pair, -1);
+                    grams.add(key, coefficients,
+                              rows(problem::cone(segment.contact->law), segment.normal, z));
+                  });
 }
 
 }  // namespace

@@ -48,17 +48,12 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
 template <int dim>
 std::string pair_words(const problem::Problem<dim>& problem, int tag)
 {
-  const auto is_among = [&](const std::vector<std::string>& names)
-  { return std::ranges::find(names, problem.boundaries()[tag].name) != names.end(); };
-  for (const problem::ContactPair<dim>& pair : problem.pairs())
-  {
-    if (is_among(pair.slave))
-      return fmt::format("contact with {}, {}, gap {}", fmt::join(pair.master, ", "),
-                         problem::words(pair.contact.law),
-                         pair.contact.gap ? text(*pair.contact.gap) : "of the meshes");
-    if (is_among(pair.master))
-      return fmt::format("contact with {}, whose master it is", fmt::join(pair.slave, ", "));
-  }
+  if (const problem::ContactPair<dim>* pair = problem.pair_of_slave(tag))
+    return fmt::format("contact with {}, {}, gap {}", fmt::join(pair->master, ", "),
+                       problem::words(pair->contact.law),
+                       pair->contact.gap ? text(*pair->contact.gap) : "of the meshes");
+  if (const problem::ContactPair<dim>* pair = problem.pair_of_master(tag))
+    return fmt::format("contact with {}, whose master it is", fmt::join(pair->slave, ", "));
   return {};
 }
 
