@@ -2,11 +2,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "tribound/base/error.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
-#include "tribound/fem/polynomials.h"
 
 namespace tribound::certify
 {
@@ -44,28 +42,7 @@ fem::Quadrature<k> composite_rule(int degree, int cuts)
   return composite;
 }
 
-/// (phi_j, phi_i) on the reference facet, for each local facet: [i * n + j].
-template <int dim>
-std::array<std::vector<double>, dim + 1> reference_facet_masses(const fem::LagrangeBasis<dim>& basis)
-{
-  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * basis.degree());
-  const fem::FacetTabulation<dim> table = fem::tabulate_on_facets<dim>(basis, rule.points);
-  const int n = basis.n_nodes();
-  std::array<std::vector<double>, dim + 1> masses;
-  for (int facet = 0; facet <= dim; ++facet)
-  {
-    masses[facet].assign(static_cast<std::size_t>(n) * n, 0.0);
-    for (int q = 0; q < rule.size(); ++q)
-    {
-      const auto values = table.on_facet[facet].values_at(q);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) masses[facet][i * n + j] += rule.weights[q] * values[i] * values[j];
-    }
-  }
-  return masses;
-}
-
-/// Adds the entries of a cell that lie between free nodes, and all diagonal ones.
+/// Adds the entries of a block that lie between free nodes, and all diagonal ones.
 void add_block(std::span<const Index> nodes, const std::vector<char>& fixed, std::span<const double> block,
                algebra::Triplets& entries)
 {
@@ -84,37 +61,32 @@ DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace
       space_(refined_.mesh, richer.degree)
 {
   assert(richer.degree >= form.space().degree());
-  if (!std::ranges::all_of(form.segments(), &contact::ContactSegment<dim>::is_obstacle_facet))
-    throw InputError({}, "the dual norm of the residual is not known for contact between bodies",
-                     "take contact with rigid obstacles");
-  find_contact_parts();
+  segments_ = refined_segments<dim>(form.space().mesh(), form.segments(), refined_);
   find_operators();
 }
 
-/// A facet of the refined mesh lies on the facet of its ancestor on which its centre does.
 template <int dim>
-void DualNorm<dim>::find_contact_parts()
+class DualNorm<dim>::SideTables
 {
-  const mesh::Mesh<dim>& mesh = form_.space().mesh();
-  std::vector<std::array<int, dim + 1>> whole(mesh.n_cells());  // number of the contact facet, or -1
-  for (auto& facets : whole) facets.fill(-1);
-  for (std::size_t k = 0; k < form_.segments().size(); ++k)
+ public:
+  SideTables(const fem::LagrangeBasis<dim>& basis, const fem::Quadrature<dim - 1>& rule)
+      : basis_(basis), rule_(rule), whole_(fem::tabulate_on_facets<dim>(basis, rule.points))
   {
-    const mesh::BoundaryFacet& facet = form_.segments()[k].slave.facet;
-    whole[facet.cell][facet.local] = static_cast<int>(k);
   }
-  for (const mesh::BoundaryFacet& facet : refined_.mesh.boundary())
+
+  /// Valid until the next call with the same `memory`.
+  const fem::Tabulation<dim>& operator()(const contact::SegmentSide<dim>& side,
+                                         fem::Tabulation<dim>& memory) const
   {
-    if (!form_.problem().boundary(facet.tag).contact) continue;
-    const Point<dim> centre =
-        mesh::facet_map(refined_.mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
-    const Index ancestor = refined_.ancestor(facet.cell);
-    const auto lambda = fem::barycentric<dim>(fem::reference_point(mesh::cell_map(mesh, ancestor), centre));
-    const auto local = std::ranges::min_element(lambda) - lambda.begin();
-    assert(whole[ancestor][local] >= 0);
-    contact_parts_.push_back({facet, whole[ancestor][local]});
+    if (!side.part) return whole_.on_facet[side.facet.local];
+    return memory = contact::tabulate<dim>(basis_, side, rule_.points);
   }
-}
+
+ private:
+  const fem::LagrangeBasis<dim>& basis_;
+  const fem::Quadrature<dim - 1>& rule_;
+  fem::FacetTabulation<dim> whole_;
+};
 
 template <int dim>
 void DualNorm<dim>::find_operators()
@@ -140,8 +112,7 @@ void DualNorm<dim>::find_operators()
   }
 }
 
-/// (grad phi_j, grad phi_i) + sum_{F in C} (1/h_F) (phi_j, phi_i)_F between free nodes; the diagonal
-/// everywhere.
+/// (grad phi_j, grad phi_i) + sum_k (1/h_k) ([phi_j], [phi_i])_k between free nodes; the diagonal everywhere.
 template <int dim>
 algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
 {
@@ -158,41 +129,59 @@ algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) cons
     add_block(space_.cell_nodes(c), fixed, block, entries);
   }
 
-  const auto masses = reference_facet_masses(space_.basis());
-  for (const auto& [facet, whole] : contact_parts_)
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * space_.degree());
+  const SideTables tables(space_.basis(), rule);
+  fem::Tabulation<dim> memory;
+  for (const RefinedSegment<dim>& segment : segments_)
   {
-    const double area = mesh::facet_geometry(space_.mesh(), facet.cell, facet.local).det();
-    const double h_F = form_.segments()[whole].h;
-    for (std::size_t k = 0; k < block.size(); ++k) block[k] = area / h_F * masses[facet.local][k];
-    add_block(space_.cell_nodes(facet.cell), fixed, block, entries);
+    std::vector<Index> nodes;
+    Eigen::MatrixXd jumps(rule.size(), 0);  // [phi_i] at the points
+    segment.for_each_side(
+        [&](const contact::SegmentSide<dim>& side)
+        {
+          const auto on_side = space_.cell_nodes(side.facet.cell);
+          const fem::Tabulation<dim>& table = tables(side, memory);
+          const auto first = static_cast<Eigen::Index>(nodes.size());
+          nodes.insert(nodes.end(), on_side.begin(), on_side.end());
+          jumps.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(nodes.size()));
+          for (int q = 0; q < rule.size(); ++q)
+            for (int i = 0; i < n; ++i) jumps(q, first + i) = side.sign * table.values_at(q)[i];
+        });
+    const double scale = segment.det() / form_.segments()[segment.whole].h;
+    const Eigen::MatrixXd mass =
+        scale * jumps.transpose() *
+        Eigen::Map<const Eigen::VectorXd>(rule.weights.data(), rule.size()).asDiagonal() * jumps;
+    add_block(nodes, fixed, std::span(mass.data(), static_cast<std::size_t>(mass.size())), entries);
   }
   return {space_.n_nodes(), 1, std::move(entries)};
 }
 
-/// vector_i += (T(u), phi_i)_C.
+/// vector_i += (T(u), [phi_i])_C.
 template <int dim>
 void DualNorm<dim>::add_contact_load(std::span<const double> u, std::span<double> vector) const
 {
   const fem::Quadrature<dim - 1> rule =
       composite_rule<dim - 1>(fem::data_quadrature_degree(space_.degree()), contact_cuts);
-  const fem::FacetTabulation<dim> values = fem::tabulate_on_facets<dim>(space_.basis(), rule.points);
-  for (const auto& [facet, whole] : contact_parts_)
+  const SideTables tables(space_.basis(), rule);
+  const fem::LagrangeBasis<dim>& basis = form_.space().basis();
+  fem::Tabulation<dim> memory;
+  for (const RefinedSegment<dim>& segment : segments_)
   {
-    const mesh::BoundaryFacet& ancestor = form_.segments()[whole].slave.facet;
-    const mesh::CellMap<dim> ancestor_map = mesh::cell_map(form_.space().mesh(), ancestor.cell);
-    const auto points = fem::facet_points(refined_.mesh, facet.cell, facet.local, rule);
-    std::vector<Point<dim>> in_ancestor;
-    std::vector<Point<dim - 1>> on_ancestor;
-    for (const auto& [q, x, dx] : points)
-    {
-      in_ancestor.push_back(fem::reference_point(ancestor_map, x));
-      on_ancestor.push_back(mesh::cell_to_facet<dim>(ancestor.local, in_ancestor.back()));
-    }
-    const fem::Tabulation<dim> table = form_.space().basis().tabulate(in_ancestor);
-    const auto states = form_.contact_states(u, whole, {on_ancestor, &table});
-    for (const auto& [q, x, dx] : points)
-      fem::add_at_point<dim>(space_.cell_nodes(facet.cell), values.on_facet[facet.local].values_at(q),
-                             dx * states[q].traction, vector);
+    const contact::ContactSegment<dim>& whole = form_.segments()[segment.whole];
+    std::vector<Point<dim - 1>> points;
+    for (const Point<dim - 1>& s : rule.points) points.push_back(fem::point_in<dim - 1>(segment.part, s));
+    const fem::Tabulation<dim> on_slave = contact::tabulate<dim>(basis, whole.slave, points);
+    fem::Tabulation<dim> on_master;
+    if (whole.master) on_master = contact::tabulate<dim>(basis, *whole.master, points);
+    const auto states = form_.contact_states(u, segment.whole, {points, &on_slave, &on_master});
+    segment.for_each_side(
+        [&](const contact::SegmentSide<dim>& side)
+        {
+          const fem::Tabulation<dim>& table = tables(side, memory);
+          for (int q = 0; q < rule.size(); ++q)
+            fem::add_at_point<dim>(space_.cell_nodes(side.facet.cell), table.values_at(q),
+                                   side.sign * segment.det() * rule.weights[q] * states[q].traction, vector);
+        });
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
+#include "tribound/certify/truth/refined_segments.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/mesh/refine.h"
@@ -34,14 +35,14 @@ template <int dim>
 /// The dual norm of the residual of functions of one discrete problem, from below.
 ///
 /// For z in W = P^q on the refined mesh, 0 in the components that Gamma_D fixes, with
-///     (grad z, grad v) + sum_{F in C} (1/h_F) (z, v)_F = <R(u), v>   for all v in W,
-///     <R(u), v> = L(v) - a(u, v) + (T(u), v)_C,
-/// ||z||_{C,h} <= ||R(u)||_*, with equality as W grows. h_F, and gamma in T(u), are those of the facets of
-/// the original mesh. The operator couples no components: one scalar matrix for each set of fixed nodes,
+///     (grad z, grad v) + sum_k (1/h_k) ([z], [v])_k = <R(u), v>   for all v in W, k the segments of C,
+///     <R(u), v> = L(v) - a(u, v) + (T(u), [v])_C,
+/// ||z||_{C,h} <= ||R(u)||_*, with equality as W grows. h_k, and gamma in T(u), are those of the original
+/// mesh. The operator couples bodies but no components: one scalar matrix for each set of fixed nodes,
 /// factored once. a(u, v) is exact; f and g_N are integrated as in a form of degree q on the refined mesh
 /// (DiscreteData, up to 1e-5 of their effect, and what it names in its remainders where its parts run out),
-/// T(u) with the rule on facets cut further, because it has kinks: from below up to these. Keeps a reference
-/// to the form.
+/// T(u) with the rule on segments cut further, because it has kinks: from below up to these. Keeps a
+/// reference to the form.
 template <int dim>
 class DualNorm
 {
@@ -72,14 +73,9 @@ class DualNorm
     std::unique_ptr<algebra::SparseMatrix> matrix;
     std::unique_ptr<algebra::LinearSolver> solver;
   };
-  /// A facet of the refined mesh on Gamma_C.
-  struct ContactPart
-  {
-    mesh::BoundaryFacet facet;
-    int whole;  ///< number of the contact facet of the form that contains it
-  };
+  /// The basis of W at the points of a rule on the sides of segments; those of whole facets are known.
+  class SideTables;
 
-  void find_contact_parts();
   void find_operators();
   [[nodiscard]] algebra::SparseMatrix matrix(const std::vector<char>& fixed) const;
   void add_contact_load(std::span<const double> u, std::span<double> vector) const;
@@ -88,7 +84,7 @@ class DualNorm
   mesh::Refined<dim> refined_;
   fem::LagrangeSpace<dim> space_;
   std::vector<double> load_;  ///< L(phi_i), when it has been needed
-  std::vector<ContactPart> contact_parts_;
+  std::vector<RefinedSegment<dim>> segments_;
   std::vector<Operator> operators_;
 };
 

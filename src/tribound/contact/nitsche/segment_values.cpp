@@ -10,6 +10,15 @@ namespace tribound::contact
 {
 
 template <int dim>
+fem::Tabulation<dim> tabulate(const fem::LagrangeBasis<dim>& basis, const SegmentSide<dim>& side,
+                              std::span<const Point<dim - 1>> points)
+{
+  std::vector<Point<dim - 1>> on_facet;
+  for (const Point<dim - 1>& s : points) on_facet.push_back(side.on_facet(s));
+  return basis.tabulate(fem::points_on_facet<dim>(side.facet.local, on_facet));
+}
+
+template <int dim>
 SegmentTables<dim>::SegmentTables(const fem::LagrangeBasis<dim>& basis,
                                   std::span<const ContactSegment<dim>> segments,
                                   std::span<const Point<dim - 1>> points)
@@ -19,9 +28,7 @@ SegmentTables<dim>::SegmentTables(const fem::LagrangeBasis<dim>& basis,
   const auto table_of = [&](const SegmentSide<dim>& side)
   {
     if (!side.part) return side.facet.local;
-    std::vector<Point<dim - 1>> on_facet;
-    for (const Point<dim - 1>& s : points) on_facet.push_back(side.on_facet(s));
-    tables_.push_back(basis.tabulate(fem::points_on_facet<dim>(side.facet.local, on_facet)));
+    tables_.push_back(tabulate(basis, side, points));
     return static_cast<int>(tables_.size()) - 1;
   };
   for (const ContactSegment<dim>& segment : segments)
@@ -81,6 +88,10 @@ Tensor<dim> SegmentValues<dim>::augmented_derivative(const Side& side, int i, in
   return block;
 }
 
+template fem::Tabulation<2> tabulate(const fem::LagrangeBasis<2>&, const SegmentSide<2>&,
+                                     std::span<const Point<1>>);
+template fem::Tabulation<3> tabulate(const fem::LagrangeBasis<3>&, const SegmentSide<3>&,
+                                     std::span<const Point<2>>);
 template class SegmentTables<2>;
 template class SegmentTables<3>;
 template class SegmentValues<2>;

@@ -13,6 +13,12 @@
 namespace tribound::contact
 {
 
+/// The basis functions of the cell of a side at points with these coordinates on the segment.
+template <int dim>
+[[nodiscard]] fem::Tabulation<dim> tabulate(const fem::LagrangeBasis<dim>& basis,
+                                            const SegmentSide<dim>& side,
+                                            std::span<const Point<dim - 1>> points);
+
 /// Points of a segment, and the basis functions of the cells of its sides there. A view.
 template <int dim>
 struct SegmentTable
