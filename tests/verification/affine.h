@@ -81,17 +81,39 @@ AffineCase<dim> turned(AffineCase<dim> c, const Tensor<dim>& q)
   return c;
 }
 
-/// Displacement on all sides but the bottom and the right one, which carries the exact traction.
+/// The components of gradient x + offset.
 template <int dim>
-ProblemData<dim> affine_data(const AffineCase<dim>& c, const Point<dim>& right_normal)
+std::array<problem::Field, 3> affine_field(const Tensor<dim>& gradient, const Point<dim>& offset)
 {
   std::array<problem::Field, 3> u;
   for (int a = 0; a < dim; ++a)
   {
-    std::string text = fmt::format("{:.17g}", c.offset[a]);
-    for (int b = 0; b < dim; ++b) text += fmt::format(" + {:.17g}*{}", c.gradient(a, b), "xyz"[b]);
+    std::string text = fmt::format("{:.17g}", offset[a]);
+    for (int b = 0; b < dim; ++b) text += fmt::format(" + {:.17g}*{}", gradient(a, b), "xyz"[b]);
     u[a] = formula(text);
   }
+  return u;
+}
+
+/// max |u_h - gradient x - offset| over the nodes.
+template <int dim>
+double distance_from_affine(const fem::LagrangeSpace<dim>& space, std::span<const Index> nodes,
+                            std::span<const double> u, const Tensor<dim>& gradient, const Point<dim>& offset)
+{
+  double largest = 0;
+  const std::vector<Point<dim>> points = space.node_points();
+  for (const Index i : nodes)
+    largest = std::max(largest, (Eigen::Map<const Point<dim>>(u.data() + dim * static_cast<std::size_t>(i)) -
+                                 gradient * points[i] - offset)
+                                    .norm());
+  return largest;
+}
+
+/// Displacement on all sides but the bottom and the right one, which carries the exact traction.
+template <int dim>
+ProblemData<dim> affine_data(const AffineCase<dim>& c, const Point<dim>& right_normal)
+{
+  const std::array<problem::Field, 3> u = affine_field<dim>(c.gradient, c.offset);
   const Point<dim> t = contact::sigma<dim>(affine_material, c.gradient) * right_normal;
   ProblemData<dim> data{
       .boundaries = {obstacle<dim>("bottom", c.contact), loaded<dim>("right", t[0], t[1], t[dim - 1])}};
