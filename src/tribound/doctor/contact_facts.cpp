@@ -13,13 +13,6 @@ namespace tribound::doctor
 namespace
 {
 
-template <int dim>
-double degrees_between(const Point<dim>& a, const Point<dim>& b)
-{
-  // Twice the angle of half the chord: acos loses half the digits near 0.
-  return 2 * std::asin(std::min(1.0, (a - b).norm() / 2)) * 180 / std::numbers::pi;
-}
-
 /// The mean of the vertices that two facets share.
 template <int dim>
 Point<dim> shared_point(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& a,
@@ -56,7 +49,7 @@ class Collector
   void add_segment(std::size_t k)
   {
     const contact::ContactSegment<dim>& segment = form_.segments()[k];
-    ++facts_.facets;
+    if (k == 0 || form_.segments()[k - 1].slave.number != segment.slave.number) ++facts_.facets;
     facts_.measure += segment.measure;
     mean_ += segment.measure * segment.normal;
     const auto points = form_.contact_points(k);
@@ -107,6 +100,13 @@ class Collector
 }  // namespace
 
 template <int dim>
+double degrees_between(const Point<dim>& a, const Point<dim>& b)
+{
+  // Twice the angle of half the chord: acos loses half the digits near 0.
+  return 2 * std::asin(std::min(1.0, (a - b).norm() / 2)) * 180 / std::numbers::pi;
+}
+
+template <int dim>
 double kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b)
 {
   constexpr double corner = 45;
@@ -152,6 +152,8 @@ std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheF
   return result;
 }
 
+template double degrees_between(const Point<2>&, const Point<2>&);
+template double degrees_between(const Point<3>&, const Point<3>&);
 template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<2>&);
 template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<3>&);
 template double kink(const contact::ContactSegment<2>&, const contact::ContactSegment<2>&);

@@ -27,6 +27,10 @@ struct ContactBoundaryFacts
   Place largest_gap_at;
 };
 
+/// The angle between two unit vectors, degrees.
+template <int dim>
+[[nodiscard]] double degrees_between(const Point<dim>& a, const Point<dim>& b);
+
 /// The angle between the normals of neighbouring facets, degrees; 0 from 45 on: that is a corner of the body,
 /// not a curved surface, and below 0.01: that is round-off of the coordinates in a file.
 template <int dim>

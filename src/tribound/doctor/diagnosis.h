@@ -11,6 +11,7 @@
 #include "tribound/doctor/cost.h"
 #include "tribound/doctor/load_facts.h"
 #include "tribound/doctor/mesh_quality.h"
+#include "tribound/doctor/pair_facts.h"
 #include "tribound/doctor/support_facts.h"
 #include "tribound/doctor/units.h"
 
@@ -24,6 +25,7 @@ struct Diagnosis
   std::vector<ContactHeldMotion> held_by_contact;
   std::vector<OverconstrainedCorner> corners;
   std::vector<ContactBoundaryFacts> contacts;
+  std::vector<PairFacts> pairs;
   LoadFacts loads;
   std::vector<UnitSystem> units;
   MeshQuality mesh;
@@ -43,6 +45,7 @@ template <int dim>
   result.held_by_contact = motions_held_by_contact(form);
   result.corners = overconstrained_corners(form);
   result.contacts = contact_boundary_facts(form);
+  result.pairs = pair_facts(form);
   result.loads = load_facts(form);
   result.units = plausible_units(result.loads);
   result.mesh = mesh_quality(form.space().mesh());

@@ -235,6 +235,7 @@ std::vector<Finding> findings(const Diagnosis& diagnosis)
   Findings result;
   add_supports(diagnosis, result);
   std::ranges::move(contact_findings(diagnosis), std::back_inserter(result));
+  std::ranges::move(pair_findings(diagnosis), std::back_inserter(result));
   result.push_back(strain_finding(diagnosis.loads));
   add_suction(diagnosis.loads, result);
   add_poisson(diagnosis, result);

@@ -41,6 +41,9 @@ struct Finding
 /// The part about contact boundaries.
 [[nodiscard]] std::vector<Finding> contact_findings(const Diagnosis& diagnosis);
 
+/// The part about pairs of bodies in contact.
+[[nodiscard]] std::vector<Finding> pair_findings(const Diagnosis& diagnosis);
+
 /// The part about memory and time.
 [[nodiscard]] std::vector<Finding> cost_findings(const Diagnosis& diagnosis);
 
