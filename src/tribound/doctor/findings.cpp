@@ -43,8 +43,9 @@ Finding held(const ContactHeldMotion& motion)
       motion.by_friction
           ? fmt::format("only friction stops {} from {}", motion.body, motion.motion)
           : fmt::format("only contact stops {} from {}, and contact only pushes", motion.body, motion.motion);
-  finding.advice = motion.by_friction ? "the loads must press the body on while friction holds it"
-                                      : "the loads must press the body against the obstacle";
+  const char* press = motion.of_several ? "the loads must press the bodies together"
+                                        : "the loads must press the body against the obstacle";
+  finding.advice = motion.by_friction ? "the loads must press the body on while friction holds it" : press;
   if (motion.remedy)
     finding.advice +=
         fmt::format("; a fixed displacement {} would hold it for certain", contact::describe(*motion.remedy));

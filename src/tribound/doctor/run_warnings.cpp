@@ -99,13 +99,13 @@ void add_penetration(const ContactOutcome& outcome, double max_displacement, std
 {
   if (outcome.penetration <= large_penetration * max_displacement) return;
   const double ratio = outcome.penetration / max_displacement;
-  warnings.push_back(
-      warning("penetration",
-              fmt::format("the body penetrates the obstacle by {:.3g}, {:.2g} % of the largest displacement: "
-                          "contact is met on average only; refine there, or raise nitsche.gamma0 where "
-                          "it was lowered",
-                          outcome.penetration, 100 * ratio),
-              ratio, outcome.boundary, outcome.penetration_at));
+  warnings.push_back(warning(
+      "penetration",
+      fmt::format("{} by {:.3g}, {:.2g} % of the largest displacement: contact is met on average "
+                  "only; refine there, or raise nitsche.gamma0 where it was lowered",
+                  outcome.has_master ? "the bodies penetrate each other" : "the body penetrates the obstacle",
+                  outcome.penetration, 100 * ratio),
+      ratio, outcome.boundary, outcome.penetration_at));
 }
 
 void add_friction(const ContactOutcome& outcome, std::vector<Finding>& warnings)

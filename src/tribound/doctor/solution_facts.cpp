@@ -164,6 +164,7 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     ContactOutcome& outcome = outcomes[segment.slave.facet.tag];
     outcome.boundary = form.problem().boundary(segment.slave.facet.tag).name;
+    outcome.has_master = segment.master.has_value();
     const problem::FrictionCone friction = cone(segment.contact->law);
     outcome.has_friction = friction.resists_sliding();
     if (friction.coefficient > 0) outcome.coefficient = friction.coefficient;
@@ -175,7 +176,8 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
   add_kinks<dim>(form, facets, pairs, outcomes);
   std::vector<ContactOutcome> result;
   result.reserve(outcomes.size());
-  for (auto& [tag, outcome] : outcomes) result.push_back(std::move(outcome));
+  for (auto& [tag, outcome] : outcomes)
+    if (!cone(form.problem().contact(tag)->law).is_tied) result.push_back(std::move(outcome));
   return result;
 }
 

@@ -17,6 +17,7 @@ namespace tribound::doctor
 struct ContactOutcome
 {
   std::string boundary;
+  bool has_master = false;  ///< a body is on the other side
   long facets = 0;
   long closed_facets = 0;  ///< with pressure at every quadrature point
   double closed = 0;       ///< measure at which there is pressure
@@ -45,7 +46,7 @@ struct ContactOutcome
   [[nodiscard]] double mean_pressure() const { return closed > 0 ? force / closed : 0; }
 };
 
-/// The outcome on every contact boundary that has facets, in the order of the problem.
+/// The outcome on every contact boundary that has facets and is not tied, in the order of the problem.
 template <int dim>
 [[nodiscard]] std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& form,
                                                            std::span<const double> u);

@@ -166,7 +166,8 @@ std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheFor
     {
       for (const Eigen::VectorXd& z : assembly.readable_basis(motions))
         result.push_back({assembly.describe(form.problem(), assemblies.size() > 1),
-                          assembly.describe(form.problem(), z), by_friction, support.remedy(z)});
+                          assembly.describe(form.problem(), z), by_friction, support.remedy(z),
+                          assembly.bodies.size() > 1});
     };
     add(complement(left, sliding), false);
     add(sliding, true);

@@ -21,6 +21,7 @@ struct ContactHeldMotion
   std::string motion;                     ///< such as "translation along x"
   bool by_friction = false;               ///< nothing but friction stops it; else pressure, one way
   std::optional<contact::Remedy> remedy;  ///< what would stop it without contact
+  bool of_several = false;                ///< bodies that contact joins
 };
 
 /// The motions of every assembly that only contact stops: first those stopped by pressure, then by friction.
