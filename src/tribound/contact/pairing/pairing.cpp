@@ -115,17 +115,30 @@ class SlaveFacet
     std::ranges::sort(candidates_, nearer);
     hide();
     std::ranges::sort(candidates_, {}, &Candidate<dim>::master);
-    for (const Candidate<dim>& candidate : candidates_)
-      for (const Polygon<dim>& polygon : candidate.visible)
+    for (Candidate<dim>& candidate : candidates_)
+      for (Polygon<dim>& polygon : candidate.visible)
+      {
+        turn_to_first_corner(polygon);
         for_each_simplex<dim>(polygon,
                               [&](const auto& on_slave, const auto& on_master)
                               {
                                 if (fem::fraction<dim - 1>(on_slave) > negligible)
                                   pairs.push_back({{slave_.number, on_slave}, {candidate.master, on_master}});
                               });
+      }
   }
 
  private:
+  /// Makes the corner the first that is so in a direction which no mesh has: with the sides exchanged the
+  /// same simplices come out.
+  void turn_to_first_corner(Polygon<dim>& polygon) const
+  {
+    if (dim == 2 || polygon.empty()) return;
+    Point<dim> direction;
+    for (int i = 0; i < dim; ++i) direction[i] = std::sin(1 + 1.7 * i);
+    const auto along = [&](const CornerPair<dim>& corner) { return direction.dot(slave_.map(corner.slave)); };
+    std::ranges::rotate(polygon, std::ranges::min_element(polygon, {}, along));
+  }
   /// l is affine on the plane of the slave facet: from its values where the corners of the master lie.
   static void set_distance(Candidate<dim>& found, const std::array<double, dim>& distances)
   {
