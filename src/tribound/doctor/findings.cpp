@@ -67,24 +67,26 @@ Finding strain_finding(const LoadFacts& loads)
                      {"support_stress", loads.support_stress},
                      {"body_stress", loads.body_stress},
                      {"displacement_strain", loads.displacement_strain},
+                     {"interference_strain", loads.interference_strain},
                      {"E", loads.smallest_E}};
   if (loads.strain() == 0)
   {
     finding.severity = Severity::note;
     finding.code = "no_load";
-    finding.text = "there is no load and no prescribed displacement but 0";
+    finding.text = "there is no load, no interference and no prescribed displacement but 0";
     finding.advice =
         "the solution is 0; unless that is what you want, add a traction, a pressure, a body force or "
         "a displacement";
     return finding;
   }
-  const bool stresses = loads.stress() / loads.smallest_E >= loads.displacement_strain;
-  finding.text = stresses ? fmt::format("expect strains of about {:.2g} % (stresses near {:.3g}, E = {:.4g})",
-                                        100 * loads.strain(), loads.stress(), loads.smallest_E)
-                          : fmt::format(
-                                "expect strains of about {:.2g} % (prescribed displacements of {:.3g} "
-                                "over the size {:.4g})",
-                                100 * loads.strain(), loads.strain() * loads.size, loads.size);
+  const bool stresses = loads.stress() / loads.smallest_E >= loads.strain();
+  const char* lengths =
+      loads.displacement_strain >= loads.strain() ? "prescribed displacements of" : "interferences up to";
+  finding.text = stresses
+                     ? fmt::format("expect strains of about {:.2g} % (stresses near {:.3g}, E = {:.4g})",
+                                   100 * loads.strain(), loads.stress(), loads.smallest_E)
+                     : fmt::format("expect strains of about {:.2g} % ({} {:.3g} over the size {:.4g})",
+                                   100 * loads.strain(), lengths, loads.strain() * loads.size, loads.size);
   if (loads.strain() < tiny_strain)
   {
     finding.severity = Severity::note;

@@ -157,7 +157,7 @@ double LoadFacts::stress() const
 
 double LoadFacts::strain() const
 {
-  return std::max(stress() / smallest_E, displacement_strain);
+  return std::max({stress() / smallest_E, displacement_strain, interference_strain});
 }
 
 template <int dim>
@@ -175,6 +175,8 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
   if (support > 0) facts.support_stress = resultant.norm() / support;
   facts.body_stress = facts.largest_body_force * facts.size;
   facts.displacement_strain = displacement_range(form) / facts.size;
+  for (const contact::ContactPoint<dim>& point : form.contact_points())
+    facts.interference_strain = std::max(facts.interference_strain, -point.gap / facts.size);
   facts.suction = find_suction(form);
   return facts;
 }

@@ -51,11 +51,12 @@ struct LoadFacts
   double support_stress = 0;       ///< |int f + int g_N| over the area that contact or displacements hold
   double body_stress = 0;          ///< max |f| L
   double displacement_strain = 0;  ///< range of a prescribed component / L; with contact, it includes 0
+  double interference_strain = 0;  ///< the largest interference, -g, / L
   std::vector<Suction> suction;
 
   /// The largest of these stresses.
   [[nodiscard]] double stress() const;
-  /// stress() / smallest E or displacement_strain, whichever is larger.
+  /// stress() / smallest E, displacement_strain or interference_strain, whichever is the largest.
   [[nodiscard]] double strain() const;
 };
 

@@ -129,6 +129,9 @@ TEST(Findings, LoadsAgainstStiffness)
   EXPECT_THAT(finding(diagnosis, "strain").advice, HasSubstr("units of loads and E"));
   diagnosis.loads.traction_stress = 0;
   EXPECT_EQ(finding(diagnosis, "no_load").severity, doctor::Severity::note);
+  diagnosis.loads.interference_strain = 0.002;
+  EXPECT_EQ(finding(diagnosis, "strain").text,
+            "expect strains of about 0.2 % (interferences up to 0.004 over the size 2)");
   diagnosis.loads.displacement_strain = 0.1;
   EXPECT_THAT(finding(diagnosis, "strain").text,
               HasSubstr("prescribed displacements of 0.2 over the size 2"));
