@@ -137,7 +137,7 @@ class SlaveFacet
     Point<dim> direction;
     for (int i = 0; i < dim; ++i) direction[i] = std::sin(1 + 1.7 * i);
     const auto along = [&](const CornerPair<dim>& corner) { return direction.dot(slave_.map(corner.slave)); };
-    std::ranges::rotate(polygon, std::ranges::min_element(polygon, {}, along));
+    std::rotate(polygon.begin(), std::ranges::min_element(polygon, {}, along), polygon.end());
   }
   /// l is affine on the plane of the slave facet: from its values where the corners of the master lie.
   static void set_distance(Candidate<dim>& found, const std::array<double, dim>& distances)
