@@ -109,10 +109,6 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
         return checkpoint ? restarted_config(request, *checkpoint)
                           : case_file::read_config(request.case_file, request.overrides);
       });
-  if (!config.contacts.empty())
-    throw InputError(config.contacts.front().where,
-                     "contact between bodies runs on one process, from its start",
-                     "without mpirun and without --restart");
   std::optional<mesh::AnyMesh> whole;
   const bool is_plane = ranks.on_first(
       [&]
@@ -122,7 +118,7 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
           mesh::require_valid(*box);
           return box->lower.size() == 2;  // all ranks make it
         }
-        whole.emplace(mesh::read_mesh(config.mesh, {}, &stop_on_signals()));
+        whole.emplace(mesh::read_mesh(config.mesh, case_file::find_seams(config), &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   const auto run_in = is_plane ? run_part<2> : run_part<3>;

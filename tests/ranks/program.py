@@ -1,6 +1,6 @@
 """Whole runs by several processes against one process, and what happens when something goes wrong.
 
-Usage: program.py MPIRUN PROGRAM FAULT EXAMPLES DIRECTORY
+Usage: program.py MPIRUN PROGRAM FAULT EXAMPLES CASES DIRECTORY
 """
 
 import csv
@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-MPIRUN, PROGRAM, FAULT, EXAMPLES, DIRECTORY = sys.argv[1:6]
+MPIRUN, PROGRAM, FAULT, EXAMPLES, CASES, DIRECTORY = sys.argv[1:7]
 ENVIRONMENT = os.environ | {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -90,7 +90,7 @@ def the_same_as_one(name, *arguments):
         for file in (f"level_{number:03}.pvtu", f"contact_{number:03}.vtu", "adapted.msh", "newton.csv"):
             expect(f"{name} {n}", (out(name, n) / file).is_file(), file)
         certificates = [json.loads((out(name, k) / "certificate.json").read_text()) for k in (1, n)]
-        for key in ("status", "reason", "warnings", "contact", "balance", "mesh", "constants"):
+        for key in ("status", "reason", "warnings", "contact", "bodies", "balance", "mesh", "constants"):
             pair = [certificate.get(key) for certificate in certificates]
             expect(f"{name} {n} {key}", alike(*pair), *pair)
         lines = [sorted(len(row) for row in csv.reader(open(out(name, k) / "contact.csv"))) for k in (1, n)]
@@ -164,6 +164,17 @@ def a_run_goes_on():
     expect("no case", result.returncode == 1 and "--restart" in result.stderr, result.returncode, result.stderr)
 
 
+def bodies_go_on():
+    """Joints and several boxes: the interfaces come with the mesh."""
+    for name, case in (("blocks", f"{EXAMPLES}/07_three_blocks/case.toml"), ("joint", f"{CASES}/joint.toml")):
+        run_case(f"{name}_begun", 3, case, "--set", "output.checkpoint=true", "--set", "adapt.max_levels=1", "--set", "adapt.tolerance=1e-9")
+        for n in (1, 2):
+            shutil.copytree(out(f"{name}_begun", 3), out(f"{name}_on", n))
+            result = run(n, PROGRAM, "run", "-q", "--restart", str(out(f"{name}_on", n)), "--set", "adapt.max_levels=3")
+            expect(f"{name} on {n}", result.returncode == 3, result.returncode, result.stderr)
+        expect_same_tables(f"{name}_on", 2)
+
+
 def a_box_goes_on():
     for n in (1, 3):
         run_case("box", n, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "output.checkpoint=true", "--set", "adapt.max_levels=2")
@@ -196,11 +207,15 @@ the_same_as_one("dam", f"{EXAMPLES}/05_dam/case.toml")
 the_same_as_one("dam3d", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=direct")
 the_same_as_one("multigrid", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=iterative", "--set",
                 "newton.stopping=tolerance", "--set", "newton.tolerance=3e-11")
+the_same_as_one("blocks", f"{EXAMPLES}/07_three_blocks/case.toml")
+the_same_as_one("joint", f"{CASES}/joint.toml", "--set", "adapt.max_levels=4")
+the_same_as_one("rock3d", f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "adapt.max_levels=1", "--set", "solver.method=direct")
 bad_input_is_told_once()
 commands_for_one_process()
 interrupted()
 a_run_goes_on()
 a_box_goes_on()
+bodies_go_on()
 one_thread_each()
 faults()
 print("\n".join(failures) or "as by one process")

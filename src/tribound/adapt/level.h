@@ -18,6 +18,7 @@
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/pairing/partners.h"
 #include "tribound/solve/newton.h"
 
 namespace tribound::adapt
@@ -30,7 +31,9 @@ struct Discretisation
 {
   Discretisation(mesh::Mesh<dim> m, const problem::Problem<dim>& problem, const Method& method,
                  const contact::DataAccuracy& accuracy = {})
-      : mesh(std::move(m)), space(mesh, method.degree), form(problem, space, method.gamma_0(), accuracy)
+      : mesh(contact::with_partners<dim>(std::move(m), problem.pairs())),
+        space(mesh, method.degree),
+        form(problem, space, method.gamma_0(), accuracy)
   {
   }
   Discretisation(const Discretisation&) = delete;

@@ -249,9 +249,6 @@ Config read_document(const Node& document, std::string file)
   root.read("study", config.study, [&](const Node& node) { return read_study(node, config.method.degree); });
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
-  if (config.output.checkpoint && !config.contacts.empty())
-    throw InputError(config.contacts.front().where, "a run with contact between bodies cannot be restarted",
-                     "without output.checkpoint");
   return config;
 }
 

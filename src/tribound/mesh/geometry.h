@@ -178,15 +178,21 @@ template <int dim>
   return map;
 }
 
-/// Of facet `local` of `cell`, its vertices in the order of facet_to_cell().
+/// Of a facet with these vertices, in ascending local order: that of facet_to_cell().
 template <int dim>
-[[nodiscard]] FacetMap<dim> facet_map(const Mesh<dim>& mesh, Index cell, int local)
+[[nodiscard]] FacetMap<dim> facet_map(const std::array<Point<dim>, dim>& points)
 {
-  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local));
   FacetMap<dim> map;
   map.origin = points[0];
   for (int j = 0; j < dim - 1; ++j) map.jacobian.col(j) = points[j + 1] - points[0];
   return map;
+}
+
+/// Of facet `local` of `cell`.
+template <int dim>
+[[nodiscard]] FacetMap<dim> facet_map(const Mesh<dim>& mesh, Index cell, int local)
+{
+  return facet_map<dim>(points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local)));
 }
 
 /// h_T: the longest edge.
@@ -196,11 +202,10 @@ template <int dim>
   return diameter(points_of(mesh.vertices(), mesh.cell(cell)));
 }
 
-/// Local facet `local` of `cell`, seen from that cell.
+/// Local facet `local` of a cell, seen from that cell, with these vertices in ascending local order.
 template <int dim>
-[[nodiscard]] FacetGeometry<dim> facet_geometry(const Mesh<dim>& mesh, Index cell, int local)
+[[nodiscard]] FacetGeometry<dim> facet_geometry(const std::array<Point<dim>, dim>& points, int local)
 {
-  const auto points = points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local));
   const Point<dim> edge = points[1] - points[0];
   Point<dim> normal;  // outward for even `local`: the facet's vertices in ascending local order turn with it
   if constexpr (dim == 2)
@@ -209,6 +214,13 @@ template <int dim>
     normal = cross(edge, points[2] - points[0]);
   const double length = normal.norm();
   return {(local % 2 == 0 ? normal : -normal) / length, dim == 2 ? length : 0.5 * length, diameter(points)};
+}
+
+/// Local facet `local` of `cell`, seen from that cell.
+template <int dim>
+[[nodiscard]] FacetGeometry<dim> facet_geometry(const Mesh<dim>& mesh, Index cell, int local)
+{
+  return facet_geometry<dim>(points_of(mesh.vertices(), facet_vertices(mesh.cell(cell), local)), local);
 }
 
 /// The reference coordinates in the cell of the point `s` of the reference facet: the facet's vertices are

@@ -31,6 +31,7 @@ MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels&& labels)
   data.region_names = std::move(labels.region_names);
   data.boundary_names = std::move(labels.boundary_names);
   data.source = std::move(labels.source);
+  data.interfaces = std::move(labels.interfaces);
   return data;
 }
 

@@ -129,10 +129,12 @@ struct MeshLabels
   std::vector<std::string> region_names;
   std::vector<std::string> boundary_names;
   Where source;  ///< for messages
+  std::vector<Interface> interfaces{};
 };
 
 /// A conforming simplicial mesh of a polygon or polyhedron, or the part of one that a rank has: its own cells
-/// and, behind them, ghosts. The outer facets of ghosts are no boundary.
+/// and, behind them, ghosts, others' cells around them or opposite to them. The outer facets of ghosts are no
+/// boundary.
 template <int dim>
 class Mesh
 {

@@ -107,14 +107,7 @@ std::vector<std::vector<int>> asking_ranks(const Ranks& ranks, std::span<const V
   return result;
 }
 
-template <int dim>
-struct Ghost
-{
-  CellRecord<dim> cell;
-  int owner;
-};
-
-/// The cells of other ranks around the vertices of the own ones, in ascending order of their names.
+/// The cells of other ranks around the vertices of the own ones.
 template <int dim>
 std::vector<Ghost<dim>> find_ghosts(const Ranks& ranks, const Cube<dim>& cube,
                                     std::span<const CellRecord<dim>> owned)
@@ -146,12 +139,10 @@ std::vector<Ghost<dim>> find_ghosts(const Ranks& ranks, const Cube<dim>& cube,
   for (int r = 0; r < ranks.size(); ++r)
     for (const CellRecord<dim>& cell : in[r])
       if (r != ranks.rank()) ghosts.push_back({cell, r});
-  std::ranges::sort(
-      ghosts, {}, [](const Ghost<dim>& ghost) -> const auto& { return ghost.cell.name; });
   return ghosts;
 }
 
-/// has_patch, sharers and the number of vertices.
+/// has_patch and sharers.
 template <int dim>
 void set_sharers(std::span<const Cell<dim>> corners, Partition<dim>& partition)
 {
@@ -173,31 +164,34 @@ void set_sharers(std::span<const Cell<dim>> corners, Partition<dim>& partition)
   }
   std::inclusive_scan(partition.sharers_begin.begin(), partition.sharers_begin.end(),
                       partition.sharers_begin.begin());
+}
 
-  std::int64_t n_counted_here = 0;  // by the lowest of the ranks
-  for (Index v = 0; v < static_cast<Index>(n_vertices); ++v)
+/// Those of all ranks; each is counted by the lowest that has it.
+template <int dim>
+std::int64_t count_vertices(const Partition<dim>& partition)
+{
+  std::int64_t n_counted_here = 0;
+  for (Index v = 0; v < static_cast<Index>(partition.vertices.size()); ++v)
   {
     const std::span<const int> others = partition.sharers_of(v);
     if (partition.has_patch[v] != 0 && (others.empty() || partition.ranks.rank() < others.front()))
       ++n_counted_here;
   }
-  partition.n_vertices = partition.ranks.sum(n_counted_here);
+  return partition.ranks.sum(n_counted_here);
 }
 
-}  // namespace
-
+/// Of own cells in ascending order.
 template <int dim>
-MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube, std::vector<CellRecord<dim>> owned)
+MeshPart<dim> make_part(const Ranks& ranks, const Cube<dim>& cube, std::vector<CellRecord<dim>> owned,
+                        std::vector<Ghost<dim>> ghosts)
 {
-  std::ranges::sort(owned, {}, &CellRecord<dim>::name);
+  std::ranges::sort(
+      ghosts, {}, [](const Ghost<dim>& ghost) -> const auto& { return ghost.cell.name; });
   MeshPart<dim> part;
   Partition<dim>& partition = part.partition;
   partition.ranks = ranks;
   partition.cube = cube;
   partition.n_owned_cells = static_cast<Index>(owned.size());
-  partition.n_cells = ranks.sum(static_cast<std::int64_t>(owned.size()));
-  const std::vector<Ghost<dim>> ghosts =
-      ranks.size() == 1 ? std::vector<Ghost<dim>>{} : find_ghosts<dim>(ranks, cube, owned);
   part.cells = std::move(owned);
   for (const Ghost<dim>& ghost : ghosts)
   {
@@ -207,6 +201,31 @@ MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube, std::vector
   for (const CellRecord<dim>& cell : part.cells) partition.names.push_back(cell.name);
   partition.vertices = number_vertices<dim>(cube, part.cells, part.corners);
   set_sharers<dim>(part.corners, partition);
+  return part;
+}
+
+}  // namespace
+
+template <int dim>
+MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube, std::vector<CellRecord<dim>> owned)
+{
+  std::ranges::sort(owned, {}, &CellRecord<dim>::name);
+  const std::int64_t n_cells = ranks.sum(static_cast<std::int64_t>(owned.size()));
+  std::vector<Ghost<dim>> ghosts;
+  if (ranks.size() > 1) ghosts = find_ghosts<dim>(ranks, cube, owned);
+  MeshPart<dim> part = make_part<dim>(ranks, cube, std::move(owned), std::move(ghosts));
+  part.partition.n_cells = n_cells;
+  part.partition.n_vertices = count_vertices(part.partition);
+  return part;
+}
+
+template <int dim>
+MeshPart<dim> with_these_ghosts(const Partition<dim>& before, std::vector<CellRecord<dim>> owned,
+                                std::vector<Ghost<dim>> ghosts)
+{
+  MeshPart<dim> part = make_part<dim>(before.ranks, before.cube, std::move(owned), std::move(ghosts));
+  part.partition.n_cells = before.n_cells;
+  part.partition.n_vertices = before.n_vertices;
   return part;
 }
 
@@ -272,9 +291,13 @@ GhostUpdate cell_update(const Partition<dim>& partition)
 }
 
 template MeshPart<2> with_ghosts(const Ranks&, const Cube<2>&, std::vector<CellRecord<2>>);
+template MeshPart<2> with_these_ghosts(const Partition<2>&, std::vector<CellRecord<2>>,
+                                       std::vector<Ghost<2>>);
 template std::vector<std::uint64_t> centre_keys(const Cube<2>&, std::span<const CellRecord<2>>);
 template GhostUpdate cell_update(const Partition<2>&);
 template MeshPart<3> with_ghosts(const Ranks&, const Cube<3>&, std::vector<CellRecord<3>>);
+template MeshPart<3> with_these_ghosts(const Partition<3>&, std::vector<CellRecord<3>>,
+                                       std::vector<Ghost<3>>);
 template std::vector<std::uint64_t> centre_keys(const Cube<3>&, std::span<const CellRecord<3>>);
 template GhostUpdate cell_update(const Partition<3>&);
 

@@ -56,9 +56,18 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh, Index first, Index last);
 
+/// A cell of another rank.
+template <int dim>
+struct Ghost
+{
+  CellRecord<dim> cell;
+  int owner;
+};
+
 /// What a rank knows of how the mesh is shared out. Its own cells come first, in ascending order of their
-/// names, then ghosts likewise: every cell of others that has a vertex in common with one of its own. The
-/// vertices are in ascending order of (morton_key, name), which is the same on all ranks.
+/// names, then ghosts likewise: every cell of others that has a vertex in common with one of its own, and
+/// what with_more_ghosts() has added. The vertices are in ascending order of (morton_key, name), which is the
+/// same on all ranks.
 template <int dim>
 struct Partition
 {
@@ -97,6 +106,13 @@ struct MeshPart
 template <int dim>
 [[nodiscard]] MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube,
                                         std::vector<CellRecord<dim>> owned);
+
+/// The same part with other ghosts, which include those of with_ghosts(); own cells ascend. Ranks may call it
+/// alone.
+template <int dim>
+[[nodiscard]] MeshPart<dim> with_these_ghosts(const Partition<dim>& before,
+                                              std::vector<CellRecord<dim>> owned,
+                                              std::vector<Ghost<dim>> ghosts);
 
 /// Where cells should be for all ranks to have the same weight: stretches of the curve along which `keys`
 /// ascend. Nothing of the size of the mesh is exchanged, and where a cell goes does not depend on where it

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,8 @@ MeshLabels labels_of(const Mesh<dim>& mesh)
 {
   return {{mesh.region_names().begin(), mesh.region_names().end()},
           {mesh.boundary_names().begin(), mesh.boundary_names().end()},
-          mesh.source()};
+          mesh.source(),
+          {mesh.interfaces().begin(), mesh.interfaces().end()}};
 }
 
 /// Texts of the first rank, on all.
@@ -39,6 +41,27 @@ void copy_texts(const Ranks& ranks, std::vector<std::string>& texts)
   }
 }
 
+/// Each side with its length in front.
+void copy_interfaces(const Ranks& ranks, std::vector<Interface>& interfaces)
+{
+  std::vector<std::string> texts;
+  for (const Interface& interface : interfaces)
+    for (const std::vector<std::string>& side : interface.sides)
+    {
+      texts.push_back(std::to_string(side.size()));
+      texts.insert(texts.end(), side.begin(), side.end());
+    }
+  copy_texts(ranks, texts);
+  interfaces.clear();
+  for (auto next = texts.begin(); next != texts.end();)
+    for (std::vector<std::string>& side : interfaces.emplace_back().sides)
+    {
+      const auto begin = next + 1;
+      next = begin + std::stoi(*next);
+      side.assign(begin, next);
+    }
+}
+
 void copy_labels(const Ranks& ranks, MeshLabels& labels)
 {
   copy_texts(ranks, labels.region_names);
@@ -48,6 +71,7 @@ void copy_labels(const Ranks& ranks, MeshLabels& labels)
                                     std::to_string(source.column)};
   copy_texts(ranks, place);
   source = {place[0], place[1], std::stoi(place[2]), std::stoi(place[3])};
+  copy_interfaces(ranks, labels.interfaces);
 }
 
 /// Cells that are many on one rank, or that are not along the curve.
@@ -157,6 +181,7 @@ Mesh<dim> whole_mesh(const MeshPart<dim>& part, const MeshLabels& labels)
   data.region_names = labels.region_names;
   data.boundary_names = labels.boundary_names;
   data.source = labels.source;
+  data.interfaces = labels.interfaces;
   return Mesh<dim>(std::move(data));
 }
 
@@ -255,6 +280,34 @@ std::vector<CellRecord<dim>> records_of(const Mesh<dim>& mesh, std::span<const I
 }
 
 template <int dim>
+Mesh<dim> with_more_ghosts(Mesh<dim> mesh, std::vector<Ghost<dim>> more)
+{
+  const Partition<dim>& partition = *mesh.partition();
+  const auto own = std::span(partition.names).first(partition.n_owned_cells);
+  const auto ghosts = std::span(partition.names).subspan(partition.n_owned_cells);
+  const auto name = [](const Ghost<dim>& ghost) -> const auto&
+  {
+    return ghost.cell.name;
+  };
+  std::erase_if(more,
+                [&](const Ghost<dim>& ghost) {
+                  return std::ranges::binary_search(own, name(ghost)) ||
+                         std::ranges::binary_search(ghosts, name(ghost));
+                });
+  if (more.empty()) return mesh;
+  std::ranges::sort(more, {}, name);
+  const auto is_same = [&](const Ghost<dim>& a, const Ghost<dim>& b) { return name(a) == name(b); };
+  more.erase(std::unique(more.begin(), more.end(), is_same), more.end());
+  std::vector<Index> all(mesh.n_cells());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<CellRecord<dim>> cells = records_of<dim>(mesh, all);
+  for (std::size_t g = 0; g < ghosts.size(); ++g)
+    more.push_back({cells[partition.n_owned_cells + g], partition.ghost_owners[g]});
+  cells.resize(partition.n_owned_cells);
+  return {with_these_ghosts<dim>(partition, std::move(cells), std::move(more)), labels_of(mesh)};
+}
+
+template <int dim>
 PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells)
 {
   MeshPart<dim> part = with_ghosts<dim>(Ranks(), from.partition()->cube, {cells.begin(), cells.end()});
@@ -271,12 +324,14 @@ template Mesh<3> share_out(const Ranks&, const Mesh<3>*, Index);
 template Balanced<2> restore(const Ranks&, const Mesh<2>*, std::vector<CellRecord<2>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
+template Mesh<2> with_more_ghosts(Mesh<2>, std::vector<Ghost<2>>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
 template Mesh<2> share_out(const Ranks&, const BoxMesh&);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
 template Balanced<3> restore(const Ranks&, const Mesh<3>*, std::vector<CellRecord<3>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
+template Mesh<3> with_more_ghosts(Mesh<3>, std::vector<Ghost<3>>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
 template Mesh<3> share_out(const Ranks&, const BoxMesh&);
 template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);

@@ -54,6 +54,11 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> records_of(const Mesh<dim>& mesh, std::span<const Index> cells);
 
+/// The mesh with these cells of others as ghosts, too, as far as they are none yet. Own cells keep their
+/// numbers. Ranks may call it alone.
+template <int dim>
+[[nodiscard]] Mesh<dim> with_more_ghosts(Mesh<dim> mesh, std::vector<Ghost<dim>> more);
+
 /// Cells of all ranks on this one alone, in ascending order of their names.
 template <int dim>
 struct PickedOut

@@ -242,8 +242,6 @@ std::vector<BadCase> combinations()
        "case.toml:4:9: contact[0].slave: ", "must be a string or an array", "boundary of the mesh"},
       {"SlaveIsMaster", head + "[[contact]]\nslave = ['a', 'b']\nmaster = 'b'\n",
        "case.toml:5:10: contact[0].master: ", "\"b\" is the slave, too", "two boundaries"},
-      {"CheckpointWithContact", head + "[[contact]]\njoint = 'a'\n[output]\ncheckpoint = true\n",
-       "case.toml:3:1: contact[0]: ", "cannot be restarted", "without output.checkpoint"},
       {"JointWithSlave", head + "[[contact]]\njoint = 'a'\nslave = 'b'\n",
        "case.toml:5:9: contact[0].slave: ", "stands beside joint", "makes both sides itself"},
       {"TiedWithGap", head + "[[contact]]\njoint = 'a'\nfriction = 'tied'\ngap = 0\n",

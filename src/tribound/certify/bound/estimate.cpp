@@ -219,15 +219,16 @@ double Estimator<dim>::transfer_change(std::span<const double> u, const Stress<d
     return 0;
 }
 
-/// Half of the square of a segment between bodies belongs to either cell.
+/// Half of the square of a segment between bodies belongs to either cell, which may be that of another rank.
 template <int dim>
 void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>& stress,
                                    Estimate& result) const
 {
   std::vector<Index> touched;
+  const auto is_own = [&](const contact::SegmentSide<dim>& side)
+  { return side.facet.cell < static_cast<Index>(result.cells.size()); };
   const auto add = [&](Index cell, double share, const ContactSquares& squares)  // of which it may have more
   {
-    if (cell >= static_cast<Index>(result.cells.size())) return;
     BoundComponents& eta = result.cells[cell];
     eta.cnt += share * squares.cnt;
     eta.frc += share * squares.frc;
@@ -237,13 +238,17 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
     eta.reg2t += share * squares.reg2t;
     touched.push_back(cell);
   };
-  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
+  for (std::size_t k = 0; k < form_.segments().size(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form_.segments()[k];
+    if (!is_own(segment.slave) && !(segment.master && is_own(*segment.master))) continue;
     const ContactSquares squares = contact_(static_cast<int>(k), u, stress.tractions);
     const double share = segment.master ? 0.5 : 1;
-    segment.for_each_side([&](const contact::SegmentSide<dim>& side)
-                          { add(side.facet.cell, share, squares); });
+    segment.for_each_side(
+        [&](const contact::SegmentSide<dim>& side)
+        {
+          if (is_own(side)) add(side.facet.cell, share, squares);
+        });
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());

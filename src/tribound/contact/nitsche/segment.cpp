@@ -103,18 +103,21 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
   for (std::size_t k = 0; k < problem.pairs().size(); ++k)
   {
     const problem::ContactPair<dim>& pair = problem.pairs()[k];
-    if (mesh.partition())
-      throw InputError(pair.where, "contact between bodies runs on one process", "start one process");
-    const std::vector<FacetPair<dim>> parts =
-        overlay<dim>(mesh, mesh::facets_named(mesh, pair.slave), mesh::facets_named(mesh, pair.master),
-                     pair.pairing, pair.where);
-    if (parts.empty())
+    const std::vector<FacetPair<dim>> parts = mesh.ranks().together(
+        [&]
+        {
+          return overlay<dim>(mesh, mesh::facets_named(mesh, pair.slave),
+                              mesh::facets_named(mesh, pair.master), pair.pairing, pair.where);
+        });
+    if (!mesh.ranks().any(!parts.empty()))
       throw InputError(pair.where, "nothing of the master lies opposite the slave",
                        "the outward normals of slave and master must face each other, within reach");
     for (const auto& [slave, master] : parts)
       segments.emplace_back(make_segment<dim>(problem, mesh, gamma0, pair.contact, slave, master)).pair =
           static_cast<int>(k);
   }
+  std::stable_partition(segments.begin(), segments.end(),
+                        [&](const ContactSegment<dim>& segment) { return is_owned(mesh, segment); });
   return segments;
 }
 

@@ -100,8 +100,9 @@ template <int dim>
                                                const problem::Contact& contact, const FacetPart<dim>& slave,
                                                const std::optional<FacetPart<dim>>& master = {});
 
-/// All of Gamma_C: the facets against rigid obstacles, each a segment, then the overlays of the pairs. Throws
-/// InputError as overlay() does, where nothing of a slave is covered, and for pairs on several ranks.
+/// All of Gamma_C: the facets against rigid obstacles, each a segment, then the overlays of the pairs. Of a
+/// mesh that is shared out, after with_partners(), owned ones come first; all ranks call it together. Throws
+/// InputError as overlay() does, and where nothing of a slave is covered.
 template <int dim>
 [[nodiscard]] std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& problem,
                                                                 const mesh::Mesh<dim>& mesh, double gamma0);

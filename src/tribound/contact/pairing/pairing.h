@@ -43,6 +43,9 @@ struct FacetPair
 /// it: form and certificate use the same segments, so that rounding here moves the problem by as much and
 /// harms no guarantee. In the order of the slave facets, then of the numbers of the master's. O(n log n).
 ///
+/// Of a mesh that is shared out, after with_partners(): what slave or master facets of cells with a patch
+/// vertex have, the same on all ranks, and parts of what others have.
+///
 /// InputError where e.n_F <= 0.1, and where two master facets are equally far or change their order: the
 /// pairing is then ambiguous. `where` is for messages.
 template <int dim>

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
+#include <span>
 
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/mesh/bodies.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::io
@@ -46,13 +48,15 @@ PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const 
                       .law = problem::words(pair.contact.law),
                       .smallest_gap = std::numeric_limits<double>::infinity(),
                       .largest_gap = -std::numeric_limits<double>::infinity()};
-  for (std::size_t k = 0; k < form.segments().size(); ++k)
+  std::array<double, 4> sums{};
+  auto& [segments, covered, covered_master, all] = sums;
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (segment.slave.facet.tag != tag) continue;
-    ++figures.segments;
-    figures.covered += segment.measure;
-    figures.covered_master += contact::simplex_map(mesh, *segment.master).measure;
+    ++segments;
+    covered += segment.measure;
+    covered_master += contact::simplex_map(mesh, *segment.master).measure;
     for (const contact::ContactState<dim>& state : form.contact_states(u, k))
     {
       figures.smallest_gap = std::min(figures.smallest_gap, state.gap);
@@ -60,10 +64,17 @@ PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const 
       figures.largest_tension = std::max(figures.largest_tension, -state.pressure);
     }
   }
-  double all = 0;
-  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
     if (facet.tag == tag) all += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
-  figures.covered_share = figures.covered / all;
+  const Ranks& ranks = mesh.ranks();
+  ranks.sum(std::span(sums));
+  figures.segments = static_cast<decltype(figures.segments)>(segments);
+  figures.covered = covered;
+  figures.covered_master = covered_master;
+  figures.covered_share = covered / all;
+  figures.smallest_gap = -ranks.max(-figures.smallest_gap);
+  figures.largest_gap = ranks.max(figures.largest_gap);
+  figures.largest_tension = ranks.max(figures.largest_tension);
   return figures;
 }
 
@@ -82,23 +93,30 @@ std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
                                       const adapt::CertifiedLevel<dim>& level)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const std::vector<int> body_of = mesh::connected_parts(mesh.topology());
+  const mesh::Bodies found = mesh::find_bodies(mesh);
   const std::vector<double> energies = contact::cell_energies<dim>(form.problem(), form.space(), level.u);
-  std::vector<BodyFigures> bodies(std::ranges::max(body_of) + 1);
-  std::vector<std::set<int>> regions(bodies.size());
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  const std::size_t n_regions = mesh.region_names().size();
+  const std::size_t width = 3 + n_regions;  // cells, energy, bound^2, cells of each region
+  std::vector<double> sums(found.n * width, 0.0);
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
-    BodyFigures& body = bodies[body_of[c]];
-    ++body.cells;
-    body.energy += energies[c];
-    regions[body_of[c]].insert(mesh.region(c));
-    if (!level.estimate.cells.empty()) body.bound += std::pow(level.estimate.cells[c].total_sharp(), 2);
+    double* of_body = &sums[found.of_cell[c] * width];
+    ++of_body[0];
+    of_body[1] += energies[c];
+    if (!level.estimate.cells.empty()) of_body[2] += std::pow(level.estimate.cells[c].total_sharp(), 2);
+    ++of_body[3 + mesh.region(c)];
   }
+  mesh.ranks().sum(std::span(sums));
+  std::vector<BodyFigures> bodies(found.n);
   for (std::size_t b = 0; b < bodies.size(); ++b)
   {
-    bodies[b].bound = std::sqrt(bodies[b].bound);
-    for (const int region : regions[b])
-      bodies[b].name += (bodies[b].name.empty() ? "" : "+") + mesh.region_names()[region];
+    const std::span<const double> of_body = std::span(sums).subspan(b * width, width);
+    bodies[b].cells = static_cast<decltype(bodies[b].cells)>(of_body[0]);
+    bodies[b].energy = of_body[1];
+    bodies[b].bound = std::sqrt(of_body[2]);
+    for (std::size_t region = 0; region < n_regions; ++region)
+      if (of_body[3 + region] > 0)
+        bodies[b].name += (bodies[b].name.empty() ? "" : "+") + mesh.region_names()[region];
   }
   number_alike(bodies);
   return bodies;

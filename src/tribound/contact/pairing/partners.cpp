@@ -1,0 +1,259 @@
+#include "tribound/contact/pairing/partners.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tribound/contact/pairing/slave_facet.h"
+#include "tribound/mesh/share_out.h"
+
+namespace tribound::contact
+{
+
+namespace
+{
+
+/// A box around the master facets of a rank; its lower corner, then its upper one.
+template <int dim>
+using Ends = std::array<double, 2 * dim>;
+
+/// A slave facet that asks what lies opposite to it.
+template <int dim>
+struct Question
+{
+  mesh::CellRecord<dim> cell;
+  std::int32_t local;
+  std::int32_t pair;
+  std::int32_t slave;  ///< by which the asking rank knows it
+};
+
+/// A cell with such a facet, and how many ranks need what that facet has.
+template <int dim>
+struct Answer
+{
+  mesh::CellRecord<dim> cell;
+  std::int32_t slave;
+  std::int32_t n_ranks;
+};
+
+/// Own facets of one side of a pair.
+template <int dim>
+struct OwnSide
+{
+  std::vector<mesh::BoundaryFacet> facets;
+  std::vector<mesh::CellRecord<dim>> cells;
+  std::vector<FacetShape<dim>> shapes;  ///< numbered as they stand here
+};
+
+/// What is known of a slave facet.
+template <int dim>
+struct Slave
+{
+  mesh::CellRecord<dim> cell;
+  std::vector<mesh::Ghost<dim>> opposite{};
+  std::vector<int> needed_by;  ///< ranks
+};
+
+template <int dim>
+FacetShape<dim> shape_of(const mesh::CellRecord<dim>& cell, int local, std::size_t number)
+{
+  std::array<Point<dim>, dim> points;
+  for (int i = 0; i < dim; ++i) points[i] = cell.vertices[i < local ? i : i + 1].point();
+  return {number, points, local};
+}
+
+template <int dim>
+OwnSide<dim> own_side(const mesh::Mesh<dim>& mesh, std::span<const std::string> names)
+{
+  OwnSide<dim> side;
+  std::vector<Index> cells;
+  for (const std::size_t number : mesh::facets_named(mesh, names))
+  {
+    if (number >= mesh.n_owned_boundary()) continue;
+    side.facets.push_back(mesh.boundary()[number]);
+    cells.push_back(mesh.boundary()[number].cell);
+  }
+  side.cells = mesh::records_of<dim>(mesh, cells);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    side.shapes.push_back(shape_of(side.cells[i], side.facets[i].local, i));
+  return side;
+}
+
+/// The ranks with own cells around the vertices of an own cell, this one included.
+template <int dim>
+std::vector<int> ranks_around(const mesh::Mesh<dim>& mesh, Index cell)
+{
+  std::vector<int> result = {mesh.ranks().rank()};
+  for (const Index v : mesh.cell(cell))
+  {
+    const std::span<const int> sharers = mesh.partition()->sharers_of(v);
+    result.insert(result.end(), sharers.begin(), sharers.end());
+  }
+  return result;
+}
+
+/// Of each rank and pair where its masters are. All ranks call it together.
+template <int dim>
+std::vector<std::vector<Ends<dim>>> boxes_of_all(const Ranks& ranks, std::span<const OwnSide<dim>> masters)
+{
+  std::vector<Ends<dim>> own;
+  for (const OwnSide<dim>& side : masters)
+  {
+    mesh::BoundingBox<dim> box;
+    for (const FacetShape<dim>& facet : side.shapes)
+    {
+      box.add(facet.box.lower);
+      box.add(facet.box.upper);
+    }
+    Ends<dim>& ends = own.emplace_back();
+    std::ranges::copy(box.lower, ends.begin());
+    std::ranges::copy(box.upper, ends.begin() + dim);
+  }
+  return ranks.send(std::vector<std::vector<Ends<dim>>>(ranks.size(), own));
+}
+
+template <int dim>
+class Partners
+{
+ public:
+  Partners(const mesh::Mesh<dim>& mesh, std::span<const problem::ContactPair<dim>> pairs)
+      : mesh_(mesh), pairs_(pairs), ranks_(mesh.ranks())
+  {
+    for (const problem::ContactPair<dim>& pair : pairs)
+    {
+      slave_sides_.push_back(own_side<dim>(mesh, pair.slave));
+      master_sides_.push_back(own_side<dim>(mesh, pair.master));
+    }
+  }
+
+  /// The cells of others that are needed here. All ranks call it together.
+  [[nodiscard]] std::vector<mesh::Ghost<dim>> find()
+  {
+    const std::vector<std::vector<Ends<dim>>> boxes = boxes_of_all<dim>(ranks_, master_sides_);
+    std::vector<std::vector<Question<dim>>> questions(ranks_.size());
+    ranks_.together([&] { ask(boxes, questions); });
+    questions = ranks_.send(questions);
+    std::vector<std::vector<Answer<dim>>> answers(ranks_.size());
+    std::vector<std::vector<int>> needed_by(ranks_.size());
+    ranks_.together([&] { answer(questions, answers, needed_by); });
+    hear(ranks_.send(answers), ranks_.send(needed_by));
+    return tell();
+  }
+
+ private:
+  /// Makes the questions to each rank: from own slave facets that may see its masters.
+  void ask(const std::vector<std::vector<Ends<dim>>>& boxes,
+           std::vector<std::vector<Question<dim>>>& questions)
+  {
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+      for (std::size_t i = 0; i < slave_sides_[k].facets.size(); ++i)
+      {
+        const auto& [cell, local, tag] = slave_sides_[k].facets[i];
+        const mesh::CellRecord<dim>& record = slave_sides_[k].cells[i];
+        const SlaveFacet<dim> facet(slave_sides_[k].shapes[i], pairs_[k].pairing, pairs_[k].where);
+        for (int r = 0; r < ranks_.size(); ++r)
+        {
+          const Ends<dim>& ends = boxes[r][k];
+          const mesh::BoundingBox<dim> box{Point<dim>(ends.data()), Point<dim>(ends.data() + dim)};
+          if (box.lower[0] <= box.upper[0] && facet.may_see(box))
+            questions[r].push_back(
+                {record, local, static_cast<std::int32_t>(k), static_cast<std::int32_t>(slaves_.size())});
+        }
+        slaves_.push_back({record, {}, ranks_around(mesh_, cell)});
+      }
+  }
+
+  /// Own master facets that lie opposite, and who needs what they have.
+  void answer(const std::vector<std::vector<Question<dim>>>& questions,
+              std::vector<std::vector<Answer<dim>>>& answers, std::vector<std::vector<int>>& needed_by) const
+  {
+    std::vector<MasterFacets<dim>> masters;
+    for (const OwnSide<dim>& side : master_sides_) masters.emplace_back(side.shapes);
+    for (int r = 0; r < ranks_.size(); ++r)
+      for (const auto& [cell, local, pair, slave] : questions[r])
+      {
+        const FacetShape<dim> shape = shape_of(cell, local, 0);
+        SlaveFacet<dim> facet(shape, pairs_[pair].pairing, pairs_[pair].where);
+        masters[pair].add_to(facet);
+        for (const Candidate<dim>& found : facet.candidates())
+        {
+          const OwnSide<dim>& side = master_sides_[pair];
+          const std::vector<int> who = ranks_around(mesh_, side.facets[found.master].cell);
+          answers[r].push_back({side.cells[found.master], slave, static_cast<std::int32_t>(who.size())});
+          needed_by[r].insert(needed_by[r].end(), who.begin(), who.end());
+        }
+      }
+  }
+
+  void hear(const std::vector<std::vector<Answer<dim>>>& answers,
+            const std::vector<std::vector<int>>& needed_by)
+  {
+    for (int r = 0; r < ranks_.size(); ++r)
+      for (auto who = needed_by[r].begin(); const Answer<dim>& found : answers[r])
+      {
+        Slave<dim>& slave = slaves_[found.slave];
+        slave.opposite.push_back({found.cell, r});
+        slave.needed_by.insert(slave.needed_by.end(), who, who + found.n_ranks);
+        who += found.n_ranks;
+      }
+  }
+
+  /// Slaves and what lies opposite to them, to all that need them.
+  [[nodiscard]] std::vector<mesh::Ghost<dim>> tell()
+  {
+    const auto name = [](const mesh::Ghost<dim>& ghost) -> const auto&
+    {
+      return ghost.cell.name;
+    };
+    std::vector<std::vector<mesh::Ghost<dim>>> parcels(ranks_.size());
+    for (Slave<dim>& slave : slaves_)
+    {
+      std::ranges::sort(slave.needed_by);
+      slave.needed_by.erase(std::unique(slave.needed_by.begin(), slave.needed_by.end()),
+                            slave.needed_by.end());
+      if (slave.opposite.empty()) continue;
+      for (const int r : slave.needed_by)
+      {
+        parcels[r].push_back({slave.cell, ranks_.rank()});
+        parcels[r].insert(parcels[r].end(), slave.opposite.begin(), slave.opposite.end());
+      }
+    }
+    for (std::vector<mesh::Ghost<dim>>& parcel : parcels)
+    {
+      std::ranges::sort(parcel, {}, name);
+      const auto is_same = [&](const auto& a, const auto& b) { return name(a) == name(b); };
+      parcel.erase(std::unique(parcel.begin(), parcel.end(), is_same), parcel.end());
+    }
+    std::vector<mesh::Ghost<dim>> result;
+    for (const std::vector<mesh::Ghost<dim>>& parcel : ranks_.send(parcels))
+      result.insert(result.end(), parcel.begin(), parcel.end());
+    return result;
+  }
+
+  const mesh::Mesh<dim>& mesh_;
+  std::span<const problem::ContactPair<dim>> pairs_;
+  Ranks ranks_;
+  std::vector<OwnSide<dim>> slave_sides_;  ///< of each pair
+  std::vector<OwnSide<dim>> master_sides_;
+  std::vector<Slave<dim>> slaves_;  ///< of all pairs
+};
+
+}  // namespace
+
+template <int dim>
+mesh::Mesh<dim> with_partners(mesh::Mesh<dim> mesh, std::span<const problem::ContactPair<dim>> pairs)
+{
+  const Ranks ranks = mesh.ranks();
+  if (ranks.size() == 1 || pairs.empty()) return mesh;
+  std::vector<mesh::Ghost<dim>> ghosts = Partners<dim>(mesh, pairs).find();
+  return ranks.together([&] { return mesh::with_more_ghosts<dim>(std::move(mesh), std::move(ghosts)); });
+}
+
+template mesh::Mesh<2> with_partners(mesh::Mesh<2>, std::span<const problem::ContactPair<2>>);
+template mesh::Mesh<3> with_partners(mesh::Mesh<3>, std::span<const problem::ContactPair<3>>);
+
+}  // namespace tribound::contact

@@ -1,0 +1,104 @@
+#pragma once
+
+/// @file slave_facet.h
+/// One slave facet and the facets of the master that lie opposite to it. Internal to the room.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tribound/base/error.h"
+#include "tribound/contact/pairing/pairing.h"
+#include "tribound/contact/pairing/polygon.h"
+#include "tribound/mesh/box_tree.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound::contact
+{
+
+/// A facet as Pi needs it.
+template <int dim>
+struct FacetShape
+{
+  /// With these vertices, in ascending local order, seen from the cell of which it is facet `local`.
+  FacetShape(std::size_t which, const std::array<Point<dim>, dim>& vertices, int local);
+  /// Facet number `which` of the boundary.
+  FacetShape(const mesh::Mesh<dim>& mesh, std::size_t which);
+
+  [[nodiscard]] Point<dim> centre() const { return map(Point<dim - 1>::Constant(1.0 / dim)); }
+
+  std::size_t number;  ///< by which the caller knows it
+  mesh::FacetMap<dim> map;
+  mesh::FacetGeometry<dim> geometry;
+  mesh::BoundingBox<dim> box;
+};
+
+/// What a slave facet has in common with a master facet.
+template <int dim>
+struct Candidate
+{
+  std::size_t master;  ///< FacetShape::number
+  Polygon<dim> polygon;
+  std::vector<Polygon<dim>> visible{};  ///< what nearer ones leave of it
+  double distance;                      ///< l at s = 0
+  Point<dim - 1> slope;                 ///< its gradient in s
+  double nearness = 0;                  ///< |l| at the centroid
+
+  [[nodiscard]] double distance_at(const Point<dim - 1>& s) const
+  {
+    return std::abs(distance + slope.dot(s));
+  }
+};
+
+/// The overlay of one slave facet. Keeps references to what it is made from.
+template <int dim>
+class SlaveFacet
+{
+ public:
+  /// Throws InputError where the direction does not point out of the facet.
+  SlaveFacet(const FacetShape<dim>& slave, const problem::Pairing<dim>& pairing, const Where& where);
+
+  /// Whether a facet in the box may lie opposite a point of this one.
+  [[nodiscard]] bool may_see(const mesh::BoundingBox<dim>& box) const;
+  /// Takes a master facet if it faces the slave and has a part of more than rounding opposite to it.
+  void add(const FacetShape<dim>& master);
+  [[nodiscard]] std::span<const Candidate<dim>> candidates() const { return candidates_; }
+  /// The parts with one partner each, the nearest. Throws InputError where that is not clear.
+  void append_pairs(std::vector<FacetPair<dim>>& pairs);
+
+ private:
+  void turn_to_first_corner(Polygon<dim>& polygon) const;
+  void hide();
+  void hide(Candidate<dim>& candidate, const Candidate<dim>& before, const Polygon<dim>& cover) const;
+  void check_nearer(const Candidate<dim>& near, const Candidate<dim>& far, const Polygon<dim>& common) const;
+
+  const FacetShape<dim>& slave_;
+  double reach_;
+  const Where& where_;
+  Point<dim> e_;
+  Tensor<dim> to_frame_;  ///< of x - x_0: s on the plane of the facet, and l
+  std::vector<Candidate<dim>> candidates_;
+};
+
+/// The facets of a master, found by a tree.
+template <int dim>
+class MasterFacets
+{
+ public:
+  explicit MasterFacets(std::vector<FacetShape<dim>> facets);
+  /// Gives the slave facet what lies opposite to it.
+  void add_to(SlaveFacet<dim>& slave) const;
+
+ private:
+  std::vector<FacetShape<dim>> facets_;
+  mesh::BoxTree<dim> tree_;
+};
+
+/// Of the boundary facets with these numbers.
+template <int dim>
+[[nodiscard]] std::vector<FacetShape<dim>> facet_shapes(const mesh::Mesh<dim>& mesh,
+                                                        std::span<const std::size_t> numbers);
+
+}  // namespace tribound::contact

@@ -1,0 +1,74 @@
+#include "tribound/mesh/bodies.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "tribound/base/ghost_update.h"
+#include "tribound/mesh/partition.h"
+
+namespace tribound::mesh
+{
+
+namespace
+{
+
+/// Numbers of the values that all ranks have, in their order.
+std::vector<std::int64_t> united(const Ranks& ranks, std::vector<std::int64_t> values)
+{
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  values = ranks.gather<std::int64_t>(values);
+  ranks.copy_from_first(values);
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+/// Per part of what is here the lowest root of its body's cells: found here, then again and again where
+/// ghosts say that it goes on on another rank.
+template <int dim>
+std::vector<std::int64_t> lowest_roots(const Partition<dim>& partition, std::span<const int> part,
+                                       int n_parts)
+{
+  const GhostUpdate update = cell_update(partition);
+  std::vector<std::int64_t> lowest(n_parts, std::numeric_limits<std::int64_t>::max());
+  std::vector<std::int64_t> of_cell;
+  for (const CellName& name : partition.names) of_cell.push_back(name.root);
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    for (std::size_t c = 0; c < of_cell.size(); ++c)
+    {
+      changed = changed || of_cell[c] < lowest[part[c]];
+      lowest[part[c]] = std::min(lowest[part[c]], of_cell[c]);
+    }
+    for (std::size_t c = 0; c < of_cell.size(); ++c) of_cell[c] = lowest[part[c]];
+    changed = partition.ranks.any(changed);
+    update(std::span(of_cell));
+  }
+  return lowest;
+}
+
+}  // namespace
+
+template <int dim>
+Bodies find_bodies(const Mesh<dim>& mesh)
+{
+  Bodies bodies{connected_parts(mesh.topology())};
+  bodies.n = bodies.of_cell.empty() ? 0 : std::ranges::max(bodies.of_cell) + 1;
+  if (!mesh.partition()) return bodies;
+  const std::vector<std::int64_t> lowest = lowest_roots(*mesh.partition(), bodies.of_cell, bodies.n);
+  const std::vector<std::int64_t> all = united(mesh.ranks(), lowest);
+  for (int& body : bodies.of_cell)
+    body = static_cast<int>(std::ranges::lower_bound(all, lowest[body]) - all.begin());
+  bodies.n = static_cast<int>(all.size());
+  return bodies;
+}
+
+template Bodies find_bodies(const Mesh<2>&);
+template Bodies find_bodies(const Mesh<3>&);
+
+}  // namespace tribound::mesh

@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file bodies.h
+/// The bodies of a mesh: its parts that are connected through facets.
+
+#include <vector>
+
+#include "tribound/mesh/mesh.h"
+
+namespace tribound::mesh
+{
+
+struct Bodies
+{
+  std::vector<int> of_cell;  ///< per cell, ghosts included
+  int n = 0;
+};
+
+/// They are numbered by their first cells, the same on all ranks, which call it together.
+template <int dim>
+[[nodiscard]] Bodies find_bodies(const Mesh<dim>& mesh);
+
+}  // namespace tribound::mesh

@@ -1,0 +1,90 @@
+/// @file pairs_test.cpp
+/// Bodies that touch, on several ranks against one: adaptive loops, random pairs, joints.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "ranks/same_on_ranks.h"
+#include "support/meshes.h"
+#include "support/problem_data.h"
+#include "support/random_pair.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+/// Two blocks whose meshes do not match, the upper one pushed aside.
+template <int dim>
+mesh::MeshData<dim> two_blocks()
+{
+  Point<dim> lower = Point<dim>::Zero();
+  Point<dim> upper = Point<dim>::Ones();
+  lower[1] = -1;
+  upper[1] = 0;
+  upper[0] = 2;
+  std::array<int, dim> lower_cells;
+  lower_cells.fill(dim == 2 ? 2 : 1);
+  lower_cells[0] = 3;
+  lower_cells[dim - 1] = 2;
+  mesh::MeshData<dim> data =
+      side_by_side(block<dim>({4, 2}, {2, 1, 1}), box<dim>(lower, upper, lower_cells), "_below");
+  data.interfaces = {{{{{"bottom"}, {"top_below"}}}}};
+  return data;
+}
+
+template <int dim>
+ProblemData<dim> pushed(problem::ContactLaw law, double stiffness)
+{
+  return {.boundaries = {clamped<dim>("bottom_below"), clamped<dim>("left"), loaded<dim>("top", 0, -0.1),
+                         loaded<dim>("right", 0.04, 0.06, 0.02)},
+          .regions = {{.name = "box_below", .material = lame(stiffness, 0.25)}},
+          .pairs = {pair<dim>("bottom", "top_below", std::move(law))}};
+}
+
+TEST(Pairs, OfEveryDegreeAndLawIn2D)
+{
+  const std::array<problem::ContactLaw, 4> laws = {Frictionless(), Tresca(0.03), Coulomb(0.3), Tied()};
+  for (const int p : {1, 2, 3, 4})
+  {
+    SCOPED_TRACE("p = " + std::to_string(p));
+    expect_same<2>(two_blocks<2>(), pushed<2>(laws[p - 1], p == 2 ? 100.0 : 2.0), {.degree = p},
+                   {.max_levels = 3});
+  }
+}
+
+TEST(Pairs, In3D)
+{
+  for (const int p : {1, 2})
+  {
+    SCOPED_TRACE("p = " + std::to_string(p));
+    expect_same<3>(two_blocks<3>(), pushed<3>(Coulomb(0.4), 3), {.degree = p}, {.max_levels = 3 - p});
+  }
+}
+
+TEST(Pairs, Random)
+{
+  for (const unsigned seed : {1U, 2U, 5U, 8U})
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto [data, problem] = RandomPair<2>(seed).make();
+    expect_same<2>(data, problem, {.degree = 2}, {.max_levels = 1});
+  }
+}
+
+TEST(Pairs, RegularisedAndWithMultigrid)
+{
+  expect_same<2>(two_blocks<2>(), pushed<2>(Coulomb(0.3), 2),
+                 {.degree = 2, .regularisation = adapt::RegularisationOptions()}, {.max_levels = 1});
+  const adapt::Method method{.degree = 1,
+                             .newton = {.tolerance = 1e-11},
+                             .stopping = {.criterion = adapt::Stopping::last_bounded},
+                             .solver = {.method = algebra::LinearMethod::iterative}};
+  expect_same<3>(two_blocks<3>(), pushed<3>(Coulomb(0.3), 50), method, {.max_levels = 2}, Compare::solutions);
+}
+
+}  // namespace
+}  // namespace tribound::test

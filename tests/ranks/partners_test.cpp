@@ -1,0 +1,184 @@
+/// @file partners_test.cpp
+/// Pairs of bodies whose cells are dealt out at random: what each rank has of them, against the whole.
+
+#include "tribound/contact/pairing/partners.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/meshes.h"
+#include "support/problem_data.h"
+#include "support/random_pair.h"
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/mesh/bodies.h"
+#include "tribound/mesh/partition.h"
+#include "tribound/mesh/share_out.h"
+#include "tribound/mesh/verify.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+/// A facet by its cell in the first mesh and its vertices there, which all ranks know it by.
+using FacetKey = std::pair<std::int64_t, std::set<std::uint64_t>>;
+
+template <int dim>
+FacetKey key_of(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
+{
+  const mesh::Partition<dim>* partition = mesh.partition();
+  FacetKey key{partition ? partition->names[facet.cell].root : facet.cell, {}};
+  for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
+    key.second.insert(partition ? partition->vertices[v].origin : static_cast<std::uint64_t>(v));
+  return key;
+}
+
+/// What slave and master have in common: measure, gamma, h, and the integrals of x, Pi(x) and the gap.
+using Common = std::vector<double>;
+
+/// Of all segments here, by their facets.
+template <int dim>
+std::map<std::pair<FacetKey, FacetKey>, Common> segments_of(const problem::Problem<dim>& problem,
+                                                            const mesh::Mesh<dim>& mesh)
+{
+  std::map<std::pair<FacetKey, FacetKey>, Common> result;
+  for (const contact::ContactSegment<dim>& segment : contact::contact_segments<dim>(problem, mesh, 10))
+  {
+    if (!segment.master) continue;
+    Common& sum = result[{key_of(mesh, segment.slave.facet), key_of(mesh, segment.master->facet)}];
+    sum.resize(4 + 2 * dim, 0.0);
+    const Point<dim - 1> centre = Point<dim - 1>::Constant(1.0 / dim);
+    const Point<dim> x = contact::simplex_map(mesh, segment.slave)(centre);
+    const Point<dim> y = contact::simplex_map(mesh, *segment.master)(centre);
+    sum[0] += segment.measure;
+    sum[1] += segment.measure * segment.gamma;
+    sum[2] += segment.measure * segment.h;
+    sum[3] += segment.measure * segment.gap(centre, x);
+    for (int a = 0; a < dim; ++a)
+    {
+      sum[4 + a] += segment.measure * x[a];
+      sum[4 + dim + a] += segment.measure * y[a];
+    }
+  }
+  return result;
+}
+
+/// Each rank has its cells from `rank_of` and must have all segments of every facet whose cell touches one of
+/// its own, as the whole mesh has them.
+template <int dim>
+void expect_partners(const mesh::MeshData<dim>& data, const ProblemData<dim>& problem_data, unsigned seed)
+{
+  const Ranks ranks = Ranks::world();
+  const mesh::Mesh<dim> whole(data);
+  const problem::Problem<dim> problem = problem_data.on(whole);
+  std::vector<mesh::CellRecord<dim>> owned;
+  for (const mesh::CellRecord<dim>& record : mesh::first_records(whole, 0, whole.n_cells()))
+    if (static_cast<int>(mesh::mix(mesh::mix(record.name.root + 1) ^ seed) % ranks.size()) == ranks.rank())
+      owned.push_back(record);
+  mesh::Mesh<dim> part(
+      mesh::with_ghosts<dim>(ranks, mesh::cube_around<dim>(whole.vertices()), std::move(owned)),
+      {data.region_names, data.boundary_names, {}});
+  part = contact::with_partners<dim>(std::move(part), problem.pairs());
+
+  const auto all = segments_of(problem, whole);
+  const auto here = segments_of(problem, part);
+  std::set<FacetKey> near;
+  for (const mesh::BoundaryFacet& facet : part.boundary())
+    if (std::ranges::any_of(part.cell(facet.cell), [&](Index v) { return part.has_patch(v); }))
+      near.insert(key_of(part, facet));
+  std::size_t n_near = 0;
+  for (const auto& [facets, expected] : all)
+  {
+    if (!near.contains(facets.first) && !near.contains(facets.second)) continue;
+    ++n_near;
+    const auto found = here.find(facets);
+    ASSERT_NE(found, here.end()) << "seed " << seed;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(found->second[i], expected[i], 1e-12 * std::max(1.0, std::abs(expected[i]))) << i;
+  }
+  const auto n_here = std::ranges::count_if(
+      here, [&](const auto& entry)
+      { return near.contains(entry.first.first) || near.contains(entry.first.second); });
+  EXPECT_EQ(static_cast<std::size_t>(n_here), n_near) << "seed " << seed;
+
+  const mesh::Bodies expected = mesh::find_bodies(whole);
+  const mesh::Bodies found = mesh::find_bodies(part);
+  EXPECT_EQ(found.n, expected.n);
+  for (Index c = 0; c < part.n_owned_cells(); ++c)
+    EXPECT_EQ(found.of_cell[c], expected.of_cell[part.partition()->names[c].root]);
+}
+
+TEST(Partners, OfRandomPairs)
+{
+  for (unsigned seed = 0; seed < 30; ++seed)
+  {
+    const auto [data, problem] = RandomPair<2>(seed).make();
+    expect_partners(renumbered(data, seed), problem, seed);
+  }
+  for (unsigned seed = 0; seed < 10; ++seed)
+  {
+    const auto [data, problem] = RandomPair<3>(seed).make();
+    expect_partners(renumbered(data, seed), problem, seed);
+  }
+}
+
+/// A plate hides a wall that lies behind it, for a slave that reaches beyond the plate.
+template <int dim>
+void expect_hidden()
+{
+  const auto corner = [](double x, double y, double z)
+  {
+    Point<dim> point;
+    for (int i = 0; i < dim; ++i) point[i] = std::array{x, y, z}[i];
+    return point;
+  };
+  const auto cells = [](int n, int m)
+  {
+    std::array<int, dim> result;
+    result.fill(n);
+    result[1] = m;
+    return result;
+  };
+  mesh::MeshData<dim> data = box<dim>(corner(0, 0, 0), corner(2, 1, 1), cells(4, 1));
+  data = side_by_side(std::move(data), box<dim>(corner(0.3, -0.6, 0), corner(1.2, -0.2, 1), cells(3, 1)),
+                      "_plate");
+  data = side_by_side(std::move(data), box<dim>(corner(0, -2, 0), corner(2, -1, 1), cells(5, 2)), "_wall");
+  ProblemData<dim> problem{.boundaries = {clamped<dim>("bottom_wall"), clamped<dim>("bottom_plate")}};
+  problem.pairs.push_back(pair<dim>("bottom", "top_plate"));
+  problem.pairs.back().master.emplace_back("top_wall");
+  for (unsigned seed = 0; seed < 5; ++seed) expect_partners(renumbered(data, seed), problem, seed);
+}
+
+TEST(Partners, HiddenByNearerOnes)
+{
+  expect_hidden<2>();
+  expect_hidden<3>();
+}
+
+TEST(Partners, ADirectionAlongTheSlaveFailsOnAllRanks)
+{
+  const Ranks ranks = Ranks::world();
+  auto [data, problem_data] = RandomPair<2>(3).make();
+  problem_data.pairs[0].pairing.direction = Point<2>(1, 0);
+  const mesh::Mesh<2> whole(data);
+  const problem::Problem<2> problem = problem_data.on(whole);
+  mesh::Mesh<2> part = mesh::share_out<2>(ranks, ranks.is_first() ? &whole : nullptr);
+  const auto segments = [&]
+  {
+    part = contact::with_partners<2>(std::move(part), problem.pairs());
+    return contact::contact_segments<2>(problem, part, 10);
+  };
+  EXPECT_THROW((void)segments(), InputError);  // on all ranks
+}
+
+}  // namespace
+}  // namespace tribound::test
