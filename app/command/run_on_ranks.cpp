@@ -40,32 +40,56 @@ int launcher_says(std::array<const char*, 2> variables, int otherwise)
   return otherwise;
 }
 
+/// Boxes of which every rank makes its own cells, or none.
+struct Formula
+{
+  explicit Formula(const mesh::MeshSource& source)
+      : box(std::get_if<mesh::BoxMesh>(&source)), boxes(std::get_if<mesh::Boxes>(&source))
+  {
+  }
+
+  [[nodiscard]] bool is_there() const { return box != nullptr || boxes != nullptr; }
+  [[nodiscard]] std::int64_t n_cells() const
+  {
+    return box ? mesh::n_box_cells(*box) : mesh::n_box_cells(*boxes);
+  }
+  /// The same with few cells, that one rank makes to look at.
+  [[nodiscard]] mesh::MeshSource coarser() const
+  {
+    constexpr std::int64_t most = 100'000;
+    if (box) return mesh::coarser_box(*box, most);
+    return mesh::coarser_box(*boxes, most);
+  }
+  template <int dim>
+  [[nodiscard]] mesh::Mesh<dim> share_out(const Ranks& ranks) const
+  {
+    return box ? mesh::share_out<dim>(ranks, *box) : mesh::share_out<dim>(ranks, *boxes);
+  }
+
+  const mesh::BoxMesh* box;
+  const mesh::Boxes* boxes;
+};
+
 /// The mesh of a run that begins, and that of one that goes on.
 template <int dim>
 ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::optional<mesh::AnyMesh> whole,
                   const std::optional<io::CheckpointFacts>& checkpoint, const std::string& directory,
                   const Progress& progress)
 {
-  constexpr std::int64_t most_in_box = 100'000;  // that one rank makes to look at
   using Whole = mesh::Mesh<dim>;
-  const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh);
+  const Formula formula(config.mesh);
   std::shared_ptr<const Whole> first;
-  ranks.on_first(
-      [&]
-      {
-        first = std::make_shared<const Whole>(
-            box ? Whole(mesh::box_mesh<dim>(mesh::coarser_box(*box, most_in_box)))
-                : std::get<Whole>(*std::exchange(whole, {})));
-      });
+  ranks.on_first([&] { first = std::make_shared<const Whole>(std::get<Whole>(*std::exchange(whole, {}))); });
   if (!checkpoint)
   {
-    Whole part = box ? mesh::share_out<dim>(ranks, *box) : mesh::share_out<dim>(ranks, first.get());
+    Whole part =
+        formula.is_there() ? formula.share_out<dim>(ranks) : mesh::share_out<dim>(ranks, first.get());
     return run(config, std::move(part), progress, std::move(first));
   }
   ranks.on_first(
       [&]
       {
-        const std::int64_t n_cells = box ? mesh::n_box_cells(*box) : first->n_cells();
+        const std::int64_t n_cells = formula.is_there() ? formula.n_cells() : first->n_cells();
         if (n_cells != checkpoint->earlier.first_cells)
           throw InputError(first->source(),
                            fmt::format("has {} cells, but the run to restart began with {}", n_cells,
@@ -113,12 +137,12 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
   const bool is_plane = ranks.on_first(
       [&]
       {
-        if (const auto* box = std::get_if<mesh::BoxMesh>(&config.mesh))
-        {
-          mesh::require_valid(*box);
-          return box->lower.size() == 2;  // all ranks make it
-        }
-        whole.emplace(mesh::read_mesh(config.mesh, case_file::find_seams(config), &stop_on_signals()));
+        const Formula formula(config.mesh);
+        if (formula.box) mesh::require_valid(*formula.box);
+        if (formula.boxes)
+          for (const mesh::NamedBox& named : *formula.boxes) mesh::require_valid(named.box);
+        whole.emplace(mesh::read_mesh(formula.is_there() ? formula.coarser() : config.mesh,
+                                      case_file::find_seams(config), &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   const auto run_in = is_plane ? run_part<2> : run_part<3>;

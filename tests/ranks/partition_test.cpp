@@ -289,12 +289,13 @@ std::vector<CellRecord<dim>> own_records(const mesh::Mesh<dim>& mesh)
   return mesh::records_of<dim>(mesh, own);
 }
 
-/// Each rank makes its stretch of the cells of a box; the whole box, dealt out in batches, would be the same.
-template <int dim>
-void expect_same_box(const mesh::BoxMesh& box)
+/// Each rank makes its stretch of the cells of a box or several, which are `data`; the whole, dealt out in
+/// batches, would be the same.
+template <int dim, class Source>
+void expect_same_cells(const Source& box, mesh::MeshData<dim> data)
 {
   const Ranks ranks = Ranks::world();
-  const mesh::Mesh<dim> whole(mesh::box_mesh<dim>(box));
+  const mesh::Mesh<dim> whole(std::move(data));
   const std::vector<CellRecord<dim>> all = mesh::first_records(whole, 0, whole.n_cells());
   ASSERT_EQ(mesh::n_box_cells(box), static_cast<std::int64_t>(all.size()));
   EXPECT_TRUE(mesh::box_records<dim>(box, 0, mesh::n_box_cells(box)) == all);
@@ -311,16 +312,39 @@ void expect_same_box(const mesh::BoxMesh& box)
     EXPECT_TRUE(own_records(from_first) == own);
     EXPECT_EQ(by_formula.n_global_vertices(), from_first.n_global_vertices());
     EXPECT_TRUE(std::ranges::equal(by_formula.boundary_names(), from_first.boundary_names()));
+    EXPECT_TRUE(std::ranges::equal(by_formula.region_names(), from_first.region_names()));
   }
-  const mesh::BoxMesh coarser = mesh::coarser_box(box, 40);
-  EXPECT_LE(mesh::n_box_cells(coarser), 40);
-  EXPECT_TRUE(coarser.lower == box.lower && coarser.upper == box.upper);
+  EXPECT_LE(mesh::n_box_cells(mesh::coarser_box(box, 40)), 40);
   EXPECT_EQ(mesh::n_box_cells(mesh::coarser_box(box, n_all)), n_all);
+}
+
+template <int dim>
+void expect_same_box(const mesh::BoxMesh& box)
+{
+  expect_same_cells<dim>(box, mesh::box_mesh<dim>(box));
+  const mesh::BoxMesh coarser = mesh::coarser_box(box, 40);
+  EXPECT_TRUE(coarser.lower == box.lower && coarser.upper == box.upper);
+}
+
+/// Each box on top of the one before.
+template <int dim>
+void expect_same_boxes(const mesh::Boxes& boxes)
+{
+  mesh::MeshData<dim> data = mesh::box_meshes<dim>(boxes);
+  for (std::size_t k = 1; k < boxes.size(); ++k)
+    data.interfaces.push_back({{{{boxes[k - 1].name + ".top"}, {boxes[k].name + ".bottom"}}}});
+  expect_same_cells<dim>(boxes, std::move(data));
 }
 
 TEST(Box, IsMadeByAllRanks)
 {
   expect_same_box<2>({.lower = {0, -1}, .upper = {2.5, 0.7}, .cells = {7, 5}});
+  const mesh::BoxMesh upper{.lower = {0, 0}, .upper = {1, 1}, .cells = {5, 4}};
+  const mesh::BoxMesh lower{.lower = {-0.5, -2}, .upper = {2, 0}, .cells = {7, 3}};
+  expect_same_boxes<2>({{"lower", lower}, {"upper", upper}});
+  expect_same_boxes<3>({{"a", {.lower = {0, 0, 0}, .upper = {1, 1, 2}, .cells = {2, 1, 3}}},
+                        {"b", {.lower = {0, 1, 0}, .upper = {2, 2, 2}, .cells = {3, 2, 2}}},
+                        {"c", {.lower = {0, 2, 0}, .upper = {2, 3, 2}, .cells = {1, 1, 4}}}});
   expect_same_box<3>({.lower = {0, -1, 3}, .upper = {2.5, 0.7, 4}, .cells = {5, 3, 4}});
 }
 

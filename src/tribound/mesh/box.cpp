@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -24,6 +25,9 @@ constexpr auto cube_cells = []
     return std::array<Cell<3>, 6>{
         {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 }();
+
+template <int dim>
+constexpr int n_sides = 2 * dim;
 
 /// Steps through the grid points below `counts`, the first axis fastest; calls visit(grid point).
 template <int dim, class Visit>
@@ -153,6 +157,21 @@ MeshLabels box_labels(const BoxMesh& box)
 }
 
 template <int dim>
+MeshLabels box_labels(const Boxes& boxes)
+{
+  MeshLabels all;
+  for (const auto& [name, box] : boxes)
+  {
+    const MeshLabels labels = box_labels<dim>(box);
+    all.region_names.push_back(name);
+    for (const std::string& side : labels.boundary_names)
+      all.boundary_names.push_back(fmt::format("{}.{}", name, side));
+    if (all.source.file.empty()) all.source = labels.source;
+  }
+  return all;
+}
+
+template <int dim>
 MeshData<dim> box_mesh(const BoxMesh& box)
 {
   MeshLabels labels = box_labels<dim>(box);
@@ -184,13 +203,16 @@ MeshData<dim> box_mesh(const BoxMesh& box)
 template <int dim>
 MeshData<dim> box_meshes(const Boxes& boxes)
 {
+  MeshLabels labels = box_labels<dim>(boxes);
   MeshData<dim> all;
-  for (const auto& [name, box] : boxes)
+  all.region_names = std::move(labels.region_names);
+  all.boundary_names = std::move(labels.boundary_names);
+  all.source = std::move(labels.source);
+  for (int region = 0; region < static_cast<int>(boxes.size()); ++region)
   {
-    MeshData<dim> data = box_mesh<dim>(box);
+    MeshData<dim> data = box_mesh<dim>(boxes[region].box);
     const auto first_vertex = static_cast<Index>(all.vertices.size());
-    const auto first_group = static_cast<int>(all.boundary_names.size());
-    const auto region = static_cast<int>(all.region_names.size());
+    const int first_group = n_sides<dim> * region;
     all.vertices.insert(all.vertices.end(), data.vertices.begin(), data.vertices.end());
     for (Cell<dim>& cell : data.cells)
       for (Index& v : cell) v += first_vertex;
@@ -201,10 +223,6 @@ MeshData<dim> box_meshes(const Boxes& boxes)
       for (Index& v : vertices) v += first_vertex;
       all.facets.push_back({vertices, tag + first_group});
     }
-    all.region_names.push_back(name);
-    for (const std::string& side : data.boundary_names)
-      all.boundary_names.push_back(fmt::format("{}.{}", name, side));
-    if (all.source.file.empty()) all.source = data.source;
   }
   return all;
 }
@@ -213,6 +231,13 @@ std::int64_t n_box_cells(const BoxMesh& box)
 {
   std::int64_t n = box.lower.size() == 2 ? 2 : 6;
   for (const int cubes : box.cells) n *= cubes;
+  return n;
+}
+
+std::int64_t n_box_cells(const Boxes& boxes)
+{
+  std::int64_t n = 0;
+  for (const NamedBox& named : boxes) n += n_box_cells(named.box);
   return n;
 }
 
@@ -258,6 +283,52 @@ std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first,
   return records;
 }
 
+Boxes coarser_box(Boxes boxes, std::int64_t most_cells)
+{
+  const auto share = static_cast<double>(most_cells) / static_cast<double>(n_box_cells(boxes));
+  if (share >= 1) return boxes;
+  for (NamedBox& named : boxes)
+  {
+    const std::int64_t least = named.box.lower.size() == 2 ? 2 : 6;
+    const auto most = static_cast<std::int64_t>(share * static_cast<double>(n_box_cells(named.box)));
+    named.box = coarser_box(named.box, std::max(least, most));
+  }
+  return boxes;
+}
+
+template <int dim>
+std::vector<CellRecord<dim>> box_records(const Boxes& boxes, std::int64_t first, std::int64_t last)
+{
+  std::vector<CellRecord<dim>> all;
+  std::int64_t first_cell = 0;
+  std::uint64_t first_vertex = 0;
+  for (int region = 0; region < static_cast<int>(boxes.size()); ++region)
+  {
+    const BoxMesh& box = boxes[region].box;
+    const std::int64_t n = n_box_cells(box);
+    const std::int64_t begin = std::clamp<std::int64_t>(first - first_cell, 0, n);
+    const std::int64_t end = std::clamp<std::int64_t>(last - first_cell, 0, n);
+    for (CellRecord<dim>& record : box_records<dim>(box, begin, end))
+    {
+      record.name.root += first_cell;
+      record.region = region;
+      for (VertexName<dim>& vertex : record.vertices) vertex.origin += first_vertex;
+      for (std::int32_t& tag : record.tags)
+        if (tag >= 0) tag += n_sides<dim> * region;
+      all.push_back(record);
+    }
+    first_cell += n;
+    std::uint64_t n_vertices = 1;
+    for (const int cubes : box.cells) n_vertices *= cubes + 1;
+    first_vertex += n_vertices;
+  }
+  return all;
+}
+
+template MeshLabels box_labels<2>(const Boxes&);
+template MeshLabels box_labels<3>(const Boxes&);
+template std::vector<CellRecord<2>> box_records<2>(const Boxes&, std::int64_t, std::int64_t);
+template std::vector<CellRecord<3>> box_records<3>(const Boxes&, std::int64_t, std::int64_t);
 template MeshLabels box_labels<2>(const BoxMesh&);
 template MeshLabels box_labels<3>(const BoxMesh&);
 template std::vector<CellRecord<2>> box_records<2>(const BoxMesh&, std::int64_t, std::int64_t);

@@ -33,16 +33,26 @@ template <int dim>
 template <int dim>
 [[nodiscard]] MeshLabels box_labels(const BoxMesh& box);
 
-/// How many cells it has.
+/// Those of several, each with its own. Throws as box_meshes() does.
+template <int dim>
+[[nodiscard]] MeshLabels box_labels(const Boxes& boxes);
+
+/// How many cells it has, or they have.
 [[nodiscard]] std::int64_t n_box_cells(const BoxMesh& box);
+[[nodiscard]] std::int64_t n_box_cells(const Boxes& boxes);
 
 /// One of the same sides with half as many cells in each direction, again and again, until there are at most
 /// so many.
 [[nodiscard]] BoxMesh coarser_box(BoxMesh box, std::int64_t most_cells);
+/// Each with its share of so many.
+[[nodiscard]] Boxes coarser_box(Boxes boxes, std::int64_t most_cells);
 
 /// Its cells number first, ..., last - 1 as first_records() gives them, without the others.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first,
+                                                       std::int64_t last);
+template <int dim>
+[[nodiscard]] std::vector<CellRecord<dim>> box_records(const Boxes& boxes, std::int64_t first,
                                                        std::int64_t last);
 
 }  // namespace tribound::mesh

@@ -192,6 +192,24 @@ void in_batches(Index n_cells, Index batch, const Work& work)
   for (Index first = 0; first < n_cells; first += batch) work(first, std::min(n_cells, first + batch));
 }
 
+/// `source`: one box or several, which are `all`.
+template <int dim, class Source>
+Mesh<dim> share_out_boxes(const Ranks& ranks, const Source& source, std::span<const BoxMesh> all)
+{
+  MeshLabels labels = box_labels<dim>(source);
+  std::vector<Point<dim>> corners;
+  for (const BoxMesh& box : all)
+    for (const std::vector<double>& corner : {box.lower, box.upper}) corners.emplace_back(corner.data());
+  const Cube<dim> cube = cube_around<dim>(corners);
+  const std::int64_t n = n_box_cells(source);
+  std::vector<CellRecord<dim>> cells =
+      box_records<dim>(source, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
+  // They come in stretches of the last axis: along the curve they have few neighbours.
+  const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells, Move::always);
+  cells = ranks.send_to<CellRecord<dim>>(rank_of, cells);
+  return make_part<dim>(ranks, cube, std::move(cells), std::move(labels));
+}
+
 }  // namespace
 
 template <int dim>
@@ -226,16 +244,15 @@ Mesh<dim> share_out(const Ranks& ranks, const Mesh<dim>* whole, Index batch)
 template <int dim>
 Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box)
 {
-  MeshLabels labels = box_labels<dim>(box);
-  const std::array corners{Point<dim>(box.lower.data()), Point<dim>(box.upper.data())};
-  const Cube<dim> cube = cube_around<dim>(corners);
-  const std::int64_t n = n_box_cells(box);
-  std::vector<CellRecord<dim>> cells =
-      box_records<dim>(box, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
-  // They come in stretches of the last axis: along the curve they have few neighbours.
-  const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells, Move::always);
-  cells = ranks.send_to<CellRecord<dim>>(rank_of, cells);
-  return make_part<dim>(ranks, cube, std::move(cells), std::move(labels));
+  return share_out_boxes<dim>(ranks, box, std::span(&box, 1));
+}
+
+template <int dim>
+Mesh<dim> share_out(const Ranks& ranks, const Boxes& boxes)
+{
+  std::vector<BoxMesh> all;
+  for (const NamedBox& named : boxes) all.push_back(named.box);
+  return share_out_boxes<dim>(ranks, boxes, all);
 }
 
 template <int dim>
@@ -327,6 +344,7 @@ template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const I
 template Mesh<2> with_more_ghosts(Mesh<2>, std::vector<Ghost<2>>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
 template Mesh<2> share_out(const Ranks&, const BoxMesh&);
+template Mesh<2> share_out(const Ranks&, const Boxes&);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
 template Balanced<3> restore(const Ranks&, const Mesh<3>*, std::vector<CellRecord<3>>,
                              std::span<const double>, int);
@@ -334,6 +352,7 @@ template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const I
 template Mesh<3> with_more_ghosts(Mesh<3>, std::vector<Ghost<3>>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
 template Mesh<3> share_out(const Ranks&, const BoxMesh&);
+template Mesh<3> share_out(const Ranks&, const Boxes&);
 template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);
 
 }  // namespace tribound::mesh

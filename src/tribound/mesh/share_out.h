@@ -25,6 +25,8 @@ template <int dim>
 /// The same of a box, of which each rank makes its own cells.
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box);
+template <int dim>
+[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const Boxes& boxes);
 
 /// The part of a rank, and values that have come with the cells.
 template <int dim>
