@@ -18,6 +18,7 @@
 
 // The mesh.
 #include "tribound/mesh/bisect.h"
+#include "tribound/mesh/bodies.h"
 #include "tribound/mesh/box.h"
 #include "tribound/mesh/box_tree.h"
 #include "tribound/mesh/cut_open.h"
