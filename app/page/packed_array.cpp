@@ -99,6 +99,21 @@ io::Json pack_linear(std::span<const double> values, int bits, std::size_t strid
   return result;
 }
 
+double largest(std::span<const double> values)
+{
+  double result = 0;
+  for (const double value : values) result = std::max(result, std::abs(value));
+  return result;
+}
+
+io::Json pack_values(std::vector<double> values, double scale, int bits)
+{
+  constexpr double round_off = 1e-10;
+  for (double& value : values)
+    if (std::abs(value) <= round_off * scale) value = 0;
+  return pack_linear(values, bits);
+}
+
 io::Json pack_logarithmic(std::span<const double> values, int bits, double decades)
 {
   const double largest = values.empty() ? 0.0 : std::ranges::max(values);

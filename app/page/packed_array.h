@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tribound/base/types.h"
 #include "tribound/io/file/json_forward.h"
@@ -23,6 +24,12 @@ namespace tribound::app
 /// value = offset + step q, q of `bits` bits (at most 31): off by at most (max - min) / 2^(bits + 1).
 /// `stride`, here and below: each q is stored as its difference from the one so many places before.
 [[nodiscard]] io::Json pack_linear(std::span<const double> values, int bits, std::size_t stride = 1);
+
+/// The same with 0 in the place of what is round-off beside `scale`.
+[[nodiscard]] io::Json pack_values(std::vector<double> values, double scale, int bits);
+
+/// The largest absolute value, 0 of none.
+[[nodiscard]] double largest(std::span<const double> values);
 
 /// value = 10^(offset + step (q - 1)), and 0 for q = 0, of values >= 0 that span decades: those more than
 /// `decades` below the largest become 0.

@@ -14,23 +14,34 @@ namespace tribound::app
 namespace
 {
 
-/// The vertices by the square or cube of a grid in which they lie: for each the first one there.
+/// Per vertex the body of its faces.
+std::vector<Index> bodies_of_vertices(const Surface& surface, int dim)
+{
+  std::vector<Index> body(surface.points.size() / dim);
+  for (std::size_t i = 0; i < surface.faces.size(); ++i)
+    body[surface.faces[i]] = surface.bodies[i / surface.n_face_points()];
+  return body;
+}
+
+/// The vertices of a body by the square or cube of a grid in which they lie: for each the first one there.
 std::vector<Index> first_in_grid_cell(const Surface& surface, int dim, double width)
 {
   const std::size_t n = surface.points.size() / dim;
-  std::vector<std::array<std::int64_t, 4>> keys(n);
+  const std::vector<Index> body = bodies_of_vertices(surface, dim);
+  std::vector<std::array<std::int64_t, 5>> keys(n);
   for (std::size_t v = 0; v < n; ++v)
   {
     for (int i = 0; i < dim; ++i)
       keys[v][i] = static_cast<std::int64_t>(std::floor(surface.points[dim * v + i] / width));
-    keys[v][3] = static_cast<std::int64_t>(v);
+    keys[v][3] = body[v];
+    keys[v][4] = static_cast<std::int64_t>(v);
   }
   std::ranges::sort(keys);
   std::vector<Index> first(n);
   for (std::size_t i = 0, begin = 0; i < n; ++i)
   {
-    if (!std::equal(keys[i].begin(), keys[i].begin() + 3, keys[begin].begin())) begin = i;
-    first[keys[i][3]] = static_cast<Index>(keys[begin][3]);
+    if (!std::equal(keys[i].begin(), keys[i].begin() + 4, keys[begin].begin())) begin = i;
+    first[keys[i][4]] = static_cast<Index>(keys[begin][4]);
   }
   return first;
 }
@@ -104,10 +115,9 @@ void merge_details(Surface& surface, int dim, std::size_t max_triangles)
   for (Index& vertex : surface.faces) vertex = first[vertex];
   keep(surface.faces, kept, 3);
   for (std::vector<double>& component : surface.stress) keep(component, kept, component.size() / kept.size());
-  keep(surface.cells, kept, 1);
+  for (auto* column : {&surface.cells, &surface.bodies, &surface.facets}) keep(*column, kept, 1);
   SurfaceContact& contact = surface.contact;
-  for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})
-    keep(*column, kept, 3);
+  for (const auto column : value_columns) keep(contact.*column, kept, 3);
   keep(contact.point_status, kept, 3);
   keep(contact.status, kept, 1);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tribound/fem/evaluation.h"
 #include "tribound/io/fields/contact_line.h"
 
 namespace tribound::app
@@ -34,8 +35,20 @@ void add_point(ContactProfile& profile, const contact::ContactState<2>& state, d
   profile.status.push_back(static_cast<Index>(state.status));
 }
 
-ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<const double> u, int tag,
-                               std::size_t n_points)
+/// Pi(x) for the point number q of the table.
+void add_opposite(ContactProfile& profile, const contact::NitscheForm<2>& form, std::span<const double> u,
+                  const contact::SegmentSide<2>& master, const contact::SegmentTable<2>& table, std::size_t q)
+{
+  const Point<2> point = contact::simplex_map(form.space().mesh(), master)(table.points[q]);
+  const Point<2> displacement = fem::value_at<2>(form.space().cell_nodes(master.facet.cell), u,
+                                                 table.master->values_at(static_cast<int>(q)));
+  profile.opposite.insert(profile.opposite.end(), point.begin(), point.end());
+  profile.opposite_displacement.insert(profile.opposite_displacement.end(), displacement.begin(),
+                                       displacement.end());
+}
+
+ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<const double> u,
+                               std::span<const int> body_of, int tag, std::size_t n_points)
 {
   ContactProfile profile;
   profile.tag = tag;
@@ -46,13 +59,17 @@ ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<co
   const contact::SegmentTables<2> tables(form.space().basis(), form.segments(), points);
   for (const io::ChainLink& link : links)
   {
-    const double length = form.segments()[link.segment].measure;
+    const contact::ContactSegment<2>& segment = form.segments()[link.segment];
     const std::vector<contact::ContactState<2>> states =
         form.contact_states(u, link.segment, tables[link.segment]);
     for (std::size_t i = 0; i <= n; ++i)
     {
       const std::size_t q = link.reversed ? n - i : i;
-      add_point(profile, states[q], link.arc + length * points[i][0]);
+      add_point(profile, states[q], link.arc + segment.measure * points[i][0]);
+      profile.bodies.push_back(body_of[segment.slave.facet.cell]);
+      if (!segment.master) continue;
+      add_opposite(profile, form, u, *segment.master, tables[link.segment], q);
+      profile.opposite_bodies.push_back(body_of[segment.master->facet.cell]);
     }
   }
   return profile;
@@ -63,10 +80,12 @@ ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<co
 std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form, std::span<const double> u,
                                              std::size_t n_points)
 {
+  const std::vector<int> body_of = mesh::connected_parts(form.space().mesh().topology());
   std::vector<ContactProfile> profiles;
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (form.problem().contact(tag) != nullptr) profiles.push_back(contact_profile(form, u, tag, n_points));
+    if (form.problem().contact(tag) != nullptr)
+      profiles.push_back(contact_profile(form, u, body_of, tag, n_points));
   return profiles;
 }
 

@@ -29,6 +29,11 @@ struct ContactProfile
   std::vector<double> gap;
   std::vector<double> slip;   ///< u.t
   std::vector<Index> status;  ///< ContactStatus
+  std::vector<Index> bodies;  ///< that of the point
+  /// Between bodies: Pi(x), its displacement and its body.
+  std::vector<double> opposite;
+  std::vector<double> opposite_displacement;
+  std::vector<Index> opposite_bodies;
 };
 
 /// The profile of every boundary with contact, of about `n_points` points each, at least p + 1 per segment.

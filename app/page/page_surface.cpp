@@ -20,7 +20,8 @@ namespace
 struct Face
 {
   Index cell;
-  int local;  ///< 3D: local facet
+  int local;    ///< 3D: local facet
+  Index facet;  ///< 3D: number in Mesh::boundary()
 };
 
 /// The segments against rigid obstacles, each a facet; they stand before all others.
@@ -38,7 +39,8 @@ std::vector<Face> contact_faces(const contact::NitscheForm<dim>& form)
   std::vector<Face> faces;
   if constexpr (dim == 3)
     for (const contact::ContactSegment<3>& segment : obstacle_segments(form))
-      faces.push_back({segment.slave.facet.cell, segment.slave.facet.local});
+      faces.push_back(
+          {segment.slave.facet.cell, segment.slave.facet.local, static_cast<Index>(segment.slave.number)});
   return faces;
 }
 
@@ -49,19 +51,13 @@ std::vector<Face> all_faces(const contact::NitscheForm<dim>& form)
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::vector<Face> faces = contact_faces(form);
   if constexpr (dim == 2)
-    for (Index c = 0; c < mesh.n_cells(); ++c) faces.push_back({c, 0});
+    for (Index c = 0; c < mesh.n_cells(); ++c) faces.push_back({c, 0, 0});
   else
-    for (const mesh::BoundaryFacet& facet : mesh.boundary())
-      if (!form.problem().boundary(facet.tag).contact) faces.push_back({facet.cell, facet.local});
+    for (Index k = 0; k < static_cast<Index>(mesh.boundary().size()); ++k)
+      if (const mesh::BoundaryFacet& facet = mesh.boundary()[k]; !form.problem().boundary(facet.tag).contact)
+        faces.push_back({facet.cell, facet.local, k});
   return faces;
 }
-
-/// The lattice of one kind of face.
-struct FaceLattice
-{
-  std::vector<int> nodes;         ///< in the basis of degree k of the cell
-  std::vector<Point<2>> on_face;  ///< 3D: reference coordinates on the facet
-};
 
 /// The corners of a face in the cell, turning anticlockwise seen from outside.
 template <int dim>
@@ -69,16 +65,17 @@ std::array<int, 3> corners(int local)
 {
   if constexpr (dim == 2) return {0, 1, 2};
   std::array<int, 3> vertices = mesh::facet_vertices(std::array<Index, 4>{0, 1, 2, 3}, local);
-  if (local % 2 == 1) std::swap(vertices[1], vertices[2]);  // see facet_geometry()
+  if (turns_the_other_way(local)) std::swap(vertices[1], vertices[2]);
   return vertices;
 }
 
+/// The lattice of a face in the nodes of degree k of the cell.
 template <int dim>
-FaceLattice face_lattice(const fem::LagrangeBasis<dim>& basis, int local)
+std::vector<int> face_lattice(const fem::LagrangeBasis<dim>& basis, int local)
 {
   const int k = basis.degree();
   const std::array<int, 3> corner = corners<dim>(local);
-  FaceLattice lattice;
+  std::vector<int> nodes;
   for (int j = 0; j <= k; ++j)
     for (int i = 0; i + j <= k; ++i)
     {
@@ -88,36 +85,9 @@ FaceLattice face_lattice(const fem::LagrangeBasis<dim>& basis, int local)
       weights[corner[2]] = j;
       int node = 0;
       while (basis.node(node) != weights) ++node;
-      lattice.nodes.push_back(node);
-      Point<2> s(static_cast<double>(i) / k, static_cast<double>(j) / k);
-      if (local % 2 == 1) std::swap(s[0], s[1]);
-      lattice.on_face.push_back(s);
+      nodes.push_back(node);
     }
-  return lattice;
-}
-
-/// k: the degree of the displacement, lower where that would give too many triangles.
-int subdivision(std::size_t n_faces, int degree, std::size_t max_triangles)
-{
-  int k = degree;
-  while (k > 1 && n_faces * k * k > max_triangles) --k;
-  return k;
-}
-
-/// The middles of the triangles of a face, in the order of Surface: row by row, in each row those that point
-/// up and down by turns.
-std::vector<Point<2>> triangle_middles(int k, bool swapped)
-{
-  std::vector<Point<2>> middles;
-  const auto add = [&](double i, double j)
-  { middles.push_back(swapped ? Point<2>(j / k, i / k) : Point<2>(i / k, j / k)); };
-  for (int j = 0; j < k; ++j)
-    for (int i = 0; i + j < k; ++i)
-    {
-      add(i + 1.0 / 3.0, j + 1.0 / 3.0);
-      if (i + j + 1 < k) add(i + 2.0 / 3.0, j + 2.0 / 3.0);
-    }
-  return middles;
+  return nodes;
 }
 
 /// Fills a Surface face by face.
@@ -131,6 +101,7 @@ class SurfaceSampler
         u_(u),
         space_(form.space().mesh(), subdivision),
         stress_(io::equilibrated_stress_field(space_, stress)),
+        body_of_(mesh::connected_parts(space_.mesh().topology())),
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
@@ -143,10 +114,9 @@ class SurfaceSampler
 
   void add(const Face& face)
   {
-    const FaceLattice& lattice = lattices_[face.local];
     const mesh::CellMap<dim> map = mesh::cell_map(space_.mesh(), face.cell);
     stress_.at_nodes(face.cell, values_);
-    for (const int node : lattice.nodes)
+    for (const int node : lattices_[face.local])
     {
       Index& vertex = vertex_of_node_[space_.cell_nodes(face.cell)[node]];
       if (vertex < 0) vertex = add_vertex(face.cell, node, map);
@@ -156,6 +126,8 @@ class SurfaceSampler
         surface_.stress[i].push_back(sigma[stress_entries<dim>[i]]);
     }
     surface_.cells.push_back(face.cell);
+    surface_.bodies.push_back(body_of_[face.cell]);
+    if constexpr (dim == 3) surface_.facets.push_back(face.facet);
   }
 
   [[nodiscard]] Surface take() && { return std::move(surface_); }
@@ -176,7 +148,8 @@ class SurfaceSampler
   io::TensorField<dim> stress_;
   fem::Tabulation<dim> at_nodes_;    ///< the basis of u at these nodes
   std::vector<Tensor<dim>> values_;  ///< sigma_h at the nodes of a cell
-  std::vector<FaceLattice> lattices_;
+  std::vector<std::vector<int>> lattices_;
+  std::vector<int> body_of_;  ///< by cells
   std::vector<Index> vertex_of_node_;
   Surface surface_;
 };
@@ -198,35 +171,22 @@ void average_stress(Surface& surface)
 
 SurfaceContact sample_contact(const contact::NitscheForm<3>& form, std::span<const double> u, int k)
 {
-  const fem::LagrangeBasis<3> lattice(k);
   SurfaceContact contact;
   const std::span<const contact::ContactSegment<3>> segments = obstacle_segments(form);
-  for (int local = 0; local <= 3; ++local)
+  const std::size_t n = lattice_points(k, false).size();
+  const std::size_t n_middles = triangle_middles(k, false).size();
+  contact.resize(segments.size() * n, segments.size() * n_middles);
+  for (const bool swapped : {false, true})
   {
-    // Facets with the same local number share their tables; they are put in their places afterwards.
-    const contact::SegmentTables<3> at_points(form.space().basis(), segments,
-                                              face_lattice<3>(lattice, local).on_face);
-    const contact::SegmentTables<3> at_middles(form.space().basis(), segments,
-                                               triangle_middles(k, local % 2 == 1));
-    const std::size_t n = at_points.n_points();
-    const std::size_t n_middles = at_middles.n_points();
-    for (auto* column : {&contact.pressure, &contact.friction, &contact.limit, &contact.gap, &contact.slip})
-      column->resize(segments.size() * n);
-    contact.point_status.resize(segments.size() * n);
-    contact.status.resize(segments.size() * n_middles);
+    // Facets that turn alike share their tables; they are put in their places afterwards.
+    const contact::SegmentTables<3> at_points(form.space().basis(), segments, lattice_points(k, swapped));
+    const contact::SegmentTables<3> at_middles(form.space().basis(), segments, triangle_middles(k, swapped));
     for (std::size_t segment = 0; segment < segments.size(); ++segment)
     {
-      if (segments[segment].slave.facet.local != local) continue;
+      if (turns_the_other_way(segments[segment].slave.facet.local) != swapped) continue;
       std::size_t i = segment * n;
       for (const contact::ContactState<3>& state : form.contact_states(u, segment, at_points[segment]))
-      {
-        contact.pressure[i] = state.pressure;
-        contact.friction[i] = (state.traction + state.pressure * state.normal).norm();
-        contact.limit[i] = state.limit;
-        contact.gap[i] = state.gap;
-        contact.point_status[i] = static_cast<Index>(state.status);
-        contact.slip[i++] = state.slip.norm();
-      }
+        contact.set_point(i++, state);
       i = segment * n_middles;
       for (const contact::ContactState<3>& state : form.contact_states(u, segment, at_middles[segment]))
         contact.status[i++] = static_cast<Index>(state.status);
@@ -236,6 +196,56 @@ SurfaceContact sample_contact(const contact::NitscheForm<3>& form, std::span<con
 }
 
 }  // namespace
+
+void SurfaceContact::resize(std::size_t n_points, std::size_t n_triangles)
+{
+  for (const auto column : value_columns) (this->*column).resize(n_points);
+  point_status.resize(n_points);
+  status.resize(n_triangles);
+}
+
+void SurfaceContact::set_point(std::size_t i, const contact::ContactState<3>& state)
+{
+  pressure[i] = state.pressure;
+  friction[i] = (state.traction + state.pressure * state.normal).norm();
+  limit[i] = state.limit;
+  gap[i] = state.gap;
+  slip[i] = state.slip.norm();
+  point_status[i] = static_cast<Index>(state.status);
+}
+
+int subdivision(std::size_t n_faces, int degree, std::size_t max_triangles)
+{
+  int k = degree;
+  while (k > 1 && n_faces * k * k > max_triangles) --k;
+  return k;
+}
+
+std::vector<Point<2>> lattice_points(int k, bool swapped)
+{
+  std::vector<Point<2>> points;
+  for (int j = 0; j <= k; ++j)
+    for (int i = 0; i + j <= k; ++i)
+    {
+      const Point<2> s(static_cast<double>(i) / k, static_cast<double>(j) / k);
+      points.push_back(swapped ? Point<2>(s[1], s[0]) : s);
+    }
+  return points;
+}
+
+std::vector<Point<2>> triangle_middles(int k, bool swapped)
+{
+  std::vector<Point<2>> middles;
+  const auto add = [&](double i, double j)
+  { middles.push_back(swapped ? Point<2>(j / k, i / k) : Point<2>(i / k, j / k)); };
+  for (int j = 0; j < k; ++j)
+    for (int i = 0; i + j < k; ++i)
+    {
+      add(i + 1.0 / 3.0, j + 1.0 / 3.0);
+      if (i + j + 1 < k) add(i + 2.0 / 3.0, j + 2.0 / 3.0);
+    }
+  return middles;
+}
 
 template <int dim>
 Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,

@@ -22,11 +22,15 @@ struct PageLimits
   std::size_t triangles = 240'000;  ///< triangles of a level; beyond, cells are merged
   std::size_t stresses = 24'000;    ///< triangles up to which stresses are those of points, not of faces
   std::size_t earlier = 40'000;     ///< triangles of all levels before the last; beyond, they are left out
+  std::size_t segments = 40'000;    ///< between bodies; beyond, contact values are means over facets
 };
 
-/// Values at the lattice points of the contact faces, see Surface.
+/// Values at the lattice points of faces, see Surface.
 struct SurfaceContact
 {
+  void resize(std::size_t n_points, std::size_t n_triangles);
+  void set_point(std::size_t i, const contact::ContactState<3>& state);
+
   std::vector<double> pressure;
   std::vector<double> friction;  ///< |T^t|
   std::vector<double> limit;     ///< what it may reach
@@ -35,6 +39,11 @@ struct SurfaceContact
   std::vector<Index> point_status;  ///< ContactStatus
   std::vector<Index> status;        ///< the same in the middle of each triangle
 };
+
+/// Those columns that are numbers.
+inline constexpr std::array value_columns = {&SurfaceContact::pressure, &SurfaceContact::friction,
+                                             &SurfaceContact::limit, &SurfaceContact::gap,
+                                             &SurfaceContact::slip};
 
 /// Faces with a lattice of (k + 1)(k + 2) / 2 vertices each, which cuts them into k^2 triangles. Number i +
 /// j' of row j: barycentric coordinates (k - i - j, i, j) / k of the corners, rows j = 0 ... k one after the
@@ -46,6 +55,8 @@ struct Surface
   std::vector<double> displacement;  ///< dim components per vertex
   std::vector<Index> faces;          ///< vertices of the lattice, face by face
   std::vector<Index> cells;          ///< per face: its cell
+  std::vector<Index> bodies;         ///< per face: its body, as the certificate numbers them
+  std::vector<Index> facets;         ///< 3D, per face: its number in Mesh::boundary()
   /// sigma_h, component by component (xx, yy, xy; in 3D xx, yy, zz, xy, yz, xz): at every lattice point of
   /// every face, where it may jump, or one value per face.
   std::vector<std::vector<double>> stress;
@@ -62,6 +73,20 @@ template <int dim>
 inline constexpr std::array<int, 6> stress_entries = {0, 1, 2, 3, 4, 5};
 template <>
 inline constexpr std::array<int, 3> stress_entries<2> = {0, 1, 3};
+
+/// k: the degree of what is shown, lower where that would give more than `max_triangles`.
+[[nodiscard]] int subdivision(std::size_t n_faces, int degree, std::size_t max_triangles);
+
+/// The lattice points of a face in the order of Surface, and the middles of its triangles: row by row, in
+/// each row those that point up and down by turns. Coordinates (i, j) / k, exchanged if `swapped`.
+[[nodiscard]] std::vector<Point<2>> lattice_points(int k, bool swapped);
+[[nodiscard]] std::vector<Point<2>> triangle_middles(int k, bool swapped);
+
+/// Whether the coordinates of facet `local` of a tetrahedron have to be exchanged for those of its face.
+[[nodiscard]] inline bool turns_the_other_way(int local)
+{
+  return local % 2 == 1;  // see facet_geometry()
+}
 
 /// At most so many triangles has the surface of the body on a level.
 template <int dim>

@@ -23,6 +23,8 @@ Volume sample_volume(const contact::NitscheForm<3>& form, std::span<const double
   volume.stress.assign(stress_entries<3>.size(), std::vector<double>(n));
   for (const Point<3>& x : corners.node_points())
     volume.points.insert(volume.points.end(), x.begin(), x.end());
+  volume.bodies.resize(n);
+  const std::vector<int> body_of = mesh::connected_parts(mesh.topology());
   std::vector<double> weight(n);
   std::array<Tensor<3>, 4> values;
   for (Index cell = 0; cell < mesh.n_cells(); ++cell)
@@ -33,6 +35,7 @@ Volume sample_volume(const contact::NitscheForm<3>& form, std::span<const double
     {
       const Index vertex = corners.cell_nodes(cell)[i];
       volume.cells.push_back(vertex);
+      volume.bodies[vertex] = body_of[cell];
       weight[vertex] += det;
       const std::array<double, 6> components = io::symmetric_part<3>(values[i], 0.0);
       for (std::size_t s = 0; s < components.size(); ++s) volume.stress[s][vertex] += det * components[s];

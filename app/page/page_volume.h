@@ -21,6 +21,7 @@ struct Volume
   std::vector<double> displacement;         ///< 3 components per vertex
   std::vector<std::vector<double>> stress;  ///< sigma_h: xx, yy, zz, xy, yz, xz
   std::vector<Index> cells;                 ///< 4 vertices per cell
+  std::vector<Index> bodies;                ///< per vertex: the body it belongs to
 };
 
 /// Cells up to which a page has them; beyond, it shows the surface alone.

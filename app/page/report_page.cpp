@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/page/packed_array.h"
-#include "app/page/page_profile.h"
+#include "app/page/page_contact.h"
 #include "app/page/page_volume.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
@@ -24,27 +24,9 @@ constexpr int displacement_bits = 16;
 constexpr int stress_bits = 12;
 constexpr int component_bits = 10;
 constexpr double component_decades = 8;
-constexpr int profile_bits = 20;
 
-/// Below this part of the largest value of its kind a value is round-off.
-constexpr double round_off = 1e-10;
 /// Characters up to which the page holds a table.
 constexpr std::size_t largest_table = 400'000;
-
-double largest(std::span<const double> values)
-{
-  double result = 0;
-  for (const double value : values) result = std::max(result, std::abs(value));
-  return result;
-}
-
-/// Packed with 0 in the place of what is round-off beside `scale`.
-io::Json pack_values(std::vector<double> values, double scale, int bits)
-{
-  for (double& value : values)
-    if (std::abs(value) <= round_off * scale) value = 0;
-  return pack_linear(values, bits);
-}
 
 /// Component by component.
 io::Json stress_json(std::span<const std::vector<double>> stress)
@@ -92,47 +74,6 @@ io::Json region_json(const Surface& surface, const mesh::Mesh<dim>& mesh)
   std::vector<Index> regions;
   for (const Index cell : surface.cells) regions.push_back(mesh.region(cell));
   return pack_integers(regions);
-}
-
-io::Json contact_json(const SurfaceContact& contact, double displacement)
-{
-  const double stress = std::max(largest(contact.pressure), largest(contact.limit));
-  const auto column = [](const std::vector<double>& values, double scale)
-  { return pack_values(values, scale, stress_bits); };
-  return {
-      {"pressure", column(contact.pressure, stress)}, {"friction", column(contact.friction, stress)},
-      {"limit", column(contact.limit, stress)},       {"gap", column(contact.gap, displacement)},
-      {"slip", column(contact.slip, displacement)},   {"point_status", pack_integers(contact.point_status)},
-      {"status", pack_integers(contact.status)}};
-}
-
-io::Json profile_json(const ContactProfile& profile, const std::string& boundary, bool paired)
-{
-  const double stress = std::max(largest(profile.pressure), largest(profile.limit));
-  const double length = largest(profile.displacement);
-  const auto column = [](const std::vector<double>& values, double scale)
-  { return pack_values(values, scale, profile_bits); };
-  return {{"boundary", boundary},
-          {"paired", paired},
-          {"arc", pack_linear(profile.arc, profile_bits)},
-          {"points", column(profile.points, largest(profile.points))},
-          {"displacement", column(profile.displacement, length)},
-          {"normal", column(profile.normal, 1)},
-          {"pressure", column(profile.pressure, stress)},
-          {"friction", column(profile.friction, stress)},
-          {"limit", column(profile.limit, stress)},
-          {"gap", column(profile.gap, length)},
-          {"slip", column(profile.slip, length)},
-          {"status", pack_integers(profile.status)}};
-}
-
-io::Json profiles_json(const contact::NitscheForm<2>& form, std::span<const double> u)
-{
-  io::Json profiles = io::Json::array();
-  for (const ContactProfile& profile : contact_profiles(form, u))
-    profiles.push_back(profile_json(profile, form.problem().boundary(profile.tag).name,
-                                    form.problem().pair_of_slave(profile.tag) != nullptr));
-  return profiles;
 }
 
 /// A table of which the page offers a copy; null where it is too large.
@@ -201,13 +142,10 @@ PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
                     {"stress", stress_json(surface.stress)}}};
   io::Json& json = result.json;
   if (mesh.region_names().size() > 1) json["region"] = region_json(surface, mesh);
-  if (!surface.contact.pressure.empty())
-    json["contact"] = contact_json(surface.contact, largest(surface.displacement));
-  if constexpr (dim == 2)
-  {
-    json["out_of_plane"] = out_of_plane_json(form.problem(), mesh);
-    if (form.problem().has_contact()) json["profiles"] = profiles_json(form, level.u);
-  }
+  if (!surface.bodies.empty() && std::ranges::max(surface.bodies) > 0)
+    json["body"] = pack_integers(surface.bodies);
+  if constexpr (dim == 2) json["out_of_plane"] = out_of_plane_json(form.problem(), mesh);
+  json.update(page_contact(form, level.u, surface, limits));
   return result;
 }
 
@@ -221,6 +159,7 @@ io::Json page_volume(const contact::NitscheForm<dim>& form, const adapt::Certifi
       return {{"points", pack_linear(volume.points, point_bits, 3)},
               {"displacement", pack_linear(volume.displacement, displacement_bits, 3)},
               {"cells", pack_integers(volume.cells, 4)},
+              {"bodies", pack_integers(volume.bodies)},
               {"stress", stress_json(volume.stress)}};
     }
   return nullptr;

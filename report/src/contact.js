@@ -1,12 +1,15 @@
-// The contact boundary: in 2D curves over its length with open, sticking and slipping zones shaded, in 3D a plan view and values
-// over a coordinate.
+// The contact boundary: in 2D curves over its length with open, sticking and slipping zones shaded, in 3D plan views, and against
+// obstacles values over a coordinate.
 
 import * as Plot from "@observablehq/plot";
 import { chartStyle, responsive } from "./charts.js";
 import { statusColours, statusNames } from "./components.js";
-import { element, number, powerOfTen, section, table, withoutNoise } from "./dom.js";
-import { contactPlan } from "./plan.js";
-import { areaVector, readSurface } from "./surface.js";
+import { contactSides, partArea } from "./contact_parts.js";
+import { element, number, powerOfTen, section } from "./dom.js";
+import { contactPlans, quantities } from "./plan.js";
+import { boundaryTitle, resultants } from "./resultants.js";
+import { shownStates } from "./scales.js";
+import { readSurface } from "./surface.js";
 
 /** Stretches of equal status along a profile. */
 function zonesOf({ arc, status }) {
@@ -53,13 +56,13 @@ function panel(rows, zones, { key, title, colour, limits, zero }, width, isLast)
   });
 }
 
-function profileCharts(profile) {
+function profileCharts(run, profile) {
   const rows = Array.from(profile.arc, (arc, i) => ({ arc, x: profile.points[2 * i], y: profile.points[2 * i + 1],
     pressure: profile.pressure[i], friction: profile.friction[i], limit: profile.limit[i], gap: profile.gap[i],
     slip: profile.slip[i], status: profile.status[i] }));
   const zones = zonesOf(profile);
   const present = [0, 1, 2, 3].filter((kind) => zones.some(({ status }) => status === kind));
-  return element("figure", {}, element("h3", {}, profile.boundary),
+  return element("figure", {}, element("h3", {}, boundaryTitle(run, profile.boundary)),
     element("ul", { class: "legend" }, present.map((kind) =>
       element("li", {}, element("span", { class: "swatch swatch-zone", style: `--colour:${statusColours[kind]}` }), statusNames[kind]))),
     responsive(`Contact pressure, friction, gap and slip along ${profile.boundary}`, (width) => element("div", {},
@@ -101,21 +104,18 @@ function bestCoordinate(rows, names) {
   return names.map((name) => [variation(name), name]).reduce((best, other) => (other[0] < best[0] ? other : best))[1];
 }
 
-function scatterCharts(surface) {
+function scatterChart(surface, quantity) {
   const { rows, centre } = contactPoints(surface, 3000);
   const coordinates = { x: "x [L]", y: "y [L]", z: "z [L]", r: `distance from the largest pressure, at (${["x", "y", "z"].map((axis) => number(centre[axis], 3)).join(", ")}) [L]` };
-  const quantities = { pressure: ["contact pressure", "S"], friction: ["friction, length", "S"], gap: ["gap", "L"], slip: ["slip, length", "L"] };
-  const options = (names) => Object.entries(names).map(([value, name]) => element("option", { value }, name));
-  const coordinate = element("select", { id: "contact-coordinate" }, options(coordinates));
-  const quantity = element("select", { id: "contact-quantity" }, Object.entries(quantities).map(([value, [name]]) => element("option", { value }, name)));
+  const coordinate = element("select", { id: "contact-coordinate" }, Object.entries(coordinates).map(([value, name]) => element("option", { value }, name)));
   const place = element("div", {});
   const plot = (width) => {
-    const [name, symbol] = quantities[quantity.value];
+    const { label, unit: symbol } = quantities[quantity.value];
     const { factor, unit } = powerOfTen(rows.map((row) => row[quantity.value]));
     const y = (row) => row[quantity.value] / factor;
     return Plot.plot({ width, height: 330, marginLeft: 58, marginTop: 26, marginBottom: 46, style: chartStyle, grid: true,
       x: { label: coordinates[coordinate.value], tickFormat: (value) => number(value, 3) },
-      y: { label: `${name} [${unit(symbol)}]`, nice: true, tickFormat: (value) => number(value, 3) },
+      y: { label: `${label} [${unit(symbol)}]`, nice: true, tickFormat: (value) => number(value, 3) },
       marks: [Plot.ruleY([0], { strokeOpacity: 0.5 }),
         Plot.dot(rows, { x: coordinate.value, y, r: 2, fill: (row) => statusColours[row.status], fillOpacity: 0.75 }),
         Plot.tip(rows, Plot.pointer({ x: coordinate.value, y, title: (row) =>
@@ -127,26 +127,21 @@ function scatterCharts(surface) {
   coordinate.value = bestCoordinate(rows, Object.keys(coordinates));
   draw();
   return element("figure", {}, element("div", { class: "controls screen-only" },
-    element("label", { class: "control" }, element("span", {}, "Show"), quantity),
-    element("label", { class: "control" }, element("span", {}, "over"), coordinate)),
-    element("ul", { class: "legend" }, statusNames.slice(0, 3).map((name, i) => element("li", {}, element("span", { class: "swatch", style: `--colour:${statusColours[i]}` }), name))),
-    contactPlan(surface, quantity), place, element("figcaption", {}, "The boundary in plan, and its points over a coordinate."));
+    element("label", { class: "control" }, element("span", {}, "Over"), coordinate)),
+    element("ul", { class: "legend" }, shownStates([]).map((name, i) => element("li", {}, element("span", { class: "swatch", style: `--colour:${statusColours[i]}` }), name))),
+    place, element("figcaption", {}, "The points of the boundary over a coordinate."));
 }
 
-function resultants(run) {
-  const parts = Object.entries(run.contact.boundaries);
-  const unit = run.d === 2 ? "S L" : "S L\u00b2";
-  const isSliding = run.bound !== null && parts.some(([, part]) => part.sliding);
-  const row = (name, part) => {
-    const [normal, tangential, length, ...force] = withoutNoise([part.normal, part.tangential, part.abs_tangential, ...part.force])
-      .map((value) => number(value, 6));
-    return [name, normal, tangential, length, `(${force.join(", ")})`,
-      ...(isSliding ? [number(part.sliding?.sliding_factor), number(part.sliding?.safety_factor)] : [])];
-  };
-  const rows = parts.map(([name, part]) => row(name, part));
-  if (parts.length > 1) rows.push(row("in all", run.contact));
-  return [element("h3", {}, "Resultants"), table(["boundary", `#normal [${unit}]`, `#tangential [${unit}]`, `#|tangential| [${unit}]`,
-    `#force on the body [${unit}]`, ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows)];
+/** In 3D: the boundaries in plan, and those against obstacles over a coordinate. */
+function contactIn3d(run, surface) {
+  const quantity = element("select", { id: "contact-quantity" }, Object.entries(quantities).map(([value, { label }]) => element("option", { value }, label)));
+  const isStatus = element("input", { id: "contact-status", type: "checkbox" });
+  const names = [...new Set(contactSides(surface).map(({ boundary }) => boundary))];
+  const titles = names.length > 1 || surface.pairs?.length > 0 ? Object.fromEntries(names.map((name) => [name, boundaryTitle(run, name)])) : {};
+  return [element("div", { class: "controls screen-only" }, element("label", { class: "control" }, element("span", {}, "Show"), quantity),
+    element("label", { class: "control" }, isStatus, element("span", {}, "Status in plan"))),
+  ...contactPlans(surface, quantity, isStatus, titles),
+  surface.nContactFaces > 0 ? scatterChart(surface, quantity) : ""];
 }
 
 /** What a length or an area adds up to, and how much of it is open. */
@@ -163,16 +158,17 @@ function summaryOfProfiles(profiles) {
 }
 
 function summaryOfSurface(surface) {
-  const { contact, nContactFaces, nFacePoints, faces, points } = surface;
   const summary = { size: 0, open: 0, largest: 0, place: null };
-  contact.status.forEach((status, triangle) => {
-    const area = Math.hypot(...areaVector(surface, 3 * triangle)) / 2;
-    summary.size += area;
-    if (status === 0) summary.open += area;
-  });
-  for (let place = 0; place < nContactFaces * nFacePoints; ++place)
-    if (contact.pressure[place] > summary.largest)
-      Object.assign(summary, { largest: contact.pressure[place], place: [...points.subarray(3 * faces[place], 3 * faces[place] + 3)] });
+  for (const part of contactSides(surface)) {
+    part.status.forEach((status, triangle) => {
+      const area = Math.hypot(...partArea(part, 3 * triangle)) / 2;
+      summary.size += area;
+      if (status === 0) summary.open += area;
+    });
+    part.values("pressure").forEach((pressure, c) => {
+      if (pressure > summary.largest) Object.assign(summary, { largest: pressure, place: [...part.points.subarray(3 * c, 3 * c + 3)] });
+    });
+  }
   return summary;
 }
 
@@ -182,15 +178,16 @@ export function contactSection(data) {
   if (!run.contact || run.status === "failed") return { element: null, start: async () => {}, summary: async () => null };
   const place = element("div", { class: "contact" });
   const last = data.fields.at(-1);
+  const is3d = last?.contact || last?.pairs?.length > 0;
+  const opposite = run.bodies?.length > 1 ? "what lies opposite" : "the obstacle";
   return {
-    element: section("contact", "Contact", "The contact boundary", last?.profiles || last?.contact
-      ? "Pressure is positive in compression; friction and slip are those of the body along the boundary; the gap is the distance left to the obstacle."
+    element: section("contact", "Contact", "The contact boundary", last?.profiles || is3d
+      ? `Pressure is positive in compression; friction and slip are those of the body along the boundary; the gap is the distance left to ${opposite}.`
       : null, place, resultants(run)),
-    summary: async () => (last?.profiles ? summaryOfProfiles((await readSurface(last)).profiles)
-      : last?.contact ? summaryOfSurface(await readSurface(last)) : null),
+    summary: async () => (last?.profiles ? summaryOfProfiles((await readSurface(last)).profiles) : is3d ? summaryOfSurface(await readSurface(last)) : null),
     start: async () => {
-      if (last?.profiles) place.append(...(await readSurface(last)).profiles.filter(({ arc }) => arc.length > 1).map(profileCharts));
-      if (last?.contact) place.append(scatterCharts(await readSurface(last)));
+      if (last?.profiles) place.append(...(await readSurface(last)).profiles.filter(({ arc }) => arc.length > 1).map((profile) => profileCharts(run, profile)));
+      if (is3d) place.append(...contactIn3d(run, await readSurface(last)));
     },
   };
 }

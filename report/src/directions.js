@@ -17,10 +17,18 @@ function meanContactNormal(surface) {
   return normal.map((x) => x / (area || 1));
 }
 
+/** The axis across the interfaces between bodies; z where they turn. */
+function axisAcross(interfaces) {
+  const [sum, area] = interfaces.reduce(([vector, total], { normal, measure }) =>
+    [vector.map((x, i) => x + measure * Math.abs(normal[i])), total + measure], [[0, 0, 0], 0]);
+  const axis = sum.indexOf(Math.max(...sum));
+  return sum[axis] > 0.8 * area ? axis + 1 : 3;
+}
+
 /** The axis that points away from what the body lies on; z where it does not lie on anything. As camera.js numbers them. */
 export function upAxis(surface) {
   const normal = meanContactNormal(surface);
-  if (Math.hypot(...normal) < 0.5) return 3;
+  if (Math.hypot(...normal) < 0.5) return axisAcross(surface.interfaces ?? []);
   const axis = normal.reduce((best, x, i) => (Math.abs(x) > Math.abs(normal[best]) ? i : best), 0);
   return -Math.sign(normal[axis]) * (axis + 1);
 }

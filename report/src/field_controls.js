@@ -18,17 +18,19 @@ export class FieldControls {
     this.levelText = element("output", { for: "level" });
     this.factor = slider("factor", 100, (value) => ({ factor: (value / 25) * this.usual }));
     this.factorText = element("output", { for: "factor" });
+    this.explosion = slider("explosion", 100, (value) => ({ explosion: value / 100 }));
     this.mesh = check("mesh");
     this.obstacle = check("obstacle");
     this.axis = element("select", { id: "cut-axis", onchange: () => set({ axis: this.axis.value === "" ? null : Number(this.axis.value) }) },
       ["no plane", "x", "y", "z"].map((name, i) => element("option", { value: i === 0 ? "" : i - 1 }, name)));
     this.place = slider("cut-place", 100, (value) => ({ place: value / 100 }));
-    const hasContact = last.profiles || last.contact;
+    const hasContact = last.profiles?.some(({ paired }) => !paired) || last.contact;
     this.range = element("span", { class: "control" }, element("span", {}, "Colours from"), this.low, element("span", {}, "to"), this.high,
       button("colours from the values of this level", "Auto", () => set({ range: null })));
     this.element = element("div", { class: "controls screen-only" }, control("Field", this.field), this.range,
       nLevels > 1 ? control("Level", this.level, this.levelText) : null, control("Deformation", this.factor, this.factorText),
       button("displacements at true scale", "1 : 1", () => set({ factor: 1 })),
+      last.interfaces?.length > 0 ? control("Apart", this.explosion) : null,
       element("label", { class: "control" }, this.mesh, element("span", {}, "Mesh")),
       hasContact ? element("label", { class: "control" }, this.obstacle, element("span", {}, "Obstacle")) : null,
       last.dimension === 3 ? [control("Cut", this.axis), this.place] : null,
@@ -54,6 +56,7 @@ export class FieldControls {
     this.levelText.textContent = `${surface.level} of ${lastLevel}, ${count(surface.cells)} cells`;
     this.factor.value = (25 * state.factor) / usual;
     this.factorText.textContent = `\u00d7 ${number(state.factor, 3)}`;
+    this.explosion.value = 100 * state.explosion;
     this.mesh.checked = state.mesh;
     this.obstacle.checked = state.obstacle;
     this.axis.value = state.axis ?? "";

@@ -1,8 +1,10 @@
 // The interactive picture of the mesh and the fields on it.
 
 import { unpackAll } from "./arrays.js";
+import { Bodies } from "./bodies.js";
 import { bindCamera, Camera } from "./camera.js";
 import { statusColours, statusNames } from "./components.js";
+import { withSegments } from "./contact_parts.js";
 import { Cut } from "./cut.js";
 import { contactDirection, firstDirection, upAxis } from "./directions.js";
 import { count, element, number, section, withoutNoise } from "./dom.js";
@@ -11,7 +13,7 @@ import { obstacleCorners } from "./obstacle.js";
 import { overlay } from "./overlay.js";
 import { cornerAt, valueAt } from "./pick.js";
 import { colourRange, cornerPositions, fieldRows, fieldsOf, readSurface, vertexPositions } from "./surface.js";
-import { colours, fieldLegend, onScale } from "./scales.js";
+import { colours, fieldLegend, onScale, shownStates } from "./scales.js";
 import { hasWebGL, Scene } from "./scene.js";
 import { SoftwareScene } from "./software.js";
 
@@ -37,7 +39,8 @@ class FieldView {
     this.components = components;
     this.levels = data.fields;
     const is2d = this.levels.at(-1).dimension === 2;
-    this.state = { level: this.levels.length - 1, field: "von_mises", range: null, factor: null, mesh: null, obstacle: is2d, axis: null, place: 0.5, side: 1 };
+    this.state = { level: this.levels.length - 1, field: "von_mises", range: null, factor: null, mesh: null, obstacle: is2d, axis: null, place: 0.5, side: 1, explosion: 0 };
+    this.bodies = new Bodies(data.certificate.levels, () => this.set({ bodies: true }));
     this.build(is2d);
   }
 
@@ -52,7 +55,7 @@ class FieldView {
     this.controls = new FieldControls(this.levels.at(-1), this.levels.length, (changes) => this.set(changes), {
       home: () => { this.home(); this.draw(); },
       svgs: () => { this.keepPicture(); return [this.print]; },
-      rows: () => fieldRows(this.current, this.field),
+      rows: () => fieldRows(this.current, this.shown, this.field),
     });
     this.element = element("div", { class: "fields" }, this.controls.element,
       element("div", { class: "view-row" }, this.frame, this.print, this.legend), this.note,
@@ -76,7 +79,7 @@ class FieldView {
     if (!this.data.volume) return null;
     const volume = await unpackAll(this.data.volume);
     const { box } = await this.surface(this.levels.length - 1);
-    return { ...volume, box, dimension: 3, nVertices: volume.points.length / 3 };
+    return { ...volume, box, dimension: 3, nVertices: volume.points.length / 3, vertexBody: volume.bodies };
   }
 
   /** Gives the picture the size and the background of its place; drawn only where they change, for that may take long. */
@@ -104,20 +107,25 @@ class FieldView {
     const isNew = surface !== this.current;
     this.current = surface;
     if (isNew) this.takeSurface(surface);
-    if ("axis" in changes && changes.axis !== null) this.state.side = this.camera.axes().eye[changes.axis] < 0 ? -1 : 1; // towards the eye
-    const isCut = isNew || "axis" in changes || "place" in changes;
-    if (isCut) this.takeCut();
     const field = this.fields.find(({ id }) => id === this.state.field) ?? this.fields[0];
     const isOther = this.field?.id !== field.id;
+    if (isOther && field.contact && surface.pairs?.length > 0 && this.state.explosion === 0 && this.bodies.current) changes = { ...changes, explosion: (this.state.explosion = 0.5) };
+    const shown = field.contact ? withSegments(surface) : surface;
+    if ("axis" in changes && changes.axis !== null) this.state.side = this.camera.axes().eye[changes.axis] < 0 ? -1 : 1; // towards the eye
+    const isCut = shown !== this.shown || "axis" in changes || "place" in changes;
+    this.shown = shown;
+    if (isCut) this.takeCut();
     if (isOther && this.field) this.state.range = null;
     if (isCut || isOther || "range" in changes) this.takeField(field);
-    if (isCut || "factor" in changes || "obstacle" in changes) this.takePositions();
-    if (isCut || "mesh" in changes) this.takeLines();
+    if (isCut || ["factor", "obstacle", "explosion", "bodies"].some((key) => key in changes)) this.takePositions();
+    if (isCut || "mesh" in changes || "bodies" in changes) this.takeLines();
+    if ("explosion" in changes && this.isHome()) this.home();
     this.showState();
     this.draw();
   }
 
   takeSurface(surface) {
+    this.bodies.take(surface);
     if (!this.camera) this.prepare(surface);
     this.state.mesh ??= surface.nFaces * 3 * surface.subdivision <= manySegments;
     this.fields = fieldsOf(surface, this.components);
@@ -142,10 +150,10 @@ class FieldView {
   /** The volume belongs to the last level; on others a cut shows the surface from within. */
   takeCut() {
     const { axis, place, side, level } = this.state;
-    const { box, vertex } = this.current;
+    const { box, vertex } = this.shown;
     this.inside = level === this.levels.length - 1 ? this.volume : null;
     this.cut = axis === null ? null
-      : new Cut(this.current, this.inside, { axis, side, level: box.low[axis] + place * box.size[axis] });
+      : new Cut(this.shown, this.inside, { axis, side, level: box.low[axis] + place * box.size[axis] });
     this.nCorners = this.cut ? this.cut.nCorners : vertex.length;
     this.takeUndeformed();
   }
@@ -168,15 +176,26 @@ class FieldView {
     const scaled = field.kind === "logarithmic" ? this.values.map((value) => onScale(field.kind, value, this.range)) : this.values;
     scene.setTriangles(this.nCorners / 3, this.values.length / 3);
     scene.setValues(scaled, this.nCorners, range, colours(field.kind, this.range));
-    const names = this.data.certificate.mesh.regions.map(({ name }) => name);
-    this.legend.replaceChildren(fieldLegend(field, this.range, names));
+    this.legend.replaceChildren(fieldLegend(field, this.range, this.categories(field)));
     if (surface.profiles) this.legend.append(element("p", { class: "legend-title" }, "contact boundary"),
-      element("ul", { class: "legend legend-column" }, statusNames.slice(0, 3).map((name, i) =>
+      element("ul", { class: "legend legend-column" }, shownStates(surface.profiles.flatMap(({ status }) => [...new Set(status)])).map((name, i) =>
         element("li", {}, element("span", { class: "swatch swatch-line", style: `--colour:${statusColours[i]}` }), name))));
+    this.legend.append(this.bodies.element);
   }
 
-  positions(factor) {
-    return this.drawn(cornerPositions(this.current, vertexPositions(this.current, factor)), (volume) => vertexPositions(volume, factor), 3);
+  /** The names of the values of a field that are numbers of something. */
+  categories({ id }) {
+    return id === "body" ? this.bodies.names : this.data.certificate.mesh.regions.map(({ name }) => name);
+  }
+
+  /** Where the bodies are drawn; undefined for one alone. */
+  layout() {
+    return this.current.vertexBody ? this.bodies.layout(this.state.explosion) : undefined;
+  }
+
+  positions(factor, layout) {
+    const of = (surface) => vertexPositions(surface, factor, layout);
+    return this.drawn(cornerPositions(this.shown, of(this.shown)), of, 3);
   }
 
   takeUndeformed() {
@@ -185,14 +204,18 @@ class FieldView {
 
   takePositions() {
     const { factor, obstacle } = this.state;
-    this.corners = this.positions(factor);
-    this.scene.setPositions(this.corners, vertexPositions(this.current, factor));
+    const layout = this.layout();
+    this.corners = this.positions(factor, layout);
+    this.scene.setPositions(this.corners, vertexPositions(this.current, factor, layout));
     if (this.current.dimension === 3)
-      this.scene.setObstacle(obstacle && this.current.nContactFaces > 0 ? obstacleCorners(this.current, factor) : null);
+      this.scene.setObstacle(obstacle && this.current.nContactFaces > 0 ? obstacleCorners(this.current, factor, layout) : null);
   }
 
   takeLines() {
-    const all = this.state.mesh ? this.current.segments().all : null;
+    const { vertexBody } = this.current;
+    let all = this.state.mesh ? this.current.segments().all : null;
+    const layout = this.layout();
+    if (all && layout && this.bodies.anyHidden) all = all.filter((v, i) => layout[vertexBody[all[i & ~1]]]); // pairs of vertices of one body
     this.scene.setLines(all && this.cut ? this.cut.segments(all) : all);
   }
 
@@ -203,22 +226,30 @@ class FieldView {
       ? `The mesh is too large for this page: details below ${number(surface.merged_below, 2)} L are merged, ${count(surface.nFaces)} triangles are shown. ` : "";
     const levels = this.levels.at(-1).level + 1 - this.levels.length;
     const left = levels > 0 ? `${levels} of the levels in between are left out to keep the page small. ` : "";
-    const body = surface.dimension === 3 && !this.cut ? "Shown is the surface of the body. " : "";
+    const body = surface.dimension === 3 && !this.cut ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}. ` : "";
     const cut = !this.cut ? "" : this.inside ? "On the section values are averages at the vertices of the mesh. "
       : "The page does not have the inside of this mesh. ";
     const slow = this.isSlow ? "This browser has no WebGL: the page draws the picture itself, more slowly. " : "";
+    const apart = state.explosion > 0 ? "Bodies are drawn apart. " : "";
     const scale = state.factor === 1 ? "at true scale" : `${number(state.factor, 3)} times as large`;
-    this.note.textContent = `${slow}${body}${cut}${shown}${left}Displacements are drawn ${scale}.`;
+    this.note.textContent = `${slow}${body}${cut}${shown}${left}${apart}Displacements are drawn ${scale}.`;
     this.place.setAttribute("aria-label", `${this.field.label} on level ${surface.level}, displacements times ${number(state.factor, 3)}`);
   }
 
   /** The whole body, with room for its displacements. */
   home() {
-    const { box } = this.current;
+    const { middle, size } = this.bodies.extent(this.current, this.state.explosion);
     const aspect = this.place.clientWidth / Math.max(1, this.place.clientHeight) || 1.5;
-    const scale = this.current.dimension === 2 ? Math.max(box.size[1], box.size[0] / aspect) * 0.66
-      : box.diagonal * 0.56 * Math.max(1, 1 / aspect);
+    const scale = this.current.dimension === 2 ? Math.max(size[1], size[0] / aspect) * 0.66
+      : Math.hypot(...size) * 0.56 * Math.max(1, 1 / aspect);
     this.camera.reset(scale);
+    this.camera.target = middle;
+    this.homeView = { scale, target: middle };
+  }
+
+  /** Whether the picture is as home() leaves it but for turning. */
+  isHome() {
+    return this.camera.scale === this.homeView.scale && this.camera.target === this.homeView.target;
   }
 
   draw() {
@@ -231,12 +262,12 @@ class FieldView {
   }
 
   overlayOn(place) {
-    return overlay(this.current, this.camera, place, this.state);
+    return overlay(this.current, this.camera, place, { ...this.state, layout: this.layout() });
   }
 
   render() {
     if (!this.corners || this.place.clientWidth === 0) return;
-    this.scene.render(this.camera, 10 * this.current.box.diagonal);
+    this.scene.render(this.camera, 10 * this.current.box.diagonal * (1 + this.state.explosion));
     this.overlay.replaceChildren(...this.overlayOn(this.place));
   }
 
@@ -265,10 +296,9 @@ class FieldView {
     const place = withoutNoise(axes.map((_, c) => surface.box.centre[c]
       + hit.weights.reduce((sum, w, i) => sum + w * undeformed[3 * (hit.corner + i) + c], 0)), 100 * surface.box.diagonal);
     const value = hit.corner < this.values.length ? valueAt(this.values, hit) : null;
-    const regions = this.data.certificate.mesh.regions;
     const text = value === null ? (field.contact ? "not on the contact boundary" : "known on the surface only")
       : field.kind === "status" ? statusNames[Math.round(value)]
-      : field.kind === "category" ? regions[Math.round(value)].name : `${number(value, 4)} ${field.unit}`;
+      : field.kind === "category" ? this.categories(field)[Math.round(value)] : `${number(value, 4)} ${field.unit}`;
     this.tooltip.replaceChildren(element("strong", {}, text), element("br"), axes.map((axis, c) => `${axis} = ${number(place[c], 4)}`).join(", "));
     this.tooltip.style.left = `${Math.min(px + this.place.offsetLeft + 14, this.frame.clientWidth - 170)}px`;
     this.tooltip.style.top = `${py + this.place.offsetTop + 14}px`;

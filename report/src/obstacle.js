@@ -28,18 +28,20 @@ function vertexNormals(surface, nCorners) {
   return normals;
 }
 
-/** In 3D: corners of triangles, about the centre of the body. */
-export function obstacleCorners(surface, factor) {
-  const { points, displacement, vertex, lattice, contact, box } = surface;
+/** In 3D: corners of triangles, about the centre of the body; `layout`: by how much bodies are moved. */
+export function obstacleCorners(surface, factor, layout) {
+  const { points, displacement, vertex, vertexBody, lattice, contact, box } = surface;
   const nCorners = 3 * surface.nContactFaces * surface.trianglesPerFace;
   const normals = vertexNormals(surface, nCorners);
   const corners = [];
   for (let first = 0; first < nCorners; first += 3) {
+    const shift = vertexBody && layout ? layout[vertexBody[vertex[first]]] : [0, 0, 0];
+    if (!shift) continue;
     const triangle = [0, 1, 2].map((i) => {
       const place = 3 * vertex[first + i];
       const along = [0, 1, 2].reduce((sum, k) => sum + displacement[place + k] * normals[place + k], 0);
       const g = contact.gap[lattice[first + i]] + along;
-      return { g, point: [0, 1, 2].map((k) => points[place + k] + factor * g * normals[place + k] - box.centre[k]) };
+      return { g, point: [0, 1, 2].map((k) => points[place + k] + factor * g * normals[place + k] - box.centre[k] + shift[k]) };
     });
     if (triangle.every(({ g }) => Math.abs(factor * g) <= farAway * box.diagonal)) corners.push(...triangle.flatMap(({ point }) => point));
   }

@@ -6,6 +6,7 @@ import { element, number } from "./dom.js";
 import { obstaclePoints } from "./obstacle.js";
 
 const hatchDistance = 9; // pixels
+const sideRatio = 5; // of lengths on the master to those on the slave; beyond, the master is left out between two points
 const manySegments = 120000; // beyond, the undeformed outline is not looked for
 
 /** The function that gives the pixels, in `place`, of points given about the centre of the body. */
@@ -26,20 +27,33 @@ function isStretch({ arc, points }, i, box) {
   return length <= arc[i + 1] - arc[i] + 1e-5 * box.diagonal;
 }
 
+const unmoved = [0, 0];
+
+/** By how much the body of a point is moved, null where it is not shown. */
+function shiftOf(layout, bodies, i) {
+  return layout ? layout[bodies[i]] ?? null : unmoved;
+}
+
 /** The boundary of the undeformed body. */
-function outline(surface, pixel) {
+function outline(surface, pixel, layout) {
   if (surface.nFaces * 3 * surface.subdivision > manySegments) return null;
-  const { points, box } = surface;
+  const { points, box, vertexBody } = surface;
   const segments = surface.segments().boundary;
-  const at = (v) => pixel(points[2 * v] - box.centre[0], points[2 * v + 1] - box.centre[1]);
+  const at = (v, shift) => pixel(points[2 * v] - box.centre[0] + shift[0], points[2 * v + 1] - box.centre[1] + shift[1]);
   let path = "";
-  for (let s = 0; s < segments.length; s += 2) path += stretch(at(segments[s]), at(segments[s + 1]));
+  for (let s = 0; s < segments.length; s += 2) {
+    const shift = shiftOf(vertexBody && layout, vertexBody, segments[s]);
+    if (shift) path += stretch(at(segments[s], shift), at(segments[s + 1], shift));
+  }
   return element("svg:path", { class: "outline", d: path });
 }
 
 /** The obstacle with short lines on the side where it is. */
-function obstacleLine(profile, box, factor, pixel) {
-  const points = obstaclePoints(profile, box, factor);
+function obstacleLine(profile, box, factor, pixel, layout) {
+  const points = obstaclePoints(profile, box, factor).map((at, i) => {
+    const shift = shiftOf(layout, profile.bodies, i);
+    return at && shift ? at.map((x, c) => x + shift[c]) : undefined;
+  });
   const { arc, normal } = profile;
   const [line, hatching] = [[], []];
   let last = -Infinity;
@@ -60,14 +74,14 @@ function obstacleLine(profile, box, factor, pixel) {
   return [element("svg:path", { class: "obstacle", d: line.join("") }), element("svg:path", { class: "obstacle hatching", d: hatching.join("") })];
 }
 
-/** The deformed contact boundary in the colours of its status, which changes halfway between two points. */
-function statusLines(profile, box, factor, pixel) {
-  const { points, displacement, status } = profile;
-  const at = (i) => pixel(...[0, 1].map((c) => points[2 * i + c] + factor * displacement[2 * i + c] - box.centre[c]));
+/** A side of the deformed contact boundary in the colours of its status, which changes halfway between two points. */
+function statusLines({ arc, points, displacement, bodies, status }, box, factor, pixel, layout) {
+  const at = (i, shift) => pixel(...[0, 1].map((c) => points[2 * i + c] + factor * displacement[2 * i + c] - box.centre[c] + shift[c]));
   const paths = statusColours.map(() => "");
   for (let i = 0; i + 1 < status.length; ++i) {
-    if (!isStretch(profile, i, box)) continue;
-    const [a, b] = [at(i), at(i + 1)];
+    const shift = shiftOf(layout, bodies, i);
+    if (!shift || bodies[i] !== bodies[i + 1] || !isStretch({ arc, points }, i, box)) continue;
+    const [a, b] = [at(i, shift), at(i + 1, shift)];
     const middle = [0, 1].map((c) => (a[c] + b[c]) / 2);
     paths[status[i]] += stretch(a, middle);
     paths[status[i + 1]] += stretch(middle, b);
@@ -93,14 +107,30 @@ export function axes({ box }, { target, scale }, { left, top, width, height }, n
     element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, `\u2191 ${names[1]} [L]`)];
 }
 
-function overlay2d(surface, camera, place, { factor, obstacle }) {
+/** Both sides of an interface: with the points, displacements and bodies of the master in the place of the slave's. */
+function sidesOf(profile) {
+  const { opposite: points, opposite_displacement: displacement, opposite_bodies: bodies } = profile;
+  return points ? [profile, { ...profile, points, displacement, bodies, arc: lengthsAlong(profile, points) }] : [profile];
+}
+
+/** Lengths that grow as the points of the master do, where those of the slave are joined; by 0 where they are not. */
+function lengthsAlong({ arc }, points) {
+  const lengths = [0];
+  for (let i = 1; i < arc.length; ++i) {
+    const length = Math.hypot(points[2 * i] - points[2 * i - 2], points[2 * i + 1] - points[2 * i - 1]);
+    lengths.push(lengths[i - 1] + (length <= sideRatio * (arc[i] - arc[i - 1]) ? length : 0));
+  }
+  return lengths;
+}
+
+function overlay2d(surface, camera, place, { factor, obstacle, layout }) {
   const pixel = toPixels(place, camera);
   const frame = { left: place.offsetLeft + place.clientLeft, top: place.offsetTop + place.clientTop, width: place.clientWidth,
     height: place.clientHeight };
   const inside = element("svg:svg", { x: frame.left, y: frame.top, width: frame.width, height: frame.height },
-    factor > 0 ? outline(surface, pixel) : null,
-    obstacle ? (surface.profiles ?? []).filter(({ paired }) => !paired).map((profile) => obstacleLine(profile, surface.box, factor, pixel)) : null,
-    (surface.profiles ?? []).map((profile) => statusLines(profile, surface.box, factor, pixel)));
+    factor > 0 ? outline(surface, pixel, layout) : null,
+    obstacle ? (surface.profiles ?? []).filter(({ paired }) => !paired).map((profile) => obstacleLine(profile, surface.box, factor, pixel, layout)) : null,
+    (surface.profiles ?? []).flatMap(sidesOf).map((side) => statusLines(side, surface.box, factor, pixel, layout)));
   return [inside, ...axes(surface, camera, frame)];
 }
 
@@ -114,7 +144,7 @@ function triad({ box }, camera, place) {
   return [...arrows, element("svg:text", { x: 12, y: 20 }, `${box.size.map((length) => number(length, 3)).join(" \u00d7 ")} L`)];
 }
 
-/** `state`: the factor of the displacements, and whether the obstacle is drawn. */
+/** `state`: the factor of the displacements, whether the obstacle is drawn, and the layout of the bodies, undefined for one. */
 export function overlay(surface, camera, place, state) {
   return surface.dimension === 2 ? overlay2d(surface, camera, place, state) : triad(surface, camera, place);
 }

@@ -11,7 +11,7 @@ const categories = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55
 /** The colour at s in [0, 1] for a kind of field. */
 export function colours(kind, range) {
   if (kind === "diverging") return diverging;
-  if (kind === "status") return (s) => statusColours[Math.round(2 * s)];
+  if (kind === "status") return (s) => statusColours[Math.round(3 * s)];
   if (kind === "category") {
     const n = Math.max(1, Math.round(range.high - range.low));
     return (s) => categories[Math.round(s * n) % categories.length];
@@ -29,6 +29,11 @@ function listLegend(names, colourOf) {
     element("li", {}, element("span", { class: "swatch", style: `--colour:${colourOf(i)}` }), name)));
 }
 
+/** The names of those states that the legend of contact has to show; tied only where it is. */
+export function shownStates(present) {
+  return statusNames.filter((_, i) => i < 3 || present.includes(i));
+}
+
 function ticksOf(kind, range) {
   if (kind !== "logarithmic") {
     const ticks = scaleLinear([range.low, range.high], [1, 0]).ticks(6);
@@ -42,12 +47,13 @@ function ticksOf(kind, range) {
   return values.map((value) => ({ value, label: number(value, 2), place: scale(value) }));
 }
 
-export function fieldLegend(field, range, regionNames) {
+/** `names`: of the categories. */
+export function fieldLegend(field, range, names) {
   const title = element("p", { class: "legend-title" }, field.label, field.unit ? element("span", {}, ` [${field.unit}]`) : null);
   const colour = colours(field.kind, range);
-  if (field.kind === "status") return element("div", {}, title, listLegend(statusNames, (i) => colour(i / 2)));
+  if (field.kind === "status") return element("div", {}, title, listLegend(shownStates(range.present), (i) => colour(i / 3)));
   if (field.kind === "category")
-    return element("div", {}, title, listLegend(regionNames.slice(range.low, Math.floor(range.high) + 1), (i) => colour(i / Math.max(1, range.high - range.low))));
+    return element("div", {}, title, listLegend(names.slice(range.low, Math.floor(range.high) + 1), (i) => colour(i / Math.max(1, range.high - range.low))));
   const stops = Array.from({ length: 33 }, (_, i) => colour(1 - i / 32)).join(",");
   return element("div", { class: "colourbar-box" }, title,
     element("div", { class: "colourbar" }, element("div", { class: "colourbar-colours", style: `background:linear-gradient(${stops})` }),

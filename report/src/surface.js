@@ -1,26 +1,9 @@
-// The surface of src/io/page_surface.h as triangles with corners of their own, since stresses jump, and the fields on it.
+// The surface of app/page/page_surface.h as triangles with corners of their own, since stresses jump, and the fields on it.
 
 import { unpackAll } from "./arrays.js";
+import { contactValues } from "./contact_parts.js";
+import { latticeSides, latticeTriangles } from "./lattice.js";
 import { stressFields, stressValues } from "./stress.js";
-
-/** The triangles of a face in the numbers of its lattice, in the order of triangle_middles(). */
-function latticeTriangles(k) {
-  const place = (i, j) => j * (k + 1) - (j * (j - 1)) / 2 + i;
-  const triangles = [];
-  for (let j = 0; j < k; ++j)
-    for (let i = 0; i + j < k; ++i) {
-      triangles.push(place(i, j), place(i + 1, j), place(i, j + 1));
-      if (i + j + 1 < k) triangles.push(place(i + 1, j), place(i + 1, j + 1), place(i, j + 1));
-    }
-  return triangles;
-}
-
-/** The lattice points along the three sides of a face, k + 1 each. */
-function latticeSides(k) {
-  const place = (i, j) => j * (k + 1) - (j * (j - 1)) / 2 + i;
-  const along = Array.from({ length: k + 1 }, (_, i) => i);
-  return [along.map((i) => place(i, 0)), along.map((i) => place(k - i, i)), along.map((i) => place(0, k - i))];
-}
 
 /** Segments of the sides of all faces, each once, and how many faces have it. */
 function uniqueSegments(faces, nFacePoints, k, nVertices) {
@@ -68,11 +51,23 @@ async function unpackSurface(level) {
   for (let c = 0; c < vertex.length; ++c) vertex[c] = faces[lattice[c]];
   let segments = null;
   const surface = { ...data, nVertices, nFaces, nFacePoints, lattice, vertex,
-    trianglesPerFace: k * k, nContactFaces: data.contact ? data.contact.pressure.length / nFacePoints : 0,
+    ...bodiesOf(data, nVertices, nFacePoints), trianglesPerFace: k * k, nContactFaces: data.contact ? data.contact.pressure.length / nFacePoints : 0,
     segments: () => (segments ??= uniqueSegments(faces, nFacePoints, k, nVertices)) };
   surface.box = boundingBox(surface);
   surface.largestDisplacement = largestLength(surface.displacement, dimension);
   return surface;
+}
+
+/** How many bodies there are, and to which one a vertex belongs; null where there is one body. */
+function bodiesOf({ body, faces }, nVertices, nFacePoints) {
+  if (!body) return { nBodies: 1, vertexBody: null };
+  const vertexBody = new Uint32Array(nVertices);
+  let last = 0;
+  for (let i = 0; i < faces.length; ++i) {
+    vertexBody[faces[i]] = body[Math.floor(i / nFacePoints)];
+    last = Math.max(last, vertexBody[faces[i]]);
+  }
+  return { nBodies: last + 1, vertexBody };
 }
 
 function boundingBox({ points, dimension }) {
@@ -96,12 +91,19 @@ function largestLength(vectors, dimension) {
   return Math.sqrt(largest);
 }
 
-/** Positions x + factor u about the centre of the box, 3 numbers per vertex. */
-export function vertexPositions({ points, displacement, dimension, nVertices, box }, factor) {
+/**
+ * Positions x + factor u about the centre of the box, 3 numbers per vertex. `layout`: by how much bodies are moved; those that are
+ * not shown become a point.
+ */
+export function vertexPositions({ points, displacement, dimension, nVertices, box, vertexBody, lift }, factor, layout) {
   const positions = new Float32Array(3 * nVertices);
-  for (let v = 0; v < nVertices; ++v)
+  for (let v = 0; v < nVertices; ++v) {
+    const shift = vertexBody && layout ? layout[vertexBody[v]] : undefined;
+    if (shift === null) continue;
     for (let c = 0; c < dimension; ++c)
-      positions[3 * v + c] = points[dimension * v + c] + factor * displacement[dimension * v + c] - box.centre[c];
+      positions[3 * v + c] = points[dimension * v + c] + factor * displacement[dimension * v + c] - box.centre[c]
+        + (shift ? shift[c] : 0) + (layout && lift ? lift[3 * v + c] : 0);
+  }
   return positions;
 }
 
@@ -125,7 +127,6 @@ const spread = {
   face: ({ lattice, nFacePoints }, values) => perCorner(lattice.length, (c) => values[Math.floor(lattice[c] / nFacePoints)]),
   lattice: ({ lattice }, values) => perCorner(lattice.length, (c) => values[lattice[c]]),
   vertex: ({ vertex }, value) => perCorner(vertex.length, (c) => value(vertex[c])),
-  triangle: (_, values) => perCorner(3 * values.length, (c) => values[Math.floor(c / 3)]),
 };
 
 /** At lattice points, or where a mesh is large one value per face. */
@@ -142,18 +143,13 @@ function perPoint({ points }, value) {
   return Float32Array.from({ length: points.length / 3 }, (_, v) => value(v));
 }
 
-/** Contact values are those of the first faces only. */
-const ofContact = (read) => (surface) => {
-  const { lattice, nContactFaces, trianglesPerFace } = surface;
-  return read({ ...surface, lattice: lattice.subarray(0, 3 * nContactFaces * trianglesPerFace) });
-};
-
 /** The fields of a surface: id, label, unit, group, kind of scale, corners(surface), and inside(volume) where it is known there. */
 export function fieldsOf(surface, components) {
   const d = surface.dimension;
   const axes = ["x", "y", "z"].slice(0, d);
+  const hasContact = surface.nContactFaces > 0 || surface.pairs?.length > 0;
   const contactField = (id, label, unit) => ({ id: `contact-${id}`, label, unit, group: "Contact", kind: "sequential", contact: true,
-    corners: ofContact((s) => spread.lattice(s, s.contact[id])) });
+    corners: (s) => contactValues(s, id) });
   const etaUnit = d === 2 ? "S L" : "S L^(3/2)";
   return [
     { id: "u", label: "displacement, length", unit: "L", group: "Solution", kind: "sequential",
@@ -168,24 +164,26 @@ export function fieldsOf(surface, components) {
       corners: (s) => spread.face(s, s.eta.tot) }] : []),
     ...components.filter(({ name }) => surface.eta[name]).map(({ name, meaning }) => ({ id: `eta-${name}`,
       label: `\u03b7 ${name}: ${meaning}`, unit: etaUnit, group: "Error", kind: "logarithmic", corners: (s) => spread.face(s, s.eta[name]) })),
-    ...(surface.nContactFaces > 0 ? [contactField("pressure", "contact pressure", "S"), contactField("friction", "friction, length", "S"),
+    ...(hasContact ? [contactField("pressure", "contact pressure", "S"), contactField("friction", "friction, length", "S"),
       contactField("limit", "limit of friction", "S"), contactField("gap", "gap", "L"), contactField("slip", "slip, length", "L"),
       { id: "contact-status", label: "contact status", unit: "", group: "Contact", kind: "status", contact: true,
-        corners: (s) => spread.triangle(s, s.contact.status) }] : []),
+        corners: (s) => contactValues(s, "status") }] : []),
     ...(surface.region ? [{ id: "region", label: "region", unit: "", group: "Mesh", kind: "category",
       corners: (s) => spread.face(s, s.region) }] : []),
+    ...(surface.body ? [{ id: "body", label: "body", unit: "", group: "Mesh", kind: "category",
+      corners: (s) => spread.face(s, s.body) }] : []),
   ];
 }
 
-/** A field as a table of the points of the faces: those that share a point may have other values there. */
-export function fieldRows(surface, { id, corners }) {
-  const { lattice, faces, points, dimension: d } = surface;
-  const rows = [];
+/** A field as a table of the points of the faces: those that share a point may have other values there. `shown`: what has its corners. */
+export function fieldRows(surface, shown, { id, corners }) {
+  const { points, dimension: d, vertex } = shown;
+  const rows = new Map();
   corners(surface).forEach((value, c) => {
-    const vertex = faces[lattice[c]];
-    rows[lattice[c]] ??= { ...Object.fromEntries(["x", "y", "z"].slice(0, d).map((axis, i) => [axis, points[d * vertex + i]])), [id]: value };
+    const place = shown === surface ? surface.lattice[c] : c;
+    if (!rows.has(place)) rows.set(place, { ...Object.fromEntries(["x", "y", "z"].slice(0, d).map((axis, i) => [axis, points[d * vertex[c] + i]])), [id]: value });
   });
-  return rows;
+  return [...rows.values()];
 }
 
 /** Twice the area of the triangle with the first corner c, undeformed, times its normal, which points outwards. */
@@ -232,7 +230,7 @@ export function colourRange(surface, field, values) {
     Object.assign(range, { low: -range.high, largest: size });
   }
   if (field.kind === "logarithmic") range.low = Math.max(positive, high * 1e-4);
-  if (field.kind === "status") Object.assign(range, { low: 0, high: 2 });
+  if (field.kind === "status") Object.assign(range, { low: 0, high: 3, present: [...new Set(values)] });
   if (!(range.high > range.low)) range.high = range.low + (Math.abs(range.low) || 1) * 1e-6;
   return range;
 }

@@ -32,6 +32,7 @@
 #include "tribound/mesh/shared_facets.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
+#include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/segment.h"

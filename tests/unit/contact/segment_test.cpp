@@ -23,6 +23,7 @@
 #include "tribound/base/error.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/solve/newton.h"
@@ -153,6 +154,25 @@ void expect_constant_pressure(Setting setting)
   EXPECT_NEAR(sum.normal, -2 * pressure, rounding);
   const certify::Stress<dim> stress = certify::equilibrate<dim>(c.form, newton.u, newton.traction);
   EXPECT_LE(certify::check_identities<dim>(c.form, newton.traction, stress).largest(p), 1e-10);
+}
+
+/// The area of the interface, [0, 2] x {0} (x [0, 1]) opposite y = -distance, times the arm of its centroid.
+TEST(ContactSegments, MomentsOfAConstantTractionOnBothSides)
+{
+  const Blocks<2> flat({.n_upper = 4, .n_lower = 3});
+  const Point<2> t(0.3, -0.5);
+  const contact::ContactMoments<2> m =
+      contact::contact_moments<2>(flat.form, std::vector<Point<2>>(flat.form.n_contact_points(), t));
+  EXPECT_NEAR(m.slave[0], 2 * t[1], 1e-13);
+  EXPECT_NEAR(m.master[0], -2 * (t[1] + distance * t[0]), 1e-13);
+
+  const Blocks<3> solid({.n_upper = 2, .n_lower = 3});
+  const Point<3> t3(0.3, -0.5, 0.2);
+  const std::vector<Point<3>> all(solid.form.n_contact_points(), t3);
+  const contact::ContactMoments<3> m3 = contact::contact_moments<3>(solid.form, all);
+  EXPECT_LE((m3.slave - 2 * Point<3>(0.25, -0.05, -0.5)).norm(), 1e-13);
+  EXPECT_LE((m3.master + 2 * Point<3>(0.23, -0.05, -0.47)).norm(), 1e-13);
+  EXPECT_EQ(contact::contact_moments<3>(solid.form, all, 99).slave.norm(), 0);
 }
 
 TEST(ContactSegments, ConstantPressureThroughFacetsThatDoNotMatch)

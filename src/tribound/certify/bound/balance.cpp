@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tribound/certify/equilibrate/stress_tabulation.h"
+#include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
@@ -26,10 +27,7 @@ struct Resultant
   void add(const Point<dim>& arm, const Point<dim>& f)
   {
     force += f;
-    if constexpr (dim == 2)
-      moment[0] += arm[0] * f[1] - arm[1] * f[0];
-    else
-      moment += mesh::cross(arm, f);
+    moment += contact::moment(arm, f);
   }
 };
 

@@ -37,11 +37,9 @@ Json json(const std::optional<certify::IdentityDefects>& identities)
 
 Json json(const Resultants& resultants)
 {
-  return {{"resolution", resultants.resolution},
-          {"normal", resultants.normal},
-          {"tangential", resultants.tangential},
-          {"abs_tangential", resultants.abs_tangential},
-          {"force", resultants.force}};
+  return {{"resolution", resultants.resolution}, {"normal", resultants.normal},
+          {"tangential", resultants.tangential}, {"abs_tangential", resultants.abs_tangential},
+          {"force", resultants.force},           {"moment", resultants.moment}};
 }
 
 Json json(const std::optional<Sliding>& sliding)
@@ -61,7 +59,8 @@ Json json(const PairFigures& pair)
           {"covered_share", pair.covered_share},
           {"covered_master", pair.covered_master},
           {"gap", {{"smallest", pair.smallest_gap}, {"largest", pair.largest_gap}}},
-          {"largest_tension", pair.largest_tension}};
+          {"largest_tension", pair.largest_tension},
+          {"moment_on_master", pair.moment_on_master}};
 }
 
 Json json(const adapt::CertifiedStep& record, bool regularised)

@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 
+#include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/geometry.h"
@@ -19,12 +20,22 @@ namespace tribound::io
 namespace
 {
 
+constexpr double round_off = 1e-12;  // of sums over many points
+
+/// The components of a vector that is known up to `resolution`.
+template <int n>
+std::vector<double> known_components(const Point<n>& vector, double resolution)
+{
+  std::vector<double> result;
+  for (const double component : vector) result.push_back(known_digits(component, resolution));
+  return result;
+}
+
 /// The resultants of T(u) and of t^k on the boundary group `tag`, or on all of Gamma_C for tag < 0.
 template <int dim>
 Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
                       std::span<const Point<dim>> running, int tag = -1)
 {
-  constexpr double round_off = 1e-12;  // of sums over many points
   const contact::ContactResultants<dim> r = contact::contact_resultants(form, of_u, tag);
   const contact::ContactResultants<dim> in_equilibrium = contact::contact_resultants(form, running, tag);
   Resultants result;
@@ -32,11 +43,25 @@ Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Poi
                       std::abs(r.tangential - in_equilibrium.tangential) +
                       round_off * (std::abs(r.normal) + r.abs_tangential);
   const auto known = [&](double value) { return known_digits(value, result.resolution); };
-  for (const double component : r.force) result.force.push_back(known(component));
+  result.force = known_components<dim>(r.force, result.resolution);
   result.normal = known(r.normal);
   result.tangential = known(r.tangential);
   result.abs_tangential = known(r.abs_tangential);
   return result;
+}
+
+/// Adds the moments of T(u), with the digits that their distance from those of t^k leaves.
+template <int dim>
+void add_moments(Resultants& result, const contact::NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
+                 std::span<const Point<dim>> running, int tag = -1)
+{
+  const contact::ContactMoments<dim> m = contact::contact_moments(form, of_u, tag);
+  const contact::ContactMoments<dim> in_equilibrium = contact::contact_moments(form, running, tag);
+  const double rounding = round_off * m.scale;
+  result.moment = known_components(m.slave, (m.slave - in_equilibrium.slave).norm() + rounding);
+  if (result.pair)
+    result.pair->moment_on_master =
+        known_components(m.master, (m.master - in_equilibrium.master).norm() + rounding);
 }
 
 template <int dim>
@@ -164,6 +189,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   figures.max_displacement = form.space().mesh().ranks().max(figures.max_displacement);
   const std::vector<Point<dim>> t = form.traction(level.u);
   figures.contact = resultants<dim>(form, t, level.traction);
+  add_moments<dim>(figures.contact, form, t, level.traction);
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
   {
@@ -173,6 +199,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     part.boundary = boundaries[tag].name;
     if (const problem::ContactPair<dim>* pair = form.problem().pair_of_slave(tag))
       part.pair = pair_figures(form, level.u, tag, *pair);
+    add_moments<dim>(part, form, t, level.traction, tag);
     const problem::FrictionCone friction = cone(contact->law);
     const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
     if (coefficient_alone && slides[tag] && adapt::bound_holds(level, form.space().degree()))

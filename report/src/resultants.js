@@ -1,0 +1,57 @@
+// What contact comes to: forces of each boundary, what else there is to know of pairs, and the bodies with their parts of the bound.
+
+import { boundUnit } from "./components.js";
+import { count, element, number, percent, table, withoutNoise } from "./dom.js";
+
+const vector = (values) => (values?.length > 0 ? `(${withoutNoise(values).map((value) => number(value, 6)).join(", ")})` : "\u2013");
+const moment = (values) => (values?.length === 1 ? number(values[0], 6) : vector(values));
+
+/** "upper.bottom on lower.top" for a slave, the name alone for an obstacle. */
+export function boundaryTitle(run, name) {
+  const master = run.contact?.boundaries[name]?.master;
+  return master ? `${name} on ${master.join(", ")}` : name;
+}
+
+function forceTable(run, parts) {
+  const unit = run.d === 2 ? "S L" : "S L\u00b2";
+  const isSliding = run.bound !== null && parts.some(([, part]) => part.sliding);
+  const row = (name, part) => {
+    const [normal, tangential, length, ...force] = withoutNoise([part.normal, part.tangential, part.abs_tangential, ...part.force])
+      .map((value) => number(value, 6));
+    return [name, normal, tangential, length, `(${force.join(", ")})`,
+      ...(isSliding ? [number(part.sliding?.sliding_factor), number(part.sliding?.safety_factor)] : [])];
+  };
+  const rows = parts.map(([name, part]) => row(name, part));
+  if (parts.length > 1) rows.push(row("in all", run.contact));
+  return table(["boundary", `#normal [${unit}]`, `#tangential [${unit}]`, `#|tangential| [${unit}]`,
+    `#force on the ${parts.some(([, { master }]) => master) ? "slave" : "body"} [${unit}]`, ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows);
+}
+
+function pairTables(run, pairs) {
+  const [size, moments] = run.d === 2 ? ["length", "S L\u00b2"] : ["area", "S L\u00b3"];
+  const [length, unit] = [run.d === 2 ? "L" : "L\u00b2", run.d === 2 ? "" : ", about x, y, z"];
+  const isTied = pairs.some(([, { largest_tension: tension }]) => tension > 0);
+  return [element("h3", {}, "Pairs"),
+    table(["slave", "master", "law", "#segments", `#${size} covered [${length}]`, "#share of the slave", `#of the master [${length}]`, "#gap [L]", ...(isTied ? ["#largest tension [S]"] : [])],
+      pairs.map(([name, pair]) => [name, pair.master.join(", "), pair.law, count(pair.segments), number(pair.covered), percent(pair.covered_share),
+        number(pair.covered_master), withoutNoise([pair.gap.smallest, pair.gap.largest], run.max_displacement).map((gap) => number(gap, 3)).join(" to "),
+        ...(isTied ? [number(pair.largest_tension)] : [])])),
+    table(["slave", `#moment on it [${moments}]`, `#moment on the master [${moments}]`],
+      pairs.map(([name, pair]) => [name, moment(pair.moment), moment(pair.moment_on_master)])),
+    element("p", { class: "note" }, `Moments of the contact traction about the origin${unit}. They cancel where the two sides coincide.`)];
+}
+
+function bodyTable(run) {
+  const squares = run.bodies.map(({ bound }) => bound ** 2);
+  const sum = squares.reduce((a, b) => a + b, 0);
+  return [element("h3", {}, "Bodies"), table(["body", "#cells", `#energy [S L${run.d === 2 ? "\u00b2" : "\u00b3"}]`, `#bound [${boundUnit(run.d)}]`, "#share of its square"],
+    run.bodies.map(({ name, cells, energy, bound }, i) => [name, count(cells), number(energy), number(bound), bound === null ? "\u2013" : percent(sum > 0 ? squares[i] / sum : 0)]))];
+}
+
+/** `run`: the certificate. */
+export function resultants(run) {
+  const parts = Object.entries(run.contact.boundaries);
+  const pairs = parts.filter(([, { master }]) => master);
+  return [element("h3", {}, "Resultants"), forceTable(run, parts), pairs.length > 0 ? pairTables(run, pairs) : null,
+    run.bodies?.length > 1 ? bodyTable(run) : null];
+}
