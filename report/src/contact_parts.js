@@ -12,7 +12,8 @@ function partOnFaces(surface, boundary, side, { faces, corners }, { subdivision,
   const [triangles, lattice] = [latticeTriangles(subdivision), latticePoints(subdivision)];
   const nCorners = faces.length * triangles.length;
   const part = { boundary, side, nCorners, points: new Float64Array(3 * nCorners), displacement: new Float64Array(3 * nCorners),
-    body: new Uint32Array(nCorners), place: new Uint32Array(nCorners), status: values.status };
+    body: new Uint32Array(nCorners), place: new Uint32Array(nCorners),
+    face: Uint32Array.from({ length: nCorners / 3 }, (_, t) => faces[Math.floor((3 * t) / triangles.length)]), status: values.status };
   const { subdivision: k, nFacePoints, vertexBody } = surface;
   let corner = 0;
   for (let n = 0; n < faces.length; ++n) {

@@ -7,7 +7,8 @@ import { statusColours, statusNames } from "./components.js";
 import { withSegments } from "./contact_parts.js";
 import { Cut } from "./cut.js";
 import { contactDirection, firstDirection, upAxis } from "./directions.js";
-import { count, element, number, section, withoutNoise } from "./dom.js";
+import { element, number, section, withoutNoise } from "./dom.js";
+import { noteText, usualFactor, valueText } from "./field_words.js";
 import { FieldControls } from "./field_controls.js";
 import { obstacleCorners } from "./obstacle.js";
 import { overlay } from "./overlay.js";
@@ -19,19 +20,6 @@ import { SoftwareScene } from "./software.js";
 
 const paperWidth = 530; // CSS pixels of the picture on paper, beside its legend
 const manySegments = 30000; // beyond, the mesh is not drawn unless asked for
-
-/** 1, 2 or 5 times a power of ten, not above x. */
-function roundedDown(x) {
-  const power = 10 ** Math.floor(Math.log10(x));
-  return [5, 2, 1].find((digit) => digit * power <= x * (1 + 1e-9)) * power;
-}
-
-/** The amplification at which the largest displacement is a tenth of the body, 1 where it is not small. */
-function usualFactor({ largestDisplacement, box }) {
-  if (largestDisplacement === 0) return 1;
-  const factor = (0.1 * box.diagonal) / largestDisplacement;
-  return factor < 1.5 ? 1 : roundedDown(factor);
-}
 
 class FieldView {
   constructor(data, components) {
@@ -222,17 +210,8 @@ class FieldView {
   showState() {
     const { state, current: surface } = this;
     this.controls.show(state, { surface, lastLevel: this.levels.at(-1).level, field: this.field, range: this.range, usual: this.usual });
-    const shown = surface.merged_below > 0
-      ? `The mesh is too large for this page: details below ${number(surface.merged_below, 2)} L are merged, ${count(surface.nFaces)} triangles are shown. ` : "";
-    const levels = this.levels.at(-1).level + 1 - this.levels.length;
-    const left = levels > 0 ? `${levels} of the levels in between are left out to keep the page small. ` : "";
-    const body = surface.dimension === 3 && !this.cut ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}. ` : "";
-    const cut = !this.cut ? "" : this.inside ? "On the section values are averages at the vertices of the mesh. "
-      : "The page does not have the inside of this mesh. ";
-    const slow = this.isSlow ? "This browser has no WebGL: the page draws the picture itself, more slowly. " : "";
-    const apart = state.explosion > 0 ? "Bodies are drawn apart. " : "";
-    const scale = state.factor === 1 ? "at true scale" : `${number(state.factor, 3)} times as large`;
-    this.note.textContent = `${slow}${body}${cut}${shown}${left}${apart}Displacements are drawn ${scale}.`;
+    this.note.textContent = noteText(surface, state, { isCut: this.cut !== null, isInside: this.inside !== null, isSlow: this.isSlow,
+      nLeftOut: this.levels.at(-1).level + 1 - this.levels.length });
     this.place.setAttribute("aria-label", `${this.field.label} on level ${surface.level}, displacements times ${number(state.factor, 3)}`);
   }
 
@@ -296,9 +275,7 @@ class FieldView {
     const place = withoutNoise(axes.map((_, c) => surface.box.centre[c]
       + hit.weights.reduce((sum, w, i) => sum + w * undeformed[3 * (hit.corner + i) + c], 0)), 100 * surface.box.diagonal);
     const value = hit.corner < this.values.length ? valueAt(this.values, hit) : null;
-    const text = value === null ? (field.contact ? "not on the contact boundary" : "known on the surface only")
-      : field.kind === "status" ? statusNames[Math.round(value)]
-      : field.kind === "category" ? this.categories(field)[Math.round(value)] : `${number(value, 4)} ${field.unit}`;
+    const text = valueText(field, value, field.kind === "category" ? this.categories(field) : []);
     this.tooltip.replaceChildren(element("strong", {}, text), element("br"), axes.map((axis, c) => `${axis} = ${number(place[c], 4)}`).join(", "));
     this.tooltip.style.left = `${Math.min(px + this.place.offsetLeft + 14, this.frame.clientWidth - 170)}px`;
     this.tooltip.style.top = `${py + this.place.offsetTop + 14}px`;

@@ -93,27 +93,24 @@ function unrolled(triangles, axis) {
   return { names: [`around, radius ${Number(radius.toPrecision(3))}`, nameOf(along)], flat };
 }
 
-/** What maps points onto the plane, a triangle at a time: flat(point, near), near being what its first corner has become. */
+/** What maps points onto the plane: flat(point, near), beside the point `near` of the plane. */
 export function flattening(parts) {
   const triangles = trianglesOf(parts);
   const total = triangles.reduce((sum, { size }) => sum + size, 0) || 1;
   const sum = (value) => triangles.reduce((all, triangle) => all + triangle.size * value(triangle), 0) / total;
   const squares = [0, 1, 2].map((i) => [0, 1, 2].map((j) => sum(({ normal }) => normal[i] * normal[j])));
   const [least, second] = eigen(squares);
-  const cylinder = least.value < 1e-3 && second.value > 0.02 ? unrolled(triangles, least.vector) : null;
+  // Normals of facets with corners on a cylinder are not quite across its axis; of a part of a sphere two eigenvalues are alike.
+  const cylinder = least.value < 0.02 && second.value > Math.max(0.02, 5 * least.value) ? unrolled(triangles, least.vector) : null;
   return cylinder ?? ontoPlane([0, 1, 2].map((i) => sum(({ normal }) => normal[i])), [0, 1, 2].map((i) => sum(({ normal }) => Math.abs(normal[i]))));
 }
 
-/** Corners of triangles in the plane, z = 0. */
-export function flatCorners(points, flat) {
+/** Corners of triangles in the plane, z = 0; `near`: of each triangle a point beside which all that is on its face has to be. */
+export function flatCorners(points, flat, near) {
   const corners = new Float64Array(points.length);
   for (let c = 0; c < points.length; c += 9) {
-    let near = null;
-    for (let i = c; i < c + 9; i += 3) {
-      const at = flat(points.slice(i, i + 3), near);
-      near ??= at;
-      corners.set(at, i);
-    }
+    const beside = flat(near(c / 9));
+    for (let i = c; i < c + 9; i += 3) corners.set(flat(points.slice(i, i + 3), beside), i);
   }
   return corners;
 }

@@ -37,6 +37,12 @@ function pointsAround(surface, faces) {
   return points;
 }
 
+/** The middle of a face, for each triangle on it. */
+function middleOf({ faces, points, nFacePoints, subdivision }, face) {
+  const corners = [0, subdivision, nFacePoints - 1].map((place) => 3 * faces[face * nFacePoints + place]);
+  return [0, 1, 2].map((k) => corners.reduce((sum, corner) => sum + points[corner + k] / 3, 0));
+}
+
 function boxOf(corners) {
   const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
   for (let c = 0; c < corners.length; c += 3)
@@ -53,9 +59,11 @@ const viewOf = (scale) => ({ target: [0, 0, 0], scale, axes: () => ({ right: [1,
 /** The triangles of one boundary in the plane, about the middle of their box; those without values lie below. */
 function flatBoundary(surface, parts) {
   const { names, flat } = flattening(parts);
-  const points = [...parts.map((part) => part.points), ...(parts[0].around ? [pointsAround(surface, parts[0].around)] : [])];
+  const { around } = parts[0];
+  const below = around ? [{ points: pointsAround(surface, around), faceOf: (triangle) => around[Math.floor(triangle / surface.trianglesPerFace)] }] : [];
   const nColoured = parts.reduce((sum, { nCorners }) => sum + nCorners, 0);
-  const all = points.map((part) => flatCorners(part, flat));
+  const all = [...parts.map(({ points, face }) => ({ points, faceOf: (triangle) => face[triangle] })), ...below]
+    .map(({ points, faceOf }) => flatCorners(points, flat, (triangle) => middleOf(surface, faceOf(triangle))));
   const exact = Float64Array.from(all.flatMap((part) => [...part]));
   const box = boxOf(exact);
   const corners = new Float32Array(exact.length);

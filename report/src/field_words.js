@@ -1,0 +1,36 @@
+// What the picture of the fields says in words, and by how much it enlarges displacements.
+
+import { statusNames } from "./components.js";
+import { count, number } from "./dom.js";
+
+/** 1, 2 or 5 times a power of ten, not above x. */
+function roundedDown(x) {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return [5, 2, 1].find((digit) => digit * power <= x * (1 + 1e-9)) * power;
+}
+
+/** The amplification at which the largest displacement is a tenth of the body, 1 where it is not small. */
+export function usualFactor({ largestDisplacement, box }) {
+  if (largestDisplacement === 0) return 1;
+  const factor = (0.1 * box.diagonal) / largestDisplacement;
+  return factor < 1.5 ? 1 : roundedDown(factor);
+}
+
+/** Below the picture: what of the mesh is shown, and how. */
+export function noteText(surface, { factor, explosion }, { isCut, isInside, isSlow, nLeftOut }) {
+  return [
+    isSlow ? "This browser has no WebGL: the page draws the picture itself, more slowly." : "",
+    surface.dimension === 3 && !isCut ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}.` : "",
+    !isCut ? "" : isInside ? "On the section values are averages at the vertices of the mesh." : "The page does not have the inside of this mesh.",
+    surface.merged_below > 0 ? `The mesh is too large for this page: details below ${number(surface.merged_below, 2)} L are merged, ${count(surface.nFaces)} triangles are shown.` : "",
+    nLeftOut > 0 ? `${nLeftOut} of the levels in between are left out to keep the page small.` : "",
+    surface.nBodies > 1 && explosion > 0 ? "Bodies are drawn apart." : "",
+    `Displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`].filter(Boolean).join(" ");
+}
+
+/** A value of a field under the pointer; null where it has none there. `names`: of the categories. */
+export function valueText(field, value, names) {
+  if (value === null) return field.contact ? "not on the contact boundary" : "known on the surface only";
+  if (field.kind === "status") return statusNames[Math.round(value)];
+  return field.kind === "category" ? names[Math.round(value)] : `${number(value, 4)} ${field.unit}`;
+}
