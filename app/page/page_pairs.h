@@ -26,9 +26,9 @@ struct PairSurface
 {
   int tag = 0;  ///< of the slave
   int subdivision = 1;
-  FaceParts slave;
-  FaceParts master;  ///< triangle i lies opposite triangle i of the slave; one of the sides may be absent
-  SurfaceContact values;
+  FaceParts slave{};
+  FaceParts master{};  ///< triangle i lies opposite triangle i of the slave; one of the sides may be absent
+  SurfaceContact values{};
 };
 
 /// The segments between bodies, a PairSurface for each slave. Beyond limits.segments two: one with means over

@@ -55,7 +55,7 @@ export async function useFields(page, dimension) {
 
 /** It tells what is under the pointer also when the picture moves below it. */
 async function useTooltip(page) {
-  const tooltip = page.locator(".tooltip");
+  const tooltip = page.locator(".view-frame .tooltip");
   await page.locator(".view").hover();
   await tooltip.waitFor({ state: "visible" });
   const before = await tooltip.textContent();
@@ -85,7 +85,47 @@ async function useCut(page) {
   assert.match(await page.locator(".fields > .note").first().textContent(), /On the section/);
   await changes(page, ".view-frame", "moving the plane", () => slide(page, "#cut-place", 80));
   await changes(page, ".view-frame", "no plane", () => page.selectOption("#cut-axis", ""));
-  await changes(page, ".view-frame", "obstacle", async () => { await page.selectOption("#field", "contact-gap"); await page.locator("#obstacle").click(); });
+  if (await page.locator("#obstacle").count() > 0) await changes(page, ".view-frame", "obstacle", async () => { await page.selectOption("#field", "contact-gap"); await page.locator("#obstacle").click(); });
+}
+
+/** Bodies are moved apart and hidden; contact values are on both sides of what they touch with. */
+export async function useBodies(page, dimension) {
+  const view = ".view-frame";
+  await page.locator("#fields").scrollIntoViewIfNeeded();
+  await page.selectOption("#field", "body");
+  assert.match(await page.locator("#fields .view-legend").innerText(), /bodies\s+(upper\s+lower|lower\s+upper)/);
+  await changes(page, view, "drawing apart", () => slide(page, "#explosion", 80));
+  assert.match(await page.locator(".fields > .note").first().textContent(), /Bodies are drawn apart/);
+  await changes(page, view, "hiding a body", () => page.locator("#body-0").click());
+  await changes(page, view, "showing it", async () => { await page.locator("#body-0").focus(); await page.keyboard.press("Space"); });
+  await slide(page, "#explosion", 0);
+  if (dimension === 2) return;
+  await changes(page, view, "contact values", () => page.selectOption("#field", "contact-pressure"));
+  assert.equal(await page.locator("#explosion").inputValue(), "50"); // otherwise nothing is seen of them
+  assert.match((await saved(page, "#fields", "CSV")).toString(), /^x,y,z,contact-pressure\n/);
+}
+
+/** Plan views of what touches: other values, states, and what the pointer and keys are told. */
+export async function usePlans(page) {
+  const plan = "#contact .plan";
+  assert(await colours(page, plan) > 60, "the plan is blank");
+  await changes(page, "#contact", "another quantity", () => page.selectOption("#contact-quantity", "gap"));
+  await page.selectOption("#contact-quantity", "pressure");
+  await changes(page, "#contact", "states", () => page.locator("#contact-status").click());
+  await page.locator("#contact-status").click();
+  const tooltip = page.locator("#contact .tooltip").first();
+  await page.locator(plan).first().hover();
+  assert.match(await tooltip.textContent(), /^contact pressure .* S, (stick|slip|open|tied)x = .*, y = .*, z = /);
+  await page.mouse.move(0, 0);
+  await page.locator(plan).first().focus();
+  await page.keyboard.press("ArrowLeft");
+  assert(await tooltip.isVisible(), "keys do not read values");
+  const before = await tooltip.textContent();
+  await page.keyboard.press("ArrowLeft");
+  assert.notEqual(await tooltip.textContent(), before);
+  await page.keyboard.press("Escape");
+  assert(await tooltip.isHidden());
+  assert.match((await saved(page, "#contact", "CSV")).toString(), /^triangle,x,y,z,pressure,friction,limit,gap,slip,status\n/);
 }
 
 /** What the button `kind` below `place` saves. */

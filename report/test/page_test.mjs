@@ -7,7 +7,7 @@ import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { browserPath, colours, launch, openPage } from "./browser.mjs";
-import { saved, useFields } from "./fields.mjs";
+import { saved, useBodies, useFields, usePlans } from "./fields.mjs";
 
 const [program, folder, results] = process.argv.slice(2);
 
@@ -52,6 +52,48 @@ displacement = [0.0, -0.01, 0.004]
 contact = { friction = "coulomb", coefficient = 0.3, gap = "0.02*(x - 0.5)^2" }
 [adapt]
 max_levels = 2
+` },
+  pair: { exit: 0, status: "Certified", bodies: true, text: `
+degree = 2
+[mesh]
+boxes.lower = { lower = [0, -1], upper = [2, 0], cells = [3, 2] }
+boxes.upper = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }
+[material]
+E = 1.0
+nu = 0.3
+[boundary."upper.left"]
+displacement = [0, 0]
+[boundary."upper.top"]
+traction = [0, -0.1]
+[boundary."lower.bottom"]
+displacement = [0, 0]
+[[contact]]
+slave = "upper.bottom"
+master = "lower.top"
+friction = "coulomb"
+coefficient = 0.5
+[adapt]
+tolerance = 0.1
+` },
+  pair3d: { exit: 3, status: "Budget used up", bodies: true, text: `
+degree = 1
+[mesh]
+boxes.lower = { lower = [-0.3, -0.2, -1], upper = [2.3, 1.2, 0], cells = [5, 3, 2] }
+boxes.upper = { lower = [0, 0, 0], upper = [2, 1, 1], cells = [4, 2, 2] }
+[material]
+E = 1.0
+nu = 0.3
+[boundary."upper.front"]
+displacement = [0.01, 0, "-0.02 - 0.01*x"]
+[boundary."lower.back"]
+displacement = [0, 0, 0]
+[[contact]]
+slave = "upper.back"
+master = "lower.front"
+friction = "coulomb"
+coefficient = 0.5
+[adapt]
+max_levels = 1
 ` },
   stopped: { exit: 2, status: "Failed", text: `
 degree = 1
@@ -115,6 +157,22 @@ async function checkNarrowAndDark(browser, url) {
   assert(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the screen");
   assert.deepEqual(complaints, []);
   await page.close();
+}
+
+/** Pairs and bodies as they stand in the certificate. */
+async function checkPairs(page, directory) {
+  const { bodies, contact } = JSON.parse(readFileSync(`${directory}/certificate.json`, "utf8"));
+  const tables = await page.locator("#contact table").evaluateAll((list) => list.map((table) =>
+    [...table.querySelectorAll("tbody tr")].map((row) => [...row.cells].map((cell) => cell.textContent))));
+  assert.equal(tables.length, 4); // forces, pairs, moments, bodies
+  const [[name, pair]] = Object.entries(contact.boundaries);
+  assert.equal(await page.locator("#contact h3").first().textContent(), `${name} on ${pair.master[0]}`);
+  assert.deepEqual(tables[1][0].slice(0, 4), [name, pair.master[0], pair.law, String(pair.segments)]);
+  const [moment, onMaster] = tables[2][0].slice(1).map((text) => Number(text.replace(/[(\u2212]/g, (c) => (c === "(" ? "" : "-")).split(",")[0].replace(")", "").replace(/\u00d710.*/, "")));
+  const digits = (value) => Number(value.toExponential().split("e")[0]);
+  for (const [shown, [value]] of [[moment, pair.moment], [onMaster, pair.moment_on_master]])
+    assert(Math.abs(shown - value) < 1e-5 * Math.abs(value) || Math.abs(shown - digits(value)) < 1e-4, `${shown} instead of ${value}`);
+  assert.deepEqual(tables[3].map(([body]) => body), bodies.map((body) => body.name));
 }
 
 async function checkCharts(page, charts) {
@@ -250,10 +308,14 @@ try {
     await checkCertificate(page, directory, what.status);
     if (what.exit !== 2) {
       await page.screenshot({ path: `${results}/${name}.png`, fullPage: true });
-      await checkCharts(page, ["#bound .chart", "#convergence .chart", "#contact .chart"]);
+      await checkCharts(page, ["#bound .chart", "#convergence .chart", name === "pair3d" ? "#contact .plan" : "#contact .chart"]);
       await checkPrint(page, `${results}/${name}.pdf`);
       await checkPrintedFields(page);
-      await useFields(page, name === "cube" ? 3 : 2);
+      const dimension = ["cube", "pair3d"].includes(name) ? 3 : 2;
+      await useFields(page, dimension);
+      if (what.bodies) await checkPairs(page, directory);
+      if (what.bodies) await useBodies(page, dimension);
+      if (dimension === 3) await usePlans(page);
       await checkNarrowAndDark(browser, url);
     }
     if (name === "block") {
@@ -263,7 +325,7 @@ try {
       await checkTouch(browser, url);
       await checkGivenCertificate(browser, directory);
     }
-    if (name === "cube") await checkWithoutWebGL(url, 3);
+    if (["cube", "pair3d"].includes(name)) await checkWithoutWebGL(url, 3);
     assert.equal(await page.locator("img").count(), 0);
     assert.deepEqual(complaints, []);
     report(name, directory, seconds);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/app/two_blocks.h"
 #include "unit/io/constant_stress.h"
 
 namespace tribound::test
@@ -33,6 +34,26 @@ TEST(PageProfile, ValuesAlongTheFloor)
     EXPECT_NEAR(profile.gap[i], 0.0, 1e-14);
     EXPECT_NEAR(profile.slip[i], 0.1 * profile.arc[i], 1e-14);
     EXPECT_EQ(profile.status[i], static_cast<Index>(problem::ContactStatus::slip));
+  }
+}
+
+TEST(PageProfile, BothSidesBetweenBodies)
+{
+  const TwoBlocks<2> blocks(1, 3);
+  const auto displacement = [](const Point<2>& x)
+  { return x[1] < -0.05 ? Point<2>(0.1 * x[0], 0.2) : Point<2>(0.3, 0.4 * x[0]); };
+  const app::ContactProfile profile =
+      app::contact_profiles(blocks.form, interpolate(blocks.space, displacement), 40)[0];
+  ASSERT_EQ(profile.opposite.size(), profile.points.size());
+  for (std::size_t i = 0; i < profile.arc.size(); ++i)
+  {
+    const double x = profile.points[2 * i];
+    EXPECT_EQ(profile.bodies[i], 0);
+    EXPECT_EQ(profile.opposite_bodies[i], 1);
+    EXPECT_NEAR(profile.opposite[2 * i], x, 1e-13);
+    EXPECT_NEAR(profile.opposite[2 * i + 1], -TwoBlocks<2>::distance, 1e-13);
+    EXPECT_NEAR(profile.opposite_displacement[2 * i], 0.1 * x, 1e-13);
+    EXPECT_NEAR(profile.opposite_displacement[2 * i + 1], 0.2, 1e-13);
   }
 }
 

@@ -24,8 +24,8 @@ struct PairFigures
   double covered_master = 0;  ///< what of the master these parts take up
   double smallest_gap = 0;    ///< of g - [u]^n at the quadrature points
   double largest_gap = 0;
-  double largest_tension = 0;            ///< largest T^n there; 0 but for ties
-  std::vector<double> moment_on_master;  ///< -integral of Pi(x) x T, about the origin
+  double largest_tension = 0;              ///< largest T^n there; 0 but for ties
+  std::vector<double> moment_on_master{};  ///< -integral of Pi(x) x T, about the origin
 };
 
 /// A body of several: a part of the mesh that is connected through facets.
@@ -49,7 +49,7 @@ struct Resultants
   /// plane.
   std::optional<double> coefficient{};
   double resolution = 0.0;            ///< forces are known to this much: the distance of T(u^k) from t^k
-  std::vector<double> moment;         ///< integral of x x T about the origin, in 2D one number
+  std::vector<double> moment{};       ///< integral of x x T about the origin, in 2D one number
   std::optional<PairFigures> pair{};  ///< of a slave
 };
 
