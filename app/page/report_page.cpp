@@ -189,7 +189,7 @@ void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
                      const adapt::CertifiedLevel<dim>& level)
 {
   if (template_.empty()) return;
-  constexpr PageLimits limits{.subdivided = 6000, .stresses = 6000};
+  constexpr PageLimits limits{.subdivided = 6000, .stresses = 6000, .segments = 6000};
   if (!levels_.empty() && n_triangles(levels_) + n_triangles(form, limits) > limits.earlier) return;
   levels_.push_back(page_level(number, form, level, limits));
 }

@@ -29,7 +29,7 @@ function forceTable(run, parts) {
 
 function pairTables(run, pairs) {
   const [size, moments] = run.d === 2 ? ["length", "S L\u00b2"] : ["area", "S L\u00b3"];
-  const [length, unit] = [run.d === 2 ? "L" : "L\u00b2", run.d === 2 ? "" : ", about x, y, z"];
+  const [length, about] = [run.d === 2 ? "L" : "L\u00b2", run.d === 2 ? "the origin" : "the axes through the origin"];
   const isTied = pairs.some(([, { largest_tension: tension }]) => tension > 0);
   return [element("h3", {}, "Pairs"),
     table(["slave", "master", "law", "#segments", `#${size} covered [${length}]`, "#share of the slave", `#of the master [${length}]`, "#gap [L]", ...(isTied ? ["#largest tension [S]"] : [])],
@@ -38,7 +38,7 @@ function pairTables(run, pairs) {
         ...(isTied ? [number(pair.largest_tension)] : [])])),
     table(["slave", `#moment on it [${moments}]`, `#moment on the master [${moments}]`],
       pairs.map(([name, pair]) => [name, moment(pair.moment), moment(pair.moment_on_master)])),
-    element("p", { class: "note" }, `Moments of the contact traction about the origin${unit}. They cancel where the two sides coincide.`)];
+    element("p", { class: "note" }, `Moments of the contact traction about ${about}. They cancel where the two sides coincide.`)];
 }
 
 function bodyTable(run) {

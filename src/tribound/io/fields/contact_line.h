@@ -28,7 +28,8 @@ struct ChainLink
 
 /// contact.csv: one row per quadrature point of form.facet_rule(), sorted along each boundary in 2D, facet by
 /// facet in 3D. Columns: boundary,facet,x,y[,z],nx,ny[,nz][,arc],pressure,traction_x,traction_y[,traction_z],
-/// limit,status,gap,slip_x,slip_y[,slip_z],weight,level; arc in 2D only, status 0 open, 1 stick, 2 slip. The
+/// limit,status,gap,slip_x,slip_y[,slip_z],weight,level,pair; arc in 2D only, status 0 open, 1 stick, 2 slip,
+/// 3 tied, pair empty against an obstacle. The
 /// sum of weight times a column is its integral over the boundary as the program takes it. Coordinates and
 /// components of normals that are rounding are 0.
 template <int dim>

@@ -86,8 +86,8 @@ void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<
 
 /// Writes the segments of Gamma_C as curves or triangles of degree p, in the order of form.segments():
 /// point data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick,
-/// 2 slip), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary group).
-/// Throws WriteError when the file cannot be written.
+/// 2 slip, 3 tied), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary
+/// group). Throws WriteError when the file cannot be written.
 template <int dim>
 void write_contact_vtu(const std::filesystem::path& path, int level, const contact::NitscheForm<dim>& form,
                        std::span<const double> u);
