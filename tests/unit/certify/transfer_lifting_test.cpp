@@ -1,5 +1,5 @@
 /// @file transfer_lifting_test.cpp
-/// The lifting of what a contact traction loses between meshes: against the field itself, in 2D.
+/// The lifting of what a contact traction loses between meshes: against the field itself.
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "support/dimensions.h"
 #include "tribound/certify/bound/transfer.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
@@ -163,7 +164,7 @@ TEST(TransferLifting, IsTheNormOfALifting)
     EXPECT_LE(loss.rho(1).norm(), 1e-12);
     double smallest = HUGE_VAL;
     for (int m = 1; m <= 64; ++m) smallest = std::min(smallest, lifting.square(m));
-    const double norm = certify::transfer_norm<2>(mesh, facet, degree, pieces);
+    const double norm = certify::TransferLifting<2>(mesh, facet, degree, pieces).norm();
     EXPECT_NEAR(norm, std::sqrt(smallest), 1e-10 * norm);
     for (const int m : {1, 2, 5})
       for (const double s : {0.03, 0.111, 0.47, 0.93})
@@ -184,6 +185,67 @@ TEST(TransferLifting, IsTheNormOfALifting)
       for (const double z : {0.1, 0.6})
         EXPECT_LE((lifting.at(other == 2 ? 0.0 : 1.0, z, 3) * normal).norm(), 1e-10);
     }
+  }
+}
+
+template <class T>
+class TransferLiftingTest : public ::testing::Test
+{
+};
+TYPED_TEST_SUITE(TransferLiftingTest, Dimensions);
+
+/// (tau, grad v)_T = (r, v)_F, v a random polynomial of degree p + 1: what adding tau changes of
+/// ||grad v||^2. As r is orthogonal to those of degree p, v is a power of an affine function.
+TYPED_TEST(TransferLiftingTest, HasTheTractionForGradients)
+{
+  constexpr int dim = TypeParam::value;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> value(-1, 1);
+  for (int round = 0; round < 24; ++round)
+  {
+    SCOPED_TRACE(round);
+    const int degree = 1 + round % 4;
+    const mesh::Mesh<dim> mesh = random_cell<dim>(random);
+    const mesh::BoundaryFacet facet = first_facet(mesh);
+    const auto pieces = random_pieces<dim>(degree, 2 + round % 3, round % 2, random);
+    const certify::TransferLifting<dim> lifting(mesh, facet, degree, pieces);
+    const mesh::CellMap<dim> cell = mesh::cell_map(mesh, 0);
+    const auto direction = Point<dim>::NullaryExpr([&] { return value(random); }).eval();
+    const auto slope = Point<dim>::NullaryExpr([&] { return value(random); }).eval();
+    const auto affine = [&](const Point<dim>& xhat) { return slope.dot(cell(xhat)); };
+    const double change = lifting.change(
+        [&](const Point<dim>& xhat) -> Tensor<dim>
+        { return (degree + 1) * std::pow(affine(xhat), degree) * direction * slope.transpose(); });
+
+    // (q - Pi_F q, v)_F = (q, v - Pi_F v)_F
+    const int n = fem::polynomial_dimension(dim - 1, degree);
+    const double det = mesh::facet_geometry(mesh, facet.cell, facet.local).det();
+    const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * degree + 1);
+    std::vector<double> theta(n);
+    const auto v = [&](const Point<dim - 1>& s)
+    { return std::pow(affine(mesh::facet_to_cell<dim>(facet.local, s)), degree + 1); };
+    std::vector<double> projection(n);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      fem::orthonormal_values<dim - 1>(degree, rule.points[q], theta);
+      for (int i = 0; i < n; ++i) projection[i] += rule.weights[q] * theta[i] * v(rule.points[q]);
+    }
+    double expected = 0;
+    for (const TractionPiece<dim>& piece : pieces)
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim - 1> s = fem::point_in<dim - 1>(piece.part, rule.points[q]);
+        fem::orthonormal_values<dim - 1>(degree, s, theta);
+        double rest = v(s);
+        for (int i = 0; i < n; ++i) rest -= projection[i] * theta[i];
+        fem::orthonormal_values<dim - 1>(degree, rule.points[q], theta);
+        for (int i = 0; i < n; ++i)
+          expected += det * fem::fraction<dim - 1>(piece.part) * rule.weights[q] * rest * theta[i] *
+                      piece.coefficients[i].dot(direction);
+      }
+    const double norm = lifting.norm();
+    EXPECT_GT(std::abs(expected), 1e-6 * norm);
+    EXPECT_NEAR((change - norm * norm) / 2, expected, 1e-11 * norm);
   }
 }
 

@@ -95,15 +95,16 @@ TYPED_TEST(TransferTest, BoundsTheSupremum)
     const mesh::Mesh<dim> mesh = random_cell<dim>(random);
     const mesh::BoundaryFacet facet = first_facet(mesh);
     const auto pieces = random_pieces<dim>(degree, 2 + round % 3, round % 2, random);
-    const double norm = certify::transfer_norm<dim>(mesh, facet, degree, pieces);
+    const double norm = certify::TransferLifting<dim>(mesh, facet, degree, pieces).norm();
     const double below = supremum<dim>(mesh, facet, degree, pieces, dim == 2 ? 14 : 8);
     EXPECT_GE(norm, below);
     largest = std::max(largest, norm / below);
   }
-  EXPECT_LE(largest, dim == 2 ? 2 : 12);  // a guard against lost factors; a supremum over polynomials is less
+  EXPECT_LE(largest, 2.5);  // a guard against lost factors; a supremum over polynomials is less
 }
 
-/// Nothing is said about a part, or that it carries no traction.
+/// Nothing is said about a part, or that it carries no traction. In 3D the facet is then triangulated in
+/// another way.
 TYPED_TEST(TransferTest, TakesWhatIsNotCoveredForFree)
 {
   constexpr int dim = TypeParam::value;
@@ -113,10 +114,11 @@ TYPED_TEST(TransferTest, TakesWhatIsNotCoveredForFree)
     const mesh::Mesh<dim> mesh = random_cell<dim>(random);
     std::vector<TractionPiece<dim>> pieces = random_pieces<dim>(degree, 4, 0, random);
     for (const std::size_t k : {0, 1}) std::ranges::fill(pieces[k].coefficients, Point<dim>::Zero());
-    const double norm = certify::transfer_norm<dim>(mesh, first_facet(mesh), degree, pieces);
+    const certify::TransferLifting<dim> told(mesh, first_facet(mesh), degree, pieces);
     pieces.erase(pieces.begin(), pieces.begin() + 2);
-    EXPECT_GT(norm, 0);
-    EXPECT_NEAR(certify::transfer_norm<dim>(mesh, first_facet(mesh), degree, pieces), norm, 1e-12 * norm);
+    const certify::TransferLifting<dim> untold(mesh, first_facet(mesh), degree, pieces);
+    EXPECT_GT(told.norm(), 0);
+    EXPECT_NEAR(untold.norm(), told.norm(), (dim == 2 ? 1e-12 : 0.02) * told.norm());
   }
 }
 
@@ -130,7 +132,7 @@ TYPED_TEST(TransferTest, IsZeroForPolynomialsOfTheFacet)
     const mesh::Mesh<dim> mesh = random_cell<dim>(random);
     const mesh::BoundaryFacet facet = first_facet(mesh);
     std::vector<TractionPiece<dim>> pieces = random_pieces<dim>(degree, 0, 0, random);
-    EXPECT_LE(certify::transfer_norm<dim>(mesh, facet, degree, pieces), 1e-13);
+    EXPECT_LE(certify::TransferLifting<dim>(mesh, facet, degree, pieces).norm(), 1e-13);
     const TractionPiece<dim> whole = pieces[0];
     pieces = random_pieces<dim>(degree, 3, 0, random);
     const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * degree);
@@ -157,68 +159,26 @@ TYPED_TEST(TransferTest, IsZeroForPolynomialsOfTheFacet)
           piece.coefficients[i] += rule.weights[q] * theta[i] * t;
       }
     }
-    EXPECT_LE(certify::transfer_norm<dim>(mesh, facet, degree, pieces), 1e-12);
+    EXPECT_LE(certify::TransferLifting<dim>(mesh, facet, degree, pieces).norm(), 1e-12);
   }
 }
 
-/// In 3D the formula, with p = 1: the projection by monomials, the foot of the apex by least squares.
-TEST(Transfer, IsTheClosedFormIn3D)
+/// Where parts overlap by a little more than rounding, there is no triangulation.
+TEST(Transfer, IsTheClosedFormWhereThereIsNoTriangulation)
 {
+  constexpr double j = 3.8317059702075123;  // first zero of the Bessel function J_1
   std::mt19937 random(5);
-  const fem::Quadrature<2> rule = fem::quadrature<2>(4);
-  for (int round = 0; round < 5; ++round)
+  for (const int degree : {1, 2, 3, 4})
   {
     const mesh::Mesh<3> mesh = random_cell<3>(random);
-    const mesh::BoundaryFacet facet = first_facet(mesh);
-    const auto pieces = random_pieces<3>(1, 3, 0, random);
-    const auto [x0, x1, x2] =
-        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), 0));
-    const Point<3> apex = mesh.vertices()[mesh.cell(facet.cell)[0]];
-    Eigen::Matrix<double, 3, 2> edges;
-    edges << x1 - x0, x2 - x0;
-    const Eigen::Vector2d foot = edges.colPivHouseholderQr().solve(apex - x0);
-    const double height = (apex - x0 - edges * foot).norm();
-    const double double_area = mesh::cross(x1 - x0, x2 - x0).norm();
-    std::vector<double> theta(3);
-    // visit(weight on the facet, (1, s, t), q)
-    const auto at_points = [&](const auto& visit)
-    {
-      for (const TractionPiece<3>& piece : pieces)
-        for (int q = 0; q < rule.size(); ++q)
-        {
-          fem::orthonormal_values<2>(1, rule.points[q], theta);
-          const Point<2> s = fem::point_in<2>(piece.part, rule.points[q]);
-          visit(double_area * fem::fraction<2>(piece.part) * rule.weights[q], Eigen::Vector3d(1, s[0], s[1]),
-                Point<3>(theta[0] * piece.coefficients[0] + theta[1] * piece.coefficients[1] +
-                         theta[2] * piece.coefficients[2]));
-        }
-    };
-    Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-    at_points(
-        [&](double weight, const Eigen::Vector3d& monomials, const Point<3>& t)
-        {
-          gram += weight * monomials * monomials.transpose();
-          moments += weight * monomials * t.transpose();
-        });
-    const Eigen::Matrix3d projection = gram.inverse() * moments;
-    double plain = 0;
-    double weighted = 0;
-    at_points(
-        [&](double weight, const Eigen::Vector3d& monomials, const Point<3>& t)
-        {
-          const double square = (t - projection.transpose() * monomials).squaredNorm();
-          plain += weight * square;
-          weighted += weight * square * (edges * (monomials.tail<2>() - foot)).squaredNorm();
-        });
-    const double diameter = std::max({(x1 - x0).norm(), (x2 - x0).norm(), (x2 - x1).norm()});
-    double smallest = HUGE_VAL;
-    for (int m = 1; m <= 64; ++m)
-    {
-      const double sum = std::sqrt(weighted) + m * diameter / std::acos(-1.0) * std::sqrt(plain);
-      smallest = std::min(smallest, height / (2 * m - 1) * (plain + sum * sum / (height * height)));
-    }
-    EXPECT_NEAR(certify::transfer_norm<3>(mesh, facet, 1, pieces), std::sqrt(smallest), 1e-12);
+    auto pieces = random_pieces<3>(degree, 3, 0, random);
+    const double regular = certify::TransferLifting<3>(mesh, first_facet(mesh), degree, pieces).norm();
+    EXPECT_LT(regular, 0.9 * closed_form(mesh, first_facet(mesh), degree, pieces, j));
+    pieces[0].part[0] += 1e-9 * (pieces[0].part[0] - pieces[0].part[1]);
+    const certify::TransferLifting<3> lifting(mesh, first_facet(mesh), degree, pieces);
+    const double expected = closed_form(mesh, first_facet(mesh), degree, pieces, j);
+    EXPECT_NEAR(lifting.norm(), expected, 1e-9 * expected);
+    EXPECT_EQ(lifting.change([](const Point<3>&) { return Tensor<3>::Identity(); }), HUGE_VAL);
   }
 }
 

@@ -16,6 +16,14 @@ namespace tribound::certify
   return h / std::numbers::pi;
 }
 
+inline constexpr double bessel_zero = 3.8317059702;  ///< j_{1,1}, the first of J_1; rounded down
+
+/// h_T / j_{1,1}: the same where T is a triangle [LS10].
+[[nodiscard]] constexpr double poincare_constant_of_triangle(double h)
+{
+  return h / bessel_zero;
+}
+
 /// C_{T,F}^2 for h_T = 1 and |F| = |T|: 1/pi^2 + 2/(d pi).
 template <int dim>
 [[nodiscard]] constexpr double trace_constant_squared()

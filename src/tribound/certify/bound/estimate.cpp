@@ -169,34 +169,38 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
   in_threads(n_threads, on_thread);
 }
 
-/// A cell with several facets: the one that loses most is added to the stress, the norms of the others after
-/// that.
+/// A cell with several liftings, by facets and groups: the largest is added to the stress, the norms of the
+/// others after that.
 template <int dim>
 void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>& stress,
                                     Estimate& result) const
 {
+  std::vector<TransferLifting<dim>> liftings;
   for (const auto& [cell, transfers] : facet_transfers<dim>(form_, contact_, stress.tractions))
   {
     BoundComponents& eta = result.cells[cell];
-    for (const FacetTransfer<dim>& transfer : transfers) eta.mor += transfer.norm;
+    liftings.clear();
+    for (const FacetTransfer<dim>& transfer : transfers)
+      for (const auto& pieces : transfer.groups)
+        eta.mor += liftings.emplace_back(form_.space().mesh(), transfer.facet, form_.space().degree(), pieces)
+                       .norm();
     if (eta.mor == 0) continue;
-    const FacetTransfer<dim>& most = *std::ranges::max_element(transfers, {}, &FacetTransfer<dim>::norm);
-    double together = eta.str + most.norm;
-    if constexpr (dim == 2)
-      together =
-          std::min(together, std::sqrt(std::max(0.0, eta.str * eta.str + transfer_change(u, stress, most))));
-    eta.str_mor = together + (eta.mor - most.norm);
+    const TransferLifting<dim>& most = *std::ranges::max_element(liftings, {}, &TransferLifting<dim>::norm);
+    const double change = most.change(difference(u, stress, cell));
+    eta.str_mor = std::min(eta.str + most.norm(), std::sqrt(std::max(0.0, eta.str * eta.str + change))) +
+                  (eta.mor - most.norm());
   }
 }
 
-/// What adding tau changes of ||sigma_dis - sigma(u)||_T^2, in 2D.
+/// sigma_dis - sigma(u) on a cell, of reference points.
 template <int dim>
-double Estimator<dim>::transfer_change(std::span<const double> u, const Stress<dim>& stress,
-                                       const FacetTransfer<dim>& transfer) const
+std::function<Tensor<dim>(const Point<dim>&)> Estimator<dim>::difference(std::span<const double> u,
+                                                                         const Stress<dim>& stress,
+                                                                         Index cell) const
 {
   const int degree = form_.space().degree();
   CellFields fields;
-  evaluate(u, stress, transfer.facet.cell, fields);
+  evaluate(u, stress, cell, fields);
   std::vector<double> phi(fem::polynomial_dimension(dim, degree));
   std::vector<Tensor<dim>> coefficients(phi.size(), Tensor<dim>::Zero());
   for (int q = 0; q < rule_.size(); ++q)
@@ -205,18 +209,13 @@ double Estimator<dim>::transfer_change(std::span<const double> u, const Stress<d
     for (std::size_t i = 0; i < phi.size(); ++i)
       coefficients[i] += rule_.weights[q] * phi[i] * fields.difference[q];
   }
-  const auto difference = [&](const Point<dim>& x)
+  return [degree, phi, coefficients](const Point<dim>& x) mutable
   {
     fem::orthonormal_values<dim>(degree, x, phi);
     Tensor<dim> sum = Tensor<dim>::Zero();
     for (std::size_t i = 0; i < phi.size(); ++i) sum += phi[i] * coefficients[i];
     return sum;
   };
-  if constexpr (dim == 2)
-    return certify::transfer_change(form_.space().mesh(), transfer.facet, degree, transfer.groups.front(),
-                                    difference);
-  else
-    return 0;
 }
 
 /// Half of the square of a segment between bodies belongs to either cell, which may be that of another rank.

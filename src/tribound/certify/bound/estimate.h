@@ -3,6 +3,7 @@
 /// @file estimate.h
 /// The bound of an iterate with its components, method section 5.
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -68,8 +69,9 @@ class Estimator
   void stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                     Estimate& result) const;
   void transfer_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
-  [[nodiscard]] double transfer_change(std::span<const double> u, const Stress<dim>& stress,
-                                       const FacetTransfer<dim>& transfer) const;
+  [[nodiscard]] std::function<Tensor<dim>(const Point<dim>&)> difference(std::span<const double> u,
+                                                                         const Stress<dim>& stress,
+                                                                         Index cell) const;
   void contact_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
 
   const contact::NitscheForm<dim>& form_;

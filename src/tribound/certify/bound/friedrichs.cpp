@@ -30,7 +30,7 @@ namespace
 template <int dim>
 constexpr double kappa_squared()
 {
-  constexpr double root = dim == 2 ? 3.8317059702 : 3.1415926535;  // rounded down
+  constexpr double root = dim == 2 ? bessel_zero : 3.1415926535;  // rounded down
   return 1.0 / (2 * dim * (dim + 1) * (dim + 2)) + 1 / (root * root);
 }
 

@@ -3,6 +3,7 @@
 /// @file transfer.h
 /// What is lost where contact tractions pass between meshes that do not match.
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <vector>
@@ -23,26 +24,61 @@ struct TractionPiece
   std::vector<Point<dim>> coefficients;
 };
 
+/// At a point of a rule on a facet, in the notation of TransferLifting.
+template <int dim>
+struct TransferLoss
+{
+  Point<dim - 1> at;  ///< on the reference facet
+  double weight;      ///< with the measure of the facet
+  Point<dim> r;
+  Tensor<dim> moved;  ///< (xi - a_F) r; in 3D less what rho / m can take off without changing div rho
+  Tensor<dim> rho;    ///< the smallest
+};
+
 /// The facet F of a cell T with apex a carries the tractions q on its parts, and none beside them; an
 /// equilibrated stress carries Pi_F q, the projection on P^p(F)^d. With r = q - Pi_F q there is a tau on T
-/// with div tau = 0, tau n = r on F and 0 on the other facets, so that (r, v)_F = (tau, grad v)_T: the result
-/// is
-/// ||tau||_T or more. With H = d |T| / |F|, x = (1 - z) xi + z a, xi in F, a_F the foot of a in the plane of
-/// F, div_F rho = r and rho . nu = 0 on the rim of F, row by row,
+/// with div tau = 0, tau n = r on F and 0 on the other facets, so that (r, v)_F = (tau, grad v)_T. With H =
+/// d |T| / |F|, x = (1 - z) xi + z a, xi in F, a_F the foot of a in the plane of F, div_F rho = r and
+/// rho . nu = 0 on the rim of F, row by row,
 ///
 ///     tau = (1 - z)^(m + 1 - d) { r n + [(xi - a_F) r - m rho] / H }   for any integer m >= 1,
 ///     ||tau||_T^2 = H / (2 m + 2 - d) int_F |r|^2 + |(xi - a_F) r - m rho|^2 / H^2.
 ///
-/// 2D: rho is the integral of r along F; parts may overlap, then tractions add up. 3D: ||rho|| <= h_F/pi
-/// ||r||, for parts that do not overlap. The smallest over m <= 64.
+/// 2D: rho is the integral of r along F; parts may overlap, then tractions add up. 3D, for parts that do not
+/// overlap: of all Brezzi-Douglas-Marini fields of degree p + 1 on a triangulation of F, rho makes ||tau||
+/// the smallest for each m. m <= 64.
 template <int dim>
-[[nodiscard]] double transfer_norm(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, int degree,
-                                   std::span<const TractionPiece<dim>> pieces);
+class TransferLifting
+{
+ public:
+  TransferLifting(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, int degree,
+                  std::span<const TractionPiece<dim>> pieces);
 
-/// In 2D the smallest ||s + tau||_T^2 - ||s||_T^2 over some of these m, for a field s of degree `degree` on
-/// the cell, given by its value at a reference point.
-[[nodiscard]] double transfer_change(const mesh::Mesh<2>& mesh, const mesh::BoundaryFacet& facet, int degree,
-                                     std::span<const TractionPiece<2>> pieces,
-                                     const std::function<Tensor<2>(const Point<2>&)>& s);
+  /// The smallest ||tau||_T. In 3D where there is no triangulation (`conforming_cover`), or rounding spoils
+  /// rho: what follows from ||rho|| <= h_F / j_{1,1} ||r|| [LS10].
+  [[nodiscard]] double norm() const { return norm_; }
+
+  /// The smallest ||s + tau||_T^2 - ||s||_T^2 over some of these m, for a field s of degree p on the cell,
+  /// given by its value at a reference point. Infinity where there is no rho.
+  [[nodiscard]] double change(const std::function<Tensor<dim>(const Point<dim>&)>& s) const;
+
+ private:
+  /// ||tau||_T^2.
+  [[nodiscard]] double square(int m) const
+  {
+    return std::max(0.0, fixed_ + m * (linear_ + m * quadratic_)) / (2 * m + 2 - dim);
+  }
+  [[nodiscard]] int best_exponent() const;
+
+  int local_;  ///< number of the facet in its cell
+  int degree_;
+  double height_;
+  Point<dim> normal_;
+  std::vector<TransferLoss<dim>> losses_;
+  double fixed_ = 0;  ///< what ||tau||^2 consists of, by powers of m
+  double linear_ = 0;
+  double quadratic_ = 0;
+  double norm_;
+};
 
 }  // namespace tribound::certify

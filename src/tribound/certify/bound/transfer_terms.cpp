@@ -95,10 +95,7 @@ std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(const contact::
   for (auto& [number, covered] : of_facet)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
-    FacetTransfer<dim> transfer{facet, grouped(std::move(covered))};
-    for (const auto& pieces : transfer.groups)
-      transfer.norm += transfer_norm<dim>(mesh, facet, form.space().degree(), pieces);
-    result[facet.cell].push_back(std::move(transfer));
+    result[facet.cell].push_back({facet, grouped(std::move(covered))});
   }
   return result;
 }

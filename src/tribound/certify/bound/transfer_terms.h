@@ -21,7 +21,6 @@ struct FacetTransfer
   /// q = Pi_k t^k on the slave, -q |k| / |Pi(k)| on the master, by the parts that the segments k cover. Each
   /// group has parts that do not overlap; in 2D there is one.
   std::vector<std::vector<TractionPiece<dim>>> groups;
-  double norm = 0;  ///< >= ||tau||, the sum over the groups
 };
 
 /// Of the own cells with segments of pairs, by cell.
