@@ -182,6 +182,35 @@ TEST(Transfer, IsTheClosedFormWhereThereIsNoTriangulation)
   }
 }
 
+/// Parts with edges of 1 : 1000 and angles to match.
+TEST(Transfer, BearsNarrowParts)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> share(0.2, 0.8);
+  for (int round = 0; round < 12; ++round)
+  {
+    SCOPED_TRACE(round);
+    const int degree = 1 + round % 4;
+    const mesh::Mesh<3> mesh = random_cell<3>(random);
+    std::vector<TractionPiece<3>> pieces;
+    std::vector<fem::Part<2>> parts = {fem::reference_simplex<2>()};
+    for (int n = 0; n < 6; ++n)
+    {
+      const std::size_t k = random() % parts.size();
+      const int i = static_cast<int>(random() % 3);
+      const int j = (i + 1) % 3;
+      const double t = n % 2 == 1 ? 1e-3 : share(random);
+      const auto halves = fem::split<2>(parts[k], i, j, Point<2>((1 - t) * parts[k][i] + t * parts[k][j]));
+      parts[k] = halves[0];
+      parts.push_back(halves[1]);
+    }
+    for (const fem::Part<2>& part : parts) pieces.push_back(random_traction<3>(part, degree, random));
+    const certify::TransferLifting<3> lifting(mesh, first_facet(mesh), degree, pieces);
+    EXPECT_LE(lifting.norm(), 0.6 * closed_form(mesh, first_facet(mesh), degree, pieces, 3.141592653589793));
+    EXPECT_GE(lifting.norm(), supremum<3>(mesh, first_facet(mesh), degree, pieces, 6));
+  }
+}
+
 }  // namespace
 
 }  // namespace tribound::test

@@ -79,13 +79,21 @@ FacetFlux::FacetFlux(const FacetCover& cover, std::span<const Point<2>> vertices
   n_moments_ = n_triangles * n_div;
   EdgeNumbers edges;
   std::vector<Eigen::Triplet<double>> entries;
+  int largest = 0;
+  double largest_det = 0;
   for (int k = 0; k < n_triangles; ++k)
   {
     const std::array<int, 3>& corners = cover.triangles[k].corners;
     Eigen::Matrix2d jacobian;
     jacobian << vertices[corners[1]] - vertices[corners[0]], vertices[corners[2]] - vertices[corners[0]];
     const Eigen::Matrix2d inverse = jacobian.inverse();
-    const double scale = 1 / std::sqrt(jacobian.determinant());
+    const double det = jacobian.determinant();
+    const double scale = 1 / std::sqrt(det);
+    if (det > largest_det)
+    {
+      largest = k;
+      largest_det = det;
+    }
     for (int c = 0; c < 2; ++c)
       for (int i = 0; i < n; ++i)
       {
@@ -109,35 +117,42 @@ FacetFlux::FacetFlux(const FacetCover& cover, std::span<const Point<2>> vertices
         }
       }
   }
-  // the first says no more than the others, as the integral of a divergence is the flux through the rim
-  std::erase_if(entries, [](const auto& entry) { return entry.row() == 0; });
   conditions_.resize(n_moments_ + edges.size() * (degree + 2), 2 * n * n_triangles);
   conditions_.setFromTriplets(entries.begin(), entries.end());
   Eigen::SparseMatrix<double> square = conditions_ * conditions_.transpose();
-  square.coeffRef(0, 0) = 1;
+  // The integral of a divergence is the flux through the rim: one condition follows from the others. With
+  // more on the diagonal its multiplier is 0, and the solution the same. The largest triangle takes it best.
+  square.coeffRef(largest * n_div, largest * n_div) *= 2;
   factors_.compute(square);
 }
 
 std::optional<Eigen::MatrixXd> FacetFlux::with_divergence(const Eigen::MatrixXd& moments) const
 {
-  constexpr double rounding = 1e-10;
-  if (factors_.info() != Eigen::Success) return {};
   Eigen::MatrixXd conditions = Eigen::MatrixXd::Zero(conditions_.rows(), moments.cols());
   conditions.topRows(n_moments_) = moments;
-  conditions.row(0).setZero();
-  Eigen::MatrixXd field = smallest(conditions);
-  if (!((conditions_ * field - conditions).norm() <= rounding * moments.norm())) return {};
-  return field;
+  return smallest(conditions, moments.norm());
 }
 
-Eigen::MatrixXd FacetFlux::without_circulation(const Eigen::MatrixXd& field) const
+std::optional<Eigen::MatrixXd> FacetFlux::without_circulation(const Eigen::MatrixXd& field, double size) const
 {
-  return smallest(conditions_ * field);
+  return smallest(conditions_ * field, size);
 }
 
-Eigen::MatrixXd FacetFlux::smallest(const Eigen::MatrixXd& conditions) const
+/// With iterative refinement: narrow triangles spoil the factors.
+std::optional<Eigen::MatrixXd> FacetFlux::smallest(const Eigen::MatrixXd& conditions, double size) const
 {
-  return conditions_.transpose() * factors_.solve(conditions);
+  constexpr double rounding = 1e-10;
+  constexpr int max_refinements = 5;
+  if (factors_.info() != Eigen::Success) return {};
+  Eigen::MatrixXd field = Eigen::MatrixXd::Zero(conditions_.cols(), conditions.cols());
+  Eigen::MatrixXd rest = conditions;
+  for (int i = 0; i <= max_refinements; ++i)
+  {
+    field += conditions_.transpose() * factors_.solve(rest);
+    rest = conditions - conditions_ * field;
+    if (rest.norm() <= rounding * size) return field;
+  }
+  return {};
 }
 
 }  // namespace tribound::certify

@@ -14,10 +14,10 @@
 namespace tribound::certify
 {
 
-/// Brezzi-Douglas-Marini fields of degree p + 1: on each triangle K polynomials, by their coefficients in
-/// theta_i(s) / det_K^{1/2} e_c, s the reference coordinates of K, e_c the axes, theta_i orthonormal of
-/// degree p + 1; number (2 K + c) n + i. This basis is orthonormal, so that the smallest field under the
-/// conditions B x = b, which say what divergence and jumps are, is B^T (B B^T)^{-1} b.
+/// Brezzi-Douglas-Marini fields of degree p + 1 [BDM85]: on each triangle K polynomials, by their
+/// coefficients in theta_i(s) / det_K^{1/2} e_c, s the reference coordinates of K, e_c the axes, theta_i
+/// orthonormal of degree p + 1; number (2 K + c) n + i. This basis is orthonormal, so that the smallest field
+/// under the conditions B x = b, which say what divergence and jumps are, is B^T (B B^T)^{-1} b.
 class FacetFlux
 {
  public:
@@ -30,11 +30,13 @@ class FacetFlux
   [[nodiscard]] std::optional<Eigen::MatrixXd> with_divergence(const Eigen::MatrixXd& moments) const;
 
   /// The smallest field with the divergence and the normal jumps of another: what is left of that when the
-  /// nearest field without either is taken off.
-  [[nodiscard]] Eigen::MatrixXd without_circulation(const Eigen::MatrixXd& field) const;
+  /// nearest field without either is taken off. Nothing if rounding has made more than 1e-10 times `size` of
+  /// it.
+  [[nodiscard]] std::optional<Eigen::MatrixXd> without_circulation(const Eigen::MatrixXd& field,
+                                                                   double size) const;
 
  private:
-  [[nodiscard]] Eigen::MatrixXd smallest(const Eigen::MatrixXd& conditions) const;
+  [[nodiscard]] std::optional<Eigen::MatrixXd> smallest(const Eigen::MatrixXd& conditions, double size) const;
 
   int n_moments_;  ///< of all triangles
   Eigen::SparseMatrix<double> conditions_;

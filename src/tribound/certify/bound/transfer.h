@@ -45,8 +45,8 @@ struct TransferLoss
 ///     ||tau||_T^2 = H / (2 m + 2 - d) int_F |r|^2 + |(xi - a_F) r - m rho|^2 / H^2.
 ///
 /// 2D: rho is the integral of r along F; parts may overlap, then tractions add up. 3D, for parts that do not
-/// overlap: of all Brezzi-Douglas-Marini fields of degree p + 1 on a triangulation of F, rho makes ||tau||
-/// the smallest for each m. m <= 64.
+/// overlap: of all Brezzi-Douglas-Marini fields of degree p + 1 on a triangulation of F [BDM85], rho makes
+/// ||tau|| the smallest for each m. m <= 64.
 template <int dim>
 class TransferLifting
 {

@@ -204,8 +204,8 @@ std::vector<TransferLoss<3>> transfer_losses(const LoadedFacet<3>& facet,
       result.push_back({s, triangle.det * rule.weights[q], r, Tensor<3>::Zero(), Tensor<3>::Zero()});
     }
   const std::optional<Eigen::MatrixXd> rho = flux.with_divergence(moments);
-  if (!rho) return {};
-  moved = flux.without_circulation(moved);
+  const std::optional<Eigen::MatrixXd> rest = flux.without_circulation(moved, moments.norm());
+  if (!rho || !rest) return {};
   for (Eigen::Index k = 0; k < n_triangles; ++k)
     for (int q = 0; q < rule.size(); ++q)
     {
@@ -218,7 +218,7 @@ std::vector<TransferLoss<3>> transfer_losses(const LoadedFacet<3>& facet,
         return value * frame.transpose();
       };
       TransferLoss<3>& loss = result[k * rule.size() + q];
-      loss.moved = at_point(moved);
+      loss.moved = at_point(*rest);
       loss.rho = at_point(*rho);
     }
   return result;
