@@ -9,6 +9,7 @@
 
 #include "tribound/fem/evaluation.h"
 #include "tribound/io/fields/vtu.h"
+#include "tribound/mesh/bodies.h"
 
 namespace tribound::app
 {
@@ -101,7 +102,7 @@ class SurfaceSampler
         u_(u),
         space_(form.space().mesh(), subdivision),
         stress_(io::equilibrated_stress_field(space_, stress)),
-        body_of_(mesh::connected_parts(space_.mesh().topology())),
+        body_of_(mesh::find_bodies(space_.mesh()).of_cell),
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,8 @@
 #include "support/meshes.h"
 #include "support/problem_data.h"
 #include "support/random_pair.h"
+#include "tribound/adapt/excerpt.h"
+#include "tribound/mesh/bodies.h"
 
 namespace tribound::test
 {
@@ -84,6 +87,35 @@ TEST(Pairs, RegularisedAndWithMultigrid)
                              .stopping = {.criterion = adapt::Stopping::last_bounded},
                              .solver = {.method = algebra::LinearMethod::iterative}};
   expect_same<3>(two_blocks<3>(), pushed<3>(Coulomb(0.3), 50), method, {.max_levels = 2}, Compare::solutions);
+}
+
+/// Cells at the boundary alone hang together only here and there: what is shown of them knows their bodies.
+TEST(Pairs, ExcerptsKnowTheBodies)
+{
+  const Ranks ranks = Ranks::world();
+  const mesh::MeshData<3> data = renumbered(two_blocks<3>(), 4);
+  const adapt::Method method{.degree = 1};
+  auto whole = ranks.is_first() ? std::make_shared<const mesh::Mesh<3>>(data) : nullptr;
+  mesh::Mesh<3> part = mesh::share_out<3>(ranks, whole.get());
+  const problem::Problem<3> problem = pushed<3>(Coulomb(0.3), 2).on(part);
+  adapt::Levels<3> levels(problem, method, 1e-6,
+                          std::make_unique<adapt::Discretisation<3>>(std::move(part), problem, method),
+                          nullptr, std::move(whole));
+  ASSERT_EQ(levels.advance(), "");
+  const auto shown = adapt::boundary_excerpt<3>(levels.view(), method);
+  ASSERT_EQ(shown.has_value(), ranks.is_first());
+  if (!shown) return;
+  const mesh::Mesh<3>& mesh = shown->discrete->mesh;
+  const mesh::Bodies bodies = mesh::find_bodies(mesh);
+  EXPECT_EQ(bodies.n, 2);
+  std::array<int, 2> of_region{-1, -1};
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    int& body = of_region[mesh.region(c)];
+    if (body < 0) body = bodies.of_cell[c];
+    EXPECT_EQ(bodies.of_cell[c], body);
+  }
+  EXPECT_NE(of_region[0], of_region[1]);
 }
 
 }  // namespace

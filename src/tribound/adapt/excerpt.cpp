@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "tribound/adapt/merged_cells.h"
 #include "tribound/fem/nested.h"
+#include "tribound/mesh/bodies.h"
 #include "tribound/mesh/share_out.h"
 
 namespace tribound::adapt
@@ -44,6 +46,25 @@ std::vector<double> in_order(std::span<const double> blocks, std::size_t size, s
   return result;
 }
 
+/// The bodies of cells, which may have been put together: by the cells of the first mesh that they are in.
+/// All ranks call it together.
+template <int dim>
+std::vector<int> bodies_of(const mesh::Mesh<dim>& mesh, std::span<const mesh::CellRecord<dim>> cells)
+{
+  const mesh::Bodies bodies = mesh::find_bodies(mesh);
+  std::vector<std::pair<std::int64_t, int>> of_root;  // own cells ascend by their roots
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
+    if (const std::int64_t root = mesh.partition()->names[c].root;
+        of_root.empty() || of_root.back().first != root)
+      of_root.emplace_back(root, bodies.of_cell[c]);
+  std::vector<int> result;
+  result.reserve(cells.size());
+  for (const mesh::CellRecord<dim>& cell : cells)
+    result.push_back(
+        std::ranges::lower_bound(of_root, cell.name.root, {}, &std::pair<std::int64_t, int>::first)->second);
+  return result;
+}
+
 template <int dim>
 FieldCells<dim> field_cells(const LevelView<dim>& view, std::span<const Index> cells)
 {
@@ -62,6 +83,7 @@ std::optional<Excerpt<dim>> gathered(const LevelView<dim>& view, const Method& m
 {
   const Discretisation<dim>& discrete = view.discrete;
   const Ranks& ranks = discrete.mesh.ranks();
+  const std::vector<int> bodies = ranks.gather<int>(bodies_of<dim>(discrete.mesh, fields.cells));
   fields.cells = ranks.gather<mesh::CellRecord<dim>>(fields.cells);
   fields.u = ranks.gather<double>(fields.u);
   fields.stress = ranks.gather<double>(fields.stress);
@@ -70,7 +92,7 @@ std::optional<Excerpt<dim>> gathered(const LevelView<dim>& view, const Method& m
       [&]() -> std::optional<Excerpt<dim>>
       {
         if (!ranks.is_first()) return std::nullopt;
-        mesh::PickedOut<dim> picked = mesh::pick_out<dim>(discrete.mesh, fields.cells);
+        mesh::PickedOut<dim> picked = mesh::pick_out<dim>(discrete.mesh, fields.cells, bodies);
         Excerpt<dim> result;
         result.discrete = std::make_shared<const Discretisation<dim>>(std::move(picked.mesh),
                                                                       discrete.form.problem(), method);

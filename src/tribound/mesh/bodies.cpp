@@ -57,9 +57,10 @@ std::vector<std::int64_t> lowest_roots(const Partition<dim>& partition, std::spa
 template <int dim>
 Bodies find_bodies(const Mesh<dim>& mesh)
 {
-  Bodies bodies{connected_parts(mesh.topology())};
+  const bool is_known = mesh.partition() && !mesh.partition()->bodies.empty();
+  Bodies bodies{is_known ? mesh.partition()->bodies : connected_parts(mesh.topology())};
   bodies.n = bodies.of_cell.empty() ? 0 : std::ranges::max(bodies.of_cell) + 1;
-  if (!mesh.partition()) return bodies;
+  if (is_known || !mesh.partition()) return bodies;
   const std::vector<std::int64_t> lowest = lowest_roots(*mesh.partition(), bodies.of_cell, bodies.n);
   const std::vector<std::int64_t> all = united(mesh.ranks(), lowest);
   for (int& body : bodies.of_cell)

@@ -84,6 +84,7 @@ struct Partition
   std::vector<int> sharers;     ///< other ranks with own cells around a vertex that has a patch, ascending
   std::int64_t n_cells = 0;     ///< of the whole mesh
   std::int64_t n_vertices = 0;  ///< of the whole mesh
+  std::vector<int> bodies;      ///< per cell, of cells that are picked out: as find_bodies() numbers them
 
   [[nodiscard]] std::span<const int> sharers_of(Index v) const
   {

@@ -325,14 +325,17 @@ Mesh<dim> with_more_ghosts(Mesh<dim> mesh, std::vector<Ghost<dim>> more)
 }
 
 template <int dim>
-PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells)
+PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells,
+                        std::span<const int> bodies)
 {
   MeshPart<dim> part = with_ghosts<dim>(Ranks(), from.partition()->cube, {cells.begin(), cells.end()});
   part.partition.n_cells = from.n_global_cells();
   part.partition.n_vertices = from.n_global_vertices();
   std::ranges::fill(part.partition.has_patch, 0);
+  std::vector<Index> number = numbers_in(part.partition.names, names_of<dim>(cells));
+  part.partition.bodies.resize(cells.size());
+  for (std::size_t k = 0; k < cells.size(); ++k) part.partition.bodies[number[k]] = bodies[k];
   Mesh<dim> mesh(std::move(part), labels_of(from));
-  std::vector<Index> number = numbers_in(mesh.partition()->names, names_of<dim>(cells));
   return {std::move(mesh), std::move(number)};
 }
 
@@ -342,7 +345,7 @@ template Balanced<2> restore(const Ranks&, const Mesh<2>*, std::vector<CellRecor
                              std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
 template Mesh<2> with_more_ghosts(Mesh<2>, std::vector<Ghost<2>>);
-template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>);
+template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>, std::span<const int>);
 template Mesh<2> share_out(const Ranks&, const BoxMesh&);
 template Mesh<2> share_out(const Ranks&, const Boxes&);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
@@ -350,7 +353,7 @@ template Balanced<3> restore(const Ranks&, const Mesh<3>*, std::vector<CellRecor
                              std::span<const double>, int);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
 template Mesh<3> with_more_ghosts(Mesh<3>, std::vector<Ghost<3>>);
-template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>);
+template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>, std::span<const int>);
 template Mesh<3> share_out(const Ranks&, const BoxMesh&);
 template Mesh<3> share_out(const Ranks&, const Boxes&);
 template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);

@@ -69,9 +69,10 @@ struct PickedOut
   std::vector<Index> number;  ///< in the mesh, per cell given
 };
 
-/// A mesh of cells that have been picked out of another: facets inside may have one cell, and no vertex has
-/// its patch.
+/// A mesh of cells that have been picked out of another, with the bodies that they belong to: facets inside
+/// may have one cell, and no vertex has its patch.
 template <int dim>
-[[nodiscard]] PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells);
+[[nodiscard]] PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells,
+                                      std::span<const int> bodies);
 
 }  // namespace tribound::mesh

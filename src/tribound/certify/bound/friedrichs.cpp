@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tribound/algebra/cholesky.h"
+#include "tribound/certify/bound/constants.h"
 #include "tribound/certify/bound/friedrichs_flux.h"
 #include "tribound/certify/bound/friedrichs_pairs.h"
 #include "tribound/contact/nitsche/segment.h"
