@@ -88,6 +88,23 @@ TEST(FacetCover, Conforms)
   }
 }
 
+/// The centre of what two parts cover lies on the edge between them.
+TEST(FacetCover, ConformsBesideAParallelogram)
+{
+  const double third = 1.0 / 3;
+  for (const double noise : {-1e-16, 0.0, 1e-16})
+  {
+    const Point<2> a(0.3, noise);
+    const Point<2> b(1, 0);
+    const Point<2> c(1 - third / 2, third / 2 + noise);
+    const Point<2> d(0.3 - third / 2, third / 2);
+    const std::vector<fem::Part<2>> parts = {{b, c, d}, {b, d, a}};
+    const auto cover = certify::conforming_cover(parts);
+    ASSERT_TRUE(cover);
+    expect_conforming(*cover, parts);
+  }
+}
+
 /// Corners that differ by rounding are one; parts that overlap by more are refused.
 TEST(FacetCover, TellsRoundingFromOverlap)
 {

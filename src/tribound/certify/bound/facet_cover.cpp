@@ -157,10 +157,11 @@ class Triangulation
   Edges edges_;
 };
 
+/// Or almost: x may lie between two pieces.
 bool contains(const Piece& piece, const Point<2>& x)
 {
   for (std::size_t i = 0; i < piece.corners.size(); ++i)
-    if (turn(piece.corners[i], piece.corners[(i + 1) % piece.corners.size()], x) < 0) return false;
+    if (turn(piece.corners[i], piece.corners[(i + 1) % piece.corners.size()], x) < -rounding) return false;
   return true;
 }
 
