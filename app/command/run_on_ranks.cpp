@@ -41,9 +41,9 @@ int launcher_says(std::array<const char*, 2> variables, int otherwise)
 }
 
 /// Boxes of which every rank makes its own cells, or none.
-struct Formula
+struct BoxSource
 {
-  explicit Formula(const mesh::MeshSource& source)
+  explicit BoxSource(const mesh::MeshSource& source)
       : box(std::get_if<mesh::BoxMesh>(&source)), boxes(std::get_if<mesh::Boxes>(&source))
   {
   }
@@ -77,19 +77,19 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
                   const Progress& progress)
 {
   using Whole = mesh::Mesh<dim>;
-  const Formula formula(config.mesh);
+  const BoxSource by_formula(config.mesh);
   std::shared_ptr<const Whole> first;
   ranks.on_first([&] { first = std::make_shared<const Whole>(std::get<Whole>(*std::exchange(whole, {}))); });
   if (!checkpoint)
   {
     Whole part =
-        formula.is_there() ? formula.share_out<dim>(ranks) : mesh::share_out<dim>(ranks, first.get());
+        by_formula.is_there() ? by_formula.share_out<dim>(ranks) : mesh::share_out<dim>(ranks, first.get());
     return run(config, std::move(part), progress, std::move(first));
   }
   ranks.on_first(
       [&]
       {
-        const std::int64_t n_cells = formula.is_there() ? formula.n_cells() : first->n_cells();
+        const std::int64_t n_cells = by_formula.is_there() ? by_formula.n_cells() : first->n_cells();
         if (n_cells != checkpoint->earlier.first_cells)
           throw InputError(first->source(),
                            fmt::format("has {} cells, but the run to restart began with {}", n_cells,
@@ -137,11 +137,11 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
   const bool is_plane = ranks.on_first(
       [&]
       {
-        const Formula formula(config.mesh);
-        if (formula.box) mesh::require_valid(*formula.box);
-        if (formula.boxes)
-          for (const mesh::NamedBox& named : *formula.boxes) mesh::require_valid(named.box);
-        whole.emplace(mesh::read_mesh(formula.is_there() ? formula.coarser() : config.mesh,
+        const BoxSource by_formula(config.mesh);
+        if (by_formula.box) mesh::require_valid(*by_formula.box);
+        if (by_formula.boxes)
+          for (const mesh::NamedBox& named : *by_formula.boxes) mesh::require_valid(named.box);
+        whole.emplace(mesh::read_mesh(by_formula.is_there() ? by_formula.coarser() : config.mesh,
                                       case_file::find_seams(config), &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });

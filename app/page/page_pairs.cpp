@@ -155,7 +155,7 @@ std::vector<PairSurface> sample_pairs(const contact::NitscheForm<3>& form, std::
 template <int dim>
 std::vector<BodyInterface<dim>> body_interfaces(const contact::NitscheForm<dim>& form)
 {
-  const std::vector<int> body_of = mesh::find_bodies(form.space().mesh()).of_cell;
+  const std::vector<int> body_of = mesh::number_bodies(form.space().mesh()).of_cell;
   std::map<std::array<Index, 2>, std::pair<BodyInterface<dim>, Tensor<dim>>> of_bodies;
   for (const contact::ContactSegment<dim>& segment : form.segments())
   {

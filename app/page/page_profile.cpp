@@ -81,7 +81,7 @@ ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<co
 std::vector<ContactProfile> contact_profiles(const contact::NitscheForm<2>& form, std::span<const double> u,
                                              std::size_t n_points)
 {
-  const std::vector<int> body_of = mesh::find_bodies(form.space().mesh()).of_cell;
+  const std::vector<int> body_of = mesh::number_bodies(form.space().mesh()).of_cell;
   std::vector<ContactProfile> profiles;
   const auto boundaries = form.problem().boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)

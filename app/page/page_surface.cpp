@@ -102,7 +102,7 @@ class SurfaceSampler
         u_(u),
         space_(form.space().mesh(), subdivision),
         stress_(io::equilibrated_stress_field(space_, stress)),
-        body_of_(mesh::find_bodies(space_.mesh()).of_cell),
+        body_of_(mesh::number_bodies(space_.mesh()).of_cell),
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;

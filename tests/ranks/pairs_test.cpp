@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "ranks/hidden_wall.h"
 #include "ranks/same_on_ranks.h"
 #include "support/meshes.h"
 #include "support/problem_data.h"
@@ -76,6 +77,31 @@ TEST(Pairs, Random)
     const auto [data, problem] = RandomPair<2>(seed).make();
     expect_same<2>(data, problem, {.degree = 2}, {.max_levels = 1});
   }
+  for (const unsigned seed : {3U, 4U})
+  {
+    SCOPED_TRACE("3D, seed " + std::to_string(seed));
+    const auto [data, problem] = RandomPair<3>(seed).make();
+    expect_same<3>(data, problem, {.degree = 1}, {.max_levels = 1});
+  }
+}
+
+TEST(Pairs, HiddenInPart)
+{
+  auto [data, problem] = hidden_wall<2>();
+  expect_same<2>(data, problem, {.degree = 2}, {.max_levels = 1});
+  problem.pairs[0].pairing = {.direction = Point<2>(0.1, -1), .reach = 0.9};  // of the wall nothing is left
+  expect_same<2>(data, problem, {.degree = 2}, {.max_levels = 1});
+  const auto [data_3d, problem_3d] = hidden_wall<3>();
+  expect_same<3>(data_3d, problem_3d, {.degree = 1}, {.max_levels = 1});
+}
+
+TEST(Pairs, NeedTheirPartners)
+{
+  const Ranks ranks = Ranks::world();
+  const mesh::Mesh<2> whole(two_blocks<2>());
+  const mesh::Mesh<2> part = mesh::share_out<2>(ranks, ranks.is_first() ? &whole : nullptr);
+  const problem::Problem<2> problem = pushed<2>(Frictionless(), 1).on(part);
+  EXPECT_THROW((void)contact::contact_segments<2>(problem, part, 10), InputError);
 }
 
 TEST(Pairs, RegularisedAndWithMultigrid)
@@ -106,7 +132,7 @@ TEST(Pairs, ExcerptsKnowTheBodies)
   ASSERT_EQ(shown.has_value(), ranks.is_first());
   if (!shown) return;
   const mesh::Mesh<3>& mesh = shown->discrete->mesh;
-  const mesh::Bodies bodies = mesh::find_bodies(mesh);
+  const mesh::Bodies bodies = mesh::number_bodies(mesh);
   EXPECT_EQ(bodies.n, 2);
   std::array<int, 2> of_region{-1, -1};
   for (Index c = 0; c < mesh.n_cells(); ++c)

@@ -51,7 +51,7 @@ std::vector<double> in_order(std::span<const double> blocks, std::size_t size, s
 template <int dim>
 std::vector<int> bodies_of(const mesh::Mesh<dim>& mesh, std::span<const mesh::CellRecord<dim>> cells)
 {
-  const mesh::Bodies bodies = mesh::find_bodies(mesh);
+  const mesh::Bodies bodies = mesh::number_bodies(mesh);
   std::vector<std::pair<std::int64_t, int>> of_root;  // own cells ascend by their roots
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
     if (const std::int64_t root = mesh.partition()->names[c].root;

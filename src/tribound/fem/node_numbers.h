@@ -17,7 +17,7 @@ namespace tribound::fem
 {
 
 /// A node belongs to the lowest of the ranks with own cells around it. There all its cells are, ghosts
-/// included, so that its rows of a matrix are complete.
+/// included, so that its rows of a matrix are complete; between bodies after contact::with_partners().
 struct NodeNumbers
 {
   Ranks ranks;

@@ -15,11 +15,9 @@ namespace tribound::mesh
 namespace
 {
 
-/// Numbers of the values that all ranks have, in their order.
+/// The values of all ranks, each once, in ascending order.
 std::vector<std::int64_t> united(const Ranks& ranks, std::vector<std::int64_t> values)
 {
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
   values = ranks.gather<std::int64_t>(values);
   ranks.copy_from_first(values);
   std::ranges::sort(values);
@@ -55,7 +53,7 @@ std::vector<std::int64_t> lowest_roots(const Partition<dim>& partition, std::spa
 }  // namespace
 
 template <int dim>
-Bodies find_bodies(const Mesh<dim>& mesh)
+Bodies number_bodies(const Mesh<dim>& mesh)
 {
   const bool is_known = mesh.partition() && !mesh.partition()->bodies.empty();
   Bodies bodies{is_known ? mesh.partition()->bodies : connected_parts(mesh.topology())};
@@ -69,7 +67,7 @@ Bodies find_bodies(const Mesh<dim>& mesh)
   return bodies;
 }
 
-template Bodies find_bodies(const Mesh<2>&);
-template Bodies find_bodies(const Mesh<3>&);
+template Bodies number_bodies(const Mesh<2>&);
+template Bodies number_bodies(const Mesh<3>&);
 
 }  // namespace tribound::mesh

@@ -19,6 +19,6 @@ struct Bodies
 /// They are numbered by their first cells, the same on all ranks, which call it together. Of cells that are
 /// picked out: those of the mesh they come from.
 template <int dim>
-[[nodiscard]] Bodies find_bodies(const Mesh<dim>& mesh);
+[[nodiscard]] Bodies number_bodies(const Mesh<dim>& mesh);
 
 }  // namespace tribound::mesh

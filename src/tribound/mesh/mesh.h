@@ -183,6 +183,9 @@ class Mesh
   {
     return boundary().first(n_owned_boundary_);
   }
+  /// Whether what lies opposite to this rank's part is among the ghosts, see contact::with_partners().
+  [[nodiscard]] bool has_partners() const { return has_partners_; }
+  void set_has_partners() { has_partners_ = true; }
 
  private:
   void take(MeshData<dim> data, Topology<dim> topology);
@@ -202,6 +205,7 @@ class Mesh
   Ranks ranks_;
   Index n_owned_cells_ = 0;
   std::size_t n_owned_boundary_ = 0;
+  bool has_partners_ = false;
   std::span<const char> has_patch_;  ///< of the partition
 };
 

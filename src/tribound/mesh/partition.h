@@ -2,7 +2,7 @@
 
 /// @file partition.h
 /// How a mesh is shared out between ranks: every rank has cells of its own and, as ghosts, one layer of the
-/// others' around them.
+/// others' around them and whatever else it needs.
 
 #include <array>
 #include <cstdint>
@@ -84,7 +84,7 @@ struct Partition
   std::vector<int> sharers;     ///< other ranks with own cells around a vertex that has a patch, ascending
   std::int64_t n_cells = 0;     ///< of the whole mesh
   std::int64_t n_vertices = 0;  ///< of the whole mesh
-  std::vector<int> bodies;      ///< per cell, of cells that are picked out: as find_bodies() numbers them
+  std::vector<int> bodies;      ///< per cell, of cells that are picked out: as number_bodies() numbers them
 
   [[nodiscard]] std::span<const int> sharers_of(Index v) const
   {

@@ -1,6 +1,7 @@
 #include "tribound/certify/bound/transfer_terms.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "tribound/contact/pairing/polygon.h"
@@ -18,6 +19,18 @@ struct Covered
   std::size_t slave;  ///< number of the facet
   std::vector<TractionPiece<dim>> pieces;
 };
+
+/// The centre of a boundary facet: the order of numbers is another one on another rank.
+template <int dim>
+std::array<double, dim> place(const mesh::Mesh<dim>& mesh, std::size_t number)
+{
+  const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+  const Point<dim> centre =
+      mesh::facet_map(mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
+  std::array<double, dim> coordinates;
+  std::ranges::copy(centre, coordinates.begin());
+  return coordinates;
+}
 
 bool overlap(const Covered<3>& a, const Covered<3>& b)
 {
@@ -95,6 +108,7 @@ std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(const contact::
   for (auto& [number, covered] : of_facet)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    std::ranges::sort(covered, {}, [&](const Covered<dim>& part) { return place(mesh, part.slave); });
     result[facet.cell].push_back({facet, grouped(std::move(covered))});
   }
   return result;

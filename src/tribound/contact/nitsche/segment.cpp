@@ -103,6 +103,9 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
   for (std::size_t k = 0; k < problem.pairs().size(); ++k)
   {
     const problem::ContactPair<dim>& pair = problem.pairs()[k];
+    if (mesh.ranks().size() > 1 && !mesh.has_partners())
+      throw InputError(pair.where, "the mesh of this process lacks what lies opposite to it",
+                       "a mesh from contact::with_partners(), as adapt::Discretisation makes it");
     const std::vector<FacetPair<dim>> parts = mesh.ranks().together(
         [&]
         {

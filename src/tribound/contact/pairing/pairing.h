@@ -41,7 +41,7 @@ struct FacetPair
 /// each, on which Pi is affine; points without a partner are in none. |l| <= reach is asked of the centroid
 /// of what F and G have in common. Corners within 1e-12 of an edge, in barycentric coordinates, count as on
 /// it: form and certificate use the same segments, so that rounding here moves the problem by as much and
-/// harms no guarantee. In the order of the slave facets, then of the numbers of the master's. O(n log n).
+/// harms no guarantee. In the order of the slave facets, then of the places of the master's. O(n log n).
 ///
 /// Of a mesh that is shared out, after with_partners(): what slave or master facets of cells with a patch
 /// vertex have, the same on all ranks, and parts of what others have.

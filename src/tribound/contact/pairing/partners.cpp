@@ -55,7 +55,7 @@ struct Slave
 {
   mesh::CellRecord<dim> cell;
   std::vector<mesh::Ghost<dim>> opposite{};
-  std::vector<int> needed_by;  ///< ranks
+  std::vector<int> needed_by{};  ///< ranks
 };
 
 template <int dim>
@@ -66,21 +66,35 @@ FacetShape<dim> shape_of(const mesh::CellRecord<dim>& cell, int local, std::size
   return {number, points, local};
 }
 
+/// Of slaves and masters of all pairs in turn: first their facets, then what is known of their cells.
 template <int dim>
-OwnSide<dim> own_side(const mesh::Mesh<dim>& mesh, std::span<const std::string> names)
+std::vector<OwnSide<dim>> own_sides(const mesh::Mesh<dim>& mesh,
+                                    std::span<const problem::ContactPair<dim>> pairs)
 {
-  OwnSide<dim> side;
+  std::vector<OwnSide<dim>> sides;
   std::vector<Index> cells;
-  for (const std::size_t number : mesh::facets_named(mesh, names))
+  for (const problem::ContactPair<dim>& pair : pairs)
+    for (const auto* names : {&pair.slave, &pair.master})
+    {
+      OwnSide<dim>& side = sides.emplace_back();
+      for (const std::size_t number : mesh::facets_named(mesh, *names))
+      {
+        if (number >= mesh.n_owned_boundary()) continue;
+        side.facets.push_back(mesh.boundary()[number]);
+        cells.push_back(mesh.boundary()[number].cell);
+      }
+    }
+  const std::vector<mesh::CellRecord<dim>> records = mesh::records_of<dim>(mesh, cells);
+  auto next = records.begin();
+  for (OwnSide<dim>& side : sides)
   {
-    if (number >= mesh.n_owned_boundary()) continue;
-    side.facets.push_back(mesh.boundary()[number]);
-    cells.push_back(mesh.boundary()[number].cell);
+    const auto begin = next;
+    next += std::ssize(side.facets);
+    side.cells.assign(begin, next);
+    for (std::size_t i = 0; i < side.facets.size(); ++i)
+      side.shapes.push_back(shape_of(side.cells[i], side.facets[i].local, i));
   }
-  side.cells = mesh::records_of<dim>(mesh, cells);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    side.shapes.push_back(shape_of(side.cells[i], side.facets[i].local, i));
-  return side;
+  return sides;
 }
 
 /// The ranks with own cells around the vertices of an own cell, this one included.
@@ -123,10 +137,11 @@ class Partners
   Partners(const mesh::Mesh<dim>& mesh, std::span<const problem::ContactPair<dim>> pairs)
       : mesh_(mesh), pairs_(pairs), ranks_(mesh.ranks())
   {
-    for (const problem::ContactPair<dim>& pair : pairs)
+    std::vector<OwnSide<dim>> sides = own_sides<dim>(mesh, pairs);
+    for (std::size_t k = 0; k < pairs.size(); ++k)
     {
-      slave_sides_.push_back(own_side<dim>(mesh, pair.slave));
-      master_sides_.push_back(own_side<dim>(mesh, pair.master));
+      slave_sides_.push_back(std::move(sides[2 * k]));
+      master_sides_.push_back(std::move(sides[2 * k + 1]));
     }
   }
 
@@ -140,7 +155,9 @@ class Partners
     std::vector<std::vector<Answer<dim>>> answers(ranks_.size());
     std::vector<std::vector<int>> needed_by(ranks_.size());
     ranks_.together([&] { answer(questions, answers, needed_by); });
-    hear(ranks_.send(answers), ranks_.send(needed_by));
+    answers = ranks_.send(answers);
+    needed_by = ranks_.send(needed_by);
+    hear(answers, needed_by);
     return tell();
   }
 
@@ -250,7 +267,10 @@ mesh::Mesh<dim> with_partners(mesh::Mesh<dim> mesh, std::span<const problem::Con
   const Ranks ranks = mesh.ranks();
   if (ranks.size() == 1 || pairs.empty()) return mesh;
   std::vector<mesh::Ghost<dim>> ghosts = Partners<dim>(mesh, pairs).find();
-  return ranks.together([&] { return mesh::with_more_ghosts<dim>(std::move(mesh), std::move(ghosts)); });
+  mesh::Mesh<dim> result =
+      ranks.together([&] { return mesh::with_more_ghosts<dim>(std::move(mesh), std::move(ghosts)); });
+  result.set_has_partners();
+  return result;
 }
 
 template mesh::Mesh<2> with_partners(mesh::Mesh<2>, std::span<const problem::ContactPair<2>>);

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "tribound/mesh/describe.h"
@@ -103,7 +104,9 @@ void SlaveFacet<dim>::add(const FacetShape<dim>& master)
   if (master.geometry.normal.dot(slave_.geometry.normal) >= -facing ||
       master.geometry.normal.dot(e_) >= -facing)
     return;
-  Candidate<dim> found{.master = master.number, .polygon = {}, .distance = 0, .slope = {}};
+  Candidate<dim> found{.master = master.number, .place = {}, .polygon = {}, .distance = 0, .slope = {}};
+  const Point<dim> centre = master.centre();
+  std::ranges::copy(centre, found.place.begin());
   std::array<double, dim> distances;
   const auto corners = fem::reference_simplex<dim - 1>();
   for (int i = 0; i < dim; ++i)
@@ -115,6 +118,7 @@ void SlaveFacet<dim>::add(const FacetShape<dim>& master)
   set_distance<dim>(found, distances);
   clip_to_slave<dim>(found.polygon);
   if (fraction<dim>(found.polygon) <= negligible) return;
+  order_corners(found.polygon);
   found.nearness = found.distance_at(centroid<dim>(found.polygon));
   if (found.nearness <= reach_) candidates_.push_back(std::move(found));
 }
@@ -123,14 +127,14 @@ template <int dim>
 void SlaveFacet<dim>::append_pairs(std::vector<FacetPair<dim>>& pairs)
 {
   const auto nearer = [](const Candidate<dim>& a, const Candidate<dim>& b)
-  { return std::pair(a.nearness, a.master) < std::pair(b.nearness, b.master); };
+  { return std::tie(a.nearness, a.place) < std::tie(b.nearness, b.place); };
   std::ranges::sort(candidates_, nearer);
   hide();
-  std::ranges::sort(candidates_, {}, &Candidate<dim>::master);
+  std::ranges::sort(candidates_, {}, &Candidate<dim>::place);
   for (Candidate<dim>& candidate : candidates_)
     for (Polygon<dim>& polygon : candidate.visible)
     {
-      turn_to_first_corner(polygon);
+      order_corners(polygon);
       for_each_simplex<dim>(polygon,
                             [&](const auto& on_slave, const auto& on_master)
                             {
@@ -140,16 +144,18 @@ void SlaveFacet<dim>::append_pairs(std::vector<FacetPair<dim>>& pairs)
     }
 }
 
-/// Makes the corner the first that is so in a direction which no mesh has: with the sides exchanged the
-/// same simplices come out.
+/// In 3D from the corner that is first in a direction which no mesh has, on towards the neighbour that comes
+/// next in it. What is cut then depends on places alone: not on numbers, which differ between ranks, nor on
+/// which of the sides is the slave.
 template <int dim>
-void SlaveFacet<dim>::turn_to_first_corner(Polygon<dim>& polygon) const
+void SlaveFacet<dim>::order_corners(Polygon<dim>& polygon) const
 {
   if (dim == 2 || polygon.empty()) return;
   Point<dim> direction;
   for (int i = 0; i < dim; ++i) direction[i] = std::sin(1 + 1.7 * i);
   const auto along = [&](const CornerPair<dim>& corner) { return direction.dot(slave_.map(corner.slave)); };
   std::rotate(polygon.begin(), std::ranges::min_element(polygon, {}, along), polygon.end());
+  if (along(polygon[1]) > along(polygon.back())) std::reverse(polygon.begin() + 1, polygon.end());
 }
 
 /// What is visible of each candidate behind those before it: near ones hide what is farther away. Most have

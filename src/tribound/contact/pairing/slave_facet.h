@@ -39,7 +39,8 @@ struct FacetShape
 template <int dim>
 struct Candidate
 {
-  std::size_t master;  ///< FacetShape::number
+  std::size_t master;             ///< FacetShape::number
+  std::array<double, dim> place;  ///< the centre of the master facet
   Polygon<dim> polygon;
   std::vector<Polygon<dim>> visible{};  ///< what nearer ones leave of it
   double distance;                      ///< l at s = 0
@@ -69,7 +70,7 @@ class SlaveFacet
   void append_pairs(std::vector<FacetPair<dim>>& pairs);
 
  private:
-  void turn_to_first_corner(Polygon<dim>& polygon) const;
+  void order_corners(Polygon<dim>& polygon) const;
   void hide();
   void hide(Candidate<dim>& candidate, const Candidate<dim>& before, const Polygon<dim>& cover) const;
   void check_nearer(const Candidate<dim>& near, const Candidate<dim>& far, const Polygon<dim>& common) const;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 
 #include "tribound/contact/nitsche/contact_moments.h"
@@ -118,31 +119,35 @@ std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
                                       const adapt::CertifiedLevel<dim>& level)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const mesh::Bodies found = mesh::find_bodies(mesh);
+  const mesh::Bodies found = mesh::number_bodies(mesh);
   const std::vector<double> energies = contact::cell_energies<dim>(form.problem(), form.space(), level.u);
-  const std::size_t n_regions = mesh.region_names().size();
-  const std::size_t width = 3 + n_regions;  // cells, energy, bound^2, cells of each region
+  constexpr std::size_t width = 3;  // cells, energy, bound^2
   std::vector<double> sums(found.n * width, 0.0);
+  std::set<std::array<int, 2>> regions;  // of bodies
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
-    double* of_body = &sums[found.of_cell[c] * width];
+    const int body = found.of_cell[c];
+    double* of_body = &sums[body * width];
     ++of_body[0];
     of_body[1] += energies[c];
     if (!level.estimate.cells.empty()) of_body[2] += std::pow(level.estimate.cells[c].total_sharp(), 2);
-    ++of_body[3 + mesh.region(c)];
+    regions.insert({body, mesh.region(c)});
   }
-  mesh.ranks().sum(std::span(sums));
+  const Ranks& ranks = mesh.ranks();
+  ranks.sum(std::span(sums));
+  std::vector<std::array<int, 2>> all(regions.begin(), regions.end());
+  all = ranks.gather<std::array<int, 2>>(all);
+  ranks.copy_from_first(all);
+  regions = {all.begin(), all.end()};
   std::vector<BodyFigures> bodies(found.n);
   for (std::size_t b = 0; b < bodies.size(); ++b)
   {
-    const std::span<const double> of_body = std::span(sums).subspan(b * width, width);
-    bodies[b].cells = static_cast<decltype(bodies[b].cells)>(of_body[0]);
-    bodies[b].energy = of_body[1];
-    bodies[b].bound = std::sqrt(of_body[2]);
-    for (std::size_t region = 0; region < n_regions; ++region)
-      if (of_body[3 + region] > 0)
-        bodies[b].name += (bodies[b].name.empty() ? "" : "+") + mesh.region_names()[region];
+    bodies[b].cells = static_cast<decltype(bodies[b].cells)>(sums[b * width]);
+    bodies[b].energy = sums[b * width + 1];
+    bodies[b].bound = std::sqrt(sums[b * width + 2]);
   }
+  for (const auto& [body, region] : regions)
+    bodies[body].name += (bodies[body].name.empty() ? "" : "+") + mesh.region_names()[region];
   number_alike(bodies);
   return bodies;
 }
