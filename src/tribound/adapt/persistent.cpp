@@ -179,6 +179,15 @@ std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& fo
   }
 }
 
+/// Whether T is affine: one step then leads to the solution.
+template <int dim>
+bool is_linear(const contact::NitscheForm<dim>& form)
+{
+  const bool all_tied = std::ranges::all_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
+                                            { return problem::cone(segment.contact->law).is_tied; });
+  return !form.space().mesh().ranks().any(!all_tied);
+}
+
 }  // namespace
 
 template <int dim>
@@ -190,7 +199,7 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   const bool may_start_anew = method.newton.damping && !method.regularisation && form.problem().has_contact();
   std::optional<Start<dim>> easier;
   const Ranks& ranks = form.space().mesh().ranks();  // one without cells has no displacement
-  if (dim == 3 && !ranks.any(!start.empty()) && may_start_anew)
+  if (dim == 3 && !ranks.any(!start.empty()) && may_start_anew && !is_linear(form))
     easier = start_from_scratch(form, method, record);
 
   solve::NewtonResult<dim> first;
