@@ -35,10 +35,12 @@ template <int dim>
 class ExactField
 {
  public:
-  explicit ExactField(const Manufactured<dim>& solution)
+  explicit ExactField(const Manufactured<dim>& solution) : ExactField(solution.u, solution.gradient) {}
+  /// The gradient row by row.
+  ExactField(std::span<const std::string> u, std::span<const std::string> gradient)
   {
-    for (const std::string& text : solution.u) u_.push_back(formula(text));
-    for (const std::string& text : solution.gradient) gradient_.push_back(formula(text));
+    for (const std::string& text : u) u_.push_back(formula(text));
+    for (const std::string& text : gradient) gradient_.push_back(formula(text));
   }
 
   [[nodiscard]] Point<dim> value(const Point<dim>& x) const
@@ -88,24 +90,25 @@ struct EnergyError
   double exact;
 };
 
+/// With one exact solution for each region.
 template <int dim>
 EnergyError energy_error(const DiscreteProblem<dim>& c, std::span<const double> u,
-                         const ExactField<dim>& exact)
+                         std::span<const ExactField<dim>> exact)
 {
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * c.space.degree() + 6);
   const fem::Tabulation<dim> table = c.space.basis().tabulate(rule.points);
-  const problem::Material& material = c.problem.material(0);
-  const auto density = [&](const Tensor<dim>& g)
-  { return contact::sigma<dim>(material, g).cwiseProduct(g).sum(); };
   EnergyError sum{0, 0};
   for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(c.mesh, cell);
+    const int region = c.mesh.region(cell);
+    const auto density = [&](const Tensor<dim>& g)
+    { return contact::sigma<dim>(c.problem.material(region), g).cwiseProduct(g).sum(); };
     for (int q = 0; q < rule.size(); ++q)
     {
       const Tensor<dim> discrete =
           fem::gradient_at<dim>(c.space.cell_nodes(cell), u, table.gradients_at(q), map.inverse_transpose);
-      const Tensor<dim> g = exact.gradient(map(rule.points[q]));
+      const Tensor<dim> g = exact[region].gradient(map(rule.points[q]));
       sum.error += rule.weights[q] * map.det * density(g - discrete);
       sum.exact += rule.weights[q] * map.det * density(g);
     }
