@@ -195,13 +195,15 @@ class Pattern
       if (!std::ranges::includes(row(i), other.row(i), {}, name(*this), name(other))) return false;
     return true;
   }
-
- private:
+  [[nodiscard]] PetscInt n() const { return n_; }
+  /// Of the first entry of a row.
+  [[nodiscard]] PetscInt begin(PetscInt i) const { return rows_[i]; }
   [[nodiscard]] std::span<const PetscInt> row(PetscInt i) const
   {
     return {columns_ + rows_[i], columns_ + rows_[i + 1]};
   }
 
+ private:
   Mat mat_;
   const PetscInt* names_;
   PetscInt n_ = 0;
@@ -217,6 +219,35 @@ bool contains_pattern(Mat a, Mat b)
   const detail::LocalBlocks of_b = detail::local_blocks(b);
   if (!Pattern(of_a.own).contains(Pattern(of_b.own))) return false;
   return !of_a.others || Pattern(of_a.others, of_a.columns).contains(Pattern(of_b.others, of_b.columns));
+}
+
+/// sum += a on one process, whose entries are among those of the sum. PETSc's MatAXPY() goes through the rows
+/// by copies of them: a tenth of the time of a level with two bodies, where both patterns are parts of the
+/// sum's.
+void add_rows(Mat sum, Mat a)
+{
+  const Pattern to(sum);
+  const Pattern from(a);
+  PetscScalar* values = nullptr;
+  const PetscScalar* added = nullptr;
+  check(MatSeqAIJGetArray(sum, &values), "adding matrices");
+  check(MatSeqAIJGetArrayRead(a, &added), "adding matrices");
+  for (PetscInt i = 0; i < from.n(); ++i)
+  {
+    const std::span<const PetscInt> columns = to.row(i);
+    PetscScalar* in_row = values + to.begin(i);
+    const PetscScalar* entry = added + from.begin(i);
+    std::size_t place = 0;
+    for (const PetscInt column : from.row(i))
+    {
+      while (columns[place] != column) ++place;
+      in_row[place++] += *entry++;
+    }
+  }
+  check(MatSeqAIJRestoreArrayRead(a, &added), "adding matrices");
+  check(MatSeqAIJRestoreArray(sum, &values), "adding matrices");
+  check(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY), "adding matrices");  // PETSc learns that it has changed
+  check(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY), "adding matrices");
 }
 
 }  // namespace
@@ -235,14 +266,21 @@ SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
 
 void SparseMatrix::assign_sum(const SparseMatrix& a, const SparseMatrix& b)
 {
+  const auto add = [this](const SparseMatrix& term)
+  {
+    if (sharing_)
+      check(MatAXPY(mat_.get(), 1.0, term.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices");
+    else
+      add_rows(mat_.get(), term.mat_.get());
+  };
   if (has_more_)
   {
     check(MatZeroEntries(mat_.get()), "adding matrices");
-    check(MatAXPY(mat_.get(), 1.0, a.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices");
+    add(a);
   }
   else
     check(MatCopy(a.mat_.get(), mat_.get(), SAME_NONZERO_PATTERN), "copying a matrix");
-  check(MatAXPY(mat_.get(), 1.0, b.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices");
+  add(b);
 }
 
 }  // namespace tribound::algebra
