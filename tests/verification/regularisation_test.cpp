@@ -56,9 +56,9 @@ adapt::Method method(int p)
 /// The largest defect of all iterates, Newton's method going on with a quarter of delta when it has
 /// converged.
 template <int dim>
-double largest_defect(int p, const ProblemData<dim>& problem)
+double largest_defect(int p, const mesh::MeshData<dim>& mesh, const ProblemData<dim>& problem)
 {
-  const DiscreteProblem<dim> c(bent_block<dim>(), problem, method(p));
+  const DiscreteProblem<dim> c(mesh, problem, method(p));
   double largest = 0;
   int n_converged = 0;
   const auto observer = [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
@@ -88,7 +88,7 @@ void expect_identities(int p)
 {
   for (const NamedProblem<dim>& problem : problems<dim>())
   {
-    const double defect = largest_defect<dim>(p, problem.data);
+    const double defect = largest_defect<dim>(p, bent_block<dim>(), problem.data);
     fmt::print("{}D, p = {}, {}: largest defect {:.1e}\n", dim, p, problem.name, defect);
     EXPECT_LE(defect, p <= 2 ? 1e-11 : 1e-10) << problem.name;
   }
@@ -102,6 +102,38 @@ TEST_P(Regularisation, IdentitiesHoldAtEveryIterateIn2D)
 TEST_P(Regularisation, IdentitiesHoldAtEveryIterateIn3D)
 {
   expect_identities<3>(GetParam());
+}
+
+/// The block on another one, of meshes that do not match.
+template <int dim>
+void expect_identities_between_bodies(int p)
+{
+  Point<dim> lower = Point<dim>::Zero();
+  lower[1] = -1;
+  Point<dim> upper = Point<dim>::Ones();
+  upper[0] = 2;
+  upper[1] = 0;
+  std::array<int, dim> cells{3, 1};
+  if constexpr (dim == 3) cells[2] = 2;
+  mesh::MeshData<dim> mesh =
+      side_by_side(block<dim>({4, 2}, {2, 1, 1}), box<dim>(lower, upper, cells), "_below");
+  mesh.interfaces = {{{{{"bottom"}, {"top_below"}}}}};
+  for (const problem::ContactLaw& law :
+       {problem::ContactLaw(Frictionless()), problem::ContactLaw(Tresca(0.03)),
+        problem::ContactLaw(Coulomb(0.4)), problem::ContactLaw(problem::Tied())})
+  {
+    const ProblemData<dim> problem{
+        .boundaries = {fixed<dim>("left", 0, 0), loaded<dim>("top", 0, -0.1, 0.02),
+                       loaded<dim>("right", 0.04, 0.06), clamped<dim>("bottom_below")},
+        .pairs = {pair<dim>("bottom", "top_below", law)}};
+    EXPECT_LE(largest_defect<dim>(p, mesh, problem), p <= 2 ? 1e-11 : 1e-10) << problem::words(law);
+  }
+}
+
+TEST_P(Regularisation, IdentitiesHoldBetweenBodies)
+{
+  expect_identities_between_bodies<2>(GetParam());
+  if (GetParam() < 3) expect_identities_between_bodies<3>(GetParam());
 }
 
 /// ||a - b - c|| / ||scale||; b and c may be empty, that is 0.
