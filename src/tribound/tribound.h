@@ -14,7 +14,9 @@
 #include "tribound/case/sweep_values.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
+#include "tribound/problem/normal_field.h"
 #include "tribound/problem/problem.h"
+#include "tribound/problem/surface.h"
 
 // The mesh.
 #include "tribound/mesh/bisect.h"
@@ -30,6 +32,7 @@
 #include "tribound/mesh/refine.h"
 #include "tribound/mesh/share_out.h"
 #include "tribound/mesh/shared_facets.h"
+#include "tribound/mesh/triangulated_surface.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "tribound/contact/nitsche/contact_moments.h"

@@ -341,7 +341,7 @@ TYPED_TEST(TwoBodiesPatch, SeesWhatIsWrongInASegment)
   EXPECT_GE(error_with(
                 [](Segment& s)
                 {
-                  for (double& l : s.distance) l *= -1;
+                  for (Point<dim>& l : s.offset) l *= -1;
                 }),
             seen);
   EXPECT_GE(error_with([](Segment& s) { std::swap((*s.master->part)[0], (*s.master->part)[1]); }), seen);

@@ -51,10 +51,24 @@ class Collector
     const contact::ContactSegment<dim>& segment = form_.segments()[k];
     if (k == 0 || form_.segments()[k - 1].slave.number != segment.slave.number) ++facts_.facets;
     facts_.measure += segment.measure;
-    mean_ += segment.measure * segment.normal;
+    mean_ += segment.measure * contact::normal_at_centre(form_.space().mesh(), segment);
     const auto points = form_.contact_points(k);
+    if (segment.contact->normal) add_direction(segment, points);
     for (std::size_t q = 0; q < points.size(); ++q)
-      add_gap(segment.gap(form_.facet_rule().points[q], points[q].x), points[q].x);
+      add_gap(segment.gap(form_.facet_rule().points[q], points[q].x, points[q].normal), points[q].x);
+  }
+
+  void add_direction(const contact::ContactSegment<dim>& segment,
+                     std::span<const contact::ContactPoint<dim>> points)
+  {
+    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    const Point<dim> normal = mesh::facet_geometry(form_.space().mesh(), facet.cell, facet.local).normal;
+    for (const contact::ContactPoint<dim>& point : points)
+      if (const double angle = degrees_between<dim>(normal, point.normal); angle > facts_.off_normal)
+      {
+        facts_.off_normal = angle;
+        facts_.off_normal_at = place<dim>(point.x);
+      }
   }
 
   void add_gap(double gap, const Point<dim>& x)
@@ -79,13 +93,15 @@ class Collector
     facts_.normal = place<dim>(mean);
     for (const contact::ContactSegment<dim>& segment : form_.segments())
       if (segment.slave.facet.tag == tag_)
-        facts_.spread = std::max(facts_.spread, degrees_between<dim>(mean, segment.normal));
+        facts_.spread =
+            std::max(facts_.spread,
+                     degrees_between<dim>(mean, contact::normal_at_centre(form_.space().mesh(), segment)));
   }
 
   void add_kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b)
   {
     if (a.slave.facet.tag != tag_) return;
-    const double angle = kink(a, b);
+    const double angle = kink(form_.space().mesh(), a, b);
     if (angle <= facts_.kink) return;
     facts_.kink = angle;
     facts_.kink_at = place<dim>(shared_point(form_.space().mesh(), a.slave.facet, b.slave.facet));
@@ -107,11 +123,13 @@ double degrees_between(const Point<dim>& a, const Point<dim>& b)
 }
 
 template <int dim>
-double kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b)
+double kink(const mesh::Mesh<dim>& mesh, const contact::ContactSegment<dim>& a,
+            const contact::ContactSegment<dim>& b)
 {
   constexpr double corner = 45;
   constexpr double round_off = 0.01;
-  const double angle = degrees_between<dim>(a.normal, b.normal);
+  const Point<dim> x = shared_point(mesh, a.slave.facet, b.slave.facet);
+  const double angle = degrees_between<dim>(a.normal_at(x), b.normal_at(x));
   return angle < corner && angle > round_off ? angle : 0;
 }
 
@@ -156,8 +174,10 @@ template double degrees_between(const Point<2>&, const Point<2>&);
 template double degrees_between(const Point<3>&, const Point<3>&);
 template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<2>&);
 template std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<3>&);
-template double kink(const contact::ContactSegment<2>&, const contact::ContactSegment<2>&);
-template double kink(const contact::ContactSegment<3>&, const contact::ContactSegment<3>&);
+template double kink(const mesh::Mesh<2>&, const contact::ContactSegment<2>&,
+                     const contact::ContactSegment<2>&);
+template double kink(const mesh::Mesh<3>&, const contact::ContactSegment<3>&,
+                     const contact::ContactSegment<3>&);
 template std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<2>&);
 template std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<3>&);
 

@@ -21,6 +21,9 @@ struct ContactBoundaryFacts
   double spread = 0;   ///< degrees: the largest angle between a facet's normal and the mean
   double kink = 0;     ///< the largest kink()
   Place kink_at;
+  double off_normal =
+      0;  ///< degrees: the largest angle between the direction of contact and a facet's normal
+  Place off_normal_at;
   double smallest_gap = 0;  ///< g at the quadrature points
   Place smallest_gap_at;
   double largest_gap = 0;
@@ -31,10 +34,12 @@ struct ContactBoundaryFacts
 template <int dim>
 [[nodiscard]] double degrees_between(const Point<dim>& a, const Point<dim>& b);
 
-/// The angle between the normals of neighbouring facets, degrees; 0 from 45 on: that is a corner of the body,
-/// not a curved surface, and below 0.01: that is round-off of the coordinates in a file.
+/// The angle between the directions of contact on neighbouring facets where they meet, degrees; 0 from 45 on:
+/// that is a corner of the body, not a curved surface, and below 0.01: that is round-off of the coordinates
+/// in a file.
 template <int dim>
-[[nodiscard]] double kink(const contact::ContactSegment<dim>& a, const contact::ContactSegment<dim>& b);
+[[nodiscard]] double kink(const mesh::Mesh<dim>& mesh, const contact::ContactSegment<dim>& a,
+                          const contact::ContactSegment<dim>& b);
 
 /// Facts of every contact boundary that has facets, in the order of the problem.
 template <int dim>

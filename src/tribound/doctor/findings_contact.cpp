@@ -70,9 +70,27 @@ Finding surface_finding(const ContactBoundaryFacts& contact)
   finding.text += fmt::format("; neighbouring facets differ by up to {:.3g} degrees", contact.kink);
   finding.advice =
       "the pressure will peak at such edges, the more the finer the facets on either side, as refinement "
-      "keeps the polygon: give the gap of the true shape along the obstacle's normal, or take a flat "
-      "boundary with its curvature in the gap (choosing.md of the "
-      "guide)";
+      "keeps the polygon: name the true shape and the obstacle in the contact (shape, obstacle; "
+      "case-format.md of the guide), or take a flat boundary with its curvature in the gap";
+  return finding;
+}
+
+/// Nothing where contact acts nearly along the normals of the facets.
+std::optional<Finding> direction_finding(const ContactBoundaryFacts& contact)
+{
+  constexpr double oblique = 60;  // degrees
+  if (contact.off_normal <= oblique) return {};
+  Finding finding{.code = "contact_direction", .severity = Severity::warning, .where = contact.off_normal_at};
+  finding.numbers = {{"angle", contact.off_normal}};
+  finding.text =
+      fmt::format("contact \"{}\" acts along a direction {:.3g} degrees off the facet's normal at {}",
+                  contact.name, contact.off_normal, describe(contact.off_normal_at));
+  finding.advice =
+      contact.off_normal > 90
+          ? "it points into the body there: is the obstacle on the other side (inside, the normal of the "
+            "plane)? Where the body turns its back to the obstacle, take these facets out of the boundary"
+          : "small displacements are a bad model of contact that oblique: take such facets out of the "
+            "boundary, or another obstacle for them";
   return finding;
 }
 
@@ -130,6 +148,7 @@ std::vector<Finding> contact_findings(const Diagnosis& diagnosis)
   {
     result.push_back(facets_finding(contact, diagnosis.refines));
     result.push_back(surface_finding(contact));
+    if (auto direction = direction_finding(contact)) result.push_back(std::move(*direction));
     result.push_back(gap_finding(contact, diagnosis.loads.size));
   }
   return result;

@@ -73,7 +73,10 @@ std::vector<PairFacts> pair_facts(const contact::NitscheForm<dim>& form)
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (segment.pair < 0) continue;
     PairFacts& facts = result[segment.pair];
-    const double turn = degrees_between<dim>(segment.normal, form.segments()[l].normal);
+    const auto outward = [&mesh](const mesh::BoundaryFacet& facet)
+    { return mesh::facet_geometry(mesh, facet.cell, facet.local).normal; };
+    const double turn =
+        degrees_between<dim>(outward(segment.slave.facet), outward(form.segments()[l].slave.facet));
     if (turn <= facts.turn) continue;
     facts.turn = turn;
     facts.turn_at =

@@ -88,9 +88,10 @@ void add_pressure(const ContactOutcome& outcome, std::vector<Finding>& warnings)
       fmt::format(
           "the contact pressure reaches {:.3g}, {:.2g} times its mean, where facets meet at an angle "
           "(up to {:.2g} degrees): a peak of the polygon, not of the curve behind it, that grows with "
-          "refinement; give the gap of the true shape along the obstacle's normal, such as "
-          "\"1-sqrt(1-x^2)\" in the place of \"y\" for an arc on a floor, or take a flat boundary with "
-          "the curvature in the gap",
+          "refinement; name the true shape and the obstacle, such as contact.shape = \"arc\" and "
+          "contact.obstacle = \"floor\" with [shape.arc] circle = {{ centre = [0, 1], radius = 1 }} and "
+          "[obstacle.floor] plane = {{ point = [0, 0], normal = [0, 1] }}; or take a flat boundary with the "
+          "curvature in the gap",
           outcome.kink_pressure, ratio, outcome.kink),
       ratio, outcome.boundary, outcome.kink_at));
 }

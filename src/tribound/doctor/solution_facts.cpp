@@ -140,7 +140,7 @@ void add_kinks(const contact::NitscheForm<dim>& form, std::span<const FacetOutco
 {
   for (const auto& [k, l] : pairs)
   {
-    const double angle = kink(form.segments()[k], form.segments()[l]);
+    const double angle = kink(form.space().mesh(), form.segments()[k], form.segments()[l]);
     const FacetOutcome<dim>& facet = facets[facets[k].largest_pressure > facets[l].largest_pressure ? k : l];
     if (angle == 0 || facet.largest_pressure == 0) continue;
     ContactOutcome& outcome = outcomes.at(form.segments()[k].slave.facet.tag);

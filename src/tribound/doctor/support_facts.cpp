@@ -83,17 +83,19 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
 /// Per boundary number the mean normal of an obstacle or slave whose segments are within 10 degrees of it.
 template <int dim>
 std::vector<std::optional<Point<dim>>> normals_of_planes(
-    std::size_t n_boundaries, std::span<const contact::ContactSegment<dim>> segments)
+    std::size_t n_boundaries, const mesh::Mesh<dim>& mesh,
+    std::span<const contact::ContactSegment<dim>> segments)
 {
   constexpr double cos_limit = 0.985;
   std::vector<Point<dim>> sum(n_boundaries, Point<dim>::Zero());
   for (const contact::ContactSegment<dim>& segment : segments)
-    sum[segment.slave.facet.tag] += segment.measure * segment.normal;
+    sum[segment.slave.facet.tag] += segment.measure * contact::normal_at_centre(mesh, segment);
   std::vector<std::optional<Point<dim>>> normals(sum.size());
   for (std::size_t tag = 0; tag < sum.size(); ++tag)
     if (sum[tag].norm() > 0) normals[tag] = sum[tag].normalized();
   for (const contact::ContactSegment<dim>& segment : segments)
-    if (auto& normal = normals[segment.slave.facet.tag]; normal && segment.normal.dot(*normal) < cos_limit)
+    if (auto& normal = normals[segment.slave.facet.tag];
+        normal && contact::normal_at_centre(mesh, segment).dot(*normal) < cos_limit)
       normal.reset();
   return normals;
 }
@@ -111,9 +113,9 @@ void mark_sliding(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& m
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(assembly.n_motions(), assembly.n_motions());
   contact::for_each_corner(mesh, segments, assembly,
                            [&](const contact::AssemblySegment&, const contact::ContactSegment<dim>& segment,
-                               const std::vector<int>& coefficients, const auto& z)
+                               const Point<dim>& along, const std::vector<int>& coefficients, const auto& z)
                            {
-                             const Point<dim> n = plane[segment.slave.facet.tag].value_or(segment.normal);
+                             const Point<dim> n = plane[segment.slave.facet.tag].value_or(along);
                              const Eigen::RowVectorXd z_n = n.transpose() * z;
                              gram(coefficients, coefficients) += z_n.transpose() * z_n;
                            });
@@ -121,7 +123,7 @@ void mark_sliding(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& m
       left * contact::null_space(left.transpose() * gram * left, gram.trace());
   contact::for_each_corner(mesh, segments, assembly,
                            [&](const contact::AssemblySegment&, const contact::ContactSegment<dim>& segment,
-                               const std::vector<int>& coefficients, const auto& z)
+                               const Point<dim>&, const std::vector<int>& coefficients, const auto& z)
                            {
                              const int tag = segment.slave.facet.tag;
                              slides[tag] =
@@ -145,7 +147,7 @@ std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem, const 
   const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
   std::vector<bool> slides(problem.boundaries().size(), false);
   const std::vector<std::optional<Point<dim>>> plane =
-      normals_of_planes<dim>(problem.boundaries().size(), segments);
+      normals_of_planes<dim>(problem.boundaries().size(), mesh, segments);
   for (const contact::Assembly<dim>& assembly : contact::find_assemblies<dim>(space, segments))
     mark_sliding<dim>(problem, mesh, segments, plane, assembly, slides);
   return slides;
@@ -194,7 +196,8 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const contact::Nitsch
       for (const int tag : boundaries->second)
       {
         const problem::BoundaryCondition<dim>& condition = problem.boundary(tag);
-        const auto normal = fixed_normal_displacement<dim>(condition, segment.normal, mesh.vertex(v));
+        const auto normal =
+            fixed_normal_displacement<dim>(condition, segment.normal_at(mesh.vertex(v)), mesh.vertex(v));
         if (!normal) continue;
         const std::pair key(facet.tag, tag);
         add<dim>(corners[key], {problem.boundary(facet.tag), condition, mesh.vertex(v), *normal,

@@ -25,7 +25,10 @@ Field::Field(FieldFunction function, Where where)
   assert(function_->values);
 }
 
-Field::Field(std::string text, Where where) : where_(std::move(where))
+Field::Field(std::string text, Where where) : Field(std::move(text), std::move(where), {}) {}
+
+Field::Field(std::string text, Where where, std::string name)
+    : where_(std::move(where)), name_(std::move(name))
 {
   formula_ = std::make_shared<const Formula>(std::move(text), where_);
   if (formula_->uses(0) || formula_->uses(1) || formula_->uses(2)) return;
@@ -122,14 +125,17 @@ Enclosure Field::around_within_simplex(std::span<const double> x, double radius)
 void Field::fail(double value, std::span<const double> x) const
 {
   const bool undefined = std::isnan(value);
-  throw InputError(
-      where_,
-      fmt::format("{} is {}{}",
-                  formula_ ? fmt::format("the formula \"{}\"", formula_->text()) : "the function",
-                  undefined ? "undefined (nan)" : fmt::format("{}", value),
-                  x.empty() ? "" : fmt::format(" at the point ({:.9g})", fmt::join(x, ", "))),
-      undefined ? "keep it defined, such as sqrt(max(x, 0)) for sqrt(x)"
-                : "keep it finite, such as 1/max(x, 1e-12) for 1/x");
+  throw InputError(where_,
+                   fmt::format("{} is {}{}",
+                               !name_.empty() ? name_
+                               : formula_     ? fmt::format("the formula \"{}\"", formula_->text())
+                                              : "the function",
+                               undefined ? "undefined (nan)" : fmt::format("{}", value),
+                               x.empty() ? "" : fmt::format(" at the point ({:.9g})", fmt::join(x, ", "))),
+                   !name_.empty()
+                       ? "every direction is the nearest there: it is the centre of a surface, or on its axis"
+                   : undefined ? "keep it defined, such as sqrt(max(x, 0)) for sqrt(x)"
+                               : "keep it finite, such as 1/max(x, 1e-12) for 1/x");
 }
 
 }  // namespace tribound::problem

@@ -57,6 +57,8 @@ class Field
   /// Throws InputError: a syntax error or an unknown name (with the position in `text`), more than one
   /// result ("1,5"), an assignment, a constant that is not finite.
   Field(std::string text, Where where);
+  /// The same; messages about its values call it `name`.
+  Field(std::string text, Where where, std::string name);
 
   /// The value at `x` (z = 0 in 2D). Throws InputError naming the key and the point if it is not finite.
   template <int dim>
@@ -101,6 +103,7 @@ class Field
   std::shared_ptr<const Formula> formula_;         ///< or null
   std::shared_ptr<const FieldFunction> function_;  ///< or null
   Where where_;
+  std::string name_;  ///< for messages; empty: the formula itself
 };
 
 }  // namespace tribound::problem

@@ -95,4 +95,8 @@ class Formula
   std::shared_ptr<const FormulaProgram> program_;
 };
 
+/// An upper bound of the distance of a formula from P^{order - 1} on a simplex, in the maximum norm, from
+/// what Formula::enclose gives there: half the range, or the remainder of a Taylor polynomial.
+[[nodiscard]] double distance_from_polynomials(std::span<const Enclosure> taylor, int order);
+
 }  // namespace tribound::problem

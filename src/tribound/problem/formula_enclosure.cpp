@@ -287,4 +287,11 @@ Enclosure Formula::enclose_box(std::span<const double> lower, std::span<const do
   return series.n_known > 0 ? series.c[0] : Enclosure{};
 }
 
+double distance_from_polynomials(std::span<const Enclosure> taylor, int order)
+{
+  double smallest = (taylor[0].upper - taylor[0].lower) / 2;
+  for (int n = 1; n <= order; ++n) smallest = std::min(smallest, taylor[n].magnitude());
+  return smallest;
+}
+
 }  // namespace tribound::problem

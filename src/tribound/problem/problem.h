@@ -16,6 +16,7 @@
 #include "tribound/problem/contact_law.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/material.h"
+#include "tribound/problem/normal_field.h"
 
 namespace tribound::problem
 {
@@ -33,9 +34,15 @@ struct Region
 struct Contact
 {
   ContactLaw law;
-  /// Initial distance g along the outward normal; negative: interference, as of a press fit. Absent, between
-  /// bodies alone: the distance that the meshes have.
+  /// Initial distance g along N; negative: interference, as of a press fit. Absent, between bodies alone: the
+  /// distance that the meshes have.
   std::optional<Field> gap;
+  /// N, by which normal and tangential parts are taken; absent: the outward normal of each facet.
+  std::optional<NormalField> normal{};
+  /// What gap and N were made from, in words, such as "obstacle floor"; empty: what is given.
+  std::string geometry{};
+  /// The signed distance from the true surface of the body; absent: the facets are that.
+  std::optional<Field> true_surface{};
 
   explicit Contact(ContactLaw l, std::optional<Field> g = Field(0.0)) : law(std::move(l)), gap(std::move(g))
   {

@@ -69,7 +69,8 @@ void expect_sound(const problem::ContactLaw& law, std::mt19937& dice)
     values.push_back(at(s));
     thresholds.push_back(std::holds_alternative<problem::Tresca>(law) ? threshold(s) : 0);
   }
-  const certify::Kinks kinks = certify::KinkFinder<dim>(rule, 3)(law, normal, values, thresholds, 1e-14);
+  const certify::Kinks kinks =
+      certify::KinkFinder<dim>(rule, 3)(law, std::span(&normal, 1), values, thresholds, 1e-14);
 
   constexpr int m = 60;
   std::array<bool, 2> pressed{};
@@ -117,8 +118,9 @@ TEST(Kinks, RoundingIsNone)
   for (int q = 0; q < rule.size(); ++q) p.emplace_back(0, q % 2 == 0 ? 1e-15 : -1e-15);
   const std::vector<double> none(p.size(), 0.0);
   const certify::KinkFinder<2> kinks(rule, 3);
-  EXPECT_FALSE(kinks(problem::Frictionless{}, Point<2>::UnitY(), p, none, 1e-13).possible);
-  EXPECT_TRUE(kinks(problem::Frictionless{}, Point<2>::UnitY(), p, none, 0).possible);
+  const std::array<Point<2>, 1> up{Point<2>::UnitY()};
+  EXPECT_FALSE(kinks(problem::Frictionless{}, up, p, none, 1e-13).possible);
+  EXPECT_TRUE(kinks(problem::Frictionless{}, up, p, none, 0).possible);
 }
 
 /// Sharp: no kink is suspected where the traction keeps well away from one.
@@ -131,11 +133,12 @@ TEST(Kinks, NoneIsSuspectedFarAway)
   const std::vector<double> none(p.size(), 0.0);
   problem::Coulomb coulomb(0.3);
   const certify::KinkFinder<3> kinks(rule, 3);
-  EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
+  const std::array<Point<3>, 1> up{Point<3>::UnitZ()};
+  EXPECT_FALSE(kinks(coulomb, up, p, none, 0).possible);
   coulomb.coefficient = 0.05;
-  EXPECT_FALSE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
+  EXPECT_FALSE(kinks(coulomb, up, p, none, 0).possible);
   coulomb.coefficient = 0.12;
-  EXPECT_TRUE(kinks(coulomb, Point<3>::UnitZ(), p, none, 0).possible);
+  EXPECT_TRUE(kinks(coulomb, up, p, none, 0).possible);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tribound/certify/bound/constants.h"
+#include "tribound/certify/bound/contact_geometry.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
@@ -117,6 +118,25 @@ std::vector<std::string> outside_of_pairs(const problem::Problem<dim>& problem)
   return outside;
 }
 
+/// What is known of the polygon in place of a curve.
+std::string describe_geometry(const ContactGeometryFacts& facts)
+{
+  constexpr double round_off = 0.01;  // of coordinates in a file, degrees
+  std::string text = "facets are straight";
+  if (facts.turn > round_off)
+    text += fmt::format(
+        "; contact facets that meet turn by up to {:.3g} degrees, the directions of contact by {}",
+        facts.turn, facts.jump > round_off ? fmt::format("{:.3g}", facts.jump) : "none");
+  if (facts.has_direction)
+    text += fmt::format(
+        "; contact acts along given directions, up to {:.3g} degrees from the normals of the facets",
+        facts.off_normal);
+  if (facts.has_shape)
+    text += fmt::format("; the facets are up to {:.3g} away from the given shapes, whose gaps they have",
+                        facts.sagitta);
+  return text;
+}
+
 /// How the integrals in the bound are evaluated.
 template <int dim>
 std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRule rule)
@@ -198,7 +218,7 @@ double interpolation_bound(const contact::NitscheForm<dim>& form, const mesh::Bo
     std::array<problem::Enclosure, 6> taylor;
     form.problem().boundary(facet.tag).displacement[component]->enclose(
         std::span(points[0].data(), dim * points.size()), dim, std::span(taylor).first(p + 2), sides);
-    return contact::distance_from_polynomials(taylor, p + 1);
+    return problem::distance_from_polynomials(taylor, p + 1);
   };
   const double closed = distance(problem::Sides::closed);
   const double inside = distance(problem::Sides::inside);
@@ -254,6 +274,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
   largest = form.space().mesh().ranks().max(largest);
   const double interpolation = dirichlet_interpolation_bound(form);
   const bool exact = interpolation <= 1e-12 * largest;
+  const ContactGeometryFacts geometry = contact_geometry(form);
   result.assumptions = {
       {"quadrature", describe_quadrature(form, rule)},
       {"displacement",
@@ -263,7 +284,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                    "differ by {:.3g} where they were compared{}",
                    dirichlet_interpolation_error(form),
                    std::isfinite(interpolation) ? fmt::format(", by {:.3g} at most", interpolation) : "")},
-      {"geometry", "facets are straight"},
+      {"geometry", describe_geometry(geometry)},
       {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
 
   for (const std::string& outside : outside_of_pairs(form.problem())) result.not_covered.push_back(outside);
@@ -279,7 +300,10 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
   if (form.data().effort().unenclosed > 0)
     result.not_covered.emplace_back(
         "what data given by functions without enclosure do between the points at which they were evaluated");
-  result.not_covered.emplace_back("straight facets in place of a curved boundary");
+  result.not_covered.emplace_back(geometry.has_shape ? "straight facets in place of a curved boundary, but "
+                                                       "for the gaps and directions of contact, which "
+                                                       "are those of the given shapes"
+                                                     : "straight facets in place of a curved boundary");
   result.not_covered.emplace_back("the model: linear elasticity, small strains, the friction law, the data");
   return result;
 }

@@ -22,6 +22,9 @@ template <int dim>
 constexpr int max_depth = dim == 2 ? 40 : 10;
 /// More than the data ask for: so many are left where rounding makes the kinks.
 constexpr std::size_t max_pieces = 4096;
+/// What a rule on a piece may miss of a norm, over the largest distance from the polynomials for which it is
+/// exact, where the projection of the values decides about kinks.
+constexpr double misses = 3;
 
 /// The parts of a segment or triangle halved along each edge.
 std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
@@ -51,6 +54,27 @@ double norm_scale(const contact::ContactSegment<dim>& segment)
   return segment.h * segment.det();
 }
 
+/// How far N may be from polynomials on a part of a segment.
+template <int dim>
+problem::NormalDeviation deviation_on(const contact::SimplexMap<dim - 1, dim>& map,
+                                      const problem::NormalField& normal, const fem::Part<dim - 1>& part)
+{
+  std::array<double, dim * dim> vertices;
+  for (int i = 0; i < dim; ++i)
+  {
+    const Point<dim> x = map(part[i]);
+    std::ranges::copy(x, vertices.begin() + i * dim);
+  }
+  return problem::deviation(normal, vertices, dim);
+}
+
+/// Of v - v.N N from P^{p+2}, over |v|, v in P^p: in 2D along the tangent.
+template <int dim>
+double tangential_deviation(const problem::NormalDeviation& deviation)
+{
+  return dim == 2 ? deviation.quadratic : deviation.linear * (2 + deviation.linear);
+}
+
 /// Adds h_k ||t^n||_k^2 and h_k ||t^t||_k^2 of a traction with the given coefficients.
 template <int dim>
 void add_squares(std::span<const Point<dim>> traction, const contact::ContactSegment<dim>& segment,
@@ -63,6 +87,34 @@ void add_squares(std::span<const Point<dim>> traction, const contact::ContactSeg
     normal_part += norm_scale(segment) * normal * normal;
     tangential_part += norm_scale(segment) * (coefficient - normal * n).squaredNorm();
   }
+}
+
+/// The same where N varies: upper bounds, from the values at the points of the rule.
+template <int dim>
+void add_varying_squares(const contact::NitscheForm<dim>& form, int k, std::span<const double> theta,
+                         std::span<const Point<dim>> traction, double& normal_part, double& tangential_part)
+{
+  const contact::ContactSegment<dim>& segment = form.segments()[k];
+  double normal = 0;
+  double tangential = 0;
+  double whole = 0;
+  for (int q = 0; q < form.n_segment_points(); ++q)
+  {
+    Point<dim> t = Point<dim>::Zero();
+    for (std::size_t i = 0; i < traction.size(); ++i) t += theta[q * traction.size() + i] * traction[i];
+    const Point<dim>& n = form.contact_points(k)[q].normal;
+    const double t_n = t.dot(n);
+    const double weight = norm_scale(segment) * form.facet_rule().weights[q];
+    normal += weight * t_n * t_n;
+    tangential += weight * (t - t_n * n).squaredNorm();
+    whole += weight * t.squaredNorm();
+  }
+  const problem::NormalDeviation off =
+      deviation_on<dim>(contact::simplex_map(form.space().mesh(), segment.slave), *segment.varying_normal,
+                        fem::reference_simplex<dim - 1>());
+  normal_part += std::pow(std::sqrt(normal) + 2 * off.quadratic * std::sqrt(whole), 2);
+  tangential_part +=
+      std::pow(std::sqrt(tangential) + 2 * tangential_deviation<dim>(off) * std::sqrt(whole), 2);
 }
 
 }  // namespace
@@ -102,24 +154,28 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
 }
 
 template <int dim>
-auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece) const -> Integrals
+auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece,
+                                  const std::optional<problem::NormalDeviation>& known) const -> Integrals
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  const Point<dim>& n = segment.normal;
   const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form_.space().mesh(), segment.slave);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
   const problem::ContactLaw& law = segment.contact->law;
   Integrals result;
   std::vector<Point<dim>> augmented(rule.size());
+  std::vector<Point<dim>> projected(rule.size());
+  std::vector<Point<dim>> normals(rule.size());
   std::vector<double> strengths(rule.size());
+  std::vector<double> closings(rule.size());
   double round_off = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
     const FacetPoint s = fem::point_in<dim - 1>(piece, rule.points[q]);
     fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
     const Point<dim> x = map(s);
-    const double closing = segment.gamma * segment.gap(s, x);
+    const Point<dim> n = segment.normal_at(x);
+    const double closing = segment.gamma * segment.gap(s, x, n);
     Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
@@ -128,6 +184,9 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
       dis += theta[i] * fields.dis[i];
     }
     augmented[q] = p;
+    projected[q] = dis;
+    normals[q] = n;
+    closings[q] = closing;
     strengths[q] = problem::strength_at<dim>(law, x);
     round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing)));
 
@@ -137,9 +196,84 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
-  result.kinks = kinks_(law, n, augmented, strengths, round_off);
+  const bool turns = segment.varying_normal != nullptr;
+  result.kinks =
+      kinks_(law, std::span(normals).first(turns ? normals.size() : 1), augmented, strengths, round_off);
   result.round_off = round_off;
+  if (!turns) return result;
+  for (int q = 0; q < rule.size(); ++q) augmented[q] -= closings[q] * normals[q];
+  result.of_normal = known ? *known : deviation_on<dim>(map, *segment.varying_normal, piece);
+  add_missed(k, piece, augmented, projected, result);
   return result;
+}
+
+template <int dim>
+void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
+                                   std::span<const Point<dim>> dis, Integrals& integrals) const
+{
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  const problem::NormalDeviation& off = integrals.of_normal;
+  double of_augmented = 0;
+  double of_dis = 0;
+  double largest = 0;
+  for (std::size_t q = 0; q < augmented.size(); ++q)
+  {
+    const double weight = fem::fraction<dim - 1>(piece) * form_.facet_rule().weights[q];
+    of_augmented += weight * augmented[q].squaredNorm();
+    of_dis += weight * dis[q].squaredNorm();
+    largest = std::max(largest, augmented[q].norm());
+  }
+  // Between bodies the distance of the meshes along N is part of P^n: that of polynomials of degree 1.
+  double distance = 0;
+  if (!segment.contact->gap)
+    for (const Point<dim>& offset : segment.offset) distance = std::max(distance, offset.norm());
+  distance *= segment.gamma;
+  integrals.deviation = off.quadratic * (kinks_.amplification() * largest + distance);
+
+  const double measure = fem::fraction<dim - 1>(piece) / mesh::factorial<dim - 1>;
+  const problem::FrictionCone friction = problem::cone(segment.contact->law);
+  const double pressure = misses * off.quadratic * (std::sqrt(of_augmented) + distance * std::sqrt(measure));
+  const double along = misses * tangential_deviation<dim>(off);
+  const double rubbing = along * std::sqrt(of_augmented) + friction.coefficient * pressure;
+  const double rubbing_open = friction.strength == nullptr ? 0 : along * std::sqrt(of_augmented);
+  const double projected = misses * off.quadratic * std::sqrt(of_dis);
+  const double projected_along = along * std::sqrt(of_dis);
+  integrals.missed = {std::pow(pressure + projected, 2), std::pow(rubbing + projected_along, 2)};
+  integrals.missed_open = {std::pow(projected, 2), std::pow(rubbing_open + projected_along, 2)};
+}
+
+template <int dim>
+void ContactTerms<dim>::resolve_normal(int k, const Fields& fields,
+                                       std::vector<contact::ContactDatumPart<dim>>& parts,
+                                       std::vector<Integrals>& integrals) const
+{
+  // A jump of N is a point in 2D, where halving costs little, and a curve in 3D.
+  constexpr int deepest = dim == 2 ? 30 : 3;
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure;
+  const auto is_enough = [&](const Integrals& value, const contact::ContactDatumPart<dim>& part)
+  {
+    const Missed& missed = is_open(segment, part, value) ? value.missed_open : value.missed;
+    return norm_scale(segment) * (missed.normal + missed.tangential) <=
+           allowed * fem::fraction<dim - 1>(part.part);
+  };
+  for (int depth = 0; depth < deepest && parts.size() < max_pieces; ++depth)
+  {
+    const std::size_t n_before = parts.size();
+    for (std::size_t i = 0; i < n_before; ++i)
+    {
+      if (is_enough(integrals[i], parts[i])) continue;
+      const auto pieces = halves(parts[i].part);
+      for (std::size_t j = 1; j < pieces.size(); ++j)
+      {
+        parts.push_back({pieces[j], parts[i].gap, parts[i].strength});
+        integrals.push_back(integrate(k, fields, pieces[j]));
+      }
+      parts[i].part = pieces[0];
+      integrals[i] = integrate(k, fields, pieces[0]);
+    }
+    if (parts.size() == n_before) break;
+  }
 }
 
 /// The halves of a piece of the part with the given number.
@@ -151,7 +285,7 @@ auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, con
   Integrals sum;
   for (std::size_t i = 0; i < result.pieces.size(); ++i)
   {
-    result.values[i] = integrate(k, fields, result.pieces[i]);
+    result.values[i] = integrate(k, fields, result.pieces[i], whole.of_normal);
     sum += result.values[i];
     result.change += fem::fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
   }
@@ -173,7 +307,9 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
     if (is_rough<dim>(integrals[i].kinks))
     {
       active.push_back(halve(k, fields, i, parts[i].part, integrals[i]));
-      integrals[i] = {.kinks = integrals[i].kinks};
+      integrals[i] = {.kinks = integrals[i].kinks,
+                      .deviation = integrals[i].deviation,
+                      .of_normal = integrals[i].of_normal};
     }
   for (int depth = 1; !active.empty(); ++depth)
   {
@@ -209,17 +345,28 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result = linearisation(k, t);
-  if (!t.reg.empty()) add_squares<dim>(project(on_segment(t.reg, k)), segment, result.reg2n, result.reg2t);
+  if (!t.reg.empty()) add_traction(k, on_segment(t.reg, k), result.reg2n, result.reg2t);
   if (problem::cone(segment.contact->law).is_tied) return result;  // T = P is its own projection
   const Fields on_k = fields(k, u, t);
-  const contact::ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
-  std::span<const contact::ContactDatumPart<dim>> parts = form_.data().contact_parts(k);
-  if (parts.empty()) parts = std::span(&whole, 1);
+  const std::span<const contact::ContactDatumPart<dim>> given = form_.data().contact_parts(k);
+  std::vector<contact::ContactDatumPart<dim>> parts(given.begin(), given.end());
+  if (parts.empty()) parts.push_back({fem::reference_simplex<dim - 1>(), 0, 0});
   std::vector<Integrals> integrals;
   for (const auto& part : parts) integrals.push_back(integrate(k, on_k, part.part));
+  if (segment.varying_normal != nullptr) resolve_normal(k, on_k, parts, integrals);
   if (rule_ == ContactRule::resolved) settle(k, on_k, parts, integrals);
   for (std::size_t i = 0; i < parts.size(); ++i) add_part(segment, parts[i], integrals[i], result);
   return result;
+}
+
+/// Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
+/// polynomial up to gamma delta and the deviation of N, with which it was seen at the points, too.
+template <int dim>
+bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment,
+                                const contact::ContactDatumPart<dim>& part, const Integrals& integrals) const
+{
+  return integrals.kinks.lowest >
+         (1 + kinks_.amplification()) * (segment.gamma * part.gap + integrals.deviation);
 }
 
 /// T is Lipschitz continuous in g and s: [.]_- and the projections on balls do not expand, and neither does
@@ -231,22 +378,35 @@ void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment,
                                  ContactSquares& squares) const
 {
   const double scale = norm_scale(segment);
-  const double missed = 2 * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(part.part));
-  // Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
-  // polynomial up to gamma delta, with which it was seen at the points, too.
-  const bool open = integrals.kinks.lowest > (1 + kinks_.amplification()) * segment.gamma * part.gap;
+  const double missed = (segment.varying_normal == nullptr ? 2 : misses) *
+                        std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(part.part));
+  const bool open = is_open(segment, part, integrals);
+  const Missed& of_normal = open ? integrals.missed_open : integrals.missed;
   const double pressure = open ? 0 : segment.gamma * part.gap;
   const double limit = cone(segment.contact->law).closed_limit(part.strength, -pressure);
-  squares.cnt += std::pow(std::sqrt(scale * integrals.normal) + missed * pressure, 2);
-  squares.frc += std::pow(std::sqrt(scale * integrals.tangential) + missed * limit, 2);
+  squares.cnt += std::pow(
+      std::sqrt(scale * integrals.normal) + std::sqrt(scale * of_normal.normal) + missed * pressure, 2);
+  squares.frc += std::pow(
+      std::sqrt(scale * integrals.tangential) + std::sqrt(scale * of_normal.tangential) + missed * limit, 2);
 }
 
 template <int dim>
 ContactSquares ContactTerms<dim>::linearisation(int k, const Tractions& t) const
 {
   ContactSquares result;
-  add_squares<dim>(project(on_segment(t.lin, k)), form_.segments()[k], result.lin2n, result.lin2t);
+  add_traction(k, on_segment(t.lin, k), result.lin2n, result.lin2t);
   return result;
+}
+
+template <int dim>
+void ContactTerms<dim>::add_traction(int k, std::span<const Point<dim>> t, double& normal,
+                                     double& tangential) const
+{
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  if (segment.varying_normal == nullptr)
+    add_squares<dim>(project(t), segment, normal, tangential);
+  else
+    add_varying_squares<dim>(form_, k, theta_, project(t), normal, tangential);
 }
 
 template class ContactTerms<2>;

@@ -4,6 +4,7 @@
 /// The components of the bound on the contact boundary, method section 5.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,14 @@ struct ContactSquares
 /// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
 /// again, until the value settles. In 3D it also subdivides where the contact slips. ContactRule::reference
 /// takes the reference rule as it is.
+///
+/// Where N varies, let |N - N'| <= rho on a piece K for some N' in P^2. With A = {sigma(u)} - gamma [u], P^n
+/// = A.N + gamma g and Pi_k T.N are in P^{p+2} up to (|A| + |Pi_k T|) rho. With f' in P^{p+2} and the
+/// projection Pi f of the values of f at the points, ||f - Pi f|| <= 2 ||f - f'||, where the norms are those
+/// on K or of the rule: the rule takes ||f|| for one that differs by at most 3 rho (||A||_K + ||Pi_k T||_K),
+/// both exact. In 2D the same holds along the tangent; in 3D P^t = A - A.N N is in P^{p+2} up to rho (2 +
+/// rho) |A| with rho for N' in P^1. Pieces are halved until that is negligible. The kinks are those of Pi f,
+/// which differs from f by no more.
 template <int dim>
 class ContactTerms
 {
@@ -61,18 +70,32 @@ class ContactTerms
     std::vector<Point<dim>> augmented;  ///< {sigma(u)} - gamma [u]: P(u) without the gap
     std::vector<Point<dim>> dis;        ///< Pi_k T
   };
+  /// Squares of what norms may be larger by where N is no polynomial.
+  struct Missed
+  {
+    double normal = 0;
+    double tangential = 0;
+  };
   /// Integrals over a part of the reference simplex.
   struct Integrals
   {
     double normal = 0;      ///< of ([P^n]_- - Pi_k [P^n]_-)^2
     double tangential = 0;  ///< of |[P^t]_S - Pi_k [P^t]_S|^2
-    Kinks kinks{};          ///< up to what gap and threshold leave out
-    double round_off = 0;   ///< of P, at most
+    Missed missed{};
+    Missed missed_open{};  ///< where P^n > 0 all over
+    Kinks kinks{};         ///< up to what gap, threshold and N leave out
+    double round_off = 0;  ///< of P, at most
+    double deviation = 0;  ///< of P^n from P^{p+2}, as far as N is the cause
+    problem::NormalDeviation of_normal{};
 
     Integrals& operator+=(const Integrals& other)
     {
       normal += other.normal;
       tangential += other.tangential;
+      missed.normal += other.missed.normal;
+      missed.tangential += other.missed.tangential;
+      missed_open.normal += other.missed_open.normal;
+      missed_open.tangential += other.missed_open.tangential;
       return *this;
     }
   };
@@ -92,8 +115,21 @@ class ContactTerms
     const auto n = static_cast<std::size_t>(form_.n_segment_points());
     return t.subspan(k * n, n);
   }
+  /// Adds h_k ||(Pi_k t)^n||_k^2 and h_k ||(Pi_k t)^t||_k^2.
+  void add_traction(int k, std::span<const Point<dim>> t, double& normal, double& tangential) const;
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Tractions& t) const;
-  [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece) const;
+  /// `known`: the deviation of N on a larger piece; absent: it is looked for.
+  [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece,
+                                    const std::optional<problem::NormalDeviation>& known = {}) const;
+  /// Sets what N being no polynomial on the piece leaves out, from A, Pi_k T and the kinks there.
+  void add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
+                  std::span<const Point<dim>> dis, Integrals& integrals) const;
+  /// Halves parts until N is a polynomial on each but for something negligible.
+  void resolve_normal(int k, const Fields& fields, std::vector<contact::ContactDatumPart<dim>>& parts,
+                      std::vector<Integrals>& integrals) const;
+  /// Whether P^n > 0 on a part, whatever gap and N are between the points.
+  [[nodiscard]] bool is_open(const contact::ContactSegment<dim>& segment,
+                             const contact::ContactDatumPart<dim>& part, const Integrals& integrals) const;
   void add_part(const contact::ContactSegment<dim>& segment, const contact::ContactDatumPart<dim>& part,
                 const Integrals& integrals, ContactSquares& squares) const;
   [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,

@@ -39,6 +39,15 @@ auto matrix(const std::vector<double>& entries, Eigen::Index n_columns)
                                     n_columns);
 }
 
+/// P^t in a frame in which it is a polynomial: that of space, in 2D that of a varying N.
+template <int dim>
+Point<dim> tangential_part(const Point<dim>& p, double p_n, const Point<dim>& n, bool turns)
+{
+  if constexpr (dim == 2)
+    if (turns) return {n[0] * p[1] - n[1] * p[0], 0};
+  return p - p_n * n;
+}
+
 /// |P^t| - S_h, S_h <= 0 standing for 0.
 template <int dim>
 Range slip_range(const Columns<dim>& at_points, const Columns<dim>& coefficients)
@@ -63,17 +72,19 @@ KinkFinder<dim>::KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree)
 }
 
 template <int dim>
-Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, const Point<dim>& normal,
+Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, std::span<const Point<dim>> normals,
                                   std::span<const Point<dim>> p, std::span<const double> strength,
                                   double noise) const
 {
   const problem::FrictionCone friction = cone(law);
   Columns<dim> at_points(p.size(), dim + 2);
+  const bool turns = normals.size() > 1;
   for (std::size_t q = 0; q < p.size(); ++q)
   {
-    const double p_n = p[q].dot(normal);
+    const Point<dim>& n = normals[turns ? q : 0];
+    const double p_n = p[q].dot(n);
     at_points(q, 0) = p_n;
-    at_points.template block<1, dim>(q, 1) = (p[q] - p_n * normal).transpose();
+    at_points.template block<1, dim>(q, 1) = tangential_part<dim>(p[q], p_n, n, turns).transpose();
     at_points(q, dim + 1) = friction.closed_limit(strength[q], p_n);
   }
   const Columns<dim> coefficients = matrix(to_bernstein_, at_points.rows()) * at_points;

@@ -24,15 +24,19 @@ struct Kinks
 /// Encloses P^n and |P^t| - S_h, given at the points of a rule, between Bernstein coefficients: P and the
 /// strength of the law's friction cone are in P^degree. With b of P^t, l of S_h, and any unit vector e,
 ///     min (b.e - l) <= |P^t| - S_h <= max (|b| - l)
-/// by P^t.e <= |P^t| and convexity; S_h = s - mu_F P^n is one where P^n < 0 all over.
+/// by P^t.e <= |P^t| and convexity; S_h = s - mu_F P^n is one where P^n < 0 all over. Where N varies, P^n
+/// and, in 2D, the component of P^t along the tangent are polynomials up to the deviation of N from P^2 (in
+/// 3D P^t from P^1); what is enclosed are then the projections of their values on P^degree, which
+/// ContactTerms accounts for.
 template <int dim>
 class KinkFinder
 {
  public:
   KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree);
 
-  /// Values of size `noise` or less, the round-off of P, are no sign of anything.
-  [[nodiscard]] Kinks operator()(const problem::ContactLaw& law, const Point<dim>& normal,
+  /// `normals`: N at the points, or one for all of them. Values of size `noise` or less, the round-off of P,
+  /// are no sign of anything.
+  [[nodiscard]] Kinks operator()(const problem::ContactLaw& law, std::span<const Point<dim>> normals,
                                  std::span<const Point<dim>> p, std::span<const double> strength,
                                  double noise) const;
 

@@ -77,13 +77,6 @@ std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k,
 
 }  // namespace
 
-double distance_from_polynomials(std::span<const problem::Enclosure> taylor, int order)
-{
-  double smallest = (taylor[0].upper - taylor[0].lower) / 2;
-  for (int n = 1; n <= order; ++n) smallest = std::min(smallest, taylor[n].magnitude());
-  return smallest;
-}
-
 template <int dim>
 Point<dim> Datum<dim>::operator()(const Point<dim>& x) const
 {
@@ -173,8 +166,8 @@ void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, 
   {
     if (value->degree() <= p_ + 2 || !value->is_enclosed()) continue;
     value->enclose(vertices, dim, taylor);
-    const double remainder = distance_from_polynomials(taylor, p_ + 3);
-    const double mean_remainder = distance_from_polynomials(taylor, order);
+    const double remainder = problem::distance_from_polynomials(taylor, p_ + 3);
+    const double mean_remainder = problem::distance_from_polynomials(taylor, order);
     for (int d = 0; d < dim; ++d)
     {
       if (direction[d] == 0) continue;

@@ -40,10 +40,6 @@ struct Datum
   [[nodiscard]] bool is_enclosed() const;
 };
 
-/// An upper bound of the distance of a formula from P^{order - 1} on a simplex, in the maximum norm, from its
-/// enclosures there: half the range, or the remainder of a Taylor polynomial.
-[[nodiscard]] double distance_from_polynomials(std::span<const problem::Enclosure> taylor, int order);
-
 /// A part of the simplex on which one rule integrates the datum.
 template <int k, int dim>
 struct DatumPart

@@ -137,7 +137,15 @@ void DiscreteData<dim>::count_formulas(Segments segments)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c), true);
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary()) count(traction_datum(facet), true);
   for (const ContactSegment<dim>& segment : segments)
-    if (is_owned(mesh_, segment)) count(contact_datum(segment), false);
+  {
+    if (!is_owned(mesh_, segment)) continue;
+    const Datum<dim> datum = contact_datum(segment);
+    count(datum, false);
+    if (segment.varying_normal == nullptr) continue;
+    const bool counted = datum.degree() > degree_ + 2;
+    if (!counted) ++effort_.formulas;
+    if (!segment.varying_normal->is_enclosed() && (!counted || datum.is_enclosed())) ++effort_.unenclosed;
+  }
   std::array<std::int64_t, 3> sums{effort_.formulas, effort_.loads, effort_.unenclosed};
   mesh_.ranks().sum(std::span(sums));
   effort_.formulas = sums[0];
@@ -238,6 +246,7 @@ void DiscreteData<dim>::represent_tractions(double density)
 template <int dim>
 void DiscreteData<dim>::represent_contact(Segments segments, double density)
 {
+  contact_density_ = density;
   parallel_for(segments.size(),
                [&](std::size_t k)
                {
@@ -316,7 +325,7 @@ void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t 
     const Point<dim - 1>& s = facet_rule().points[q];
     const Point<dim> x = map(s);
     const bool is_polynomial = !values.empty();
-    gap[q] = is_polynomial && segment.contact->gap ? values[q][0] : segment.gap(s, x);
+    gap[q] = is_polynomial && segment.contact->gap ? values[q][0] : segment.gap(s, x, segment.normal_at(x));
     strength[q] = is_polynomial ? std::max(values[q][1], 0.0)  // in place of a jump it overshoots
                                 : problem::strength_at<dim>(segment.contact->law, x);
   }

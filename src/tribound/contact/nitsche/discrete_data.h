@@ -98,6 +98,9 @@ class DiscreteData
   }
   /// In the coordinates of the segment; empty where gap and threshold are integrated exactly on all of it.
   [[nodiscard]] std::span<const ContactDatumPart<dim>> contact_parts(std::size_t segment) const;
+  /// What data that are no polynomials may add to the bound on a contact segment, over the root of its
+  /// measure.
+  [[nodiscard]] double contact_density() const { return contact_density_; }
   [[nodiscard]] const DataEffort& effort() const { return effort_; }
 
  private:
@@ -141,6 +144,7 @@ class DiscreteData
   DatumMoments<dim - 1, dim> facet_moments_;
   double size_;        ///< of the bounding box
   int max_parts_ = 0;  ///< of a cell or facet
+  double contact_density_ = 0;
   Represented body_;
   Represented traction_;
   Represented contact_;

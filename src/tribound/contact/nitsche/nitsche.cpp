@@ -58,8 +58,11 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
     const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
     data_.contact(segment, k, gap, strength);
     for (int q = 0; q < facet_rule().size(); ++q)
-      points.push_back({map(facet_rule().points[q]), segment.det() * facet_rule().weights[q], segment.normal,
-                        gap[q], strength[q]});
+    {
+      const Point<dim> x = map(facet_rule().points[q]);
+      points.push_back(
+          {x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap[q], strength[q]});
+    }
   }
   return points;
 }
@@ -233,7 +236,6 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
                                                                 const SegmentTable<dim>& table) const
 {
   const ContactSegment<dim>& segment = segments_[k];
-  const Point<dim>& n = segment.normal;
   const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
   const SegmentValues<dim> on_segment(*problem_, *space_, segment, table);
 
@@ -242,7 +244,8 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
   for (int q = 0; q < static_cast<int>(table.points.size()); ++q)
   {
     const Point<dim> x = map(table.points[q]);
-    const double gap = segment.gap(table.points[q], x);
+    const Point<dim> n = segment.normal_at(x);
+    const double gap = segment.gap(table.points[q], x, n);
     const problem::LawPoint<dim> point{n, problem::strength_at<dim>(segment.contact->law, x)};
     const Point<dim> p = on_segment.augmented_traction(u, q) + segment.gamma * gap * n;
     const auto [traction, limit, status] = problem::respond<dim>(segment.contact->law, point, p);

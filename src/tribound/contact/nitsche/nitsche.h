@@ -2,7 +2,8 @@
 
 /// @file nitsche.h
 /// The discrete problem of method section 2:
-/// find u_h with a(u_h, v) - ([P^n(u_h)]_-, v^n)_C - ([P^t(u_h)]_{S_h(u_h)}, v^t)_C = L(v) for all v in V_h.
+/// find u_h with a(u_h, v) - ([P^n(u_h)]_-, v^n)_C - ([P^t(u_h)]_{S_h(u_h)}, v^t)_C = L(v) for all v in V_h,
+/// normal and tangential parts being taken by the direction of contact N, by default that of the facet.
 
 #include <span>
 #include <vector>
@@ -24,7 +25,7 @@ template <int dim>
 struct ContactState
 {
   Point<dim> point;
-  Point<dim> normal;    ///< of the segment
+  Point<dim> normal;    ///< N
   double pressure;      ///< -[P^n]_- >= 0
   Point<dim> traction;  ///< T = [P^n]_- n + [P^t]_S
   double limit;         ///< S_h: what |T^t| may reach
@@ -40,7 +41,7 @@ struct ContactPoint
 {
   Point<dim> x;       ///< on the slave
   double weight;      ///< of the rule, times measure
-  Point<dim> normal;  ///< of the segment
+  Point<dim> normal;  ///< N
   double gap;         ///< g
   double strength;    ///< s of the law, 0 where it has none
 };

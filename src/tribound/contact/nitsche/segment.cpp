@@ -34,17 +34,16 @@ WeighedSide<dim> weigh(const problem::Problem<dim>& problem, const mesh::Mesh<di
           penalty_modulus(problem.material(mesh.region(facet.cell))) / geometry.diameter};
 }
 
-/// (Pi(x) - x).n at the corners.
+/// Pi(x) - x at the corners.
 template <int dim>
-std::array<double, dim> distances(const mesh::Mesh<dim>& mesh, const WeighedSide<dim>& slave,
-                                  const WeighedSide<dim>& master)
+std::array<Point<dim>, dim> offsets(const mesh::Mesh<dim>& mesh, const WeighedSide<dim>& slave,
+                                    const WeighedSide<dim>& master)
 {
   const SimplexMap<dim - 1, dim> on_slave = simplex_map(mesh, slave.side);
   const SimplexMap<dim - 1, dim> on_master = simplex_map(mesh, master.side);
-  std::array<double, dim> result;
+  std::array<Point<dim>, dim> result;
   const auto corners = fem::reference_simplex<dim - 1>();
-  for (int i = 0; i < dim; ++i)
-    result[i] = slave.geometry.normal.dot(on_master(corners[i]) - on_slave(corners[i]));
+  for (int i = 0; i < dim; ++i) result[i] = on_master(corners[i]) - on_slave(corners[i]);
   return result;
 }
 
@@ -73,7 +72,12 @@ ContactSegment<dim> make_segment(const problem::Problem<dim>& problem, const mes
                               .h = s.geometry.diameter,
                               .gamma = gamma0 * s.stiffness,
                               .contact = &contact,
-                              .distance = {}};
+                              .offset = {}};
+  segment.offset.fill(Point<dim>::Zero());
+  if (contact.normal && contact.normal->is_constant())
+    segment.normal = (*contact.normal)(Point<dim>(Point<dim>::Zero()));
+  else if (contact.normal)
+    segment.varying_normal = &*contact.normal;
   s.side.stress_direction = s.geometry.normal;
   if (master)
   {
@@ -85,7 +89,7 @@ ContactSegment<dim> make_segment(const problem::Problem<dim>& problem, const mes
     m.side.stress_direction = -(s.stiffness / sum * stretch) * m.geometry.normal;
     segment.gamma = gamma0 * s.stiffness * c_m / sum;
     segment.h = std::min(segment.h, m.geometry.diameter);
-    segment.distance = distances(mesh, s, m);
+    segment.offset = offsets(mesh, s, m);
     segment.master = std::move(m.side);
   }
   segment.slave = std::move(s.side);

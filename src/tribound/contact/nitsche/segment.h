@@ -39,30 +39,38 @@ struct SegmentSide
   }
 };
 
-/// A part of the contact boundary. With [v] = v^s - v^m o Pi, Pi the affine map onto the master,
-///     P(v) = {sigma(v)} - gamma ([v] - g n);
+/// A part of the contact boundary. With [v] = v^s - v^m o Pi, Pi the affine map onto the master, and N the
+/// direction of contact,
+///     P(v) = {sigma(v)} - gamma ([v] - g N);
 /// against a rigid obstacle [v] = v and {sigma} = sigma n.
 template <int dim>
 struct ContactSegment
 {
   SegmentSide<dim> slave;
   std::optional<SegmentSide<dim>> master{};  ///< absent: a rigid obstacle
-  /// Unit vector by which normal and tangential parts are taken; by default the slave's outward normal, but
-  /// any serves: with n, P^n and P^t are the parts of P in an orthonormal frame.
+  /// N where it is constant on the segment: the slave's outward normal, or what the contact says. Any unit
+  /// vector serves: P^n = P.N and P^t are the parts of P in an orthonormal frame.
   Point<dim> normal;
-  double measure;  ///< of the part of the slave
-  double h;        ///< the smaller diameter of the facets
-  double gamma;    ///< gamma_0 c, c the harmonic sum of modulus / diameter of the sides
+  const problem::NormalField* varying_normal = nullptr;  ///< N where it is not; else null
+  double measure;                                        ///< of the part of the slave
+  double h;                                              ///< the smaller diameter of the facets
+  double gamma;  ///< gamma_0 c, c the harmonic sum of modulus / diameter of the sides
   const problem::Contact* contact;
-  int pair = -1;                     ///< number in Problem::pairs(); -1: an obstacle
-  std::array<double, dim> distance;  ///< (Pi(x) - x).n at the corners; 0 against an obstacle
+  int pair = -1;                       ///< number in Problem::pairs(); -1: an obstacle
+  std::array<Point<dim>, dim> offset;  ///< Pi(x) - x at the corners; 0 against an obstacle
 
-  /// g at the point with coordinates s on the segment, which is x.
-  [[nodiscard]] double gap(const Point<dim - 1>& s, const Point<dim>& x) const
+  /// N at a point of the slave.
+  [[nodiscard]] Point<dim> normal_at(const Point<dim>& x) const
+  {
+    return varying_normal == nullptr ? normal : (*varying_normal)(x);
+  }
+  /// g at the point with coordinates s on the segment, which is x, where N is n.
+  [[nodiscard]] double gap(const Point<dim - 1>& s, const Point<dim>& x, const Point<dim>& n) const
   {
     if (contact->gap) return (*contact->gap)(x);
-    double sum = distance[0];
-    for (int i = 1; i < dim; ++i) sum += s[i - 1] * (distance[i] - distance[0]);
+    const double first = n.dot(offset[0]);
+    double sum = first;
+    for (int i = 1; i < dim; ++i) sum += s[i - 1] * (n.dot(offset[i]) - first);
     return sum;
   }
 
@@ -82,6 +90,13 @@ struct ContactSegment
 /// The points of a segment on one of its sides, by their coordinates on the segment.
 template <int dim>
 [[nodiscard]] SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const SegmentSide<dim>& side);
+
+/// N at the centre of the slave.
+template <int dim>
+[[nodiscard]] Point<dim> normal_at_centre(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment)
+{
+  return segment.normal_at(simplex_map(mesh, segment.slave)(Point<dim - 1>::Constant(1.0 / dim)));
+}
 
 /// On several ranks: whether its slave is a facet of an own cell.
 template <int dim>

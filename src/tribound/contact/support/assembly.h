@@ -76,8 +76,9 @@ class MotionJump
   std::vector<int> coefficients_;
 };
 
-/// Calls visit(entry, segment, coefficients, M) with [z] = M z(coefficients) at each corner of each segment
-/// of the assembly, `segments` those that its numbers refer to.
+/// Calls visit(entry, segment, N, coefficients, M) with the direction N of contact and [z] = M
+/// z(coefficients) at each corner of each segment of the assembly, `segments` those that its numbers refer
+/// to.
 template <int dim, class Visit>
 void for_each_corner(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
                      const Assembly<dim>& assembly, const Visit& visit)
@@ -86,8 +87,9 @@ void for_each_corner(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment
   {
     const ContactSegment<dim>& segment = segments[entry.number];
     const MotionJump<dim> jump(mesh, assembly, entry, segment);
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
     for (const Point<dim - 1>& s : fem::reference_simplex<dim - 1>())
-      visit(entry, segment, jump.coefficients(), jump(s));
+      visit(entry, segment, segment.normal_at(map(s)), jump.coefficients(), jump(s));
   }
 }
 

@@ -98,7 +98,7 @@ template <int dim>
 Eigen::MatrixXd AssemblyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
 {
   std::vector<Eigen::VectorXd> generators;
-  const auto add_corner = [&](const AssemblySegment&, const ContactSegment<dim>& segment,
+  const auto add_corner = [&](const AssemblySegment&, const ContactSegment<dim>& segment, const Point<dim>& n,
                               const std::vector<int>& coefficients, const auto& jump)
   {
     const problem::FrictionCone law = problem::cone(segment.contact->law);
@@ -109,7 +109,6 @@ Eigen::MatrixXd AssemblyCheck<dim>::contact_cone(const MotionBasis& motions, Con
       const Eigen::VectorXd work = jumps.transpose() * push;
       if (work.norm() > 1e-12) generators.push_back(work.normalized());
     };
-    const Point<dim>& n = segment.normal;
     add(n);
     if (!law.resists_sliding()) return;
     if (law.coefficient == 0 && friction == ConeFriction::no_strength) return;
@@ -140,21 +139,24 @@ auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::
     const MotionJump<dim> jump(mesh_, assembly_, entry, segment);
     const Eigen::MatrixXd of_segment = motions(jump.coefficients(), Eigen::all);
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
-    const Point<dim>& n = segment.normal;
-    const auto tangential = [&](const Point<dim>& v) -> Point<dim> { return v - v.dot(n) * n; };
+    const auto tangential = [&](const Point<dim>& v, const Point<dim>& x) -> Point<dim>
+    {
+      const Point<dim> n = segment.normal_at(x);
+      return v - v.dot(n) * n;
+    };
     const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(entry.number);
     for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
     {
       const double measure = segment.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
       for (const Point<dim - 1>& s : part)
-        largest = std::max(largest, tangential(jump(s) * (of_segment * z)).norm());
+        largest = std::max(largest, tangential(jump(s) * (of_segment * z), map(s)).norm());
       result.missed += 2 * strength * measure * largest;
       for (int q = 0; q < rule.size(); ++q)
       {
         const Point<dim - 1> s = fem::point_in<dim - 1>(part, rule.points[q]);
         const Eigen::MatrixXd jumps = jump(s) * of_segment;
-        const Point<dim> z_t = tangential(jumps * z);
+        const Point<dim> z_t = tangential(jumps * z, map(s));
         if (z_t.norm() <= 1e-12 * z.norm()) continue;
         const double force =
             measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(law, map(s));

@@ -70,13 +70,12 @@ void add_segments(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<di
                   const Assembly<dim>& assembly, MeanGrams& grams, const Rows& rows)
 {
   for_each_corner(mesh, segments, assembly,
-                  [&](const AssemblySegment& entry, const ContactSegment<dim>& segment,
+                  [&](const AssemblySegment& entry, const ContactSegment<dim>& segment, const Point<dim>& n,
                       const std::vector<int>& coefficients, const auto& z)
                   {
                     const auto key = segment.pair < 0 ? MeanGrams::Key(segment.slave.facet.tag, entry.slave)
                                                       : MeanGrams::Key(segment.pair, -1);
-                    grams.add(key, coefficients,
-                              rows(problem::cone(segment.contact->law), segment.normal, z));
+                    grams.add(key, coefficients, rows(problem::cone(segment.contact->law), n, z));
                   });
 }
 

@@ -1,0 +1,47 @@
+#pragma once
+
+/// @file normal_field.h
+/// The direction along which contact acts, in place of the facet's normal.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/problem/field.h"
+
+namespace tribound::problem
+{
+
+/// A field of unit vectors N(x) that point out of the body.
+class NormalField
+{
+ public:
+  /// N by its components, one per dimension: of length 1 everywhere, not only where they are evaluated, such
+  /// as formulas divided by their length.
+  explicit NormalField(std::vector<Field> components);
+
+  /// N at x. Throws InputError naming the point where its length is not 1 up to rounding.
+  template <int dim>
+  [[nodiscard]] Point<dim> operator()(const Point<dim>& x) const;
+
+  [[nodiscard]] std::span<const Field> components() const { return components_; }
+  [[nodiscard]] bool is_constant() const;
+  /// Whether all components are.
+  [[nodiscard]] bool is_enclosed() const;
+
+ private:
+  std::vector<Field> components_;
+};
+
+/// How far N may be from polynomials on a simplex: upper bounds of the largest |N - P|, at most 1.
+struct NormalDeviation
+{
+  double linear = 0;     ///< P of degree 1
+  double quadratic = 0;  ///< P of degree 2
+};
+
+/// Over the convex hull of the points x[i*dim + k], from enclosures; 0 for components without.
+[[nodiscard]] NormalDeviation deviation(const NormalField& normal, std::span<const double> vertices, int dim);
+
+}  // namespace tribound::problem
