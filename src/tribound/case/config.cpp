@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tribound/case/geometry_reader.h"
 #include "tribound/case/node.h"
 #include "tribound/case/physics.h"
 #include "tribound/case/table_reader.h"
@@ -204,15 +205,22 @@ OutputConfig read_output(const Node& node, OutputConfig output)
 io::EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
 {
   auto& tables = std::get<Node::Table>(document.value);
-  if (const auto* file = std::get_if<mesh::MeshFile>(&config.mesh))
+  const auto from_there = [&config](const std::filesystem::path& file)
   {
     std::error_code unknown;
-    const std::filesystem::path path = std::filesystem::absolute(file->path, unknown);
-    const std::filesystem::path from_there =
+    const std::filesystem::path path = std::filesystem::absolute(file, unknown);
+    const std::filesystem::path relative =
         std::filesystem::relative(path, std::filesystem::absolute(config.output.directory, unknown), unknown);
-    auto& mesh = std::get<Node::Table>(find(tables, "mesh")->node.value);
-    find(mesh, "file")->node.value = (unknown || from_there.empty() ? path : from_there).string();
-  }
+    return (unknown || relative.empty() ? path : relative).string();
+  };
+  const auto table = [](Node::Table& parent, std::string_view key) -> Node::Table&
+  { return std::get<Node::Table>(find(parent, key)->node.value); };
+  if (const auto* file = std::get_if<mesh::MeshFile>(&config.mesh))
+    find(table(tables, "mesh"), "file")->node.value = from_there(file->path);
+  for (const auto& [kind, surfaces] : {std::pair("obstacle", &config.obstacles), {"shape", &config.shapes}})
+    for (const SurfaceConfig& surface : *surfaces)
+      if (surface.kind == SurfaceConfig::Kind::surface)
+        find(table(table(tables, kind), surface.name), "surface")->node.value = from_there(surface.file);
   if (find(tables, "output") == nullptr) tables.push_back({"output", {}, {Node::Table{}, {}}});
   auto& output = std::get<Node::Table>(find(tables, "output")->node.value);
   if (find(output, "directory") == nullptr)
@@ -224,7 +232,7 @@ Config read_document(const Node& document, std::string file)
 {
   const TableReader root(
       document, {"title", "degree", "mesh", "material", "load", "boundary", "contact", "nitsche", "newton",
-                 "regularisation", "adapt", "certify", "solver", "study", "output"});
+                 "obstacle", "shape", "regularisation", "adapt", "certify", "solver", "study", "output"});
   Config config;
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
@@ -236,6 +244,10 @@ Config read_document(const Node& document, std::string file)
   root.read("load", config.loads, read_loads);
   root.read("boundary", config.boundaries, read_boundaries);
   root.read("contact", config.contacts, read_contacts);
+  root.read("obstacle", config.obstacles,
+            [&](const Node& node) { return read_obstacles(node, case_directory); });
+  root.read("shape", config.shapes, [&](const Node& node) { return read_shapes(node, case_directory); });
+  check_surfaces(config);
   const auto read_method = [&](std::string_view key, const auto& read)
   {
     if (const Node* node = root.find(key)) read(*node, config.method);

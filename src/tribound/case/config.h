@@ -15,6 +15,7 @@
 #include "tribound/adapt/loop.h"
 #include "tribound/adapt/method.h"
 #include "tribound/base/error.h"
+#include "tribound/case/geometry.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/mesh/seams.h"
 #include "tribound/mesh/source.h"
@@ -49,6 +50,7 @@ struct BoundaryConfig
   std::vector<problem::Field> traction;                     ///< empty: none given
   std::optional<problem::Field> pressure;                   ///< acts against the outward normal
   std::optional<problem::Contact> contact;
+  GeometryConfig geometry;  ///< of the contact
   Where where;
 };
 
@@ -59,6 +61,7 @@ struct ContactConfig
   std::vector<std::string> master;  ///< of a joint, the name of its other side
   std::string joint;                ///< empty: none
   problem::Contact contact{problem::Frictionless()};
+  GeometryConfig geometry;
   std::vector<double> direction;  ///< of the pairing; empty: along the normals of the slave
   double reach = std::numeric_limits<double>::infinity();
   Where where;
@@ -105,6 +108,8 @@ struct Config
   std::vector<LoadConfig> loads;
   std::vector<BoundaryConfig> boundaries;
   std::vector<ContactConfig> contacts;
+  std::vector<SurfaceConfig> obstacles;
+  std::vector<SurfaceConfig> shapes;
   adapt::Method method;
   adapt::AdaptOptions adapt;
   StudyConfig study;

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "tribound/case/geometry_reader.h"
 #include "tribound/case/table_reader.h"
 
 namespace tribound::case_file
@@ -87,12 +88,13 @@ std::vector<std::string_view> law_keys(std::initializer_list<std::string_view> o
   return keys;
 }
 
-problem::Contact read_obstacle(const Node& node)
+void read_obstacle(const Node& node, BoundaryConfig& boundary)
 {
-  const TableReader table(node, law_keys({"gap"}));
+  const TableReader table(node, law_keys({"gap", "obstacle", "shape", "normal"}));
   problem::Contact contact(read_law(table, problem::obstacle_law_kinds()), problem::Field(0.0, node.where));
   table.read("gap", *contact.gap, to_field);
-  return contact;
+  boundary.contact = std::move(contact);
+  boundary.geometry = read_obstacle_geometry(table);
 }
 
 /// A name, or an array of them.
@@ -158,7 +160,8 @@ void read_sides(const TableReader& table, ContactConfig& config)
 
 ContactConfig read_pair(const Node& node)
 {
-  const TableReader table(node, law_keys({"slave", "master", "joint", "gap", "pairing", "reach"}));
+  const TableReader table(
+      node, law_keys({"slave", "master", "joint", "gap", "pairing", "reach", "shape", "normal"}));
   ContactConfig config;
   config.where = node.where;
   read_sides(table, config);
@@ -170,6 +173,12 @@ ContactConfig read_pair(const Node& node)
                      "what is tied moves as one, whatever lies between");
   else
     config.contact.gap = problem::Field(0.0, node.where);
+  config.geometry = read_pair_geometry(table);
+  if (cone(config.contact.law).is_tied)
+    for (const std::string_view key : {"shape", "normal"})
+      if (const Node* of_contact = table.find(key))
+        throw InputError(of_contact->where, "does not belong to friction = \"tied\"",
+                         "what is tied has neither gap nor direction");
   table.read("pairing", config.direction, read_direction);
   table.read("reach", config.reach,
              number_in(positive, "the largest distance between the sides, a length, such as 0.1"));
@@ -216,7 +225,7 @@ BoundaryConfig read_boundary(const Entry& entry)
   table.read("displacement", boundary.displacement, read_displacement);
   table.read("traction", boundary.traction, to_fields);
   table.read("pressure", boundary.pressure, to_field);
-  table.read("contact", boundary.contact, read_obstacle);
+  if (const Node* contact = table.find("contact")) read_obstacle(*contact, boundary);
   check_boundary(table, boundary);
   return boundary;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/case/geometry_resolver.h"
 #include "tribound/case/node.h"
 
 namespace tribound::case_file
@@ -166,10 +167,15 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
   {
     (void)problem::group_number(boundary.name, boundary_names, boundary.where, "boundary");
     boundaries.push_back(resolve<dim>(boundary));
+    if (boundaries.back().contact) apply_geometry<dim>(config, boundary.geometry, *boundaries.back().contact);
   }
   check_all_mentioned<dim>(config, boundary_names);
   std::vector<problem::ContactPair<dim>> pairs;
-  for (const ContactConfig& contact : config.contacts) pairs.push_back(resolve<dim>(contact));
+  for (const ContactConfig& contact : config.contacts)
+  {
+    pairs.push_back(resolve<dim>(contact));
+    apply_geometry<dim>(config, contact.geometry, pairs.back().contact);
+  }
   return problem::Problem<dim>(region_names, boundary_names, regions, boundaries, std::move(pairs));
 }
 

@@ -34,6 +34,12 @@ std::string valid_case(const std::string& table)
   if (table == "boundary.top") text += "boundary.top.traction = [0, 0]\n";
   if (table == "regularisation") text += "regularisation = {}\n";
   if (table == "boundary.top.contact") text += "boundary.top.contact = {}\n";
+  if (table.starts_with("obstacle.o")) text += "boundary.top.contact.obstacle = 'o'\n";
+  if (table.starts_with("shape.o")) text += "boundary.top.contact = { shape = 'o', normal = 'facet' }\n";
+  if (table == "obstacle.o.plane") text += "obstacle.o.plane = { point = [0, 0], normal = [0, 1] }\n";
+  if (table == "obstacle.o.circle") text += "obstacle.o.circle = { centre = [0, 0], radius = 1 }\n";
+  if (table == "obstacle.o.cylinder")
+    text += "obstacle.o.cylinder = { centre = [0, 0, 0], axis = [0, 0, 1], radius = 1 }\n";
   if (table == "contact.0") text += "contact = [{slave = 'a', master = 'b'}]\n";
   return text;
 }
@@ -43,6 +49,9 @@ std::vector<std::string> companions(const Row& row)
 {
   if (row.key == "threshold") return {row.table + ".friction=tresca"};
   if (row.key == "reference_degree") return {"degree=1"};
+  if (row.name() == "obstacle.o.translate") return {"obstacle.o.distance=\"y\""};
+  if (row.key == "side") return {row.table + ".surface=a.stl"};
+  if (row.name() == "shape.o.translate") return {"shape.o.circle={centre=[0,0],radius=1}"};
   if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
   return {};
 }
@@ -159,6 +168,17 @@ void try_out(const Row& row)
   }
   else if (row.type == "table")
     expect_refused(row, "1");
+  else if (row.type.starts_with("name"))
+  {
+    expect_refused(row, "1");
+    expect_refused(row, "\"no such name\"");
+  }
+  else if (row.type == "formula")
+  {
+    expect_accepted(row, "\"x - 2*y\"");
+    expect_refused(row, "\"2*q\"");
+    expect_refused(row, "1");
+  }
   else if (row.type.starts_with("2 or 3"))
   {
     for (const std::string& word : quoted(row.type, "\"")) expect_accepted(row, "\"" + word + "\"");
@@ -195,7 +215,7 @@ TEST(CaseFormat, KeysAreThoseOfTheProgram)
     documented[row.table].insert(row.key);
     if (row.table.find('.') == std::string::npos && !row.table.empty()) documented[""].insert(row.table);
   }
-  documented[""].insert({"boundary", "contact"});
+  documented[""].insert({"boundary", "contact", "obstacle", "shape"});
   for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
 }
 

@@ -44,14 +44,23 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   return regions;
 }
 
+/// Surfaces and direction of a contact, if there are any.
+std::string geometry_words(const problem::Contact& contact)
+{
+  std::string words = contact.geometry.empty() ? "" : ", " + contact.geometry;
+  if (contact.normal)
+    words += contact.normal->is_constant() ? ", along one direction" : ", along a direction that varies";
+  return words;
+}
+
 /// What a pair does on boundary number `tag`, or nothing.
 template <int dim>
 std::string pair_words(const problem::Problem<dim>& problem, int tag)
 {
   if (const problem::ContactPair<dim>* pair = problem.pair_of_slave(tag))
-    return fmt::format("contact with {}, {}, gap {}", fmt::join(pair->master, ", "),
-                       problem::words(pair->contact.law),
-                       pair->contact.gap ? text(*pair->contact.gap) : "of the meshes");
+    return fmt::format(
+        "contact with {}, {}, gap {}{}", fmt::join(pair->master, ", "), problem::words(pair->contact.law),
+        pair->contact.gap ? text(*pair->contact.gap) : "of the meshes", geometry_words(pair->contact));
   if (const problem::ContactPair<dim>* pair = problem.pair_of_master(tag))
     return fmt::format("contact with {}, whose master it is", fmt::join(pair->slave, ", "));
   return {};
@@ -111,7 +120,8 @@ std::string describe(const problem::BoundaryCondition<dim>& condition)
     add("traction " + vector([&](int i) { return text(condition.traction[i]); }));
   if (condition.pressure) add("pressure " + text(*condition.pressure));
   if (condition.contact)
-    add("contact, " + problem::words(condition.contact->law) + ", gap " + text(*condition.contact->gap));
+    add("contact, " + problem::words(condition.contact->law) + ", gap " + text(*condition.contact->gap) +
+        geometry_words(*condition.contact));
   return words.empty() ? "traction-free" : words;
 }
 
