@@ -97,7 +97,7 @@ class FieldView {
     if (isNew) this.takeSurface(surface);
     const field = this.fields.find(({ id }) => id === this.state.field) ?? this.fields[0];
     const isOther = this.field?.id !== field.id;
-    if (isOther && field.contact && surface.pairs?.length > 0 && this.state.explosion === 0 && this.bodies.current) changes = { ...changes, explosion: (this.state.explosion = 0.5) };
+    if (field.contact && !this.field?.contact && surface.pairs?.length > 0 && this.bodies.current) this.state.explosion ||= 0.5; // else nothing is seen of them
     const shown = field.contact ? withSegments(surface) : surface;
     if ("axis" in changes && changes.axis !== null) this.state.side = this.camera.axes().eye[changes.axis] < 0 ? -1 : 1; // towards the eye
     const isCut = shown !== this.shown || "axis" in changes || "place" in changes;
@@ -107,7 +107,8 @@ class FieldView {
     if (isCut || isOther || "range" in changes) this.takeField(field);
     if (isCut || ["factor", "obstacle", "explosion", "bodies"].some((key) => key in changes)) this.takePositions();
     if (isCut || "mesh" in changes || "bodies" in changes) this.takeLines();
-    if ("explosion" in changes && this.isHome()) this.home();
+    if (this.state.explosion !== this.apart && this.isHome()) this.home();
+    this.apart = this.state.explosion;
     this.showState();
     this.draw();
   }

@@ -81,6 +81,17 @@ def check_points(grid, name, points):
         assert np.abs(slip - (jump - jump @ normal * normal)).max() < 1e-9, (name, x, slip, jump)
 
 
+def check_balance(certificate):
+    """Moments of T(u_h) on both sides against those of the equilibrated stress, which other code integrates."""
+    balance = {row["name"]: row for row in certificate["balance"]["rows"] if row["kind"] == "contact"}
+    about = certificate["balance"]["about"]
+    for name, entry in certificate["contact"]["boundaries"].items():
+        sides = [(name, entry["moment"])] + [(master, entry["moment_on_master"]) for master in entry.get("master", [])]
+        for side, moment in sides:
+            of_stress = np.array(balance[side]["moment"]) + np.cross(about, balance[side]["force"])
+            assert np.abs(of_stress - moment).max() < 1e-6 * np.linalg.norm(entry["force"]), (side, of_stress, moment)
+
+
 def main():
     program, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     shutil.rmtree(directory, ignore_errors=True)
@@ -127,6 +138,7 @@ def main():
         across = np.column_stack([points[:, :2], np.full(len(points), opposite)])
         on_master = -weights @ np.cross(across, tractions)
         assert np.abs(on_master - entry["moment_on_master"]).max() < 1e-7 * scale, (name, on_master)
+    check_balance(certificate)
     covered = {name: entry["covered"] for name, entry in boundaries.items() if "covered" in entry}
     assert abs(covered["upper.back"] - 1.8 * 0.9) < 1e-12 and abs(covered["lower.front"] - 1.9 * 1.2) < 1e-12, covered
 

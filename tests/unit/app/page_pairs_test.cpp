@@ -99,8 +99,9 @@ TEST(PagePairs, ManySegmentsBecomeMeansOverFacets)
   const double force = -contact::contact_resultants<3>(blocks.form, blocks.form.traction(blocks.u)).normal;
   EXPECT_NEAR(integral(surface, pairs[0].slave, pairs[0].values.pressure), force, 1e-12);
   EXPECT_TRUE(pairs[1].slave.faces.empty());
-  EXPECT_EQ(pairs[1].master.faces.size(), 18u);
-  EXPECT_EQ(pairs[1].values.status.size(), 18u);
+  // The slave covers no part of the triangles in two corners of the master.
+  EXPECT_EQ(pairs[1].master.faces.size(), 16u);
+  EXPECT_EQ(pairs[1].values.status.size(), 16u);
 }
 
 TEST(PagePairs, HigherDegreesHaveLattices)
