@@ -228,12 +228,12 @@ async function checkGivenCertificate(browser, directory) {
 }
 
 /** Without WebGL the page draws the picture itself. */
-async function checkWithoutWebGL(url, dimension) {
+async function checkWithoutWebGL(url, use) {
   const plain = await launch(folder, { webgl: false });
   try {
     const { page, complaints } = await openPage(plain, url);
     assert.match(await page.locator(".fields > .note").first().textContent(), /^This browser has no WebGL/);
-    await useFields(page, dimension);
+    await use(page, 3);
     assert.deepEqual(complaints, []);
   } finally {
     await plain.close();
@@ -312,9 +312,8 @@ try {
       await checkPrint(page, `${results}/${name}.pdf`);
       await checkPrintedFields(page);
       const dimension = ["cube", "pair3d"].includes(name) ? 3 : 2;
-      await useFields(page, dimension);
+      await (what.bodies ? useBodies : useFields)(page, dimension);
       if (what.bodies) await checkPairs(page, directory);
-      if (what.bodies) await useBodies(page, dimension);
       if (dimension === 3) await usePlans(page);
       await checkNarrowAndDark(browser, url);
     }
@@ -325,7 +324,7 @@ try {
       await checkTouch(browser, url);
       await checkGivenCertificate(browser, directory);
     }
-    if (["cube", "pair3d"].includes(name)) await checkWithoutWebGL(url, 3);
+    if (["cube", "pair3d"].includes(name)) await checkWithoutWebGL(url, what.bodies ? useBodies : useFields);
     assert.equal(await page.locator("img").count(), 0);
     assert.deepEqual(complaints, []);
     report(name, directory, seconds);
