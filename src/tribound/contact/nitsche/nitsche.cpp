@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <optional>
 #include <utility>
 
 #include "tribound/base/parallel.h"
@@ -146,28 +147,42 @@ void NitscheForm<dim>::add_contact_load(std::span<const Point<dim>> t, std::span
 }
 
 template <int dim>
-auto NitscheForm<dim>::tangent_block(Linearisation kind, std::span<const double> u, std::size_t k,
-                                     double delta, const SegmentValues<dim>& on_segment) const
-    -> std::vector<Tensor<dim>>
+void NitscheForm<dim>::add_tangent_block(Linearisation kind, std::span<const double> u, std::size_t k,
+                                         double delta, const SegmentValues<dim>& on_segment,
+                                         std::span<Tensor<dim>> block) const
 {
-  const int n = space_->basis().n_nodes();
-  std::vector<Tensor<dim>> columns(n * on_segment.sides().size());  // DT(u)[phi_j e_b]
-  std::vector<Tensor<dim>> block(columns.size() * columns.size(), Tensor<dim>::Zero());
+  const fem::LagrangeBasis<dim>& basis = space_->basis();
+  std::vector<Tensor<dim>> columns(basis.n_nodes() * on_segment.sides().size());  // DT(u)[phi_j e_b]
   for (int q = 0; q < n_segment_points(); ++q)
   {
     const Tensor<dim> m = traction_derivative(kind, k, q, augmented_traction(on_segment, u, k, q), delta);
     auto column = columns.begin();
     for (const auto& side : on_segment.sides())
-      for (int j = 0; j < n; ++j) *column++ = m * on_segment.augmented_derivative(side, j, q);
+      for (int j = 0; j < basis.n_nodes(); ++j) *column++ = m * on_segment.augmented_derivative(side, j, q);
     auto entry = block.begin();
     for (const auto& side : on_segment.sides())
-      for (int i = 0; i < n; ++i)
+      for (int i = 0; i < basis.n_nodes(); ++i)
       {
+        if (basis.node(i)[side.side->facet.local] > 0) continue;  // phi_i vanishes on the facet
         const double tested = -side.side->sign * contact_points(k)[q].weight * side.table->values_at(q)[i];
         for (const Tensor<dim>& of_j : columns) *entry++ += tested * of_j;
       }
   }
-  return block;
+}
+
+template <int dim>
+std::vector<std::size_t> NitscheForm<dim>::first_on_facets() const
+{
+  const auto facets = [](const ContactSegment<dim>& segment)
+  {
+    return std::pair(segment.slave.number,
+                     segment.master ? std::optional(segment.master->number) : std::nullopt);
+  };
+  std::vector<std::size_t> first;
+  for (std::size_t k = 0; k < segments_.size(); ++k)
+    if (k == 0 || facets(segments_[k]) != facets(segments_[k - 1])) first.push_back(k);
+  first.push_back(segments_.size());
+  return first;
 }
 
 template <int dim>
@@ -197,11 +212,7 @@ void NitscheForm<dim>::put_block_entries(const SegmentValues<dim>& on_segment,
   for (const auto& row : on_segment.sides())
     for (int i = 0; i < basis.n_nodes(); ++i)
     {
-      if (basis.node(i)[row.side->facet.local] > 0)  // phi_i vanishes on the facet
-      {
-        entry += static_cast<std::ptrdiff_t>(basis.n_nodes() * on_segment.sides().size());
-        continue;
-      }
+      if (basis.node(i)[row.side->facet.local] > 0) continue;
       for (const auto& column : on_segment.sides())
         for (const Index node : column.nodes)
         {
@@ -217,16 +228,19 @@ template <int dim>
 algebra::Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u,
                                                     double delta) const
 {
+  const std::vector<std::size_t> first = first_on_facets();
+  const std::size_t n_blocks = first.size() - 1;
   std::vector<std::size_t> begin{0};
-  for (std::size_t k = 0; k < segments_.size(); ++k) begin.push_back(begin.back() + n_block_entries(k));
+  for (std::size_t g = 0; g < n_blocks; ++g) begin.push_back(begin.back() + n_block_entries(first[g]));
   algebra::Triplets entries;
   entries.resize(begin.back());
-  parallel_for(segments_.size(),
-               [&](std::size_t k)
+  parallel_for(n_blocks,
+               [&](std::size_t g)
                {
-                 const SegmentValues<dim> on_segment = values(k);
-                 put_block_entries(on_segment, tangent_block(kind, u, k, delta, on_segment), begin[k],
-                                   entries);
+                 std::vector<Tensor<dim>> block((begin[g + 1] - begin[g]) / (dim * dim), Tensor<dim>::Zero());
+                 for (std::size_t k = first[g]; k < first[g + 1]; ++k)
+                   add_tangent_block(kind, u, k, delta, values(k), block);
+                 put_block_entries(values(first[g]), block, begin[g], entries);
                });
   return entries;
 }

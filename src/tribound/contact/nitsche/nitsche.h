@@ -135,11 +135,12 @@ class NitscheForm
   /// M with DT(u)[w] = M ({sigma(w)} - gamma [w]), from P(u) at point q of segment k.
   [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, int q,
                                                 const Point<dim>& augmented, double delta) const;
-  /// -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, [i * columns + j](a, b), i and j over the nodes of all
-  /// sides.
-  [[nodiscard]] std::vector<Tensor<dim>> tangent_block(Linearisation kind, std::span<const double> u,
-                                                       std::size_t k, double delta,
-                                                       const SegmentValues<dim>& on_segment) const;
+  /// block[i * columns + j](a, b) += -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, i over the nodes of all
+  /// sides that are on the facet, and j over all nodes of all sides.
+  void add_tangent_block(Linearisation kind, std::span<const double> u, std::size_t k, double delta,
+                         const SegmentValues<dim>& on_segment, std::span<Tensor<dim>> block) const;
+  /// Segments number first[g], ..., first[g + 1] - 1 lie on the same facets: one block does for them.
+  [[nodiscard]] std::vector<std::size_t> first_on_facets() const;
   /// Entries of the rows of the block of segment k that belong to nodes on the facets.
   [[nodiscard]] std::size_t n_block_entries(std::size_t k) const;
   /// Sets them, from `position` on.
