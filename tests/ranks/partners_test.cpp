@@ -66,7 +66,7 @@ std::map<std::pair<FacetKey, FacetKey>, std::vector<Facts<dim>>> segments_of(
     facts[2 * dim] = segment.measure;
     facts[2 * dim + 1] = segment.gamma;
     facts[2 * dim + 2] = segment.h;
-    facts[2 * dim + 3] = segment.gap(centre, x);
+    facts[2 * dim + 3] = segment.gap(centre, x, segment.normal_at(x));
   }
   for (auto& [facets, segments] : result)
     std::ranges::sort(segments, {},
