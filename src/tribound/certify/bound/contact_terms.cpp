@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tribound/certify/bound/contact_pieces.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
@@ -20,59 +21,11 @@ template <int dim>
 constexpr double settled = dim == 2 ? 1e-10 : 1e-5;
 template <int dim>
 constexpr int max_depth = dim == 2 ? 40 : 10;
-/// More than the data ask for: so many are left where rounding makes the kinks.
-constexpr std::size_t max_pieces = 4096;
-/// What a rule on a piece may miss of a norm, over the largest distance from the polynomials for which it is
-/// exact, where the projection of the values decides about kinks.
-constexpr double misses = 3;
-
-/// The parts of a segment or triangle halved along each edge.
-std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
-{
-  const Point<1> middle = (s[0] + s[1]) / 2;
-  return {{{s[0], middle}, {middle, s[1]}}};
-}
-std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
-{
-  const Point<2> a = (s[1] + s[2]) / 2;
-  const Point<2> b = (s[0] + s[2]) / 2;
-  const Point<2> c = (s[0] + s[1]) / 2;
-  return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
-}
-
 /// Whether the rule may not be exact for T(u), P(u) being a polynomial.
 template <int dim>
 bool is_rough(const Kinks& kinks)
 {
   return kinks.possible || (dim == 3 && kinks.slips);
-}
-
-/// h_k |k| / |reference simplex|.
-template <int dim>
-double norm_scale(const contact::ContactSegment<dim>& segment)
-{
-  return segment.h * segment.det();
-}
-
-/// How far N may be from polynomials on a part of a segment.
-template <int dim>
-problem::NormalDeviation deviation_on(const contact::SimplexMap<dim - 1, dim>& map,
-                                      const problem::NormalField& normal, const fem::Part<dim - 1>& part)
-{
-  std::array<double, dim * dim> vertices;
-  for (int i = 0; i < dim; ++i)
-  {
-    const Point<dim> x = map(part[i]);
-    std::ranges::copy(x, vertices.begin() + i * dim);
-  }
-  return problem::deviation(normal, vertices, dim);
-}
-
-/// Of v - v.N N from P^{p+2}, over |v|, v in P^p: in 2D along the tangent.
-template <int dim>
-double tangential_deviation(const problem::NormalDeviation& deviation)
-{
-  return dim == 2 ? deviation.quadratic : deviation.linear * (2 + deviation.linear);
 }
 
 /// Adds h_k ||t^n||_k^2 and h_k ||t^t||_k^2 of a traction with the given coefficients.
@@ -87,34 +40,6 @@ void add_squares(std::span<const Point<dim>> traction, const contact::ContactSeg
     normal_part += norm_scale(segment) * normal * normal;
     tangential_part += norm_scale(segment) * (coefficient - normal * n).squaredNorm();
   }
-}
-
-/// The same where N varies: upper bounds, from the values at the points of the rule.
-template <int dim>
-void add_varying_squares(const contact::NitscheForm<dim>& form, int k, std::span<const double> theta,
-                         std::span<const Point<dim>> traction, double& normal_part, double& tangential_part)
-{
-  const contact::ContactSegment<dim>& segment = form.segments()[k];
-  double normal = 0;
-  double tangential = 0;
-  double whole = 0;
-  for (int q = 0; q < form.n_segment_points(); ++q)
-  {
-    Point<dim> t = Point<dim>::Zero();
-    for (std::size_t i = 0; i < traction.size(); ++i) t += theta[q * traction.size() + i] * traction[i];
-    const Point<dim>& n = form.contact_points(k)[q].normal;
-    const double t_n = t.dot(n);
-    const double weight = norm_scale(segment) * form.facet_rule().weights[q];
-    normal += weight * t_n * t_n;
-    tangential += weight * (t - t_n * n).squaredNorm();
-    whole += weight * t.squaredNorm();
-  }
-  const problem::NormalDeviation off =
-      deviation_on<dim>(contact::simplex_map(form.space().mesh(), segment.slave), *segment.varying_normal,
-                        fem::reference_simplex<dim - 1>());
-  normal_part += std::pow(std::sqrt(normal) + 2 * off.quadratic * std::sqrt(whole), 2);
-  tangential_part +=
-      std::pow(std::sqrt(tangential) + 2 * tangential_deviation<dim>(off) * std::sqrt(whole), 2);
 }
 
 }  // namespace
@@ -205,75 +130,6 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   result.of_normal = known ? *known : deviation_on<dim>(map, *segment.varying_normal, piece);
   add_missed(k, piece, augmented, projected, result);
   return result;
-}
-
-template <int dim>
-void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
-                                   std::span<const Point<dim>> dis, Integrals& integrals) const
-{
-  const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  const problem::NormalDeviation& off = integrals.of_normal;
-  double of_augmented = 0;
-  double of_dis = 0;
-  double largest = 0;
-  for (std::size_t q = 0; q < augmented.size(); ++q)
-  {
-    const double weight = fem::fraction<dim - 1>(piece) * form_.facet_rule().weights[q];
-    of_augmented += weight * augmented[q].squaredNorm();
-    of_dis += weight * dis[q].squaredNorm();
-    largest = std::max(largest, augmented[q].norm());
-  }
-  // Between bodies the distance of the meshes along N is part of P^n: that of polynomials of degree 1.
-  double distance = 0;
-  if (!segment.contact->gap)
-    for (const Point<dim>& offset : segment.offset) distance = std::max(distance, offset.norm());
-  distance *= segment.gamma;
-  integrals.deviation = off.quadratic * (kinks_.amplification() * largest + distance);
-
-  const double measure = fem::fraction<dim - 1>(piece) / mesh::factorial<dim - 1>;
-  const problem::FrictionCone friction = problem::cone(segment.contact->law);
-  const double pressure = misses * off.quadratic * (std::sqrt(of_augmented) + distance * std::sqrt(measure));
-  const double along = misses * tangential_deviation<dim>(off);
-  const double rubbing = along * std::sqrt(of_augmented) + friction.coefficient * pressure;
-  const double rubbing_open = friction.strength == nullptr ? 0 : along * std::sqrt(of_augmented);
-  const double projected = misses * off.quadratic * std::sqrt(of_dis);
-  const double projected_along = along * std::sqrt(of_dis);
-  integrals.missed = {std::pow(pressure + projected, 2), std::pow(rubbing + projected_along, 2)};
-  integrals.missed_open = {std::pow(projected, 2), std::pow(rubbing_open + projected_along, 2)};
-}
-
-template <int dim>
-void ContactTerms<dim>::resolve_normal(int k, const Fields& fields,
-                                       std::vector<contact::ContactDatumPart<dim>>& parts,
-                                       std::vector<Integrals>& integrals) const
-{
-  // A jump of N is a point in 2D, where halving costs little, and a curve in 3D.
-  constexpr int deepest = dim == 2 ? 30 : 3;
-  const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure;
-  const auto is_enough = [&](const Integrals& value, const contact::ContactDatumPart<dim>& part)
-  {
-    const Missed& missed = is_open(segment, part, value) ? value.missed_open : value.missed;
-    return norm_scale(segment) * (missed.normal + missed.tangential) <=
-           allowed * fem::fraction<dim - 1>(part.part);
-  };
-  for (int depth = 0; depth < deepest && parts.size() < max_pieces; ++depth)
-  {
-    const std::size_t n_before = parts.size();
-    for (std::size_t i = 0; i < n_before; ++i)
-    {
-      if (is_enough(integrals[i], parts[i])) continue;
-      const auto pieces = halves(parts[i].part);
-      for (std::size_t j = 1; j < pieces.size(); ++j)
-      {
-        parts.push_back({pieces[j], parts[i].gap, parts[i].strength});
-        integrals.push_back(integrate(k, fields, pieces[j]));
-      }
-      parts[i].part = pieces[0];
-      integrals[i] = integrate(k, fields, pieces[0]);
-    }
-    if (parts.size() == n_before) break;
-  }
 }
 
 /// The halves of a piece of the part with the given number.
@@ -371,15 +227,14 @@ bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment,
 
 /// T is Lipschitz continuous in g and s: [.]_- and the projections on balls do not expand, and neither does
 /// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
-/// the rule and at most 2 |K|^{1/2} times what the remainders change.
+/// the rule and at most 3 |K|^{1/2} times what the remainders change.
 template <int dim>
 void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment,
                                  const contact::ContactDatumPart<dim>& part, const Integrals& integrals,
                                  ContactSquares& squares) const
 {
   const double scale = norm_scale(segment);
-  const double missed = (segment.varying_normal == nullptr ? 2 : misses) *
-                        std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(part.part));
+  const double missed = misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(part.part));
   const bool open = is_open(segment, part, integrals);
   const Missed& of_normal = open ? integrals.missed_open : integrals.missed;
   const double pressure = open ? 0 : segment.gamma * part.gap;
@@ -406,7 +261,7 @@ void ContactTerms<dim>::add_traction(int k, std::span<const Point<dim>> t, doubl
   if (segment.varying_normal == nullptr)
     add_squares<dim>(project(t), segment, normal, tangential);
   else
-    add_varying_squares<dim>(form_, k, theta_, project(t), normal, tangential);
+    add_varying_traction(k, project(t), normal, tangential);
 }
 
 template class ContactTerms<2>;

@@ -117,6 +117,9 @@ class ContactTerms
   }
   /// Adds h_k ||(Pi_k t)^n||_k^2 and h_k ||(Pi_k t)^t||_k^2.
   void add_traction(int k, std::span<const Point<dim>> t, double& normal, double& tangential) const;
+  /// The same where N varies, from the coefficients of Pi_k t: upper bounds.
+  void add_varying_traction(int k, std::span<const Point<dim>> coefficients, double& normal_part,
+                            double& tangential_part) const;
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Tractions& t) const;
   /// `known`: the deviation of N on a larger piece; absent: it is looked for.
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece,

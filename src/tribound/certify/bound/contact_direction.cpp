@@ -1,0 +1,121 @@
+/// What a direction of contact that varies, and is no polynomial, adds to the contact terms (method
+/// section 5.6).
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribound/certify/bound/contact_pieces.h"
+#include "tribound/certify/bound/contact_terms.h"
+#include "tribound/fem/evaluation.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+void ContactTerms<dim>::add_varying_traction(int k, std::span<const Point<dim>> coefficients,
+                                             double& normal_part, double& tangential_part) const
+{
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  double normal = 0;
+  double tangential = 0;
+  double whole = 0;
+  for (int q = 0; q < form_.n_segment_points(); ++q)
+  {
+    Point<dim> t = Point<dim>::Zero();
+    for (std::size_t i = 0; i < coefficients.size(); ++i) t += theta_[q * n_ + i] * coefficients[i];
+    const Point<dim>& n = form_.contact_points(k)[q].normal;
+    const double t_n = t.dot(n);
+    const double weight = norm_scale(segment) * form_.facet_rule().weights[q];
+    normal += weight * t_n * t_n;
+    tangential += weight * (t - t_n * n).squaredNorm();
+    whole += weight * t.squaredNorm();
+  }
+  const problem::NormalDeviation off =
+      deviation_on<dim>(contact::simplex_map(form_.space().mesh(), segment.slave), *segment.varying_normal,
+                        fem::reference_simplex<dim - 1>());
+  normal_part += std::pow(std::sqrt(normal) + 2 * off.quadratic * std::sqrt(whole), 2);
+  tangential_part +=
+      std::pow(std::sqrt(tangential) + 2 * tangential_deviation<dim>(off) * std::sqrt(whole), 2);
+}
+
+template <int dim>
+void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
+                                   std::span<const Point<dim>> dis, Integrals& integrals) const
+{
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  const problem::NormalDeviation& off = integrals.of_normal;
+  double of_augmented = 0;
+  double of_dis = 0;
+  double largest = 0;
+  for (std::size_t q = 0; q < augmented.size(); ++q)
+  {
+    const double weight = fem::fraction<dim - 1>(piece) * form_.facet_rule().weights[q];
+    of_augmented += weight * augmented[q].squaredNorm();
+    of_dis += weight * dis[q].squaredNorm();
+    largest = std::max(largest, augmented[q].norm());
+  }
+  // Between bodies the distance of the meshes along N is part of P^n: that of polynomials of degree 1.
+  double distance = 0;
+  if (!segment.contact->gap)
+    for (const Point<dim>& offset : segment.offset) distance = std::max(distance, offset.norm());
+  distance *= segment.gamma;
+  integrals.deviation = off.quadratic * (kinks_.amplification() * largest + distance);
+
+  const double measure = fem::fraction<dim - 1>(piece) / mesh::factorial<dim - 1>;
+  const problem::FrictionCone friction = problem::cone(segment.contact->law);
+  const double pressure = misses * off.quadratic * (std::sqrt(of_augmented) + distance * std::sqrt(measure));
+  const double along = misses * tangential_deviation<dim>(off);
+  const double rubbing = along * std::sqrt(of_augmented) + friction.coefficient * pressure;
+  const double rubbing_open = friction.strength == nullptr ? 0 : along * std::sqrt(of_augmented);
+  const double projected = misses * off.quadratic * std::sqrt(of_dis);
+  const double projected_along = along * std::sqrt(of_dis);
+  integrals.missed = {std::pow(pressure + projected, 2), std::pow(rubbing + projected_along, 2)};
+  integrals.missed_open = {std::pow(projected, 2), std::pow(rubbing_open + projected_along, 2)};
+}
+
+template <int dim>
+void ContactTerms<dim>::resolve_normal(int k, const Fields& fields,
+                                       std::vector<contact::ContactDatumPart<dim>>& parts,
+                                       std::vector<Integrals>& integrals) const
+{
+  // A jump of N is a point in 2D, where halving costs little, and a curve in 3D.
+  constexpr int deepest = dim == 2 ? 30 : 3;
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure;
+  const auto is_enough = [&](const Integrals& value, const contact::ContactDatumPart<dim>& part)
+  {
+    const Missed& missed = is_open(segment, part, value) ? value.missed_open : value.missed;
+    return norm_scale(segment) * (missed.normal + missed.tangential) <=
+           allowed * fem::fraction<dim - 1>(part.part);
+  };
+  for (int depth = 0; depth < deepest && parts.size() < max_pieces; ++depth)
+  {
+    const std::size_t n_before = parts.size();
+    for (std::size_t i = 0; i < n_before; ++i)
+    {
+      if (is_enough(integrals[i], parts[i])) continue;
+      const auto pieces = halves(parts[i].part);
+      for (std::size_t j = 1; j < pieces.size(); ++j)
+      {
+        parts.push_back({pieces[j], parts[i].gap, parts[i].strength});
+        integrals.push_back(integrate(k, fields, pieces[j]));
+      }
+      parts[i].part = pieces[0];
+      integrals[i] = integrate(k, fields, pieces[0]);
+    }
+    if (parts.size() == n_before) break;
+  }
+}
+
+template void ContactTerms<2>::add_varying_traction(int, std::span<const Point<2>>, double&, double&) const;
+template void ContactTerms<2>::add_missed(int, const Piece&, std::span<const Point<2>>,
+                                          std::span<const Point<2>>, Integrals&) const;
+template void ContactTerms<2>::resolve_normal(int, const Fields&, std::vector<contact::ContactDatumPart<2>>&,
+                                              std::vector<Integrals>&) const;
+template void ContactTerms<3>::add_varying_traction(int, std::span<const Point<3>>, double&, double&) const;
+template void ContactTerms<3>::add_missed(int, const Piece&, std::span<const Point<3>>,
+                                          std::span<const Point<3>>, Integrals&) const;
+template void ContactTerms<3>::resolve_normal(int, const Fields&, std::vector<contact::ContactDatumPart<3>>&,
+                                              std::vector<Integrals>&) const;
+
+}  // namespace tribound::certify

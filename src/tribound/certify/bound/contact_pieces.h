@@ -1,0 +1,67 @@
+#pragma once
+
+/// @file contact_pieces.h
+/// Pieces of contact segments, as ContactTerms divides them. Internal to it.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/contact/nitsche/simplex_map.h"
+#include "tribound/fem/simplex_parts.h"
+#include "tribound/problem/normal_field.h"
+
+namespace tribound::certify
+{
+
+/// More than the data ask for: so many are left where rounding makes the kinks.
+inline constexpr std::size_t max_pieces = 4096;
+/// What a rule on a piece may miss of a norm, over the largest distance from the polynomials for which it is
+/// exact, where the projection of the values decides about kinks.
+inline constexpr double misses = 3;
+
+/// The parts of a segment or triangle halved along each edge.
+[[nodiscard]] inline std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
+{
+  const Point<1> middle = (s[0] + s[1]) / 2;
+  return {{{s[0], middle}, {middle, s[1]}}};
+}
+[[nodiscard]] inline std::array<std::array<Point<2>, 3>, 4> halves(const std::array<Point<2>, 3>& s)
+{
+  const Point<2> a = (s[1] + s[2]) / 2;
+  const Point<2> b = (s[0] + s[2]) / 2;
+  const Point<2> c = (s[0] + s[1]) / 2;
+  return {{{s[0], c, b}, {c, s[1], a}, {b, a, s[2]}, {a, b, c}}};
+}
+
+/// h_k |k| / |reference simplex|.
+template <int dim>
+[[nodiscard]] double norm_scale(const contact::ContactSegment<dim>& segment)
+{
+  return segment.h * segment.det();
+}
+
+/// How far N may be from polynomials on a part of a segment.
+template <int dim>
+[[nodiscard]] problem::NormalDeviation deviation_on(const contact::SimplexMap<dim - 1, dim>& map,
+                                                    const problem::NormalField& normal,
+                                                    const fem::Part<dim - 1>& part)
+{
+  std::array<double, dim * dim> vertices;
+  for (int i = 0; i < dim; ++i)
+  {
+    const Point<dim> x = map(part[i]);
+    std::ranges::copy(x, vertices.begin() + i * dim);
+  }
+  return problem::deviation(normal, vertices, dim);
+}
+
+/// Of v - v.N N from P^{p+2}, over |v|, v in P^p: in 2D along the tangent.
+template <int dim>
+[[nodiscard]] double tangential_deviation(const problem::NormalDeviation& deviation)
+{
+  return dim == 2 ? deviation.quadratic : deviation.linear * (2 + deviation.linear);
+}
+
+}  // namespace tribound::certify
