@@ -66,7 +66,7 @@ void read_round(const Node& node, SurfaceConfig& surface)
 
 std::string read_formula(const Node& node)
 {
-  const std::string text = to_text(node);
+  std::string text = to_text(node);
   (void)problem::Field(text, node.where);  // its mistakes are those of any formula
   return text;
 }

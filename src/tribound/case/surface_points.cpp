@@ -28,6 +28,7 @@ template <class Function>
 problem::NormalField direction_of(const Function& function, const Where& where)
 {
   std::vector<problem::Field> components;
+  components.reserve(3);
   for (int i = 0; i < 3; ++i)
     components.push_back(field_of([=](const Point<3>& x) { return function(x)[i]; }, where));
   return problem::NormalField(std::move(components));
@@ -36,6 +37,7 @@ problem::NormalField direction_of(const Function& function, const Where& where)
 std::vector<problem::Field> fields(const std::vector<std::string>& texts, const Where& where)
 {
   std::vector<problem::Field> result;
+  result.reserve(texts.size());
   for (const std::string& text : texts) result.emplace_back(text, where, "a surface");
   return result;
 }

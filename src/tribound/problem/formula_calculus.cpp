@@ -282,6 +282,7 @@ std::vector<std::string> gradient(const std::string& text, int dim, const Where&
   const FormulaProgram program = parse_formula(text, where);
   const Term term = Calculus(coordinates, true)(program.nodes);
   std::vector<std::string> result;
+  result.reserve(dim);
   for (int i = 0; i < dim; ++i) result.push_back(or_zero(term.derivative[i]));
   return result;
 }

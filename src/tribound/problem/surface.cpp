@@ -158,7 +158,8 @@ NormalField direction_along(std::span<const std::string> components, const Where
   for (const std::string& component : components) v.push_back("(" + component + ")");
   const std::string size = length(v);
   std::vector<Field> result;
-  for (const std::string& component : v) result.emplace_back(component + "/" + size, where);
+  result.reserve(v.size());
+  for (const std::string& component : v) result.emplace_back(fmt::format("{}/{}", component, size), where);
   return NormalField(std::move(result));
 }
 

@@ -208,6 +208,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   std::vector<contact::ContactDatumPart<dim>> parts(given.begin(), given.end());
   if (parts.empty()) parts.push_back({fem::reference_simplex<dim - 1>(), 0, 0});
   std::vector<Integrals> integrals;
+  integrals.reserve(parts.size());
   for (const auto& part : parts) integrals.push_back(integrate(k, on_k, part.part));
   if (segment.varying_normal != nullptr) resolve_normal(k, on_k, parts, integrals);
   if (rule_ == ContactRule::resolved) settle(k, on_k, parts, integrals);
