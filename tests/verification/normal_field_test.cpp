@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/contact_tangent.h"
 #include "support/discrete_problem.h"
 #include "support/fields.h"
 #include "support/meshes.h"
@@ -59,29 +60,6 @@ TEST(NormalField, TheNormalOfTheFacetsGivenIsTheNormalOfTheFacets)
   }
 }
 
-/// The derivative of the contact forces against differences.
-template <int dim>
-void expect_tangent(const contact::NitscheForm<dim>& form, std::span<const double> start)
-{
-  const std::vector<double> u(start.begin(), start.end());
-  const std::vector<double> w = random_free_vector(form.constraints(), 1, 2);
-  constexpr double step = 1e-7;
-  const auto forces = [&](const std::vector<double>& at)
-  {
-    std::vector<double> result(form.space().n_dofs(), 0.0);
-    form.add_contact_load(form.traction(at), result);
-    return free_part(form.constraints(), result);
-  };
-  const std::vector<double> difference = sum(forces(sum(u, step, w)), -1, forces(sum(u, -step, w)));
-  const algebra::Triplets tangent = form.contact_tangent(contact::Linearisation::newton, u);
-  std::vector<double> product(form.space().n_dofs(), 0.0);
-  for (std::size_t i = 0; i < tangent.values.size(); ++i)
-    if (tangent.rows[i] >= 0 && tangent.cols[i] >= 0)
-      product[tangent.rows[i]] += tangent.values[i] * w[tangent.cols[i]];
-  EXPECT_GT(norm(product), 0);
-  EXPECT_LE(norm(sum(product, 1 / (2 * step), difference)), 1e-6 * norm(product));
-}
-
 struct Seen
 {
   double least = HUGE_VAL;
@@ -116,7 +94,7 @@ void expect_certified(const DiscreteProblem<dim>& c, const std::string& name, Se
   };
   const solve::NewtonResult<dim> newton = c.solve(0, check);
   EXPECT_TRUE(converged) << name;
-  expect_tangent<dim>(c.form, sum(newton.u, 1, random_free_vector(c.form.constraints(), 1e-3, 1)));
+  expect_contact_tangent(c.form, sum(newton.u, 1, random_free_vector(c.form.constraints(), 1e-3, 1)), 1e-7);
 }
 
 /// Each obstacle with each degree, under laws that change places.
