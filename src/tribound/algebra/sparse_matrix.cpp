@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <span>
 #include <utility>
@@ -240,7 +241,11 @@ void add_rows(Mat sum, Mat a)
     std::size_t place = 0;
     for (const PetscInt column : from.row(i))
     {
-      while (columns[place] != column) ++place;
+      while (columns[place] != column)
+      {
+        ++place;
+        assert(place < columns.size());
+      }
       in_row[place++] += *entry++;
     }
   }
