@@ -24,6 +24,18 @@
 namespace tribound::adapt
 {
 
+/// A mesh with a space on it. The space refers to the mesh: it stays where it is made.
+template <int dim>
+struct Grid
+{
+  Grid(mesh::Mesh<dim> m, int degree) : mesh(std::move(m)), space(mesh, degree) {}
+  Grid(const Grid&) = delete;
+  Grid& operator=(const Grid&) = delete;
+
+  mesh::Mesh<dim> mesh;
+  fem::LagrangeSpace<dim> space;
+};
+
 /// A mesh with everything up to the discrete problem on it. Its parts refer to each other: it stays where it
 /// is made.
 template <int dim>
@@ -31,16 +43,26 @@ struct Discretisation
 {
   Discretisation(mesh::Mesh<dim> m, const problem::Problem<dim>& problem, const Method& method,
                  const contact::DataAccuracy& accuracy = {})
-      : mesh(contact::with_partners<dim>(std::move(m), problem.pairs())),
-        space(mesh, method.degree),
+      : Discretisation(std::make_shared<const Grid<dim>>(
+                           contact::with_partners<dim>(std::move(m), problem.pairs()), method.degree),
+                       problem, method, accuracy)
+  {
+  }
+  /// Another problem with the same pairs on the mesh of another one.
+  Discretisation(std::shared_ptr<const Grid<dim>> of, const problem::Problem<dim>& problem,
+                 const Method& method, const contact::DataAccuracy& accuracy = {})
+      : grid(std::move(of)),
+        mesh(grid->mesh),
+        space(grid->space),
         form(problem, space, method.gamma_0(), accuracy)
   {
   }
   Discretisation(const Discretisation&) = delete;
   Discretisation& operator=(const Discretisation&) = delete;
 
-  mesh::Mesh<dim> mesh;
-  fem::LagrangeSpace<dim> space;
+  std::shared_ptr<const Grid<dim>> grid;
+  const mesh::Mesh<dim>& mesh;
+  const fem::LagrangeSpace<dim>& space;
   contact::NitscheForm<dim> form;  ///< a(u,v) - (T(u),v)_C - L(v)
 };
 

@@ -40,6 +40,9 @@ struct Method
   algebra::SolverOptions solver{};
   certify::ContactRule contact_rule = certify::ContactRule::resolved;
 
+  /// Whether Newton's method may begin anew from other starts; not along a path, whose branch it could leave.
+  bool other_starts = true;
+
   /// gamma_0 of method section 2.
   [[nodiscard]] double gamma_0() const { return gamma0.value_or(contact::default_gamma0(degree)); }
 };

@@ -196,7 +196,8 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
                                             const solve::NewtonObserver<dim>& observer, double delta,
                                             const Record& record)
 {
-  const bool may_start_anew = method.newton.damping && !method.regularisation && form.problem().has_contact();
+  const bool may_start_anew =
+      method.other_starts && method.newton.damping && !method.regularisation && form.problem().has_contact();
   std::optional<Start<dim>> easier;
   const Ranks& ranks = form.space().mesh().ranks();  // one without cells has no displacement
   if (dim == 3 && !ranks.any(!start.empty()) && may_start_anew && !is_linear(form))
@@ -205,7 +206,18 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   solve::NewtonResult<dim> first;
   if (easier) first.equilibrium = easier->equilibrium;
   const auto attempt = [&](std::span<const double> u)
-  { return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta, first.equilibrium); };
+  {
+    if (method.newton.damping && method.newton.full_steps > 0)
+    {
+      solve::NewtonOptions full = method.newton;
+      full.damping = false;
+      full.max_steps = std::min(full.full_steps, full.max_steps);
+      auto result = solve::solve<dim>(form, u, full, method.solver, observer, delta, first.equilibrium);
+      if (result.message.empty()) return result;
+      first.equilibrium = std::move(result.equilibrium);
+    }
+    return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta, first.equilibrium);
+  };
   std::exception_ptr failure;
   try
   {

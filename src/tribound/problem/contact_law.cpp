@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <concepts>
 #include <limits>
 
@@ -69,19 +72,39 @@ std::string text(const Field& field)
   return field.is_constant() ? fmt::format("{:.6g}", field.constant()) : "varies";
 }
 
-template <Law L>
+template <FrictionLaw L>
 ContactLaw make(std::span<const Field> values)
 {
   return L(values);
 }
 
-template <Law... L>
-constexpr std::array<LawKind, sizeof...(L)> kinds_of(const std::variant<L...>* /*type*/)
+/// Of all laws without bond: they come first.
+template <class... L>
+constexpr auto kinds_of(const std::variant<L...>* /*type*/)
 {
-  return {LawKind{L::name, L::keys, &make<L>}...};
+  constexpr std::size_t n = (std::size_t{FrictionLaw<L>} + ...);
+  std::array<LawKind, n> kinds;
+  std::size_t i = 0;
+  const auto add = [&]<class K>()
+  {
+    if constexpr (FrictionLaw<K>) kinds[i++] = {K::name, K::keys, &make<K>};
+  };
+  (add.template operator()<L>(), ...);
+  return kinds;
 }
 
 constexpr auto kinds = kinds_of(static_cast<const ContactLaw*>(nullptr));
+
+template <class L>
+constexpr bool has_bond =
+    std::derived_from<L, Joint> || std::derived_from<L, Mixed> || std::derived_from<L, Endo>;
+
+/// P with the slip that friction without bond remembers.
+template <int dim>
+Point<dim> remembered(const LawPoint<dim>& point, const Point<dim>& P)
+{
+  return P + point.gamma * point.state.slip;
+}
 
 }  // namespace
 
@@ -107,6 +130,33 @@ std::string Coulomb::words() const
   return fmt::format("Coulomb friction, coefficient {:.6g}", coefficient);
 }
 
+std::string JointLaw::words() const
+{
+  std::string text = "joint";
+  if (tension.strength > 0)
+    text += fmt::format(", tensile strength {:.6g}, fracture energy {:.6g}", tension.strength,
+                        tension.fracture_energy);
+  if (cohesion > 0) text += fmt::format(", cohesion {:.6g}", cohesion);
+  if (cohesion > 0 && std::isfinite(slip_length))
+    text += fmt::format(", lost on a slip of {:.6g}", slip_length);
+  if (coefficient > 0) text += fmt::format(", friction coefficient {:.6g}", coefficient);
+  if (!threshold.is_zero()) text += fmt::format(", threshold {}", problem::text(threshold));
+  return text + (stick ? ", no slip before it breaks" : "");
+}
+
+std::string MixedLaw::words() const
+{
+  return fmt::format("mixed-mode bond, tensile strength {:.6g}, fracture energy {:.6g}, shear ratio {:.6g}{}",
+                     tension.strength, tension.fracture_energy, shear_ratio,
+                     coefficient > 0 ? fmt::format(", friction coefficient {:.6g}", coefficient) : "");
+}
+
+std::string EndoLaw::words() const
+{
+  return fmt::format("elastoplastic joint with damage, tensile strength {:.6g}, cohesion {:.6g}",
+                     tensile_strength(), Endo::cohesion());
+}
+
 template <int dim>
 Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
 {
@@ -115,8 +165,16 @@ Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const P
       {
         if constexpr (std::same_as<L, Tied>)
           return {P, std::numeric_limits<double>::infinity(), ContactStatus::tied};
+        else if constexpr (has_bond<L>)
+        {
+          const InterfaceResponse<dim> response = problem::respond<dim>(l, point, P);
+          return {response.traction, response.slip_limit, response.status};
+        }
         else
-          return unilateral<dim>(point, P, limit(l, point.strength, P.dot(point.normal), delta).value, delta);
+        {
+          const Point<dim> p = remembered(point, P);
+          return unilateral<dim>(point, p, limit(l, point.strength, p.dot(point.normal), delta).value, delta);
+        }
       },
       law);
 }
@@ -129,9 +187,86 @@ Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Poi
       {
         if constexpr (std::same_as<L, Tied>)
           return Tensor<dim>::Identity();
+        else if constexpr (has_bond<L>)
+          return problem::respond<dim>(l, point, P).derivative;
         else
-          return unilateral_tangent<dim>(point, P, limit(l, point.strength, P.dot(point.normal), delta),
+        {
+          const Point<dim> p = remembered(point, P);
+          return unilateral_tangent<dim>(point, p, limit(l, point.strength, p.dot(point.normal), delta),
                                          delta);
+        }
+      },
+      law);
+}
+
+template <int dim>
+InterfaceResponse<dim> advance(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P)
+{
+  return std::visit(
+      [&]<Law L>(const L& l) -> InterfaceResponse<dim>
+      {
+        if constexpr (has_bond<L>)
+          return problem::respond<dim>(l, point, P);
+        else if constexpr (std::same_as<L, Tied>)
+          return {.traction = P,
+                  .derivative = Tensor<dim>::Identity(),
+                  .state = point.state,
+                  .damage_gradient = Point<dim>::Zero(),
+                  .slip_limit = std::numeric_limits<double>::infinity(),
+                  .status = ContactStatus::tied};
+        else
+          return problem::respond<dim>(Joint{.coefficient = l.cone().coefficient}, point, P);
+      },
+      law);
+}
+
+template <int dim>
+InterfaceState<dim> fresh_state(const ContactLaw& law)
+{
+  return std::visit(
+      []<Law L>(const L& l) -> InterfaceState<dim>
+      {
+        if constexpr (has_bond<L>)
+          return {.damage = l.fresh_damage()};
+        else
+          return {.damage = std::same_as<L, Tied> ? 0.0 : 1.0};
+      },
+      law);
+}
+
+template <int dim>
+InterfaceState<dim> admissible(const ContactLaw& law, InterfaceState<dim> state)
+{
+  state.damage = std::clamp(state.damage, 0.0, 1.0);
+  state.slipped = std::max(state.slipped, 0.0);
+  const auto* const joint = std::get_if<JointLaw>(&law);
+  if (joint && joint->cohesion > 0 && std::isfinite(joint->slip_length) && state.damage < 1)
+    state.slipped = std::min(state.slipped, state.damage * joint->slip_length);
+  return state;
+}
+
+double softening_slope(const ContactLaw& law)
+{
+  return std::visit(
+      []<Law L>(const L& l)
+      {
+        if constexpr (has_bond<L>)
+          return l.softening_slope();
+        else
+          return 0.0;
+      },
+      law);
+}
+
+double tangential_weight(const ContactLaw& law)
+{
+  return std::visit(
+      []<Law L>(const L& l)
+      {
+        if constexpr (has_bond<L>)
+          return l.tangential_weight();
+        else
+          return 1.0;
       },
       law);
 }
@@ -148,7 +283,7 @@ std::string words(const ContactLaw& law)
 
 std::string_view name(const ContactLaw& law)
 {
-  return kinds[law.index()].name;
+  return std::visit([](const auto& l) { return l.name; }, law);
 }
 
 bool is_minimum(const ContactLaw& law)
@@ -171,5 +306,11 @@ template Response<2> respond(const ContactLaw&, const LawPoint<2>&, const Point<
 template Response<3> respond(const ContactLaw&, const LawPoint<3>&, const Point<3>&, double);
 template Tensor<2> tangent(const ContactLaw&, const LawPoint<2>&, const Point<2>&, double);
 template Tensor<3> tangent(const ContactLaw&, const LawPoint<3>&, const Point<3>&, double);
+template InterfaceResponse<2> advance(const ContactLaw&, const LawPoint<2>&, const Point<2>&);
+template InterfaceResponse<3> advance(const ContactLaw&, const LawPoint<3>&, const Point<3>&);
+template InterfaceState<2> admissible(const ContactLaw&, InterfaceState<2>);
+template InterfaceState<3> admissible(const ContactLaw&, InterfaceState<3>);
+template InterfaceState<2> fresh_state(const ContactLaw&);
+template InterfaceState<3> fresh_state(const ContactLaw&);
 
 }  // namespace tribound::problem

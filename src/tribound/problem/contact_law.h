@@ -4,39 +4,25 @@
 /// The laws of contact at one point, method section 2: what the traction T is as a function of
 /// P = sigma n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
 ///
-/// A law is a struct that satisfies `Law`, with its two functions respond() and tangent() in contact_law.cpp,
-/// and a place in the variant ContactLaw. Everything else (form, bound, statics, case file, words) goes
-/// through the functions at the end of this file.
+/// A law is a struct that satisfies `Law`, with its functions in contact_law.cpp or, where it has a bond, in
+/// interface_law.h, and a place in the variant ContactLaw. Everything else (form, bound, statics, case file,
+/// words) goes through the functions at the end of this file.
 
 #include <array>
 #include <concepts>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "tribound/base/types.h"
 #include "tribound/problem/field.h"
+#include "tribound/problem/interface_law.h"
 
 namespace tribound::problem
 {
-
-enum class ContactStatus
-{
-  open = 0,
-  stick = 1,
-  slip = 2,
-  tied = 3
-};
-
-/// What a law knows of a point, evaluated once.
-template <int dim>
-struct LawPoint
-{
-  Point<dim> normal;    ///< the outward unit normal n
-  double strength = 0;  ///< of FrictionCone at the point, stress
-};
 
 /// The answer to P.
 template <int dim>
@@ -54,11 +40,12 @@ struct FrictionCone
   const Field* strength = nullptr;  ///< s(x) >= 0, stress; null for 0
   double coefficient = 0;           ///< mu_F >= 0
   bool is_tied = false;             ///< it holds anything, tension too
+  bool is_bonded = false;           ///< at first it holds more than this, perhaps tension, until it breaks
 
   /// Whether there is anything to hold.
   [[nodiscard]] bool resists_sliding() const
   {
-    return is_tied || coefficient > 0 || (strength != nullptr && !strength->is_zero());
+    return is_tied || is_bonded || coefficient > 0 || (strength != nullptr && !strength->is_zero());
   }
   /// strength + coefficient |T^n| for T^n = p_n <= 0.
   [[nodiscard]] double closed_limit(double strength_here, double p_n) const
@@ -131,15 +118,50 @@ struct Tied
   [[nodiscard]] std::string words() const;
 };
 
-/// What every law has: its name and keys in the case file, how it is made from their values, what it holds at
-/// most, its description, and whether the solution is the minimum of a strictly convex energy.
+/// Joint with a friction threshold that may vary.
+struct JointLaw : Joint
+{
+  Field threshold;  ///< s >= 0, stress
+
+  static constexpr std::string_view name = "joint";
+  static constexpr bool is_minimum = false;
+
+  explicit JointLaw(const Joint& joint, Field s = 0.0) : Joint(joint), threshold(std::move(s)) {}
+  [[nodiscard]] FrictionCone cone() const
+  {
+    return {.strength = &threshold, .coefficient = coefficient, .is_bonded = is_bonded()};
+  }
+  [[nodiscard]] std::string words() const;
+};
+
+struct MixedLaw : Mixed
+{
+  static constexpr std::string_view name = "mixed";
+  static constexpr bool is_minimum = false;
+
+  explicit MixedLaw(const Mixed& mixed) : Mixed(mixed) {}
+  [[nodiscard]] FrictionCone cone() const { return {.coefficient = coefficient, .is_bonded = true}; }
+  [[nodiscard]] std::string words() const;
+};
+
+struct EndoLaw : Endo
+{
+  static constexpr std::string_view name = "endo";
+  static constexpr bool is_minimum = false;
+
+  explicit EndoLaw(const Endo& endo) : Endo(endo) {}
+  [[nodiscard]] FrictionCone cone() const { return {.coefficient = coefficient, .is_bonded = true}; }
+  [[nodiscard]] std::string words() const;
+};
+
+/// What every law has: its name, what it holds at most, its description, and whether the solution is the
+/// minimum of a strictly convex energy.
 template <class L>
-concept Law = std::constructible_from<L, std::span<const Field>> && requires(const L& law)
+concept Law = requires(const L& law)
 {
   {
     L::name
     } -> std::convertible_to<std::string_view>;
-  {std::span<const LawKey>(L::keys)};
   {
     L::is_minimum
     } -> std::convertible_to<bool>;
@@ -151,7 +173,14 @@ concept Law = std::constructible_from<L, std::span<const Field>> && requires(con
     } -> std::same_as<std::string>;
 };
 
-using ContactLaw = std::variant<Frictionless, Tresca, Coulomb, Tied>;
+/// A law without bond: it has keys in the case file, and is made from their values.
+template <class L>
+concept FrictionLaw = Law<L> && std::constructible_from<L, std::span<const Field>> && requires
+{
+  {std::span<const LawKey>(L::keys)};
+};
+
+using ContactLaw = std::variant<Frictionless, Tresca, Coulomb, Tied, JointLaw, MixedLaw, EndoLaw>;
 
 /// T(P) with limit and status; T_delta with the regularised projections of method section 7 for delta > 0.
 template <int dim>
@@ -163,12 +192,33 @@ template <int dim>
 [[nodiscard]] Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
                                   double delta = 0);
 
+/// What a step that ends with P commits: of Joint, Mixed and Endo their own answer; of friction without bond
+/// that of Joint with the same cone, the slip; of Tied nothing. `point.gamma` is needed.
+template <int dim>
+[[nodiscard]] InterfaceResponse<dim> advance(const ContactLaw& law, const LawPoint<dim>& point,
+                                             const Point<dim>& P);
+
+/// The state before the first step, where the interface is not broken.
+template <int dim>
+[[nodiscard]] InterfaceState<dim> fresh_state(const ContactLaw& law);
+
+/// The state that a law can have nearest to one between points: 0 <= D <= 1, q >= 0, and of a joint whose
+/// cohesion is lost by slip q <= D slip_c while D < 1.
+template <int dim>
+[[nodiscard]] InterfaceState<dim> admissible(const ContactLaw& law, InterfaceState<dim> state);
+
+/// What gamma has to exceed: Joint::softening_slope() and others; 0 without bond.
+[[nodiscard]] double softening_slope(const ContactLaw& law);
+
+/// gamma_t / gamma: 1 for all but Mixed.
+[[nodiscard]] double tangential_weight(const ContactLaw& law);
+
 [[nodiscard]] FrictionCone cone(const ContactLaw& law);
 
 /// Such as "Tresca friction, threshold 0.03".
 [[nodiscard]] std::string words(const ContactLaw& law);
 
-/// "none", "tresca", ...
+/// "none", "tresca", ..., "endo".
 [[nodiscard]] std::string_view name(const ContactLaw& law);
 
 /// Whether the exact solution is the minimum of a strictly convex energy.
@@ -182,7 +232,7 @@ struct LawKind
   ContactLaw (*make)(std::span<const Field> values);  ///< a value for each key
 };
 
-/// All laws, in the order of the variant; and those of contact with an obstacle.
+/// All laws without bond, in the order of the variant; and those of contact with an obstacle.
 [[nodiscard]] std::span<const LawKind> law_kinds();
 [[nodiscard]] std::span<const LawKind> obstacle_law_kinds();
 

@@ -53,7 +53,7 @@ template <int dim>
 class EndoStep
 {
  public:
-  EndoStep(const Endo& law, const InterfacePoint<dim>& point, const Point<dim>& P)
+  EndoStep(const Endo& law, const LawPoint<dim>& point, const Point<dim>& P)
       : law_(law),
         point_(point),
         n_(point.normal),
@@ -86,6 +86,8 @@ class EndoStep
     }
     result.state = {grows ? alpha : point_.state.damage, p.opening, -p.slip};
     result.opening = (P_normal() - t_n) / point_.gamma;
+    result.status = p.slip == -point_.state.slip ? ContactStatus::stick : ContactStatus::slip;
+    if (result.opening > 0 && p.opening > 0) result.status = ContactStatus::open;
     result.slip_limit = std::numeric_limits<double>::infinity();
     result.dissipated = law_.energy * (result.state.damage - point_.state.damage);
     result.stored = t_n * t_n / (2 * law_.normal_stiffness) +
@@ -181,7 +183,7 @@ class EndoStep
   }
 
   const Endo& law_;
-  const InterfacePoint<dim>& point_;
+  const LawPoint<dim>& point_;
   Point<dim> n_;
   double k_n_;  ///< K_n and gamma in series
   double k_t_;
@@ -217,12 +219,12 @@ double Endo::cohesion() const
 }
 
 template <int dim>
-InterfaceResponse<dim> respond(const Endo& law, const InterfacePoint<dim>& point, const Point<dim>& P)
+InterfaceResponse<dim> respond(const Endo& law, const LawPoint<dim>& point, const Point<dim>& P)
 {
   return EndoStep<dim>(law, point, P).respond();
 }
 
-template InterfaceResponse<2> respond(const Endo&, const InterfacePoint<2>&, const Point<2>&);
-template InterfaceResponse<3> respond(const Endo&, const InterfacePoint<3>&, const Point<3>&);
+template InterfaceResponse<2> respond(const Endo&, const LawPoint<2>&, const Point<2>&);
+template InterfaceResponse<3> respond(const Endo&, const LawPoint<3>&, const Point<3>&);
 
 }  // namespace tribound::problem

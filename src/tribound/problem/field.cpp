@@ -28,12 +28,23 @@ Field::Field(FieldFunction function, Where where)
 Field::Field(std::string text, Where where) : Field(std::move(text), std::move(where), {}) {}
 
 Field::Field(std::string text, Where where, std::string name)
+    : Field(std::move(text), std::move(where), std::move(name), 1)
+{
+}
+
+Field::Field(std::string text, Where where, std::string name, double t)
     : where_(std::move(where)), name_(std::move(name))
 {
-  formula_ = std::make_shared<const Formula>(std::move(text), where_);
+  formula_ = std::make_shared<const Formula>(std::move(text), where_, t);
+  if (formula_->uses_time()) in_time_ = std::make_shared<const std::string>(formula_->text());
   if (formula_->uses(0) || formula_->uses(1) || formula_->uses(2)) return;
   value_ = evaluate({});
   formula_.reset();
+}
+
+Field Field::at(double t) const
+{
+  return in_time_ ? Field(*in_time_, where_, name_, t) : *this;
 }
 
 bool Field::uses_z() const

@@ -53,12 +53,17 @@ class Field
   /// The function; `where` stands for it in messages.
   explicit Field(FieldFunction function, Where where = {.file = {}, .key = "a function of the program"});
 
-  /// The formula `text`, found at `where`. Without x, y, z in it, it is folded to a constant.
+  /// The formula `text` for t = 1, found at `where`. Without x, y, z in it, it is folded to a constant.
   /// Throws InputError: a syntax error or an unknown name (with the position in `text`), more than one
   /// result ("1,5"), an assignment, a constant that is not finite.
   Field(std::string text, Where where);
   /// The same; messages about its values call it `name`.
   Field(std::string text, Where where, std::string name);
+
+  /// The same datum at the load factor t. Throws InputError where it is a constant that is not finite then.
+  [[nodiscard]] Field at(double t) const;
+  /// Whether it is a formula that names t.
+  [[nodiscard]] bool uses_time() const { return in_time_ != nullptr; }
 
   /// The value at `x` (z = 0 in 2D). Throws InputError naming the key and the point if it is not finite.
   template <int dim>
@@ -95,6 +100,7 @@ class Field
   [[nodiscard]] const Where& where() const { return where_; }
 
  private:
+  Field(std::string text, Where where, std::string name, double t);
   [[nodiscard]] double evaluate(std::span<const double> x) const;
   [[nodiscard]] Enclosure around_within_simplex(std::span<const double> x, double radius) const;
   [[noreturn]] void fail(double value, std::span<const double> x) const;
@@ -102,6 +108,7 @@ class Field
   double value_ = 0.0;
   std::shared_ptr<const Formula> formula_;         ///< or null
   std::shared_ptr<const FieldFunction> function_;  ///< or null
+  std::shared_ptr<const std::string> in_time_;     ///< the formula where it names t; else null
   Where where_;
   std::string name_;  ///< for messages; empty: the formula itself
 };

@@ -7,8 +7,8 @@
 namespace tribound::problem
 {
 
-Formula::Formula(std::string text, const Where& where)
-    : program_(std::make_shared<const FormulaProgram>(parse_formula(std::move(text), where)))
+Formula::Formula(std::string text, const Where& where, double t)
+    : program_(std::make_shared<const FormulaProgram>(parse_formula(std::move(text), where, t)))
 {
 }
 
@@ -25,6 +25,11 @@ int Formula::degree() const
 bool Formula::uses(int variable) const
 {
   return program_->uses.at(variable);
+}
+
+bool Formula::uses_time() const
+{
+  return program_->uses_time;
 }
 
 std::span<const Affine> Formula::switches() const

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file formula.h
-/// A formula in x, y, z: parsed once, evaluated at points and enclosed over simplices.
+/// A formula in x, y, z and the load factor t: parsed once, evaluated at points and enclosed over simplices.
 
 #include <array>
 #include <limits>
@@ -43,8 +43,8 @@ enum class Sides
 
 struct FormulaProgram;
 
-/// A scalar formula in x, y, z (grammar in docs/case-format.md; pi and e are constants). Use of one object by
-/// several threads at once is safe; copies share what was parsed.
+/// A scalar formula in x, y, z (grammar in docs/case-format.md; pi, e and t are constants). Use of one object
+/// by several threads at once is safe; copies share what was parsed.
 class Formula
 {
  public:
@@ -53,9 +53,10 @@ class Formula
   /// The highest order of derivatives that enclose() takes.
   static constexpr int max_order = 15;
 
-  /// The formula `text`, found at `where`. Throws InputError: empty, a syntax error or an unknown name (with
-  /// the position in `text`), more than one result ("1,5"), an assignment, too long or too deeply nested.
-  Formula(std::string text, const Where& where);
+  /// The formula `text`, found at `where`, with the given value of t. Throws InputError: empty, a syntax
+  /// error or an unknown name (with the position in `text`), more than one result ("1,5"), an assignment, too
+  /// long or too deeply nested.
+  Formula(std::string text, const Where& where, double t = 1);
 
   /// The value at `x` (2 or 3 coordinates, z = 0 in 2D; none for a formula without variables). It may be nan
   /// or infinite.
@@ -72,6 +73,9 @@ class Formula
 
   /// Whether it names x, y or z (0, 1, 2).
   [[nodiscard]] bool uses(int variable) const;
+
+  /// Whether it names t.
+  [[nodiscard]] bool uses_time() const;
 
   /// The affine functions at whose zeros the formula may jump or kink: differences of the arguments of
   /// comparisons, min and max, arguments of abs and sign, where they are affine. No two are multiples of each

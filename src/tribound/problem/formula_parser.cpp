@@ -46,7 +46,7 @@ constexpr std::array binary_operators = {
 class Parser
 {
  public:
-  Parser(const std::string& text, const Where& where) : text_(text), where_(where) {}
+  Parser(const std::string& text, const Where& where, double t) : text_(text), where_(where), t_(t) {}
 
   FormulaProgram parse()
   {
@@ -60,7 +60,9 @@ class Parser
     if (n_results > 1)
       throw InputError(where_, fmt::format("the formula \"{}\" has {} results", text_, n_results),
                        "a comma separates arguments of a function; the decimal sign is a point");
-    return std::move(builder_).finish(text_);
+    FormulaProgram program = std::move(builder_).finish(text_);
+    program.uses_time = uses_time_;
+    return program;
   }
 
  private:
@@ -216,6 +218,11 @@ class Parser
       builder_.number(std::numbers::pi);
     else if (word == "e")
       builder_.number(std::numbers::e);
+    else if (word == "t")
+    {
+      builder_.number(t_);
+      uses_time_ = true;
+    }
     else if (word == "x" || word == "y" || word == "z")
       builder_.variable(word[0] - 'x');
     else
@@ -250,6 +257,8 @@ class Parser
 
   const std::string& text_;
   const Where& where_;
+  double t_;  ///< the load factor
+  bool uses_time_ = false;
   std::size_t position_ = 0;
   int depth_ = 0;
   FormulaBuilder builder_;
@@ -257,7 +266,7 @@ class Parser
 
 }  // namespace
 
-FormulaProgram parse_formula(std::string text, const Where& where)
+FormulaProgram parse_formula(std::string text, const Where& where, double t)
 {
   std::ranges::replace_if(
       text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
@@ -268,7 +277,7 @@ FormulaProgram parse_formula(std::string text, const Where& where)
                      fmt::format("at most {}", max_length));
   check_names(text, where);
   check_no_assignment(text, where);
-  return Parser(text, where).parse();
+  return Parser(text, where, t).parse();
 }
 
 }  // namespace tribound::problem

@@ -77,6 +77,7 @@ struct FormulaProgram
   std::string text;
   std::vector<Node> nodes;  ///< of which each leaves one value on the stack
   std::array<bool, 3> uses{};
+  bool uses_time = false;
   int degree = Formula::not_polynomial;
   std::vector<Affine> switches;
 };
@@ -87,7 +88,7 @@ inline constexpr int max_stack = 512;
 /// The value of `nodes`, which name no variable.
 [[nodiscard]] double constant_value(std::span<const Node> nodes);
 
-/// Parses `text`; throws as Formula does.
-[[nodiscard]] FormulaProgram parse_formula(std::string text, const Where& where);
+/// Parses `text` with the value of t; throws as Formula does.
+[[nodiscard]] FormulaProgram parse_formula(std::string text, const Where& where, double t = 1);
 
 }  // namespace tribound::problem

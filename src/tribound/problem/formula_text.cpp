@@ -70,7 +70,7 @@ void check_names(const std::string& text, const Where& where)
 {
   std::vector<std::string> functions;
   for (const NamedFunction& function : named_functions()) functions.emplace_back(function.name);
-  std::vector<std::string> known = {"x", "y", "z", "pi", "e"};
+  std::vector<std::string> known = {"x", "y", "z", "t", "pi", "e"};
   known.insert(known.end(), functions.begin(), functions.end());
   for (std::size_t i = 0; i < text.size();)
   {
@@ -86,7 +86,7 @@ void check_names(const std::string& text, const Where& where)
     {
       const std::string near = closest(name, known);
       fail_at(text, i, where, fmt::format("unknown name \"{}\"", name),
-              fmt::format("{}allowed are x, y, z, pi, e and the functions {}",
+              fmt::format("{}allowed are x, y, z, t, pi, e and the functions {}",
                           near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
                           fmt::join(functions, ", ")));
     }

@@ -26,14 +26,22 @@ struct InterfaceState
   Point<dim> slip = Point<dim>::Zero();  ///< w, tangential: plastic slip of the body; of Endo -p^t
 };
 
-/// What a law knows of a point.
-template <int dim>
-struct InterfacePoint
+enum class ContactStatus
 {
-  Point<dim> normal;     ///< n
-  double gamma;          ///< of method section 2, stress per length; > softening_slope()
-  double threshold = 0;  ///< s of Joint, stress
-  InterfaceState<dim> state{};
+  open = 0,
+  stick = 1,
+  slip = 2,
+  tied = 3
+};
+
+/// What a law knows of a point, evaluated once.
+template <int dim>
+struct LawPoint
+{
+  Point<dim> normal;    ///< the outward unit normal n
+  double strength = 0;  ///< of FrictionCone at the point, stress
+  double gamma = 0;     ///< of method section 2; needed by laws with a bond and where something slipped
+  InterfaceState<dim> state{};  ///< at the last committed step
 };
 
 /// The answer to P = sigma n - gamma (u^n - g) n - gamma_t u^t, gamma_t = tangential_weight() gamma.
@@ -49,6 +57,7 @@ struct InterfaceResponse
   double dissipated = 0;       ///< by this step, energy per area
   double rubbed = 0;           ///< the part of it that friction takes
   double stored = 0;           ///< in the interface, energy per area
+  ContactStatus status = ContactStatus::stick;
 };
 
 /// What happens when a bond is unloaded.
@@ -134,13 +143,13 @@ struct Endo
 };
 
 template <int dim>
-[[nodiscard]] InterfaceResponse<dim> respond(const Joint& law, const InterfacePoint<dim>& point,
+[[nodiscard]] InterfaceResponse<dim> respond(const Joint& law, const LawPoint<dim>& point,
                                              const Point<dim>& P);
 template <int dim>
-[[nodiscard]] InterfaceResponse<dim> respond(const Mixed& law, const InterfacePoint<dim>& point,
+[[nodiscard]] InterfaceResponse<dim> respond(const Mixed& law, const LawPoint<dim>& point,
                                              const Point<dim>& P);
 template <int dim>
-[[nodiscard]] InterfaceResponse<dim> respond(const Endo& law, const InterfacePoint<dim>& point,
+[[nodiscard]] InterfaceResponse<dim> respond(const Endo& law, const LawPoint<dim>& point,
                                              const Point<dim>& P);
 
 }  // namespace tribound::problem

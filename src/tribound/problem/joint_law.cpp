@@ -35,7 +35,7 @@ template <int dim>
 class JointStep
 {
  public:
-  JointStep(const Joint& law, const InterfacePoint<dim>& point, const Point<dim>& P)
+  JointStep(const Joint& law, const LawPoint<dim>& point, const Point<dim>& P)
       : law_(law),
         point_(point),
         n_(point.normal),
@@ -43,7 +43,7 @@ class JointStep
         p_t_(P - p_n_ * n_ + point.gamma * point.state.slip),
         a_(p_t_.norm()),
         e_(a_ > 0 ? Point<dim>(p_t_ / a_) : Point<dim>::Zero()),
-        friction_(point.threshold - law.coefficient * std::min(p_n_, 0.0))
+        friction_(point.strength - law.coefficient * std::min(p_n_, 0.0))
   {
     find_damage();
   }
@@ -73,6 +73,8 @@ class JointStep
     result.slip_limit = limit;
     result.rubbed = friction_ * x;
     result.dissipated = result.rubbed + dissipated_by_opening(normal.value) + dissipated_by_cohesion(x);
+    result.status = slips ? ContactStatus::slip : ContactStatus::stick;
+    if (result.opening > 0) result.status = ContactStatus::open;
     if (law_.tension.unloading == Unloading::origin) result.stored = normal.value * result.opening / 2;
     return result;
   }
@@ -163,7 +165,7 @@ class JointStep
   }
 
   const Joint& law_;
-  const InterfacePoint<dim>& point_;
+  const LawPoint<dim>& point_;
   Point<dim> n_;
   double p_n_;         ///< P^n
   Point<dim> p_t_;     ///< P^t with the slip that is remembered
@@ -177,12 +179,12 @@ class JointStep
 }  // namespace
 
 template <int dim>
-InterfaceResponse<dim> respond(const Joint& law, const InterfacePoint<dim>& point, const Point<dim>& P)
+InterfaceResponse<dim> respond(const Joint& law, const LawPoint<dim>& point, const Point<dim>& P)
 {
   return JointStep<dim>(law, point, P).respond();
 }
 
-template InterfaceResponse<2> respond(const Joint&, const InterfacePoint<2>&, const Point<2>&);
-template InterfaceResponse<3> respond(const Joint&, const InterfacePoint<3>&, const Point<3>&);
+template InterfaceResponse<2> respond(const Joint&, const LawPoint<2>&, const Point<2>&);
+template InterfaceResponse<3> respond(const Joint&, const LawPoint<3>&, const Point<3>&);
 
 }  // namespace tribound::problem

@@ -49,8 +49,7 @@ struct FrictionPart
 };
 
 template <int dim>
-FrictionPart<dim> friction(const Mixed& law, const InterfacePoint<dim>& point, double p_n,
-                           const Point<dim>& p_t)
+FrictionPart<dim> friction(const Mixed& law, const LawPoint<dim>& point, double p_n, const Point<dim>& p_t)
 {
   if (law.coefficient <= 0 || p_n > 0) return {};
   const double limit = -law.coefficient * p_n;
@@ -69,7 +68,7 @@ FrictionPart<dim> friction(const Mixed& law, const InterfacePoint<dim>& point, d
 }  // namespace
 
 template <int dim>
-InterfaceResponse<dim> respond(const Mixed& law, const InterfacePoint<dim>& point, const Point<dim>& P)
+InterfaceResponse<dim> respond(const Mixed& law, const LawPoint<dim>& point, const Point<dim>& P)
 {
   const Point<dim>& n = point.normal;
   const double gamma_t = law.tangential_weight() * point.gamma;
@@ -109,6 +108,10 @@ InterfaceResponse<dim> respond(const Mixed& law, const InterfacePoint<dim>& poin
   }
   result.dissipated = law.tension.dissipated(point.state.damage, result.state.damage) + result.rubbed;
   const double D = result.state.damage;
+  if (result.opening > 0)
+    result.status = ContactStatus::open;
+  else if (result.state.slip != point.state.slip)
+    result.status = ContactStatus::slip;
   if (law.tension.unloading == Unloading::origin && D > 0)
   {
     const double open = result.opening;
@@ -118,7 +121,7 @@ InterfaceResponse<dim> respond(const Mixed& law, const InterfacePoint<dim>& poin
   return result;
 }
 
-template InterfaceResponse<2> respond(const Mixed&, const InterfacePoint<2>&, const Point<2>&);
-template InterfaceResponse<3> respond(const Mixed&, const InterfacePoint<3>&, const Point<3>&);
+template InterfaceResponse<2> respond(const Mixed&, const LawPoint<2>&, const Point<2>&);
+template InterfaceResponse<3> respond(const Mixed&, const LawPoint<3>&, const Point<3>&);
 
 }  // namespace tribound::problem

@@ -243,6 +243,45 @@ bool Problem<dim>::body_force_is_zero(int region) const
 }
 
 template <int dim>
+template <class Self, class Visit>
+void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
+{
+  const auto of_contact = [&](auto& contact)
+  {
+    if (contact.gap) visit(*contact.gap);
+    if (auto* tresca = std::get_if<Tresca>(&contact.law)) visit(tresca->threshold);
+    if (auto* joint = std::get_if<JointLaw>(&contact.law)) visit(joint->threshold);
+  };
+  for (auto& region : problem.regions_)
+    for (auto& component : region.body_force) visit(component);
+  for (auto& boundary : problem.boundaries_)
+  {
+    for (auto& component : boundary.displacement)
+      if (component) visit(*component);
+    for (auto& component : boundary.traction) visit(component);
+    if (boundary.pressure) visit(*boundary.pressure);
+    if (boundary.contact) of_contact(*boundary.contact);
+  }
+  for (auto& pair : problem.pairs_) of_contact(pair.contact);
+}
+
+template <int dim>
+Problem<dim> Problem<dim>::at(double t) const
+{
+  Problem result = *this;
+  for_each_datum(result, [t](Field& datum) { datum = datum.at(t); });
+  return result;
+}
+
+template <int dim>
+bool Problem<dim>::uses_time() const
+{
+  bool found = false;
+  for_each_datum(*this, [&found](const Field& datum) { found = found || datum.uses_time(); });
+  return found;
+}
+
+template <int dim>
 bool Problem<dim>::has_contact() const
 {
   return !pairs_.empty() ||

@@ -135,6 +135,11 @@ class Problem
   {
   }
 
+  /// The same with all data at the load factor t.
+  [[nodiscard]] Problem at(double t) const;
+  /// Whether any datum names t.
+  [[nodiscard]] bool uses_time() const;
+
   [[nodiscard]] const Material& material(int region) const { return regions_[region].material; }
   /// f in the region; force per volume.
   [[nodiscard]] const std::array<Field, dim>& body_force(int region) const
@@ -167,6 +172,10 @@ class Problem
   [[nodiscard]] bool has_contact() const;
 
  private:
+  /// visit(datum) for every number, formula or function of the problem.
+  template <class Self, class Visit>
+  static void for_each_datum(Self& problem, const Visit& visit);
+
   std::vector<Region<dim>> regions_;
   std::vector<BoundaryCondition<dim>> boundaries_;
   std::vector<ContactPair<dim>> pairs_;

@@ -37,7 +37,7 @@ class Newton
         delta_(delta),
         linear_tolerance_(linear_tolerance),
         equilibrium_(std::move(equilibrium)),
-        scale_(equilibrium_->force_scale())
+        scale_(solve::force_scale(equilibrium_->force_scale(), newton.reference_force))
   {
   }
 
@@ -331,6 +331,11 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 }
 
 }  // namespace
+
+double force_scale(double of_iterate, double reference)
+{
+  return reference > 0 ? std::clamp(of_iterate, reference, 10 * reference) : of_iterate;
+}
 
 template <int dim>
 NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,

@@ -70,7 +70,7 @@ void expect_sound(const problem::ContactLaw& law, std::mt19937& dice)
     thresholds.push_back(std::holds_alternative<problem::Tresca>(law) ? threshold(s) : 0);
   }
   const certify::Kinks kinks =
-      certify::KinkFinder<dim>(rule, 3)(law, std::span(&normal, 1), values, thresholds, 1e-14);
+      certify::KinkFinder<dim>(rule, 3)(law, std::span(&normal, 1), values, thresholds, certify::Bond::none, 1e-14);
 
   constexpr int m = 60;
   std::array<bool, 2> pressed{};
@@ -119,8 +119,8 @@ TEST(Kinks, RoundingIsNone)
   const std::vector<double> none(p.size(), 0.0);
   const certify::KinkFinder<2> kinks(rule, 3);
   const std::array<Point<2>, 1> up{Point<2>::UnitY()};
-  EXPECT_FALSE(kinks(problem::Frictionless{}, up, p, none, 1e-13).possible);
-  EXPECT_TRUE(kinks(problem::Frictionless{}, up, p, none, 0).possible);
+  EXPECT_FALSE(kinks(problem::Frictionless{}, up, p, none, certify::Bond::none, 1e-13).possible);
+  EXPECT_TRUE(kinks(problem::Frictionless{}, up, p, none, certify::Bond::none, 0).possible);
 }
 
 /// Sharp: no kink is suspected where the traction keeps well away from one.
@@ -134,11 +134,11 @@ TEST(Kinks, NoneIsSuspectedFarAway)
   problem::Coulomb coulomb(0.3);
   const certify::KinkFinder<3> kinks(rule, 3);
   const std::array<Point<3>, 1> up{Point<3>::UnitZ()};
-  EXPECT_FALSE(kinks(coulomb, up, p, none, 0).possible);
+  EXPECT_FALSE(kinks(coulomb, up, p, none, certify::Bond::none, 0).possible);
   coulomb.coefficient = 0.05;
-  EXPECT_FALSE(kinks(coulomb, up, p, none, 0).possible);
+  EXPECT_FALSE(kinks(coulomb, up, p, none, certify::Bond::none, 0).possible);
   coulomb.coefficient = 0.12;
-  EXPECT_TRUE(kinks(coulomb, up, p, none, 0).possible);
+  EXPECT_TRUE(kinks(coulomb, up, p, none, certify::Bond::none, 0).possible);
 }
 
 }  // namespace

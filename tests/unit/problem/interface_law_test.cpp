@@ -22,13 +22,13 @@ namespace
 {
 
 using Json = nlohmann::json;
-using problem::InterfacePoint;
 using problem::InterfaceResponse;
+using problem::LawPoint;
 using problem::Unloading;
 using Law = std::variant<problem::Joint, problem::Mixed, problem::Endo>;
 
 template <int dim>
-InterfaceResponse<dim> respond(const Law& law, const InterfacePoint<dim>& point, const Point<dim>& P)
+InterfaceResponse<dim> respond(const Law& law, const LawPoint<dim>& point, const Point<dim>& P)
 {
   return std::visit([&](const auto& l) { return problem::respond<dim>(l, point, P); }, law);
 }
@@ -71,10 +71,10 @@ void expect_reference(const Law& law, const Json& c, const Json& step)
 {
   const Tensor<dim> axes = frame<dim>();
   const Json& before = step["before"];
-  const InterfacePoint<dim> point{axes.col(0),
-                                  c["gamma"],
-                                  c["parameters"].value("s", 0.0),
-                                  {before["D"], before.value("q", 0.0), tangential<dim>(axes, before["w"])}};
+  const LawPoint<dim> point{axes.col(0),
+                            c["gamma"],
+                            c["parameters"].value("s", 0.0),
+                            {before["D"], before.value("q", 0.0), tangential<dim>(axes, before["w"])}};
   const Point<dim> P = step["Pn"].get<double>() * axes.col(0) + tangential<dim>(axes, step["Pt"]);
   const InterfaceResponse<dim> response = respond<dim>(law, point, P);
 
@@ -154,7 +154,7 @@ Point<dim> random_vector(std::mt19937& dice, double size)
 
 /// Committed steps under random loads of all sizes; `check(law, point, P, response)` at each.
 template <int dim>
-void on_random_paths(const std::function<void(const Law&, const InterfacePoint<dim>&, const Point<dim>&,
+void on_random_paths(const std::function<void(const Law&, const LawPoint<dim>&, const Point<dim>&,
                                               const InterfaceResponse<dim>&)>& check)
 {
   std::mt19937 dice(4);
@@ -162,7 +162,7 @@ void on_random_paths(const std::function<void(const Law&, const InterfacePoint<d
     for (int path = 0; path < 60; ++path)
     {
       const Tensor<dim> axes = frame<dim>();
-      InterfacePoint<dim> point{axes.col(0), 6, path % 2 == 0 ? 0 : 0.3};
+      LawPoint<dim> point{axes.col(0), path % 2 == 0 ? 0 : 0.3, 6};
       point.state.damage = std::visit(
           [](const auto& l)
           {
@@ -187,7 +187,7 @@ void expect_derivatives()
   int n_smooth = 0;
   int n = 0;
   on_random_paths<dim>(
-      [&](const Law& law, const InterfacePoint<dim>& point, const Point<dim>& P,
+      [&](const Law& law, const LawPoint<dim>& point, const Point<dim>& P,
           const InterfaceResponse<dim>& response)
       {
         const double h = 1e-6;
@@ -220,10 +220,10 @@ template <int dim>
 void expect_promises()
 {
   on_random_paths<dim>(
-      [&](const Law& law, const InterfacePoint<dim>& point, const Point<dim>& P,
+      [&](const Law& law, const LawPoint<dim>& point, const Point<dim>& P,
           const InterfaceResponse<dim>& response)
       {
-        InterfacePoint<dim> committed = point;
+        LawPoint<dim> committed = point;
         committed.state = response.state;
         const InterfaceResponse<dim> again = respond<dim>(law, committed, P);
         EXPECT_LE((again.traction - response.traction).norm(), 2e-14);
@@ -266,7 +266,7 @@ TEST(InterfaceLaws, BreakingTakesTheFractureEnergy)
          {Law(problem::Joint{bond, 0, 1e300, 0.6, false}), Law(problem::Mixed{bond, 0.7, 0})})
       for (const int n_steps : {1, 7, 50})
       {
-        InterfacePoint<2> point{{0, 1}, 6};
+        LawPoint<2> point{{0, 1}, 0, 6};
         double dissipated = 0;
         for (int i = 1; i <= n_steps; ++i)
         {
@@ -286,7 +286,7 @@ TEST(InterfaceLaws, SlidingTakesTheCohesion)
   const problem::Joint law{{}, 1.2, 1.1, 0.5, false};
   for (const int n_steps : {1, 9})
   {
-    InterfacePoint<2> point{{0, 1}, 6};
+    LawPoint<2> point{{0, 1}, 0, 6};
     double dissipated = 0;
     double rubbed = 0;
     for (int i = 1; i <= n_steps; ++i)
@@ -306,7 +306,7 @@ TEST(InterfaceLaws, SlidingTakesTheCohesion)
 TEST(InterfaceLaws, EndoSoftensFromItsStrengths)
 {
   const problem::Endo law{5, 4, 0.8, 0.3, 0.12, 0.003};
-  InterfacePoint<2> point{{0, 1}, 50};
+  LawPoint<2> point{{0, 1}, 0, 50};
   double largest = 0;
   double dissipated = 0;
   for (int i = 1; i <= 4000; ++i)

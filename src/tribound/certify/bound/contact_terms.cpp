@@ -28,6 +28,19 @@ bool is_rough(const Kinks& kinks)
   return kinks.possible || (dim == 3 && kinks.slips);
 }
 
+/// D is a polynomial through the values at the contact points: it is 0 or 1 where they all are.
+template <int dim>
+Bond bond_on(const contact::NitscheForm<dim>& form, int k)
+{
+  if (!cone(form.segments()[k].contact->law).is_bonded) return Bond::none;
+  const std::span<const contact::ContactPoint<dim>> points = form.contact_points(k);
+  if (std::ranges::all_of(points, [](const auto& point) { return point.state.damage <= 0; }))
+    return Bond::fresh;
+  return std::ranges::all_of(points, [](const auto& point) { return point.state.damage >= 1; })
+             ? Bond::broken
+             : Bond::damaged;
+}
+
 /// Adds h_k ||t^n||_k^2 and h_k ||t^t||_k^2 of a traction with the given coefficients.
 template <int dim>
 void add_squares(std::span<const Point<dim>> traction, const contact::ContactSegment<dim>& segment,
@@ -87,6 +100,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
   const problem::ContactLaw& law = segment.contact->law;
+  const double tangential_weight = problem::tangential_weight(law);
   Integrals result;
   std::vector<Point<dim>> augmented(rule.size());
   std::vector<Point<dim>> projected(rule.size());
@@ -108,22 +122,23 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
       p += theta[i] * fields.augmented[i];
       dis += theta[i] * fields.dis[i];
     }
-    augmented[q] = p;
+    const problem::LawPoint<dim> point = form_.law_point(k, s, x, n);
+    augmented[q] = p + tangential_weight * point.gamma * point.state.slip;
     projected[q] = dis;
     normals[q] = n;
     closings[q] = closing;
-    strengths[q] = problem::strength_at<dim>(law, x);
+    strengths[q] = point.strength;
     round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing)));
 
-    const Point<dim> difference = problem::respond<dim>(law, {n, strengths[q]}, p).traction - dis;
+    const Point<dim> difference = problem::respond<dim>(law, point, p).traction - dis;
     const double normal = difference.dot(n);
     const double weight = fem::fraction<dim - 1>(piece) * rule.weights[q];
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * n).squaredNorm();
   }
   const bool turns = segment.varying_normal != nullptr;
-  result.kinks =
-      kinks_(law, std::span(normals).first(turns ? normals.size() : 1), augmented, strengths, round_off);
+  result.kinks = kinks_(law, std::span(normals).first(turns ? normals.size() : 1), augmented, strengths,
+                        bond_on(form_, k), round_off);
   result.round_off = round_off;
   if (!turns) return result;
   for (int q = 0; q < rule.size(); ++q) augmented[q] -= closings[q] * normals[q];
@@ -158,6 +173,8 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
 {
   double rounding = 0;  // what is left where T is a polynomial all the same never settles
   for (const Integrals& part : integrals) rounding = std::max(rounding, std::pow(1e3 * part.round_off, 2));
+  // What a bond does between the points is not enclosed: its parts are halved twice at least.
+  const int least_depth = cone(form_.segments()[k].contact->law).is_bonded ? 2 : 1;
   std::vector<Halved> active;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_rough<dim>(integrals[i].kinks))
@@ -178,13 +195,14 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
       for (const Integrals& value : halved.values) total += value;
     }
     const double negligible = std::max(rounding, settled<dim> * (total.normal + total.tangential));
-    const bool done = change <= negligible;
+    const bool done = change <= negligible && depth >= least_depth;
     const bool last = done || depth == max_depth<dim> || active.size() > max_pieces + parts.size();
     std::vector<Halved> next;
     for (const Halved& halved : active)
     {
       Integrals& sum = integrals[halved.part];
-      const bool enough = last || halved.change * static_cast<double>(active.size()) <= negligible;
+      const bool enough =
+          last || (depth >= least_depth && halved.change * static_cast<double>(active.size()) <= negligible);
       for (std::size_t i = 0; i < halved.pieces.size(); ++i)
         if (enough || !is_rough<dim>(halved.values[i].kinks))
           sum += halved.values[i];

@@ -62,6 +62,23 @@ Range slip_range(const Columns<dim>& at_points, const Columns<dim>& coefficients
           excess(coefficients).maxCoeff(), seen.minCoeff(), seen.maxCoeff()};
 }
 
+/// Whether an undamaged bond holds everything: T = P.
+template <int dim>
+bool bond_holds(const problem::ContactLaw& law, const Columns<dim>& at_points,
+                const Columns<dim>& coefficients)
+{
+  const double pulled = coefficients.col(0).maxCoeff();
+  if (const auto* joint = std::get_if<problem::JointLaw>(&law))
+    return pulled <= joint->tension.strength &&
+           (joint->stick || slip_range<dim>(at_points, coefficients).highest <= joint->cohesion);
+  const auto* const mixed = std::get_if<problem::MixedLaw>(&law);
+  if (mixed == nullptr) return false;
+  Columns<dim> scaled = coefficients;
+  scaled.template middleCols<dim>(1) /= mixed->shear_ratio;
+  scaled.col(0) = scaled.col(0).cwiseMax(0.0);
+  return scaled.template leftCols<dim + 1>().rowwise().norm().maxCoeff() <= mixed->tension.strength;
+}
+
 }  // namespace
 
 template <int dim>
@@ -73,7 +90,7 @@ KinkFinder<dim>::KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree)
 
 template <int dim>
 Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, std::span<const Point<dim>> normals,
-                                  std::span<const Point<dim>> p, std::span<const double> strength,
+                                  std::span<const Point<dim>> p, std::span<const double> strength, Bond bond,
                                   double noise) const
 {
   const problem::FrictionCone friction = cone(law);
@@ -93,6 +110,14 @@ Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, std::span<cons
                        at_points.col(0).minCoeff(), at_points.col(0).maxCoeff()};
   Kinks result{
       .possible = pressing.changes_sign(noise), .hidden = pressing.hidden(), .lowest = pressing.lowest};
+  const bool is_friction =
+      bond == Bond::none || (bond == Bond::broken && !std::holds_alternative<problem::EndoLaw>(law));
+  if (!is_friction)
+  {
+    result.possible = result.slips = bond != Bond::fresh || !bond_holds<dim>(law, at_points, coefficients);
+    result.hidden = 0;
+    return result;
+  }
   const bool rubs = coefficients.col(dim + 1).maxCoeff() > noise;
   if (!rubs) return result;
   const Range slipping = slip_range<dim>(at_points, coefficients);

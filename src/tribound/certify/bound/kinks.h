@@ -12,6 +12,15 @@
 namespace tribound::certify
 {
 
+/// The bond that a law has on a segment.
+enum class Bond
+{
+  none,
+  fresh,  ///< D = 0 all over
+  damaged,
+  broken  ///< D = 1 all over
+};
+
 /// What is known of T(u) on a piece of a contact facet.
 struct Kinks
 {
@@ -28,6 +37,10 @@ struct Kinks
 /// and, in 2D, the component of P^t along the tangent are polynomials up to the deviation of N from P^2 (in
 /// 3D P^t from P^1); what is enclosed are then the projections of their values on P^degree, which
 /// ContactTerms accounts for.
+///
+/// Of a law with a bond P^t is what friction sees, with the slip that is remembered. Where it is fresh
+/// and P stays below what the bond holds, T = P; where it is broken, T is that of friction; any
+/// other T may have kinks anywhere.
 template <int dim>
 class KinkFinder
 {
@@ -37,7 +50,7 @@ class KinkFinder
   /// `normals`: N at the points, or one for all of them. Values of size `noise` or less, the round-off of P,
   /// are no sign of anything.
   [[nodiscard]] Kinks operator()(const problem::ContactLaw& law, std::span<const Point<dim>> normals,
-                                 std::span<const Point<dim>> p, std::span<const double> strength,
+                                 std::span<const Point<dim>> p, std::span<const double> strength, Bond bond,
                                  double noise) const;
 
   /// How much larger a coefficient can be than the values it is made from.

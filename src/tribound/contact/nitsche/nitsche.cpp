@@ -35,6 +35,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       points_(make_points()),
       tables_(space.basis(), segments_, facet_rule().points)
 {
+  look_for_bonds();
 }
 
 template <int dim>
@@ -58,14 +59,61 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
     const ContactSegment<dim>& segment = segments_[k];
     const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
     data_.contact(segment, k, gap, strength);
+    const problem::InterfaceState<dim> fresh = problem::fresh_state<dim>(segment.contact->law);
     for (int q = 0; q < facet_rule().size(); ++q)
     {
       const Point<dim> x = map(facet_rule().points[q]);
       points.push_back(
-          {x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap[q], strength[q]});
+          {x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap[q], strength[q], fresh});
     }
   }
   return points;
+}
+
+template <int dim>
+void NitscheForm<dim>::look_for_bonds()
+{
+  bool found = false;
+  for (std::size_t k = 0; k < n_owned_segments_ && !found; ++k)
+    if (cone(segments_[k].contact->law).is_bonded)
+      found =
+          std::ranges::any_of(contact_points(k), [](const auto& point) { return point.state.damage < 1; });
+  has_bonds_ = space_->mesh().ranks().any(found);
+}
+
+template <int dim>
+void NitscheForm<dim>::set_history(std::shared_ptr<const ContactHistory<dim>> history)
+{
+  history_ = std::move(history);
+  assert(history_ && history_->states().size() == points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].state = history_->states()[i];
+  look_for_bonds();
+}
+
+template <int dim>
+std::vector<problem::InterfaceResponse<dim>> NitscheForm<dim>::advance(std::span<const double> u) const
+{
+  std::vector<problem::InterfaceResponse<dim>> result(n_contact_points());
+  parallel_for(segments_.size(),
+               [&](std::size_t k)
+               {
+                 const SegmentValues<dim> on_segment = values(k);
+                 for (int q = 0; q < n_segment_points(); ++q)
+                   result[k * n_segment_points() + q] = problem::advance<dim>(
+                       segments_[k].contact->law, law_point(k, q), augmented_traction(on_segment, u, k, q));
+               });
+  return result;
+}
+
+template <int dim>
+problem::LawPoint<dim> NitscheForm<dim>::law_point(std::size_t k, const Point<dim - 1>& s,
+                                                   const Point<dim>& x, const Point<dim>& n) const
+{
+  const problem::ContactLaw& law = segments_[k].contact->law;
+  problem::LawPoint<dim> point{n, problem::strength_at<dim>(law, x), segments_[k].gamma,
+                               history_ ? history_->at(law, k, s) : problem::fresh_state<dim>(law)};
+  point.state.slip -= point.state.slip.dot(n) * n;
+  return point;
 }
 
 template <int dim>
@@ -79,9 +127,7 @@ Point<dim> NitscheForm<dim>::augmented_traction(const SegmentValues<dim>& values
 template <int dim>
 Point<dim> NitscheForm<dim>::respond(std::size_t k, int q, const Point<dim>& augmented, double delta) const
 {
-  const ContactPoint<dim>& point = contact_points(k)[q];
-  return problem::respond<dim>(segments_[k].contact->law, {point.normal, point.strength}, augmented, delta)
-      .traction;
+  return problem::respond<dim>(segments_[k].contact->law, law_point(k, q), augmented, delta).traction;
 }
 
 template <int dim>
@@ -89,8 +135,9 @@ Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_
                                                   const Point<dim>& augmented, double delta) const
 {
   const problem::ContactLaw& law = segments_[k].contact->law;
-  const auto& [x, weight, n, gap, strength] = contact_points(k)[q];
-  if (kind == Linearisation::newton) return problem::tangent<dim>(law, {n, strength}, augmented, delta);
+  if (kind == Linearisation::newton) return problem::tangent<dim>(law, law_point(k, q), augmented, delta);
+  const auto& [x, weight, n, gap, strength, state] = contact_points(k)[q];
+  if (has_bonds_ && !cone(law).is_tied && state.damage >= 1) return Tensor<dim>::Zero();
   return cone(law).resists_sliding() ? Tensor<dim>::Identity() : Tensor<dim>(n * n.transpose());
 }
 
@@ -253,6 +300,8 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
   const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
   const SegmentValues<dim> on_segment(*problem_, *space_, segment, table);
 
+  const bool is_own = table.slave == tables_[k].slave;  // at the contact points
+
   std::vector<ContactState<dim>> states;
   states.reserve(table.points.size());
   for (int q = 0; q < static_cast<int>(table.points.size()); ++q)
@@ -260,7 +309,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
     const Point<dim> x = map(table.points[q]);
     const Point<dim> n = segment.normal_at(x);
     const double gap = segment.gap(table.points[q], x, n);
-    const problem::LawPoint<dim> point{n, problem::strength_at<dim>(segment.contact->law, x)};
+    const problem::LawPoint<dim> point = is_own ? law_point(k, q) : law_point(k, table.points[q], x, n);
     const Point<dim> p = on_segment.augmented_traction(u, q) + segment.gamma * gap * n;
     const auto [traction, limit, status] = problem::respond<dim>(segment.contact->law, point, p);
     const Point<dim> jump = on_segment.jump(u, q);
@@ -281,7 +330,7 @@ ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form, std::spa
   for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
   {
     if (tag >= 0 && form.segments()[i / form.n_segment_points()].slave.facet.tag != tag) continue;
-    const auto& [x, weight, n, gap, strength] = form.contact_points()[i];
+    const auto& [x, weight, n, gap, strength, state] = form.contact_points()[i];
     const Point<dim> t_t = t[i] - t[i].dot(n) * n;
     sum.force += weight * t[i];
     sum.normal += weight * t[i].dot(n);

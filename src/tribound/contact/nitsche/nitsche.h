@@ -5,10 +5,12 @@
 /// find u_h with a(u_h, v) - ([P^n(u_h)]_-, v^n)_C - ([P^t(u_h)]_{S_h(u_h)}, v^t)_C = L(v) for all v in V_h,
 /// normal and tangential parts being taken by the direction of contact N, by default that of the facet.
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "tribound/base/types.h"
+#include "tribound/contact/nitsche/contact_history.h"
 #include "tribound/contact/nitsche/discrete_data.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/segment_values.h"
@@ -39,18 +41,21 @@ struct ContactState
 template <int dim>
 struct ContactPoint
 {
-  Point<dim> x;       ///< on the slave
-  double weight;      ///< of the rule, times measure
-  Point<dim> normal;  ///< N
-  double gap;         ///< g
-  double strength;    ///< s of the law, 0 where it has none
+  Point<dim> x;                        ///< on the slave
+  double weight;                       ///< of the rule, times measure
+  Point<dim> normal;                   ///< N
+  double gap;                          ///< g
+  double strength;                     ///< s of the law, 0 where it has none
+  problem::InterfaceState<dim> state;  ///< after the last committed step
 };
 
 /// Which linearisation of T a Newton step uses.
 enum class Linearisation
 {
-  closed_sticking,  ///< T_lin(w) = P^n(w) n + P^t(w): the first step from scratch
-  newton            ///< T_lin(w) = T(u) + DT(u)[w - u]
+  /// The first step from scratch: T_lin(w) = P^n(w) n + P^t(w), without P^t where nothing resists sliding;
+  /// where some points are bonded, 0 on broken ones.
+  closed_sticking,
+  newton  ///< T_lin(w) = T(u) + DT(u)[w - u]
 };
 
 /// The discrete problem on one mesh. Contact integrals touch only cells on Gamma_C. Contact quantities live
@@ -73,6 +78,12 @@ class NitscheForm
 
   /// The same with another gamma_0; nothing is integrated again.
   [[nodiscard]] NitscheForm with_gamma0(double gamma0) const;
+
+  /// From now on what the contact points remember; without it all are as before the first step. It is of a
+  /// form on the same segments. All ranks together.
+  void set_history(std::shared_ptr<const ContactHistory<dim>> history);
+  /// What a step that ends with u commits, by number of the contact points.
+  [[nodiscard]] std::vector<problem::InterfaceResponse<dim>> advance(std::span<const double> u) const;
 
   [[nodiscard]] const problem::Problem<dim>& problem() const { return *problem_; }
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
@@ -99,6 +110,9 @@ class NitscheForm
   {
     return contact_points().subspan(k * n_segment_points(), n_segment_points());
   }
+  /// What the law of segment k knows at the point x with coordinates s on it, where N is n.
+  [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, const Point<dim - 1>& s, const Point<dim>& x,
+                                                 const Point<dim>& n) const;
   /// What evaluates functions of the space at the contact points of segment k.
   [[nodiscard]] SegmentValues<dim> values(std::size_t k) const
   {
@@ -127,6 +141,13 @@ class NitscheForm
 
  private:
   [[nodiscard]] std::vector<ContactPoint<dim>> make_points() const;
+  void look_for_bonds();
+  /// At a contact point of segment k.
+  [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, int q) const
+  {
+    const ContactPoint<dim>& point = contact_points(k)[q];
+    return {point.normal, point.strength, segments_[k].gamma, point.state};
+  }
   /// P(u) = {sigma(u)} - gamma ([u] - g n), so that P^n = P.n and P^t = P - P^n n.
   [[nodiscard]] Point<dim> augmented_traction(const SegmentValues<dim>& values, std::span<const double> u,
                                               std::size_t k, int q) const;
@@ -159,7 +180,9 @@ class NitscheForm
   std::vector<double> load_;
   std::size_t n_owned_segments_;
   std::vector<ContactPoint<dim>> points_;
-  SegmentTables<dim> tables_;  ///< at the contact points
+  SegmentTables<dim> tables_;                           ///< at the contact points
+  std::shared_ptr<const ContactHistory<dim>> history_;  ///< null: none yet
+  bool has_bonds_ = false;                              ///< on any rank
 };
 
 /// Resultants of a contact traction t given at the contact points, over all ranks.

@@ -71,13 +71,21 @@ class SegmentValues
   [[nodiscard]] std::span<const Side> sides() const { return std::span(sides_).first(n_sides_); }
   /// [u] at point q.
   [[nodiscard]] Point<dim> jump(std::span<const double> u, int q) const;
-  /// {sigma(u)} - gamma [u] at point q: P(u) without the gap.
+  /// {sigma(u)} - gamma [u]^n n - gamma_t [u]^t at point q: P(u) without the gap.
   [[nodiscard]] Point<dim> augmented_traction(std::span<const double> u, int q) const;
   /// Its derivative by node i of a side: column b belongs to component b.
   [[nodiscard]] Tensor<dim> augmented_derivative(const Side& side, int i, int q) const;
 
  private:
+  /// gamma v^n n + gamma_t v^t.
+  [[nodiscard]] Point<dim> weighted(const Point<dim>& v) const
+  {
+    return tangential_weight_ == 1 ? Point<dim>(gamma_ * v) : Point<dim>(weights_ * v);
+  }
+
   double gamma_;
+  double tangential_weight_;  ///< gamma_t / gamma
+  Tensor<dim> weights_;       ///< gamma n n^T + gamma_t (I - n n^T)
   std::array<Side, 2> sides_;
   std::size_t n_sides_;
 };

@@ -1,0 +1,159 @@
+#include "tribound/adapt/load_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
+#include "tribound/contact/nitsche/softening.h"
+#include "tribound/contact/support/rigid_motion.h"
+
+namespace tribound::adapt
+{
+
+template <int dim>
+DiscreteAtTime<dim>::DiscreteAtTime(const problem::Problem<dim>& general, double t,
+                                    std::shared_ptr<const Grid<dim>> grid, const Method& method,
+                                    std::shared_ptr<const contact::ContactHistory<dim>> history)
+    : problem(general.at(t)), discrete(std::move(grid), problem, method)
+{
+  if (history) discrete.form.set_history(std::move(history));
+}
+
+template <int dim>
+LoadPath<dim>::LoadPath(const problem::Problem<dim>& problem, const Method& method,
+                        const PathOptions& options, mesh::Mesh<dim> mesh, const std::atomic<bool>* stop)
+    : problem_(problem),
+      method_(method),
+      options_(options),
+      grid_(std::make_shared<const Grid<dim>>(contact::with_partners<dim>(std::move(mesh), problem.pairs()),
+                                              method.degree)),
+      stop_(stop)
+{
+}
+
+template <int dim>
+Method LoadPath<dim>::method_of_step() const
+{
+  Method method = method_;
+  method.newton.reference_force = reference_force_;
+  if (!last_) return method;
+  method.newton.full_steps = options_.full_steps;
+  method.other_starts = false;
+  return method;
+}
+
+/// Not empty: why Newton's method has not come to t.
+template <int dim>
+std::string LoadPath<dim>::try_step(double t, int cuts, const StepObserver& observer)
+{
+  auto step = std::make_shared<LoadStep<dim>>();
+  step->number = last_ ? last_->number + 1 : 1;
+  step->t = t;
+  step->cuts = cuts;
+  const Method method = method_of_step();
+  step->at = std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method, history_);
+  const contact::NitscheForm<dim>& form = step->at->discrete.form;
+  if (!last_)
+  {
+    contact::check_rigid_motions(form);
+    contact::check_softening(form);
+  }
+  const std::span<const double> start =
+      last_ ? std::span<const double>(last_->level.u) : std::span<const double>();
+  const auto friedrichs = last_ ? last_->level.friedrichs : std::nullopt;
+  step->level = solve_and_certify<dim>(form, start, method, observer, 0, {}, friedrichs);
+  step->level.equilibrium.reset();
+  if (!step->level.solved()) return step->level.failure;
+  commit(std::move(step));
+  return {};
+}
+
+/// A cycle comes back to no stress at all: bound and identities are relative to the stress of the path,
+/// ||sigma_h|| being at most ||sigma(u_h)|| and the bound.
+template <int dim>
+certify::Verdict LoadPath<dim>::judge(const CertifiedLevel<dim>& level) const
+{
+  contact::StressNorms norms = level.norms;
+  norms.sigma = largest_sigma_;
+  certify::IdentityDefects identities = level.identities;
+  const double share = (level.norms.sigma + level.estimate.total) / largest_sigma_;
+  if (share < 1)
+    for (double* defect : {&identities.divergence, &identities.jump, &identities.neumann, &identities.contact,
+                           &identities.symmetry})
+      *defect *= share;
+  return certify::judge(level.estimate, identities, method_.degree, norms, options_.tolerance);
+}
+
+template <int dim>
+void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
+{
+  const contact::NitscheForm<dim>& form = step->at->discrete.form;
+  const CertifiedLevel<dim>& level = step->level;
+  largest_sigma_ = std::max(largest_sigma_, level.norms.sigma);
+  step->verdict = judge(level);
+  step->responses = form.advance(level.u);
+
+  std::vector<problem::InterfaceState<dim>> states;
+  states.reserve(step->responses.size());
+  for (const auto& response : step->responses) states.push_back(response.state);
+  history_ = std::make_shared<const contact::ContactHistory<dim>>(std::move(states), form.facet_rule(),
+                                                                  method_.degree + 2);
+  std::vector<double> contact_load(form.space().n_dofs(), 0.0);
+  form.add_contact_load(level.traction, contact_load);
+  const double forces = solve::external_forces(form).scale + form.space().norm(contact_load);
+  reference_force_ = std::max(reference_force_, forces);
+  last_ = std::move(step);
+}
+
+template <int dim>
+std::string LoadPath<dim>::advance(double t, const Observer& observer, const StepObserver& step_observer)
+{
+  const Ranks& ranks = grid_->mesh.ranks();
+  const bool is_first = !last_;
+  const double whole = is_first ? 0 : t - last_->t;
+  double size = whole;
+  int cuts = 0;
+  for (;;)
+  {
+    const double from = is_first && !last_ ? t : last_->t;
+    const bool arrives = is_first || std::abs(t - from) <= std::abs(size) * (1 + 1e-10);
+    const double to = arrives ? t : from + size;
+    std::string failure;
+    try
+    {
+      failure = try_step(to, cuts, step_observer);
+    }
+    catch (const SolveError& error)
+    {
+      require_all_failed(ranks, error.what());
+      failure = error.what();
+    }
+    if (failure.empty())
+    {
+      if (observer) observer(*last_);
+      if (arrives) return {};
+      cuts = 0;
+      if (static_cast<int>(last_->level.steps.size()) <= options_.few_steps) size *= options_.growth;
+      if (std::abs(size) > std::abs(whole)) size = whole;
+    }
+    else if (is_first || std::abs(size) / 2 <= options_.smallest * std::abs(whole))
+      return fmt::format("load step {} at t = {:.9g}: {}", last_ ? last_->number + 1 : 1, to, failure);
+    else
+    {
+      size /= 2;
+      ++cuts;
+    }
+    if (ranks.any(stop_ && *stop_)) return fmt::format("interrupted at t = {:.9g}", last_ ? last_->t : t);
+  }
+}
+
+template struct DiscreteAtTime<2>;
+template struct DiscreteAtTime<3>;
+template class LoadPath<2>;
+template class LoadPath<3>;
+
+}  // namespace tribound::adapt

@@ -1,0 +1,258 @@
+/// @file load_path_test.cpp
+/// Load paths with interfaces that remember against closed formulas and the numbers of an independent
+/// program, tests/verification/data/cohesive.json.
+
+#include "tribound/adapt/load_path.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/meshes.h"
+#include "tribound/certify/truth/true_error.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+using nlohmann::json;
+using problem::BoundaryCondition;
+using problem::Field;
+using problem::Unloading;
+
+json reference()
+{
+  std::ifstream in(COHESIVE_REFERENCE);
+  return json::parse(in);
+}
+
+Field formula(const std::string& text)
+{
+  return Field(text, Where{});
+}
+
+/// At t = 1, 2, ... the values of a list.
+Field table(const std::vector<double>& values)
+{
+  std::string text = "0";
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += fmt::format(" + (t == {}) * ({:.17g})", i + 1, values[i]);
+  return formula(text);
+}
+
+struct Path
+{
+  std::array<int, 2> cells;
+  double E = 1000;
+  double nu = 0.2;
+  std::vector<BoundaryCondition<2>> boundaries;
+  adapt::Method method{};
+
+  Path(std::array<int, 2> c, int degree) : cells(c)
+  {
+    method.degree = degree;
+    method.gamma0 = 10;
+    method.newton.tolerance = 1e-12;
+    method.stopping.criterion = adapt::Stopping::tolerance;
+    method.contact_rule = certify::ContactRule::reference;
+  }
+
+  void follow(const std::vector<double>& t, const std::function<void(const adapt::LoadStep<2>&)>& check) const
+  {
+    mesh::Mesh<2> mesh(block<2>(cells));
+    const problem::Problem<2> problem(mesh, {{.material = problem::lame(E, nu, problem::PlaneModel::strain)}},
+                                      boundaries);
+    adapt::LoadPath<2> path(problem, method, {}, std::move(mesh));
+    for (const double target : t) ASSERT_EQ(path.advance(target, check), "");
+  }
+};
+
+problem::Tension bond(double ft, double Gc, const std::string& unloading)
+{
+  return {ft, Gc, unloading == "origin" ? Unloading::origin : Unloading::vertical};
+}
+
+problem::ContactLaw law_of(const json& law)
+{
+  const problem::Tension tension = bond(law["ft"], law["Gc"], law["unloading"]);
+  if (law["law"] == "mixed") return problem::MixedLaw({tension, law["beta"], law["mu"]});
+  const double slip =
+      law["slip_c"].is_string() ? std::numeric_limits<double>::infinity() : law["slip_c"].get<double>();
+  return problem::JointLaw({tension, law["c"], slip, law["mu"], false}, law["s"].get<double>());
+}
+
+/// The exact traction at every point, and D.
+void expect_uniform(const adapt::LoadStep<2>& step, double normal, double tangential, double damage)
+{
+  for (const problem::InterfaceResponse<2>& response : step.responses)
+  {
+    EXPECT_NEAR(response.traction[1], -normal, 2e-10);  // n = (0, -1)
+    EXPECT_NEAR(response.traction[0], tangential, 2e-10);
+    EXPECT_NEAR(response.state.damage, damage, 2e-10);
+  }
+  EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+  EXPECT_LE(step.level.estimate.total, 1e-9);
+}
+
+/// A bar in series with a bond that opens, is closed, pressed, opened again and broken.
+TEST(LoadPath, BarAgainstTheSeriesOfSprings)
+{
+  const json cases = reference()["bar"];
+  for (const auto& [unloading, steps] : cases.items())
+    for (const int degree : {1, 2})
+    {
+      SCOPED_TRACE(unloading);
+      Path path({4, 2}, degree);
+      path.boundaries = {problem::with_displacement<2>("left", {Field(0.0), std::nullopt}),
+                         problem::with_displacement<2>("right", {Field(0.0), std::nullopt}),
+                         problem::with_displacement<2>("top", {Field(0.0), formula("t")}),
+                         problem::with_contact<2>("bottom", problem::JointLaw({bond(2, 0.02, unloading)}))};
+      std::vector<double> t;
+      for (const json& step : steps) t.push_back(step["U"]);
+      std::size_t i = 0;
+      double dissipated = 0;
+      path.follow(t,
+                  [&](const adapt::LoadStep<2>& step)
+                  {
+                    SCOPED_TRACE(step.number);
+                    const json& expected = steps[i++];
+                    EXPECT_EQ(step.cuts, 0);
+                    EXPECT_LE(step.level.steps.size(), 6);
+                    expect_uniform(step, expected["Tn_exact"], 0, expected["D_exact"]);
+                    double in_step = 0;
+                    for (std::size_t q = 0; q < step.responses.size(); ++q)
+                      in_step +=
+                          step.at->discrete.form.contact_points()[q].weight * step.responses[q].dissipated;
+                    EXPECT_NEAR(in_step, expected["dissipated_step"].get<double>(), 1e-12);
+                    dissipated += in_step;
+                  });
+      EXPECT_EQ(i, steps.size());
+      EXPECT_NEAR(dissipated, 2 * 0.02, 1e-12);
+    }
+}
+
+/// A block pulled and sheared, in proportion or not, pressed with friction.
+TEST(LoadPath, BlockAgainstRootFinding)
+{
+  const json cases = reference()["block"];
+  for (const auto& [name, steps] : cases.items())
+  {
+    SCOPED_TRACE(name);
+    problem::ContactLaw law = problem::JointLaw(
+        {.cohesion = name == "joint_coulomb" ? 0.0 : 1.0,
+         .slip_length = name == "joint_cohesion_soft" ? 4e-3 : std::numeric_limits<double>::infinity(),
+         .coefficient = 0.6});
+    if (name.starts_with("mixed"))
+      law =
+          problem::MixedLaw({bond(2, 0.02, "origin"), std::stod(name.substr(7)), std::stod(name.substr(13))});
+    const double lambda = problem::lame(1000, 0.2, problem::PlaneModel::strain).lambda;
+    const double modulus = lambda + 2 * problem::lame(1000, 0.2, problem::PlaneModel::strain).mu;
+    std::vector<double> t;
+    std::vector<double> x;
+    std::vector<double> y;
+    std::vector<double> normal;
+    std::vector<double> shear;
+    for (const json& step : steps)
+    {
+      t.push_back(static_cast<double>(t.size() + 1));
+      x.push_back(step[0]);
+      y.push_back(step[1]);
+      normal.push_back(lambda / modulus * step[2].get<double>());
+      shear.push_back(-step[3].get<double>());
+    }
+    std::vector<double> minus_normal = normal;
+    std::vector<double> minus_shear = shear;
+    for (double& v : minus_normal) v = -v;
+    for (double& v : minus_shear) v = -v;
+    Path path({3, 2}, 1 + static_cast<int>(name.size() % 2));
+    path.boundaries = {problem::with_traction<2>("left", {table(minus_normal), table(minus_shear)}),
+                       problem::with_traction<2>("right", {table(normal), table(shear)}),
+                       problem::with_displacement<2>("top", {table(x), table(y)}),
+                       problem::with_contact<2>("bottom", law)};
+    std::size_t i = 0;
+    path.follow(t,
+                [&](const adapt::LoadStep<2>& step)
+                {
+                  SCOPED_TRACE(step.number);
+                  const json& expected = steps[i++];
+                  expect_uniform(step, expected[2], expected[3], expected[4]);
+                });
+    EXPECT_EQ(i, steps.size());
+  }
+}
+
+void expect_numbers(const adapt::LoadStep<2>& step, const json& expected)
+{
+  const auto& form = step.at->discrete.form;
+  const auto near = [&](double value, const char* key, double relative, double absolute)
+  {
+    const double e = expected[key];
+    EXPECT_NEAR(value, e, relative * std::abs(e) + absolute) << key;
+  };
+  const contact::ContactResultants<2> contact = contact::contact_resultants<2>(form, step.level.traction);
+  near(step.level.norms.energy, "energy", 1e-8, 0);
+  near(step.level.norms.sigma, "sigma_norm", 1e-8, 0);
+  near(contact.normal, "contact_normal", 1e-8, 1e-12);
+  near(contact.tangential, "contact_tangential", 1e-8, 1e-12);
+  double damage = 0;
+  double dissipated = 0;
+  for (std::size_t i = 0; i < step.responses.size(); ++i)
+  {
+    damage += form.contact_points()[i].weight * step.responses[i].state.damage;
+    dissipated += form.contact_points()[i].weight * step.responses[i].dissipated;
+  }
+  near(damage, "damage_integral", 1e-8, 1e-10);
+  near(dissipated, "dissipated_step", 1e-8, 1e-11);
+  const certify::BoundComponents& eta = step.level.estimate.global;
+  near(eta.str, "eta_str", 1e-6, 0);
+  near(eta.cnt, "eta_cnt", 1e-6, 1e-11);
+  near(eta.frc, "eta_frc", 1e-6, 1e-11);
+  near(step.level.estimate.total, "eta_tot", 1e-6, 0);
+}
+
+/// The peel of a bond, with every law, and cyclic friction: energies, forces, damage, components.
+TEST(LoadPath, NumbersOfAnIndependentProgram)
+{
+  const json all = reference();
+  for (const char* kind : {"peel", "cyclic"})
+    for (const auto& [name, c] : all[kind].items())
+    {
+      SCOPED_TRACE(name);
+      const bool peel = std::string(kind) == "peel";
+      Path path({c["cells"][0], c["cells"][1]}, c["degree"]);
+      path.E = 1;
+      path.nu = 0.3;
+      path.boundaries.push_back(problem::with_contact<2>("bottom", law_of(c["law"])));
+      if (peel)
+        path.boundaries.insert(
+            path.boundaries.end(),
+            {problem::with_displacement<2>("left", {Field(0.0), Field(0.0)}),
+             problem::with_displacement<2>("top", {formula("t*x/2*0.03"), formula("t*x/2*0.09")}),
+             problem::with_traction<2>("right", {formula("0.01*t"), Field(0.0)})});
+      else
+        path.boundaries.insert(path.boundaries.end(),
+                               {problem::with_traction<2>("top", {Field(0.0), formula("-0.1-0.1*x")}),
+                                problem::with_traction<2>("right", {formula("0.03*t"), Field(0.0)})});
+      std::vector<double> t;
+      for (const json& step : c["steps"]) t.push_back(step["ell"]);
+      std::size_t i = 0;
+      path.follow(t,
+                  [&](const adapt::LoadStep<2>& step)
+                  {
+                    SCOPED_TRACE(step.number);
+                    EXPECT_EQ(step.cuts, 0);
+                    EXPECT_LE(step.level.steps.size(), 40);  // full ones, and if these go round in circles halved ones
+                    EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+                    expect_numbers(step, c["steps"][i++]);
+                  });
+      EXPECT_EQ(i, c["steps"].size());
+    }
+}
+
+}  // namespace
+}  // namespace tribound::test
