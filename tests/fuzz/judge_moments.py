@@ -46,7 +46,7 @@ def judge_moments(verdict, residual, results):
     if contact is not None:
         judge_contact_moments(verdict, residual, results)
     if balance is not None:
-        judge_balance(verdict, residual, balance)
+        judge_balance(verdict, residual, balance, certificate["sigma_norm"])
 
 
 def judge_contact_moments(verdict, residual, results):
@@ -82,7 +82,7 @@ def allowed_moments(residual, name, certificate, scale):
     return rounding, rounding + radius * np.sqrt((facets.measures / facets.sizes).sum()) * norms
 
 
-def judge_balance(verdict, residual, balance):
+def judge_balance(verdict, residual, balance, sigma_norm):
     """The loads are those of the case; all rows add up to nothing."""
     rows = {(row["name"], row["source"] == "body force"): row for row in balance["rows"] if row["kind"] == "load"}
     about = np.array(balance["about"])
@@ -93,14 +93,17 @@ def judge_balance(verdict, residual, balance):
         for load, (difference, scale, text) in wrong.items():
             allowed = DATA * scale + 2 * np.abs(coarse[load][0] - difference)
             verdict.check(difference <= allowed, text)
+    level = residual.level
+    stress = sigma_norm / np.sqrt(level.volumes.sum()) + 1e-5 * residual.materials.max() * np.abs(level.nodal).max() / level.size
+    rounding = ROUNDING * stress * level.size ** (level.dimension - 1)
     parts = [row for row in balance["rows"] if row["kind"] != "sum"]
     force = np.sum([row["force"] for row in parts], axis=0)
     size = sum(np.linalg.norm(row["force"]) for row in parts)
-    verdict.check(np.all(np.abs(force) <= SOLVER * size), f"balance: forces add up to {force}")
+    verdict.check(np.all(np.abs(force) <= SOLVER * size + rounding), f"balance: forces add up to {force}")
     if all(row["moment"] is not None for row in parts):
         moment = np.sum([row["moment"] for row in parts], axis=0)
-        scale = sum(np.linalg.norm(row["moment"]) for row in parts) + size * residual.level.size
-        verdict.check(np.all(np.abs(moment) <= SOLVER * scale), f"balance: moments add up to {moment}")
+        scale = sum(np.linalg.norm(row["moment"]) for row in parts) + size * level.size
+        verdict.check(np.all(np.abs(moment) <= SOLVER * scale + rounding * level.size), f"balance: moments add up to {moment}")
 
 
 def differences(residual, about, rows):
