@@ -1,9 +1,11 @@
 /// @file certify_bench.cpp
-/// CPU time per cell and working memory of equilibration and estimation. See bench/README.md.
+/// CPU time per cell and working memory of equilibration and estimation, per segment of what contact adds to
+/// them, of one body on an obstacle and of two whose meshes do not match. See bench/README.md.
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -14,7 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/bound/transfer.h"
+#include "tribound/certify/bound/transfer_terms.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/penalty.h"
@@ -35,60 +40,97 @@ int cells_across(int degree)
   return tetrahedra[degree - 1];
 }
 
-/// Moves the vertices inside the box by up to a fifth of the mesh size: no two cells keep the same shape.
+/// How far two bodies are apart, so that a point tells on which of them it is; the gap is given as 0.
+constexpr double apart = 0.01;
+
+/// The block (0, 2) x (0, 1) [x (0, 1)]; or with about as many cells in all two of its size, one below the
+/// other, with n and n - 1 squares or cubes across.
 template <int dim>
-void distort(mesh::MeshData<dim>& data, int n)
+mesh::Boxes blocks(int degree, int bodies)
+{
+  int n = cells_across<dim>(degree);
+  if (bodies == 2) n = static_cast<int>(std::lround(n / std::pow(2.0, 1.0 / dim)));
+  mesh::BoxMesh block{{0, 0}, {2, 1}, {2 * n, n}, {}};
+  if constexpr (dim == 3) block = {{0, 0, 0}, {2, 1, 1}, {2 * n, n, n}, {}};
+  mesh::Boxes result = {{"upper", block}};
+  if (bodies == 1) return result;
+  block.lower[1] = -1 - apart;
+  block.upper[1] = -apart;
+  block.cells = {2 * (n - 1), n - 1};
+  if constexpr (dim == 3) block.cells.push_back(n - 1);
+  result.push_back({"lower", block});
+  return result;
+}
+
+/// Moves the vertices inside the boxes by up to a fifth of the mesh size: no two cells keep the same shape.
+template <int dim>
+void distort(mesh::MeshData<dim>& data, const mesh::Boxes& boxes)
 {
   std::mt19937 generator(1);
-  std::uniform_real_distribution<double> shift(-0.2 / n, 0.2 / n);
-  const Point<dim> lower = Point<dim>::Zero();
-  Point<dim> upper = Point<dim>::Ones();
-  upper[0] = 2;
+  const double most = 0.2 / boxes[0].box.cells[1];
+  std::uniform_real_distribution<double> shift(-most, most);
   for (Point<dim>& x : data.vertices)
   {
-    const bool inside = ((x - lower).array() > 1e-9).all() && ((upper - x).array() > 1e-9).all();
+    const bool inside =
+        std::ranges::any_of(boxes,
+                            [&](const mesh::NamedBox& named)
+                            {
+                              const Eigen::Map<const Point<dim>> lower(named.box.lower.data());
+                              const Eigen::Map<const Point<dim>> upper(named.box.upper.data());
+                              return ((x - lower).array() > 1e-9).all() && ((upper - x).array() > 1e-9).all();
+                            });
     for (int c = 0; c < dim; ++c)
       if (inside) x[c] += shift(generator);
   }
 }
 
 template <int dim>
-mesh::Mesh<dim> block_mesh(int degree, bool distorted)
+mesh::Mesh<dim> block_mesh(int degree, bool distorted, int bodies)
 {
-  const int n = cells_across<dim>(degree);
-  mesh::BoxMesh box{{0, 0}, {2, 1}, {2 * n, n}, {}};
-  if constexpr (dim == 3) box = {{0, 0, 0}, {2, 1, 1}, {2 * n, n, n}, {}};
-  mesh::MeshData<dim> data = mesh::box_mesh<dim>(box);
-  if (distorted) distort<dim>(data, n);
+  const mesh::Boxes boxes = blocks<dim>(degree, bodies);
+  mesh::MeshData<dim> data = mesh::box_meshes<dim>(boxes);
+  if (distorted) distort<dim>(data, boxes);
   return mesh::Mesh<dim>(std::move(data));
 }
 
-/// Clamped on the left, pressed on a floor with friction.
+/// Clamped on the left, pressed with friction on a floor or on a second block that is clamped below.
 template <int dim>
-problem::Problem<dim> block_problem(const mesh::Mesh<dim>& mesh)
+problem::Problem<dim> block_problem(const mesh::Mesh<dim>& mesh, int bodies)
 {
   std::array<std::optional<problem::Field>, dim> zero;
   zero.fill(0.0);
-  return problem::Problem<dim>(
-      mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}},
-      {problem::with_displacement<dim>("left", zero), problem::with_traction<dim>("top", {0.0, -0.1}),
-       problem::with_contact<dim>("bottom", problem::Tresca(0.03))});
+  std::vector<problem::BoundaryCondition<dim>> conditions = {
+      problem::with_displacement<dim>("upper.left", zero),
+      problem::with_traction<dim>("upper.top", {0.0, -0.1})};
+  std::vector<problem::ContactPair<dim>> pairs;
+  const problem::Contact contact(problem::Tresca(0.03));
+  if (bodies == 1)
+    conditions.push_back(problem::with_contact<dim>("upper.bottom", contact.law));
+  else
+  {
+    conditions.push_back(problem::with_displacement<dim>("lower.bottom", zero));
+    pairs.push_back({.slave = {"upper.bottom"}, .master = {"lower.top"}, .contact = contact});
+  }
+  return problem::Problem<dim>(mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}}, conditions,
+                               std::move(pairs));
 }
 
-/// A smooth displacement and a traction that is not its own: what equilibrate() costs does not depend on
-/// them, and the patch problems are solvable for any.
+/// A smooth displacement of the upper block and a traction that is not its own: what equilibrate() costs does
+/// not depend on them, and the patch problems are solvable for any. The lower block stays where it is, so
+/// that contact is that with the floor.
 template <int dim>
 struct Block
 {
-  Block(int degree, bool distorted)
-      : mesh(block_mesh<dim>(degree, distorted)),
-        problem(block_problem(mesh)),
+  Block(int degree, bool distorted, int bodies)
+      : mesh(block_mesh<dim>(degree, distorted, bodies)),
+        problem(block_problem(mesh, bodies)),
         space(mesh, degree),
         form(problem, space, contact::default_gamma0(degree))
   {
     for (const Point<dim>& x : space.node_points())
       for (int c = 0; c < dim; ++c)
-        u.push_back(x[0] * (0.02 * std::sin(3 * x[0] + x[dim - 1] + c) - 0.03 * x[1]));
+        u.push_back(x[1] < -apart / 2 ? 0
+                                      : x[0] * (0.02 * std::sin(3 * x[0] + x[dim - 1] + c) - 0.03 * x[1]));
     t = form.traction(u);
     for (Point<dim>& traction : t) traction *= 1.1;
   }
@@ -107,13 +149,14 @@ struct Block
 template <int dim>
 const Block<dim>& block(const benchmark::State& state)
 {
-  static std::pair<std::int64_t, std::int64_t> made{};
+  static std::array<std::int64_t, 3> made{};
   static std::unique_ptr<Block<dim>> kept;
-  const std::pair asked{state.range(0), state.range(1)};
+  const std::array asked{state.range(0), state.range(1), state.range(2)};
   if (!kept || made != asked)
   {
     kept.reset();
-    kept = std::make_unique<Block<dim>>(static_cast<int>(asked.first), asked.second != 0);
+    kept =
+        std::make_unique<Block<dim>>(static_cast<int>(asked[0]), asked[1] != 0, static_cast<int>(asked[2]));
     made = asked;
   }
   return *kept;
@@ -156,7 +199,7 @@ template <int dim>
 void equilibration(benchmark::State& state)
 {
   const Block<dim>& b = block<dim>(state);
-  const int threads = static_cast<int>(state.range(2));
+  const int threads = static_cast<int>(state.range(3));
   double stress_bytes = 0;
   const double peak = peak_growth(
       [&]
@@ -188,44 +231,104 @@ void both(benchmark::State& state)
   count_per_cell(state, b.mesh.n_cells());
 }
 
+/// Of the segments of Gamma_C.
+template <int dim>
+void count_per_segment(benchmark::State& state, const Block<dim>& b)
+{
+  using benchmark::Counter;
+  const auto n = static_cast<double>(b.form.segments().size());
+  state.counters["per_segment"] = Counter(n, Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["segments"] = n;
+  state.counters["cells"] = b.mesh.n_cells();
+}
+
+/// cnt, frc, lin2n and lin2t.
+template <int dim>
+void contact_terms(benchmark::State& state)
+{
+  const Block<dim>& b = block<dim>(state);
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(b.form, b.u, b.t);
+  const certify::ContactTerms<dim> terms(b.form, certify::ContactRule::resolved);
+  for (auto _ : state)
+    for (std::size_t k = 0; k < b.form.segments().size(); ++k)
+      benchmark::DoNotOptimize(terms(static_cast<int>(k), b.u, stress.tractions));
+  count_per_segment(state, b);
+}
+
+/// mor, and str_mor but for the values of sigma_dis - sigma(u).
+template <int dim>
+void transfer(benchmark::State& state)
+{
+  const Block<dim>& b = block<dim>(state);
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(b.form, b.u, b.t);
+  const certify::ContactTerms<dim> terms(b.form, certify::ContactRule::resolved);
+  const auto field = [](const Point<dim>&) -> Tensor<dim> { return Tensor<dim>::Identity(); };
+  for (auto _ : state)
+    for (const auto& [cell, transfers] : certify::facet_transfers<dim>(b.form, terms, stress.tractions))
+      for (const certify::FacetTransfer<dim>& of_facet : transfers)
+        for (const auto& pieces : of_facet.groups)
+        {
+          const certify::TransferLifting<dim> lifting(b.mesh, of_facet.facet, b.space.degree(), pieces);
+          benchmark::DoNotOptimize(lifting.norm());
+          benchmark::DoNotOptimize(lifting.change(field));
+        }
+  count_per_segment(state, b);
+}
+
 }  // namespace
 
 // Counters are per CPU second of one thread, or per second on the wall where threads are compared.
 BENCHMARK(equilibration<2>)
-    ->ArgNames({"p", "distorted", "threads"})
-    ->ArgsProduct({{1, 2, 3, 4}, {0, 1}, {1}})
+    ->ArgNames({"p", "distorted", "bodies", "threads"})
+    ->ArgsProduct({{1, 2, 3, 4}, {0, 1}, {1, 2}, {1}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(equilibration<3>)
-    ->ArgNames({"p", "distorted", "threads"})
-    ->ArgsProduct({{1, 2, 3}, {0, 1}, {1}})
+    ->ArgNames({"p", "distorted", "bodies", "threads"})
+    ->ArgsProduct({{1, 2, 3}, {0, 1}, {1, 2}, {1}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(equilibration<2>)
     ->Name("equilibration<2>/wall")
-    ->ArgNames({"p", "distorted", "threads"})
-    ->ArgsProduct({{1, 2}, {1}, {1, 2}})
+    ->ArgNames({"p", "distorted", "bodies", "threads"})
+    ->ArgsProduct({{1, 2}, {1}, {1}, {1, 2}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(equilibration<3>)
     ->Name("equilibration<3>/wall")
-    ->ArgNames({"p", "distorted", "threads"})
-    ->ArgsProduct({{1}, {1}, {1, 2}})
+    ->ArgNames({"p", "distorted", "bodies", "threads"})
+    ->ArgsProduct({{1}, {1}, {1}, {1, 2}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(estimation<2>)
-    ->ArgNames({"p", "distorted"})
-    ->ArgsProduct({{1, 2, 3, 4}, {1}})
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3, 4}, {1}, {1, 2}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(estimation<3>)
-    ->ArgNames({"p", "distorted"})
-    ->ArgsProduct({{1, 2, 3}, {1}})
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3}, {1}, {1, 2}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(both<2>)
-    ->ArgNames({"p", "distorted"})
-    ->ArgsProduct({{1, 2, 3, 4}, {1}})
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3, 4}, {1}, {1, 2}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(both<3>)
-    ->ArgNames({"p", "distorted"})
-    ->ArgsProduct({{1, 2, 3}, {1}})
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3}, {1}, {1, 2}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(contact_terms<2>)
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3, 4}, {1}, {1, 2}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(contact_terms<3>)
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3}, {1}, {1, 2}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(transfer<2>)
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3, 4}, {1}, {2}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(transfer<3>)
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{1, 2, 3}, {1}, {2}})
     ->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();

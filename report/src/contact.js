@@ -104,7 +104,8 @@ function bestCoordinate(rows, names) {
   return names.map((name) => [variation(name), name]).reduce((best, other) => (other[0] < best[0] ? other : best))[1];
 }
 
-function scatterChart(surface, quantity) {
+/** `names`: of the boundaries that the points are on. */
+function scatterChart(surface, names, quantity) {
   const { rows, centre } = contactPoints(surface, 3000);
   const coordinates = { x: "x [L]", y: "y [L]", z: "z [L]", r: `distance from the largest pressure, at (${["x", "y", "z"].map((axis) => number(centre[axis], 3)).join(", ")}) [L]` };
   const coordinate = element("select", { id: "contact-coordinate" }, Object.entries(coordinates).map(([value, name]) => element("option", { value }, name)));
@@ -129,7 +130,7 @@ function scatterChart(surface, quantity) {
   return element("figure", {}, element("div", { class: "controls screen-only" },
     element("label", { class: "control" }, element("span", {}, "Over"), coordinate)),
     element("ul", { class: "legend" }, shownStates([]).map((name, i) => element("li", {}, element("span", { class: "swatch", style: `--colour:${statusColours[i]}` }), name))),
-    place, element("figcaption", {}, "The points of the boundary over a coordinate."));
+    place, element("figcaption", {}, `The points of ${names.join(", ")} over a coordinate.`));
 }
 
 /** In 3D: the boundaries in plan, and those against obstacles over a coordinate. */
@@ -141,7 +142,7 @@ function contactIn3d(run, surface) {
   return [element("div", { class: "controls screen-only" }, element("label", { class: "control" }, element("span", {}, "Show"), quantity),
     element("label", { class: "control" }, isStatus, element("span", {}, "Status in plan"))),
   ...contactPlans(surface, quantity, isStatus, titles),
-  surface.nContactFaces > 0 ? scatterChart(surface, quantity) : ""];
+  surface.nContactFaces > 0 ? scatterChart(surface, names.filter((name) => !surface.pairs?.some(({ boundary }) => boundary === name)), quantity) : ""];
 }
 
 /** What a length or an area adds up to, and how much of it is open. */
@@ -179,7 +180,7 @@ export function contactSection(data) {
   const place = element("div", { class: "contact" });
   const last = data.fields.at(-1);
   const is3d = last?.contact || last?.pairs?.length > 0;
-  const opposite = run.bodies?.length > 1 ? "what lies opposite" : "the obstacle";
+  const opposite = Object.values(run.contact.boundaries).some(({ master }) => master) ? "what lies opposite" : "the obstacle";
   return {
     element: section("contact", "Contact", "The contact boundary", last?.profiles || is3d
       ? `Pressure is positive in compression; friction and slip are those of the body along the boundary; the gap is the distance left to ${opposite}.`

@@ -23,7 +23,7 @@ export function noteText(surface, { factor, explosion }, { isCut, isInside, isSl
     surface.dimension === 3 && !isCut ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}.` : "",
     !isCut ? "" : isInside ? "On the section values are averages at the vertices of the mesh." : "The page does not have the inside of this mesh.",
     surface.merged_below > 0 ? `The mesh is too large for this page: details below ${number(surface.merged_below, 2)} L are merged, ${count(surface.nFaces)} triangles are shown.` : "",
-    nLeftOut > 0 ? `${nLeftOut} of the levels in between are left out to keep the page small.` : "",
+    nLeftOut > 0 ? `${nLeftOut === 1 ? "One of the levels in between is" : `${nLeftOut} of the levels in between are`} left out to keep the page small.` : "",
     surface.nBodies > 1 && explosion > 0 ? "Bodies are drawn apart." : "",
     `Displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`].filter(Boolean).join(" ");
 }

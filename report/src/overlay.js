@@ -100,7 +100,7 @@ export function axes({ box }, { target, scale }, { left, top, width, height }, n
     ...x.ticks(Math.max(2, width / 90)).flatMap((tick) => [
       element("svg:line", { x1: x(tick), x2: x(tick), y1: top + height, y2: top + height + 4 }),
       element("svg:text", { x: x(tick), y: top + height + 16, "text-anchor": "middle" }, label(tick))]),
-    ...y.ticks(Math.max(2, height / 60)).flatMap((tick) => [
+    ...y.ticks(Math.max(3, height / 60)).flatMap((tick) => [
       element("svg:line", { x1: left - 4, x2: left, y1: y(tick), y2: y(tick) }),
       element("svg:text", { x: left - 7, y: y(tick) + 4, "text-anchor": "end" }, label(tick))]),
     element("svg:text", { x: left + width, y: top + height + 30, "text-anchor": "end", class: "axis-name" }, `${names[0]} [L] \u2192`),

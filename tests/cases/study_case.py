@@ -22,11 +22,14 @@ COLUMNS = (
     "stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,t_certify,t_level"
 )
 ADAPTIVE = ["newton.stopping=adaptive", "newton.tolerance=1e-10", "adapt.theta=0.6", "adapt.max_levels=12", "study.figures=false"]
+BETWEEN_BODIES = ["mor", "str_mor"]  # columns that follow with pairs
 # name, case, overrides, exit code
 STUDIES = [
     ("t2d_p1", "t2d.toml", [*ADAPTIVE, "degree=1", "adapt.tolerance=0.12"], 0),
     ("t2d_p2", "t2d.toml", [*ADAPTIVE, "degree=2", "adapt.tolerance=0.03"], 0),
     ("block_3d", "study_3d.toml", ["study.figures=false"], 3),
+    ("pair_p1", "study_pair.toml", ["study.figures=false", "degree=1"], 3),
+    ("pair_p2", "study_pair.toml", ["study.figures=false", "degree=2", "output.report=false"], 3),
     ("coarse_reference", "t2d.toml", [*ADAPTIVE, "adapt.max_levels=1", "study.max_reference_dofs=100", "study.dual_norm_dofs=0"], 3),
 ]
 
@@ -47,7 +50,8 @@ def arguments(case, overrides, directory):
 def check_tables(directory, study, variants):
     """study.csv against study.json and the tables of the variants."""
     text = (directory / "study.csv").read_text()
-    assert text.splitlines()[0] == COLUMNS, "columns"
+    between_bodies = BETWEEN_BODIES if "pair" in directory.name else []
+    assert text.splitlines()[0] == ",".join([COLUMNS, *between_bodies]), "columns"
     rows = list(csv.DictReader(text.splitlines()))
     assert list(study["variants"]) == variants, "variants"
     for name in variants:
@@ -56,7 +60,7 @@ def check_tables(directory, study, variants):
         convergence = list(csv.DictReader((directory / name / "convergence.csv").open()))
         assert len(convergence) == len(levels), f"{name}: levels"
         for row, level in zip(convergence, levels):
-            for column in ("cells", "dofs", "newton_steps", "str", "total_sharp", "relative"):
+            for column in ("cells", "dofs", "newton_steps", "str", "total_sharp", "relative", *between_bodies):
                 assert float(row[column]) == level[column], f"{name}: {column}"
         for column, row in enumerate(study["newton_table"][: len(levels)]):
             assert row[name] == levels[column]["newton_steps"], "newton_table"
@@ -106,6 +110,18 @@ def check_words(directory, study):
         assert certificate["reason"] == study["variants"][name]["reason"], f"{name}: {certificate['reason']}"
 
 
+def check_pairs(directory, study):
+    """Two bodies whose meshes do not match: what is lost between them is bounded and part of the bound, its force known."""
+    for name, variant in study["variants"].items():
+        for level in variant["levels"]:
+            assert 0 < level["mor"] < level["total_sharp"] and level["str_mor"] <= level["str"] + level["mor"], f"{name}: {level}"
+        certificate = json.loads((directory / name / "certificate.json").read_text())
+        assert [body["name"] for body in certificate["bodies"]] == ["upper", "lower"], f"{name}: bodies"
+        assert certificate["contact"]["boundaries"]["upper.bottom"]["master"] == ["lower.top"], f"{name}: master"
+        rows = csv.DictReader((directory / name / "contact.csv").open())
+        assert {(row["boundary"], row["pair"]) for row in rows} == {("upper.bottom", "0")}, f"{name}: contact.csv"
+
+
 def run(program, name, case, overrides, exit_code, directory):
     result = subprocess.run([program, *arguments(case, overrides, directory)], capture_output=True, text=True, timeout=TIME_LIMIT)
     assert result.returncode == exit_code, f"exit code {result.returncode}\n{result.stdout}{result.stderr}"
@@ -114,6 +130,8 @@ def run(program, name, case, overrides, exit_code, directory):
     check_levels(study)
     check_files(directory, study)
     check_words(directory, study)
+    if "pair" in name:
+        check_pairs(directory, study)
     reference = study["reference"]
     assert reference["fine_enough"] == (name != "coarse_reference"), "reference"
     assert reference["fine_enough"] == (reference["relative"] <= reference["required"]), "reference"

@@ -10,6 +10,7 @@ import numpy as np
 
 from case_data import read_case
 from judge_contact import judge_contact
+from judge_moments import judge_moments
 from judge_solution import judge_cells, judge_displacement, judge_mesh, judge_residual
 from level import Inconsistent, Level
 from residual import Residual
@@ -158,4 +159,5 @@ def judge_levels(verdict, case, results):
         if number + 1 == len(bounds):
             if results.contact is not OF_A_LATER_LEVEL:
                 judge_contact(verdict, residual, results)
+                judge_moments(verdict, residual, results)
             judge_mesh(verdict, case, residual)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from judge_moments import about_origin, cross, resultant_of_rows
 from results import read_grid
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cases"))
@@ -82,14 +83,21 @@ def check_points(grid, name, points):
 
 
 def check_balance(certificate):
-    """Moments of T(u_h) on both sides against those of the equilibrated stress, which other code integrates."""
+    """Moments of T(u_h) on both sides against those of the equilibrated stress, which other code integrates; and those on the
+    two bodies that nothing but contact holds, where T(u_h) is in equilibrium."""
     balance = {row["name"]: row for row in certificate["balance"]["rows"] if row["kind"] == "contact"}
-    about = certificate["balance"]["about"]
+    on_body = {"middle": np.zeros(3), "lower": np.zeros(3)}
+    size = 0
     for name, entry in certificate["contact"]["boundaries"].items():
         sides = [(name, entry["moment"])] + [(master, entry["moment_on_master"]) for master in entry.get("master", [])]
+        size += np.linalg.norm(entry["force"])
         for side, moment in sides:
-            of_stress = np.array(balance[side]["moment"]) + np.cross(about, balance[side]["force"])
+            of_stress = about_origin(balance[side], certificate["balance"]["about"])
             assert np.abs(of_stress - moment).max() < 1e-6 * np.linalg.norm(entry["force"]), (side, of_stress, moment)
+            if (body := side.split(".")[0]) in on_body:
+                on_body[body] += moment
+    for body, moment in on_body.items():
+        assert np.abs(moment).max() < 1e-6 * size, (body, moment)
 
 
 def main():
@@ -123,7 +131,7 @@ def main():
         tractions = np.array([vector(row, "traction_") for row in own])
         points = np.array([vector(row, "") for row in own])
         z, sign, _, opposite, other = SIDES[name]
-        moment = weights @ np.cross(points, tractions)
+        moment = resultant_of_rows(own)[1]
         scale = weights @ np.linalg.norm(tractions, axis=1)
         assert np.abs(moment - entry["moment"]).max() < 1e-7 * scale, (name, moment, entry["moment"])
         totals["normal"] += sign * weights @ tractions[:, 2]
@@ -136,7 +144,7 @@ def main():
             assert abs(area - entry["covered"]) < 1e-12
         assert abs(entry["covered_master"] - entry["covered"]) < 1e-12  # parallel
         across = np.column_stack([points[:, :2], np.full(len(points), opposite)])
-        on_master = -weights @ np.cross(across, tractions)
+        on_master = -weights @ cross(across, tractions)
         assert np.abs(on_master - entry["moment_on_master"]).max() < 1e-7 * scale, (name, on_master)
     check_balance(certificate)
     covered = {name: entry["covered"] for name, entry in boundaries.items() if "covered" in entry}

@@ -106,6 +106,28 @@ def first_row(directory, name, column, value):
     (directory / name).write_text("".join(",".join(row) + "\n" for row in rows))
 
 
+def turn_contact(factor):
+    """All moments of contact alike: sums do not tell."""
+
+    def turn(certificate):
+        contact = certificate["contact"]
+        for entry in (contact, *contact["boundaries"].values()):
+            entry["moment"] = [factor * x for x in entry["moment"]]
+
+    return lambda directory: edit_certificate(directory, turn)
+
+
+def turn_balance(kind, factor):
+    """Moments of the rows of a kind in the balance."""
+
+    def turn(certificate):
+        for row in certificate["balance"]["rows"]:
+            if row["kind"] == kind:
+                row["moment"] = [factor * x for x in row["moment"]]
+
+    return lambda directory: edit_certificate(directory, turn)
+
+
 def cut_short(name):
     return lambda directory: (directory / name).write_bytes((directory / name).read_bytes()[:-40])
 
@@ -122,6 +144,10 @@ DECEITS = {
     "energy of a table": (lambda d: first_row(d, "convergence.csv", "energy", "1.5"), "energy 1.5"),
     "Newton step of a table": (lambda d: first_row(d, "newton.csv", "accepted", "1"), "accepted"),
     "pressure of a table": (lambda d: first_row(d, "contact.csv", "pressure", "0.5"), "pressure of bottom"),
+    "moments of contact": (turn_contact(1.01), "contact bottom: moment"),
+    "moments of contact by the stress": (turn_balance("contact", 1.01), "of the equilibrated stress"),
+    "moments of loads": (turn_balance("load", 1.01), "load .*: moment"),
+    "moments of reactions": (turn_balance("reaction", 1.01), "balance: moments"),
     "half a certificate": (cut_short("certificate.json"), "unreadable"),
     "half a table": (cut_short("contact.csv"), "unreadable"),
     "half a VTU file": (cut_short("level_000.vtu"), "unreadable"),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tribound/adapt/merged_cells.h"
+#include "tribound/base/sorted.h"
 #include "tribound/fem/nested.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/share_out.h"
@@ -135,8 +136,7 @@ std::optional<Excerpt<dim>> boundary_excerpt(const LevelView<dim>& view, const M
 {
   std::vector<Index> cells;
   for (const mesh::BoundaryFacet& facet : view.discrete.mesh.owned_boundary()) cells.push_back(facet.cell);
-  std::ranges::sort(cells);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_and_unite(cells);
   return gathered<dim>(view, method, field_cells<dim>(view, cells));
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "tribound/base/ghost_update.h"
+#include "tribound/base/sorted.h"
 #include "tribound/mesh/partition.h"
 
 namespace tribound::mesh
@@ -20,8 +21,7 @@ std::vector<std::int64_t> united(const Ranks& ranks, std::vector<std::int64_t> v
 {
   values = ranks.gather<std::int64_t>(values);
   ranks.copy_from_first(values);
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
+  sort_and_unite(values);
   return values;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "tribound/base/sorted.h"
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/outer_facets.h"
@@ -185,8 +186,7 @@ void check_touching(const MeshData<dim>& data, std::span<const OuterFacet<dim>> 
   std::vector<Index> vertices;
   for (const auto& facet : facets)
     vertices.insert(vertices.end(), facet.vertices.begin(), facet.vertices.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_and_unite(vertices);
   std::vector<Index> touched;  // their numbers in the topology
   std::vector<const OuterFacet<dim>*> touched_facets;
   for (const Index v : vertices)

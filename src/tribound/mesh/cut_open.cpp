@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/base/sorted.h"
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/verify.h"
 
@@ -204,8 +205,7 @@ void Cut<dim>::open()
   for (std::size_t f = 0; f < joint_.size(); ++f)
     if (joint_[f] >= 0)
       vertices.insert(vertices.end(), topology_.facets[f].begin(), topology_.facets[f].end());
-  std::ranges::sort(vertices);
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_and_unite(vertices);
   for (const Index v : vertices) split(v);
 
   const auto seen_from = [&](Index f, Index cell)

@@ -7,18 +7,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "tribound/base/sorted.h"
+
 namespace tribound::mesh
 {
 
 namespace
 {
-
-template <class Items>
-void sort_and_unite(Items& items)
-{
-  std::ranges::sort(items);
-  items.erase(std::unique(items.begin(), items.end()), items.end());  // clang 14 fails at std::ranges::unique
-}
 
 /// Numbers the vertices of the cells in ascending order of (morton_key, name).
 template <int dim>

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "tribound/base/sorted.h"
 #include "tribound/mesh/box.h"
 
 namespace tribound::mesh
@@ -312,9 +313,7 @@ Mesh<dim> with_more_ghosts(Mesh<dim> mesh, std::vector<Ghost<dim>> more)
                          std::ranges::binary_search(ghosts, name(ghost));
                 });
   if (more.empty()) return mesh;
-  std::ranges::sort(more, {}, name);
-  const auto is_same = [&](const Ghost<dim>& a, const Ghost<dim>& b) { return name(a) == name(b); };
-  more.erase(std::unique(more.begin(), more.end(), is_same), more.end());
+  sort_and_unite(more, name);
   std::vector<Index> all(mesh.n_cells());
   std::iota(all.begin(), all.end(), 0);
   std::vector<CellRecord<dim>> cells = records_of<dim>(mesh, all);

@@ -7,6 +7,7 @@
 
 #include "tribound/base/norm.h"
 #include "tribound/base/parallel.h"
+#include "tribound/base/sorted.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/polynomials.h"
 
@@ -249,8 +250,7 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
           if (is_own(side)) add(side.facet.cell, share, squares);
         });
   }
-  std::ranges::sort(touched);
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  sort_and_unite(touched);
   for (const Index cell : touched)
     for (const Component& c : all_components)
       if (c.is_on_contact()) result.cells[cell].*c.value = std::sqrt(result.cells[cell].*c.value);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/base/sorted.h"
 #include "tribound/contact/pairing/slave_facet.h"
 #include "tribound/mesh/share_out.h"
 
@@ -229,9 +230,7 @@ class Partners
     std::vector<std::vector<mesh::Ghost<dim>>> parcels(ranks_.size());
     for (Slave<dim>& slave : slaves_)
     {
-      std::ranges::sort(slave.needed_by);
-      slave.needed_by.erase(std::unique(slave.needed_by.begin(), slave.needed_by.end()),
-                            slave.needed_by.end());
+      sort_and_unite(slave.needed_by);
       if (slave.opposite.empty()) continue;
       for (const int r : slave.needed_by)
       {
@@ -239,12 +238,7 @@ class Partners
         parcels[r].insert(parcels[r].end(), slave.opposite.begin(), slave.opposite.end());
       }
     }
-    for (std::vector<mesh::Ghost<dim>>& parcel : parcels)
-    {
-      std::ranges::sort(parcel, {}, name);
-      const auto is_same = [&](const auto& a, const auto& b) { return name(a) == name(b); };
-      parcel.erase(std::unique(parcel.begin(), parcel.end(), is_same), parcel.end());
-    }
+    for (std::vector<mesh::Ghost<dim>>& parcel : parcels) sort_and_unite(parcel, name);
     std::vector<mesh::Ghost<dim>> result;
     for (const std::vector<mesh::Ghost<dim>>& parcel : ranks_.send(parcels))
       result.insert(result.end(), parcel.begin(), parcel.end());
