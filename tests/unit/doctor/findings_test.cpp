@@ -117,6 +117,25 @@ TEST(Findings, ContactSurface)
   EXPECT_EQ(finding(diagnosis, "contact_facets").severity, doctor::Severity::warning);
 }
 
+TEST(Findings, ContactAlongAnObliqueDirection)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  const auto found = [&]
+  { return std::ranges::count(doctor::findings(diagnosis), "contact_direction", &doctor::Finding::code); };
+  diagnosis.contacts[0].off_normal = 60;
+  diagnosis.contacts[0].off_normal_at = {0.25, 0};
+  EXPECT_EQ(found(), 0);
+  diagnosis.contacts[0].off_normal = 75;
+  const doctor::Finding oblique = finding(diagnosis, "contact_direction");
+  EXPECT_EQ(oblique.severity, doctor::Severity::warning);
+  EXPECT_EQ(oblique.text,
+            "contact \"base\" acts along a direction 75 degrees off the facet's normal at (0.25, 0)");
+  EXPECT_THAT(oblique.where, ElementsAre(0.25, 0));
+  EXPECT_THAT(oblique.advice, HasSubstr("small displacements are a bad model"));
+  diagnosis.contacts[0].off_normal = 170;
+  EXPECT_THAT(finding(diagnosis, "contact_direction").advice, HasSubstr("it points into the body there"));
+}
+
 TEST(Findings, LoadsAgainstStiffness)
 {
   doctor::Diagnosis diagnosis = healthy();
