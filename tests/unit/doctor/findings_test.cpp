@@ -28,7 +28,12 @@ doctor::Diagnosis healthy()
   diagnosis.loads.traction_stress = 1e8;
   diagnosis.units = {{"m", "N", "Pa", 1, 1}};
   diagnosis.mesh = {45, {0, 0}, 90, {1, 1}, 1.4, {1, 0}, 0.1, 0.2};
-  diagnosis.contacts = {{"base", 10, 2, {0, -1}, 0, 0, {}, 0, {0, 0}, 0, {0, 0}}};
+  diagnosis.contacts = {{.name = "base",
+                         .facets = 10,
+                         .measure = 2,
+                         .normal = {0, -1},
+                         .smallest_gap_at = {0, 0},
+                         .largest_gap_at = {0, 0}}};
   diagnosis.costs = {{2, 400, algebra::LinearMethod::direct, 1e8, 0.5}};
   diagnosis.multigrid_bytes = 0.9e8;
   diagnosis.memory = {8e9, false};
