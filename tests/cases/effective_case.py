@@ -25,10 +25,34 @@ def without_times(file):
     return [{key: value for key, value in row.items() if not key.startswith("t_")} for row in csv.DictReader(file.open())]
 
 
+def numbers(directory):
+    """What a run that is repeated must give again."""
+    certificate = json.loads((directory / "certificate.json").read_text())
+    return (without_times(directory / "convergence.csv"), (directory / "contact.csv").read_bytes(),
+            {key: certificate[key] for key in ("bound", "relative", "balance", "contact", "mesh", "assumptions")})
+
+
+def obstacle_from_a_file(program, directory):
+    """Its path leads from wherever the effective case is read; without the file the message names it."""
+    (directory / "down").mkdir()
+    result = run(program, "run", "-q", "../input/on_triangles.toml", "--set", "output.directory=results", cwd=directory / "down")
+    assert result.returncode == 3, result.stderr  # max_levels
+    first = directory / "down/results"
+    assert 'surface = "../../input/ridge.stl"' in (first / "case.toml").read_text()
+    result = run(program, "run", "-q", first.resolve() / "case.toml", "--set", "output.directory=again_triangles", cwd=directory)
+    assert result.returncode == 3, result.stderr
+    assert numbers(directory / "again_triangles") == numbers(first)
+    (directory / "input/ridge.stl").rename(directory / "input/elsewhere.stl")
+    result = run(program, "run", "-q", first.resolve() / "case.toml", cwd=directory)
+    assert result.returncode == 1 and "obstacle.ridge.surface" in result.stderr and "cannot be read" in result.stderr, result.stderr
+
+
 def main():
     program, directory = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     shutil.rmtree(directory, ignore_errors=True)
-    shutil.copytree(HERE, directory / "input", ignore=lambda folder, names: [n for n in names if not n.startswith("polygon")])
+    (directory / "input").mkdir(parents=True)
+    for name in ("polygon.toml", "polygon.geo", "on_triangles.toml", "ridge.stl"):
+        shutil.copy(HERE / name, directory / "input")
     overrides = ["adapt.tolerance=0.1", "degree=2", 'boundary.contact.contact.gap="max(0, 1.0*y)"']
     settings = [word for assignment in overrides for word in ("--set", assignment)]
     tribound(program, "run", "input/polygon.toml", *settings, cwd=directory)
@@ -42,16 +66,13 @@ def main():
     (directory / "elsewhere").mkdir()
     tribound(program, "run", case.resolve(), "--set", "output.directory=again", cwd=directory / "elsewhere")
     again = directory / "elsewhere/again"
-    assert without_times(again / "convergence.csv") == without_times(first / "convergence.csv")
-    assert (again / "contact.csv").read_bytes() == (first / "contact.csv").read_bytes()
-    repeated = json.loads((again / "certificate.json").read_text())
-    for key in ("bound", "relative", "balance", "contact", "mesh"):
-        assert repeated[key] == certificate[key], key
+    assert numbers(again) == numbers(first)
 
     # In its own place it is the same file again.
     text = case.read_text()
     tribound(program, "run", "out/polygon/case.toml", cwd=directory)
     assert case.read_text() == text and not (first / "case_effective.toml").exists()
+    obstacle_from_a_file(program, directory)
     print("the effective case gives the same numbers")
 
 

@@ -75,6 +75,11 @@ class Field
 
   /// The values at all points, x[i*dim + k]. Throws as the evaluation at a point does.
   void evaluate(std::span<const double> points, int dim, std::span<double> values) const;
+  template <int dim>
+  void evaluate(std::span<const Point<dim>> points, std::span<double> values) const
+  {
+    if (!points.empty()) evaluate({points.front().data(), dim * points.size()}, dim, values);
+  }
 
   /// Total degree of a polynomial, 0 for a constant, otherwise FieldFunction::not_polynomial.
   [[nodiscard]] int degree() const;

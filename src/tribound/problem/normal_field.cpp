@@ -19,10 +19,29 @@ NormalField::NormalField(std::vector<Field> components) : components_(std::move(
 template <int dim>
 Point<dim> NormalField::operator()(const Point<dim>& x) const
 {
-  constexpr double rounding = 1e-12;  // of a formula that divides a vector by its length
   assert(components_.size() == dim);
   Point<dim> n;
   for (int i = 0; i < dim; ++i) n[i] = components_[i](x);
+  return checked<dim>(n, x);
+}
+
+template <int dim>
+void NormalField::evaluate(std::span<const Point<dim>> x, std::span<Point<dim>> n) const
+{
+  assert(components_.size() == dim && x.size() == n.size());
+  std::vector<double> values(x.size());
+  for (int i = 0; i < dim; ++i)
+  {
+    components_[i].evaluate<dim>(x, values);
+    for (std::size_t q = 0; q < n.size(); ++q) n[q][i] = values[q];
+  }
+  for (std::size_t q = 0; q < n.size(); ++q) n[q] = checked<dim>(n[q], x[q]);
+}
+
+template <int dim>
+Point<dim> NormalField::checked(const Point<dim>& n, const Point<dim>& x) const
+{
+  constexpr double rounding = 1e-12;  // of a formula that divides a vector by its length
   const double length = n.norm();
   if (std::abs(length - 1) > rounding)
     throw InputError(components_[0].where(),
@@ -60,5 +79,7 @@ NormalDeviation deviation(const NormalField& normal, std::span<const double> ver
 
 template Point<2> NormalField::operator()(const Point<2>&) const;
 template Point<3> NormalField::operator()(const Point<3>&) const;
+template void NormalField::evaluate<2>(std::span<const Point<2>>, std::span<Point<2>>) const;
+template void NormalField::evaluate<3>(std::span<const Point<3>>, std::span<Point<3>>) const;
 
 }  // namespace tribound::problem

@@ -106,15 +106,20 @@ TEST(EffectiveCase, HoldsWhatWasSetAndWhereResultsGo)
 /// Read in its place, the effective case is the same, and so is its own effective case.
 TEST(EffectiveCase, PathsAreValidFromTheOutputDirectory)
 {
-  constexpr auto with_mesh = "mesh.file = \"meshes/a.msh\"\nmaterial = { E = 1, nu = 0 }\n";
+  constexpr auto with_files =
+      "mesh.file = \"meshes/a.msh\"\nmaterial = { E = 1, nu = 0 }\n"
+      "boundary.b.contact = { obstacle = \"die\", shape = \"part\" }\n"
+      "obstacle.die.surface = \"surfaces/die.stl\"\nshape.part.surface = \"/parts/part.stl\"\n";
   for (const std::string directory : {"out/run", "/tmp/somewhere/else"})
   {
     const std::vector<std::string> overrides = {"output.directory=" + directory};
-    const case_file::Config config = case_file::parse_config(with_mesh, "cases/block.toml", overrides);
+    const case_file::Config config = case_file::parse_config(with_files, "cases/block.toml", overrides);
     const case_file::Config again = case_file::parse_config(config.effective.text, directory + "/case.toml");
-    const auto path = [](const case_file::Config& c)
-    { return std::filesystem::absolute(std::get<mesh::MeshFile>(c.mesh).path).lexically_normal(); };
-    EXPECT_EQ(path(again), std::filesystem::absolute("cases/meshes/a.msh"));
+    const auto place = [](const std::filesystem::path& path)
+    { return std::filesystem::absolute(path).lexically_normal(); };
+    EXPECT_EQ(place(std::get<mesh::MeshFile>(again.mesh).path), place("cases/meshes/a.msh"));
+    EXPECT_EQ(place(again.obstacles.at(0).file), place("cases/surfaces/die.stl"));
+    EXPECT_EQ(place(again.shapes.at(0).file), "/parts/part.stl");
     EXPECT_EQ(again.output.directory, directory);
     EXPECT_EQ(again.effective.text, config.effective.text);
   }

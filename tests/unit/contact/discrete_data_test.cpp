@@ -71,6 +71,21 @@ TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
   }
 }
 
+/// A press fit without loads: its interference says what is negligible, as a prescribed displacement would.
+TEST(DiscreteData, AnInterferenceIsAnEffect)
+{
+  const auto density = [](const std::string& gap, double displacement)
+  {
+    const DiscreteProblem<2> c(box<2>({0, 0}, {1, 1}, {2, 2}),
+                               {.boundaries = {fixed<2>("top", 0, displacement),
+                                               obstacle<2>("bottom", Frictionless(), formula(gap))}});
+    return c.form.data().contact_density();
+  };
+  EXPECT_EQ(density("0.01*exp(x)", 0), 0);
+  EXPECT_NEAR(density("-0.01*exp(x)", 0), density("0.01*exp(x)", 0.01 * std::exp(1)), 1e-15);
+  EXPECT_GT(density("-0.01*exp(x)", 0), 0);
+}
+
 /// A gap is looked into as finely as its stress gamma g asks: neither more for a material that is nearly
 /// incompressible, where gamma is limited, nor less for a large gamma_0.
 TEST(DiscreteData, GapsAreResolvedForThePenaltyInUse)

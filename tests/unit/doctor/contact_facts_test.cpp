@@ -73,6 +73,25 @@ TEST(ContactFacts, CornersOfTheBodyAreNoKinks)
   EXPECT_NEAR(facts[0].spread, 45, 1e-10);
 }
 
+/// The direction turns from the facets' normal at the left to 90 degrees off it at the right.
+TEST(ContactFacts, DirectionsOffTheNormal)
+{
+  ProblemData<2> data{.boundaries = {clamped<2>("top"), obstacle<2>("bottom")}};
+  const auto facts = [&]
+  {
+    const DiscreteProblem<2> c(box<2>({0, 0}, {1, 1}, {6, 1}), data);
+    return doctor::contact_boundary_facts(c.form)[0];
+  };
+  EXPECT_EQ(facts().off_normal, 0);
+  data.boundaries.back().contact->normal =
+      problem::NormalField({formula("sin(x*pi/2)"), formula("-cos(x*pi/2)")});
+  const doctor::ContactBoundaryFacts turned = facts();
+  EXPECT_NEAR(turned.off_normal, 90 * turned.off_normal_at[0], 1e-10);
+  EXPECT_GT(turned.off_normal, 85);  // the last point of the rule lies a little inside
+  data.boundaries.back().contact->normal = problem::NormalField({0.0, 1.0});
+  EXPECT_NEAR(facts().off_normal, 180, 1e-10);
+}
+
 TEST(ContactFacts, RoofIn3D)
 {
   const auto fold = [](const Point<3>& x) -> Point<3> {

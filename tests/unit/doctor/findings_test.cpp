@@ -28,7 +28,12 @@ doctor::Diagnosis healthy()
   diagnosis.loads.traction_stress = 1e8;
   diagnosis.units = {{"m", "N", "Pa", 1, 1}};
   diagnosis.mesh = {45, {0, 0}, 90, {1, 1}, 1.4, {1, 0}, 0.1, 0.2};
-  diagnosis.contacts = {{"base", 10, 2, {0, -1}, 0, 0, {}, 0, {0, 0}, 0, {0, 0}}};
+  diagnosis.contacts = {{.name = "base",
+                         .facets = 10,
+                         .measure = 2,
+                         .normal = {0, -1},
+                         .smallest_gap_at = {0, 0},
+                         .largest_gap_at = {0, 0}}};
   diagnosis.costs = {{2, 400, algebra::LinearMethod::direct, 1e8, 0.5}};
   diagnosis.multigrid_bytes = 0.9e8;
   diagnosis.memory = {8e9, false};
@@ -115,6 +120,25 @@ TEST(Findings, ContactSurface)
   EXPECT_EQ(finding(diagnosis, "contact_facets").severity, doctor::Severity::note);
   diagnosis.refines = false;
   EXPECT_EQ(finding(diagnosis, "contact_facets").severity, doctor::Severity::warning);
+}
+
+TEST(Findings, ContactAlongAnObliqueDirection)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  const auto found = [&]
+  { return std::ranges::count(doctor::findings(diagnosis), "contact_direction", &doctor::Finding::code); };
+  diagnosis.contacts[0].off_normal = 60;
+  diagnosis.contacts[0].off_normal_at = {0.25, 0};
+  EXPECT_EQ(found(), 0);
+  diagnosis.contacts[0].off_normal = 75;
+  const doctor::Finding oblique = finding(diagnosis, "contact_direction");
+  EXPECT_EQ(oblique.severity, doctor::Severity::warning);
+  EXPECT_EQ(oblique.text,
+            "contact \"base\" acts along a direction 75 degrees off the facet's normal at (0.25, 0)");
+  EXPECT_THAT(oblique.where, ElementsAre(0.25, 0));
+  EXPECT_THAT(oblique.advice, HasSubstr("small displacements are a bad model"));
+  diagnosis.contacts[0].off_normal = 170;
+  EXPECT_THAT(finding(diagnosis, "contact_direction").advice, HasSubstr("it points into the body there"));
 }
 
 TEST(Findings, LoadsAgainstStiffness)

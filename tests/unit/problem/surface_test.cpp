@@ -141,6 +141,28 @@ TEST(Surface, DirectionsHaveLengthOne)
               HasSubstr("contact: the direction of contact is undefined (nan) at the point (0, 0)"));
 }
 
+TEST(NormalField, ManyPointsAtOnceGiveTheSame)
+{
+  const std::vector<double> centre = {0, 1, 0};
+  const ContactGeometry geometry{.shape = problem::sphere(centre, 1, Positive::outside),
+                                 .where = {.file = {}, .key = "contact"}};
+  const problem::NormalField direction = problem::direction_of_shape(geometry);
+  std::mt19937 dice(7);
+  std::uniform_real_distribution<double> within(-0.5, 0.5);
+  std::vector<Point<3>> points(70);  // more than are evaluated in one go
+  for (Point<3>& x : points)
+    for (double& coordinate : x) coordinate = within(dice);
+  std::vector<Point<3>> normals(points.size());
+  direction.evaluate<3>(points, normals);
+  for (std::size_t q = 0; q < points.size(); ++q)
+    EXPECT_NEAR((normals[q] - direction(points[q])).norm(), 0, 1e-15);
+  points[40] = Point<3>(0, 1, 0);
+  EXPECT_THAT(message_of([&] { direction.evaluate<3>(points, normals); }),
+              HasSubstr("at the point (0, 1, 0)"));
+  const problem::NormalField too_long({problem::Field(2.0), problem::Field(0.0), problem::Field(0.0)});
+  EXPECT_THAT(message_of([&] { too_long.evaluate<3>(points, normals); }), HasSubstr("has the length 2 at"));
+}
+
 /// Deviations are above the distance from the best polynomials that there are, by sampling.
 TEST(NormalField, DeviationsAreBounds)
 {

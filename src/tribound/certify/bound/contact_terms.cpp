@@ -107,14 +107,20 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   std::vector<Point<dim>> normals(rule.size());
   std::vector<double> strengths(rule.size());
   std::vector<double> closings(rule.size());
+  std::vector<FacetPoint> points(rule.size());
+  std::vector<Point<dim>> places(rule.size());
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    points[q] = fem::point_in<dim - 1>(piece, rule.points[q]);
+    places[q] = map(points[q]);
+  }
+  segment.directions_and_gaps(points, places, normals, closings);
   double round_off = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
-    const FacetPoint s = fem::point_in<dim - 1>(piece, rule.points[q]);
-    fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
-    const Point<dim> x = map(s);
-    const Point<dim> n = segment.normal_at(x);
-    const double closing = segment.gamma * segment.gap(s, x, n);
+    fem::orthonormal_values<dim - 1>(form_.space().degree(), points[q], std::span(theta).first(n_));
+    const Point<dim>& n = normals[q];
+    const double closing = closings[q] *= segment.gamma;
     Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
@@ -122,11 +128,9 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
       p += theta[i] * fields.augmented[i];
       dis += theta[i] * fields.dis[i];
     }
-    const problem::LawPoint<dim> point = form_.law_point(k, s, x, n);
+    const problem::LawPoint<dim> point = form_.law_point(k, points[q], places[q], n);
     augmented[q] = p + tangential_weight * point.gamma * point.state.slip;
     projected[q] = dis;
-    normals[q] = n;
-    closings[q] = closing;
     strengths[q] = point.strength;
     round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing)));
 

@@ -37,6 +37,27 @@ double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
   return size.norm();
 }
 
+/// Of interferences, g < 0, at the corners of the segments: the stress that they cause across the body, as of
+/// prescribed displacements.
+template <int dim>
+double effect_of_interference(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                              std::span<const ContactSegment<dim>> segments, double size, double volume)
+{
+  std::array<double, 2> most{};
+  auto& [stiffest, interference] = most;
+  for (const ContactSegment<dim>& segment : segments)
+  {
+    if (!segment.contact->gap) continue;
+    const problem::Material& material = problem.material(mesh.region(segment.slave.facet.cell));
+    stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
+    for (const Point<dim - 1>& corner : fem::reference_simplex<dim - 1>())
+      interference = std::max(interference, -(*segment.contact->gap)(map(corner)));
+  }
+  mesh.ranks().max(std::span(most));
+  return stiffest * interference / size * std::sqrt(volume);
+}
+
 }  // namespace
 
 template <int dim>
@@ -50,14 +71,17 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
       size_(mesh::box_around(mesh).diagonal())
 {
   count_formulas(segments);
+  const Measures all = measures(segments);
   double allowed = 0;
   if (effort_.formulas > 0)
-    allowed = accuracy.absolute ? *accuracy.absolute : accuracy.share * largest_effect();
+    allowed = accuracy.absolute
+                  ? *accuracy.absolute
+                  : accuracy.share * (largest_effect() +
+                                      effect_of_interference<dim>(problem, mesh, segments, size_, all.body));
   const double of_each = static_cast<double>(cell_rule().size()) *
                          fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
   max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts));
-  const Measures all = measures(segments);
   mesh.ranks().together(
       [&]
       {

@@ -50,6 +50,21 @@ std::array<Point<dim>, dim> offsets(const mesh::Mesh<dim>& mesh, const WeighedSi
 }  // namespace
 
 template <int dim>
+void ContactSegment<dim>::directions_and_gaps(std::span<const Point<dim - 1>> s,
+                                              std::span<const Point<dim>> x, std::span<Point<dim>> n,
+                                              std::span<double> g) const
+{
+  if (varying_normal != nullptr)
+    varying_normal->evaluate<dim>(x, n);
+  else
+    std::ranges::fill(n, normal);
+  if (contact->gap)
+    contact->gap->template evaluate<dim>(x, g);
+  else
+    for (std::size_t q = 0; q < g.size(); ++q) g[q] = gap(s[q], x[q], n[q]);
+}
+
+template <int dim>
 SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const SegmentSide<dim>& side)
 {
   SimplexMap<dim - 1, dim> map = simplex_map(mesh, side.facet);
@@ -128,6 +143,8 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
   return segments;
 }
 
+template struct ContactSegment<2>;
+template struct ContactSegment<3>;
 template SimplexMap<1, 2> simplex_map(const mesh::Mesh<2>&, const SegmentSide<2>&);
 template SimplexMap<2, 3> simplex_map(const mesh::Mesh<3>&, const SegmentSide<3>&);
 template ContactSegment<2> make_segment(const problem::Problem<2>&, const mesh::Mesh<2>&, double,

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tribound/base/types.h"
@@ -73,6 +74,9 @@ struct ContactSegment
     for (int i = 1; i < dim; ++i) sum += s[i - 1] * (n.dot(offset[i]) - first);
     return sum;
   }
+  /// The same at many points: n[q] is N, g[q] the gap at x[q], which has the coordinates s[q].
+  void directions_and_gaps(std::span<const Point<dim - 1>> s, std::span<const Point<dim>> x,
+                           std::span<Point<dim>> n, std::span<double> g) const;
 
   /// |segment| / |reference facet|.
   [[nodiscard]] double det() const { return mesh::factorial<dim - 1> * measure; }
