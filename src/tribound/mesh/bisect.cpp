@@ -59,7 +59,7 @@ class Forest
   /// The leaves as a mesh, and the root of each in `parent`.
   [[nodiscard]] MeshData<dim> leaves(std::vector<Index>& parent) const
   {
-    MeshData<dim> data;
+    MeshData<dim> data{mesh_->labels()};
     data.vertices = points_;
     const std::size_t n_leaves = (nodes_.size() + mesh_->n_cells()) / 2;
     data.cells.reserve(n_leaves);
@@ -80,7 +80,6 @@ class Forest
       const auto root_local = static_cast<int>(opposite - root.vertices.begin());
       add_facets({marked_facet(root, root_local), tag}, data.facets);
     }
-    copy_labels(*mesh_, data);
     data.ancestry = ancestry_;
     return data;
   }

@@ -174,11 +174,7 @@ MeshLabels box_labels(const Boxes& boxes)
 template <int dim>
 MeshData<dim> box_mesh(const BoxMesh& box)
 {
-  MeshLabels labels = box_labels<dim>(box);
-  MeshData<dim> data;
-  data.source = std::move(labels.source);
-  data.region_names = std::move(labels.region_names);
-  data.boundary_names = std::move(labels.boundary_names);
+  MeshData<dim> data{box_labels<dim>(box)};
   const Grid<dim> grid(box);
   for_each_grid_point<dim>(grid.n_points, [&](const auto& at) { data.vertices.push_back(grid.point(at)); });
   for_each_grid_point<dim>(grid.n_cubes,
@@ -203,11 +199,7 @@ MeshData<dim> box_mesh(const BoxMesh& box)
 template <int dim>
 MeshData<dim> box_meshes(const Boxes& boxes)
 {
-  MeshLabels labels = box_labels<dim>(boxes);
-  MeshData<dim> all;
-  all.region_names = std::move(labels.region_names);
-  all.boundary_names = std::move(labels.boundary_names);
-  all.source = std::move(labels.source);
+  MeshData<dim> all{box_labels<dim>(boxes)};
   for (int region = 0; region < static_cast<int>(boxes.size()); ++region)
   {
     MeshData<dim> data = box_mesh<dim>(boxes[region].box);

@@ -17,7 +17,7 @@ namespace
 template <int dim>
 MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels&& labels)
 {
-  MeshData<dim> data;
+  MeshData<dim> data{std::move(labels)};
   data.vertices.reserve(part.partition.vertices.size());
   for (const VertexName<dim>& name : part.partition.vertices) data.vertices.push_back(name.point());
   data.cells = std::move(part.corners);
@@ -28,10 +28,6 @@ MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels&& labels)
     data.regions.push_back(cell.region);
     data.bisection_types.push_back(static_cast<std::uint8_t>(cell.bisection_type));
   }
-  data.region_names = std::move(labels.region_names);
-  data.boundary_names = std::move(labels.boundary_names);
-  data.source = std::move(labels.source);
-  data.interfaces = std::move(labels.interfaces);
   return data;
 }
 
@@ -95,22 +91,10 @@ void Mesh<dim>::take(MeshData<dim> data, Topology<dim> topology)
   vertices_ = std::move(data.vertices);
   cells_ = std::move(data.cells);
   regions_ = std::move(data.regions);
-  region_names_ = std::move(data.region_names);
-  boundary_names_ = std::move(data.boundary_names);
-  source_ = std::move(data.source);
+  labels_ = static_cast<MeshLabels&&>(data);
   bisection_types_ = std::move(data.bisection_types);
   ancestry_ = std::move(data.ancestry);
-  interfaces_ = std::move(data.interfaces);
   topology_ = std::make_unique<const Topology<dim>>(std::move(topology));
-}
-
-template <int dim>
-void copy_labels(const Mesh<dim>& from, MeshData<dim>& to)
-{
-  to.region_names.assign(from.region_names().begin(), from.region_names().end());
-  to.boundary_names.assign(from.boundary_names().begin(), from.boundary_names().end());
-  to.interfaces.assign(from.interfaces().begin(), from.interfaces().end());
-  to.source = from.source();
 }
 
 template <int dim>
@@ -126,8 +110,6 @@ std::vector<std::size_t> facets_named(const Mesh<dim>& mesh, std::span<const std
 
 template class Mesh<2>;
 template class Mesh<3>;
-template void copy_labels(const Mesh<2>&, MeshData<2>&);
-template void copy_labels(const Mesh<3>&, MeshData<3>&);
 template std::vector<std::size_t> facets_named(const Mesh<2>&, std::span<const std::string>);
 template std::vector<std::size_t> facets_named(const Mesh<3>&, std::span<const std::string>);
 

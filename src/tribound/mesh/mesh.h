@@ -48,29 +48,35 @@ struct Ancestry
   std::vector<std::array<Index, 2>> halved_edges;  ///< ends, per vertex behind those of the given mesh
 };
 
+/// What the parts of a mesh have in common with each other and with the meshes that are made from it.
+struct MeshLabels
+{
+  std::vector<std::string> region_names{};
+  std::vector<std::string> boundary_names{};
+  Where source{};  ///< for messages
+  std::vector<Interface> interfaces{};
+};
+
 /// What a reader delivers, not yet verified. Messages about it count cells and vertices from 0.
 template <int dim>
-struct MeshData
+struct MeshData : MeshLabels
 {
-  std::vector<Point<dim>> vertices;
-  std::vector<Cell<dim>> cells;
-  std::vector<int> regions;  ///< per cell: position in region_names
-  std::vector<TaggedFacet<dim>> facets;
-  std::vector<std::string> region_names;
-  std::vector<std::string> boundary_names;
-  Where source;  ///< for messages
+  std::vector<Point<dim>> vertices{};
+  std::vector<Cell<dim>> cells{};
+  std::vector<int> regions{};  ///< per cell: position in region_names
+  std::vector<TaggedFacet<dim>> facets{};
   /// Per cell: how bisect() goes on with it, see mesh/marked_cell.h. Empty for a mesh that does not come from
   /// bisect(), which then starts from the longest edges.
   std::vector<std::uint8_t> bisection_types{};
   Ancestry ancestry{};  ///< empty for a mesh that does not come from bisect()
-  std::vector<Interface> interfaces{};
 };
 
-/// The vertices of a local facet: those of the cell but number `local`, in ascending local order.
-template <std::size_t n>
-[[nodiscard]] constexpr std::array<Index, n - 1> facet_vertices(const std::array<Index, n>& cell, int local)
+/// The vertices of a local facet, by numbers or names: those of the cell but number `local`, in ascending
+/// local order.
+template <class Vertex, std::size_t n>
+[[nodiscard]] constexpr std::array<Vertex, n - 1> facet_vertices(const std::array<Vertex, n>& cell, int local)
 {
-  std::array<Index, n - 1> vertices{};
+  std::array<Vertex, n - 1> vertices{};
   for (std::size_t j = 0; j < n - 1; ++j) vertices[j] = cell[j < static_cast<std::size_t>(local) ? j : j + 1];
   return vertices;
 }
@@ -123,15 +129,6 @@ struct MeshPart;
 template <int dim>
 struct Partition;
 
-/// What the parts of a mesh have in common.
-struct MeshLabels
-{
-  std::vector<std::string> region_names;
-  std::vector<std::string> boundary_names;
-  Where source;  ///< for messages
-  std::vector<Interface> interfaces{};
-};
-
 /// A conforming simplicial mesh of a polygon or polyhedron, or the part of one that a rank has: its own cells
 /// and, behind them, ghosts, others' cells around them or opposite to them. The outer facets of ghosts are no
 /// boundary.
@@ -156,13 +153,15 @@ class Mesh
   [[nodiscard]] std::span<const Point<dim>> vertices() const { return vertices_; }
   [[nodiscard]] std::span<const Cell<dim>> cells() const { return cells_; }
   [[nodiscard]] std::span<const BoundaryFacet> boundary() const { return boundary_; }
-  [[nodiscard]] std::span<const std::string> region_names() const { return region_names_; }
-  [[nodiscard]] std::span<const std::string> boundary_names() const { return boundary_names_; }
-  [[nodiscard]] const Where& source() const { return source_; }
+  [[nodiscard]] std::span<const std::string> region_names() const { return labels_.region_names; }
+  [[nodiscard]] std::span<const std::string> boundary_names() const { return labels_.boundary_names; }
+  [[nodiscard]] const Where& source() const { return labels_.source; }
   /// As in MeshData.
   [[nodiscard]] std::span<const std::uint8_t> bisection_types() const { return bisection_types_; }
   [[nodiscard]] const Ancestry& ancestry() const { return ancestry_; }
-  [[nodiscard]] std::span<const Interface> interfaces() const { return interfaces_; }
+  [[nodiscard]] std::span<const Interface> interfaces() const { return labels_.interfaces; }
+  /// All of these, which a mesh made from this one inherits.
+  [[nodiscard]] const MeshLabels& labels() const { return labels_; }
 
   [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
 
@@ -194,12 +193,9 @@ class Mesh
   std::vector<Cell<dim>> cells_;
   std::vector<int> regions_;
   std::vector<BoundaryFacet> boundary_;
-  std::vector<std::string> region_names_;
-  std::vector<std::string> boundary_names_;
-  Where source_;
+  MeshLabels labels_;
   std::vector<std::uint8_t> bisection_types_;
   Ancestry ancestry_;
-  std::vector<Interface> interfaces_;
   std::unique_ptr<const Topology<dim>> topology_;
   std::shared_ptr<const Partition<dim>> partition_;
   Ranks ranks_;
@@ -208,10 +204,6 @@ class Mesh
   bool has_partners_ = false;
   std::span<const char> has_patch_;  ///< of the partition
 };
-
-/// What a mesh made from this one inherits: names, interfaces and the source.
-template <int dim>
-void copy_labels(const Mesh<dim>& from, MeshData<dim>& to);
 
 /// The numbers in Mesh::boundary() of the facets of the named boundaries, ascending.
 template <int dim>

@@ -112,7 +112,7 @@ template <int dim>
 Mesh<dim> refine_once(const Mesh<dim>& mesh)
 {
   const Topology<dim>& topology = mesh.topology();
-  MeshData<dim> data;
+  MeshData<dim> data{mesh.labels()};
   data.vertices.assign(mesh.vertices().begin(), mesh.vertices().end());
   for (const auto& [a, b] : topology.edges) data.vertices.push_back(0.5 * (mesh.vertex(a) + mesh.vertex(b)));
 
@@ -131,7 +131,6 @@ Mesh<dim> refine_once(const Mesh<dim>& mesh)
   for (const BoundaryFacet& facet : mesh.boundary())
     if (facet.tag >= 0) add_facet_children<dim>(mesh.cell(facet.cell), middles(facet.cell), facet, data);
 
-  copy_labels(mesh, data);
   return Mesh<dim>(std::move(data));
 }
 

@@ -17,15 +17,6 @@ namespace tribound::mesh
 namespace
 {
 
-template <int dim>
-MeshLabels labels_of(const Mesh<dim>& mesh)
-{
-  return {{mesh.region_names().begin(), mesh.region_names().end()},
-          {mesh.boundary_names().begin(), mesh.boundary_names().end()},
-          mesh.source(),
-          {mesh.interfaces().begin(), mesh.interfaces().end()}};
-}
-
 /// Texts of the first rank, on all.
 void copy_texts(const Ranks& ranks, std::vector<std::string>& texts)
 {
@@ -133,7 +124,7 @@ template <int dim>
 Origin<dim> origin_of(const Ranks& ranks, const Mesh<dim>* first)
 {
   Origin<dim> origin;
-  if (first) origin.labels = labels_of(*first);
+  if (first) origin.labels = first->labels();
   copy_labels(ranks, origin.labels);
   const std::array<double, dim + 1> ends = ranks.on_first(
       [&]
@@ -168,7 +159,7 @@ Balanced<dim> balance_cells(const Ranks& ranks, Origin<dim> origin, std::vector<
 template <int dim>
 Mesh<dim> whole_mesh(const MeshPart<dim>& part, const MeshLabels& labels)
 {
-  MeshData<dim> data;
+  MeshData<dim> data{labels};
   for (const VertexName<dim>& vertex : part.partition.vertices) data.vertices.push_back(vertex.point());
   data.cells = part.corners;
   for (std::size_t c = 0; c < part.cells.size(); ++c)
@@ -179,10 +170,6 @@ Mesh<dim> whole_mesh(const MeshPart<dim>& part, const MeshLabels& labels)
       if (part.cells[c].tags[i] >= 0)
         data.facets.push_back({facet_vertices(part.corners[c], i), part.cells[c].tags[i]});
   }
-  data.region_names = labels.region_names;
-  data.boundary_names = labels.boundary_names;
-  data.source = labels.source;
-  data.interfaces = labels.interfaces;
   return Mesh<dim>(std::move(data));
 }
 
@@ -261,7 +248,7 @@ Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cell
                       std::span<const double> values, int n_values)
 {
   const Partition<dim>& partition = *before.partition();
-  return balance_cells<dim>(partition.ranks, {partition.cube, labels_of(before)}, std::move(cells), values,
+  return balance_cells<dim>(partition.ranks, {partition.cube, before.labels()}, std::move(cells), values,
                             n_values, Move::where_unbalanced);
 }
 
@@ -320,7 +307,7 @@ Mesh<dim> with_more_ghosts(Mesh<dim> mesh, std::vector<Ghost<dim>> more)
   for (std::size_t g = 0; g < ghosts.size(); ++g)
     more.push_back({cells[partition.n_owned_cells + g], partition.ghost_owners[g]});
   cells.resize(partition.n_owned_cells);
-  return {with_these_ghosts<dim>(partition, std::move(cells), std::move(more)), labels_of(mesh)};
+  return {with_these_ghosts<dim>(partition, std::move(cells), std::move(more)), mesh.labels()};
 }
 
 template <int dim>
@@ -334,7 +321,7 @@ PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> 
   std::vector<Index> number = numbers_in(part.partition.names, names_of<dim>(cells));
   part.partition.bodies.resize(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) part.partition.bodies[number[k]] = bodies[k];
-  Mesh<dim> mesh(std::move(part), labels_of(from));
+  Mesh<dim> mesh(std::move(part), from.labels());
   return {std::move(mesh), std::move(number)};
 }
 

@@ -277,12 +277,11 @@ TEST(Friedrichs, OfTheSmallestMeshes)
 {
   const Conditions<2> square = clamped_sides<2>({"left", "right", "bottom", "top"});
   EXPECT_GE(constant<2>(square, rectangle(1, 1, 1, 1)).value, 1 / (pi * std::sqrt(2.0)));
-  mesh::MeshData<2> triangle{.vertices = {{0, 0}, {1, 0}, {0, 1}},
-                             .cells = {{0, 1, 2}},
-                             .regions = {0},
-                             .facets = {{{0, 1}, 0}, {{1, 2}, 0}, {{2, 0}, 0}},
-                             .region_names = {"box"},
-                             .boundary_names = {"left"}};
+  mesh::MeshData<2> triangle{{.region_names = {"box"}, .boundary_names = {"left"}},
+                             {{0, 0}, {1, 0}, {0, 1}},
+                             {{0, 1, 2}},
+                             {0},
+                             {{{0, 1}, 0}, {{1, 2}, 0}, {{2, 0}, 0}}};
   EXPECT_GE(constant<2>(clamped_sides<2>({"left"}), triangle).value, 1 / (pi * std::sqrt(5.0)));
 }
 

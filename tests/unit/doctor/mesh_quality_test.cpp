@@ -21,13 +21,7 @@ mesh::Mesh<dim> one_cell(const std::vector<Point<dim>>& vertices)
 {
   mesh::Cell<dim> cell;
   for (int i = 0; i <= dim; ++i) cell[i] = i;
-  return mesh::Mesh<dim>(mesh::MeshData<dim>{.vertices = vertices,
-                                             .cells = {cell},
-                                             .regions = {0},
-                                             .facets = {},
-                                             .region_names = {"body"},
-                                             .boundary_names = {},
-                                             .source = {}});
+  return mesh::Mesh<dim>(mesh::MeshData<dim>{{.region_names = {"body"}}, vertices, {cell}, {0}});
 }
 
 constexpr double degrees = 180 / std::numbers::pi;

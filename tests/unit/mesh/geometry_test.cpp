@@ -79,7 +79,7 @@ TEST(Geometry, OfRandomCellsObeysTheDivergenceTheorem)
 TEST(Geometry, OfTheReferenceTetrahedron)
 {
   mesh::MeshData<3> data{
-      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {0}, {}, {"cell"}, {}, {}};
+      {.region_names = {"cell"}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {0}};
   const mesh::Mesh<3> mesh(std::move(data));
   EXPECT_DOUBLE_EQ(mesh::cell_map(mesh, 0).det, 1);
   const mesh::FacetGeometry<3> slanted = mesh::facet_geometry(mesh, 0, 0);

@@ -253,12 +253,11 @@ TEST(Newton, NoLoadNoDisplacement)
 /// the first step, closed and sticking, leaves no residual. The contact is open all the same.
 TEST(Newton, ConvergedMeansThatTheTractionIsThatOfTheSolution)
 {
-  mesh::MeshData<2> data{.vertices = {{0, 0}, {1, 0}, {0.5, 1}, {0.5, 0.4}},
-                         .cells = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
-                         .regions = {0, 0, 0},
-                         .facets = {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}},
-                         .region_names = {"body"},
-                         .boundary_names = {"bottom", "sides"}};
+  mesh::MeshData<2> data{{.region_names = {"body"}, .boundary_names = {"bottom", "sides"}},
+                         {{0, 0}, {1, 0}, {0.5, 1}, {0.5, 0.4}},
+                         {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
+                         {0, 0, 0},
+                         {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}}};
   const DiscreteProblem<2> c(data, {.boundaries = {fixed<2>("sides", formula("0.01*x"), 0),
                                                    obstacle<2>("bottom", Frictionless(), 0.1)}});
   const solve::NewtonResult<2> result = c.solve();

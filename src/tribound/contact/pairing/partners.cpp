@@ -62,8 +62,9 @@ struct Slave
 template <int dim>
 FacetShape<dim> shape_of(const mesh::CellRecord<dim>& cell, int local, std::size_t number)
 {
+  const auto vertices = mesh::facet_vertices(cell.vertices, local);
   std::array<Point<dim>, dim> points;
-  for (int i = 0; i < dim; ++i) points[i] = cell.vertices[i < local ? i : i + 1].point();
+  std::ranges::transform(vertices, points.begin(), &mesh::VertexName<dim>::point);
   return {number, points, local};
 }
 
