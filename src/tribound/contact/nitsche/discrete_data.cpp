@@ -37,11 +37,12 @@ double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
   return size.norm();
 }
 
-/// Of interferences, g < 0, at the corners of the segments: the stress that they cause across the body, as of
+/// Of interferences, g < 0, at points of the segments: the stress that they cause across the body, as of
 /// prescribed displacements.
 template <int dim>
 double effect_of_interference(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                              std::span<const ContactSegment<dim>> segments, double size, double volume)
+                              std::span<const ContactSegment<dim>> segments,
+                              std::span<const Point<dim - 1>> points, double size, double volume)
 {
   std::array<double, 2> most{};
   auto& [stiffest, interference] = most;
@@ -51,8 +52,8 @@ double effect_of_interference(const problem::Problem<dim>& problem, const mesh::
     const problem::Material& material = problem.material(mesh.region(segment.slave.facet.cell));
     stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
-    for (const Point<dim - 1>& corner : fem::reference_simplex<dim - 1>())
-      interference = std::max(interference, -(*segment.contact->gap)(map(corner)));
+    for (const Point<dim - 1>& s : points)
+      interference = std::max(interference, -(*segment.contact->gap)(map(s)));
   }
   mesh.ranks().max(std::span(most));
   return stiffest * interference / size * std::sqrt(volume);
@@ -76,8 +77,9 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
   if (effort_.formulas > 0)
     allowed = accuracy.absolute
                   ? *accuracy.absolute
-                  : accuracy.share * (largest_effect() +
-                                      effect_of_interference<dim>(problem, mesh, segments, size_, all.body));
+                  : accuracy.share * (largest_effect() + effect_of_interference<dim>(problem, mesh, segments,
+                                                                                     facet_rule().points,
+                                                                                     size_, all.body));
   const double of_each = static_cast<double>(cell_rule().size()) *
                          fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
