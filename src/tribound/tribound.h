@@ -35,8 +35,10 @@
 #include "tribound/mesh/triangulated_surface.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
+#include "tribound/contact/nitsche/contact_history.h"
 #include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/nitsche/segment_values.h"
@@ -83,6 +85,7 @@
 #include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/levels.h"
+#include "tribound/adapt/load_path.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/adapt/mark.h"
 #include "tribound/adapt/persistent.h"

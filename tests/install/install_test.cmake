@@ -22,3 +22,4 @@ step(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${SCRATCH}/build -D CMAKE_
 step(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 step(${SCRATCH}/build/certified_block)
 step(${SCRATCH}/build/own_loop)
+step(${SCRATCH}/build/load_path)

@@ -10,9 +10,9 @@
 
 #include "ranks/hidden_wall.h"
 #include "ranks/same_on_ranks.h"
-#include "support/meshes.h"
 #include "support/problem_data.h"
 #include "support/random_pair.h"
+#include "support/two_blocks.h"
 #include "tribound/adapt/excerpt.h"
 #include "tribound/mesh/bodies.h"
 
@@ -20,25 +20,6 @@ namespace tribound::test
 {
 namespace
 {
-
-/// Two blocks whose meshes do not match, the upper one pushed aside.
-template <int dim>
-mesh::MeshData<dim> two_blocks()
-{
-  Point<dim> lower = Point<dim>::Zero();
-  Point<dim> upper = Point<dim>::Ones();
-  lower[1] = -1;
-  upper[1] = 0;
-  upper[0] = 2;
-  std::array<int, dim> lower_cells;
-  lower_cells.fill(dim == 2 ? 2 : 1);
-  lower_cells[0] = 3;
-  lower_cells[dim - 1] = 2;
-  mesh::MeshData<dim> data =
-      side_by_side(block<dim>({4, 2}, {2, 1, 1}), box<dim>(lower, upper, lower_cells), "_below");
-  data.interfaces = {{{{{"bottom"}, {"top_below"}}}}};
-  return data;
-}
 
 template <int dim>
 ProblemData<dim> pushed(problem::ContactLaw law, double stiffness)

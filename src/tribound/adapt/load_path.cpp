@@ -8,7 +8,7 @@
 
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
-#include "tribound/contact/nitsche/softening.h"
+#include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/support/rigid_motion.h"
 
 namespace tribound::adapt
@@ -25,14 +25,19 @@ DiscreteAtTime<dim>::DiscreteAtTime(const problem::Problem<dim>& general, double
 
 template <int dim>
 LoadPath<dim>::LoadPath(const problem::Problem<dim>& problem, const Method& method,
-                        const PathOptions& options, mesh::Mesh<dim> mesh, const std::atomic<bool>* stop)
+                        const PathOptions& options, mesh::Mesh<dim> mesh, const std::atomic<bool>* stop,
+                        std::shared_ptr<const mesh::Mesh<dim>> whole)
     : problem_(problem),
       method_(method),
       options_(options),
       grid_(std::make_shared<const Grid<dim>>(contact::with_partners<dim>(std::move(mesh), problem.pairs()),
                                               method.degree)),
-      stop_(stop)
+      stop_(stop),
+      whole_(std::move(whole))
 {
+  if (method.regularisation)
+    throw InputError({}, "the regularised variant does not go along a load path",
+                     "the plain method: no regularisation");
 }
 
 template <int dim>
@@ -57,19 +62,27 @@ std::string LoadPath<dim>::try_step(double t, int cuts, const StepObserver& obse
   const Method method = method_of_step();
   step->at = std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method, history_);
   const contact::NitscheForm<dim>& form = step->at->discrete.form;
-  if (!last_)
-  {
-    contact::check_rigid_motions(form);
-    contact::check_softening(form);
-  }
+  if (!last_) check(*step->at);
   const std::span<const double> start =
       last_ ? std::span<const double>(last_->level.u) : std::span<const double>();
-  const auto friedrichs = last_ ? last_->level.friedrichs : std::nullopt;
-  step->level = solve_and_certify<dim>(form, start, method, observer, 0, {}, friedrichs);
+  step->level = solve_and_certify<dim>(form, start, method, observer, 0, {}, friedrichs_);
   step->level.equilibrium.reset();
+  friedrichs_ = step->level.friedrichs;
   if (!step->level.solved()) return step->level.failure;
   commit(std::move(step));
   return {};
+}
+
+template <int dim>
+void LoadPath<dim>::check(const DiscreteAtTime<dim>& at)
+{
+  const contact::NitscheForm<dim>& form = at.discrete.form;
+  const mesh::Mesh<dim>& mesh = at.discrete.mesh;
+  contact::check_interfaces(form);
+  if (!mesh.partition()) return contact::check_rigid_motions(form);
+  mesh.ranks().on_first([&] { contact::check_rigid_motions(at.problem, *whole_, method_.degree); });
+  friedrichs_ = mesh.ranks().on_first([&] { return certify::friedrichs_constant<dim>(at.problem, *whole_); });
+  whole_.reset();
 }
 
 /// A cycle comes back to no stress at all: bound and identities are relative to the stress of the path,

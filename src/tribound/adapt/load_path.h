@@ -5,7 +5,9 @@
 /// t, the contact boundary remembers.
 
 #include <atomic>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,9 +60,11 @@ class LoadPath
 {
  public:
   /// Throws InputError for a problem that is not well posed (check_rigid_motions) and where an interface
-  /// softens faster than gamma allows (check_softening).
+  /// softens faster than gamma allows (check_interfaces), or
+  /// for the regularised variant. `whole`: as Levels has it.
   LoadPath(const problem::Problem<dim>& problem, const Method& method, const PathOptions& options,
-           mesh::Mesh<dim> mesh, const std::atomic<bool>* stop = nullptr);
+           mesh::Mesh<dim> mesh, const std::atomic<bool>* stop = nullptr,
+           std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr);
 
   using Observer = std::function<void(const LoadStep<dim>&)>;
 
@@ -76,14 +80,18 @@ class LoadPath
   [[nodiscard]] Method method_of_step() const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   void commit(std::shared_ptr<LoadStep<dim>> step);
+  /// What only a whole mesh tells, at the first step.
+  void check(const DiscreteAtTime<dim>& at);
 
   const problem::Problem<dim>& problem_;
   const Method& method_;
   PathOptions options_;
   std::shared_ptr<const Grid<dim>> grid_;
   const std::atomic<bool>* stop_;
+  std::shared_ptr<const mesh::Mesh<dim>> whole_;  ///< until the first step
   std::shared_ptr<const LoadStep<dim>> last_;
   std::shared_ptr<const contact::ContactHistory<dim>> history_;
+  std::optional<certify::FriedrichsConstant> friedrichs_;
   double reference_force_ = 0;  ///< largest of the committed steps
   double largest_sigma_ = 0;    ///< ||sigma|| of the committed steps
 };

@@ -67,7 +67,7 @@ void read_round(const Node& node, SurfaceConfig& surface)
 std::string read_formula(const Node& node)
 {
   std::string text = to_text(node);
-  (void)problem::Field(text, node.where);  // its mistakes are those of any formula
+  (void)to_field(node);  // its mistakes are those of any formula
   return text;
 }
 

@@ -40,8 +40,11 @@ struct FrictionCone
   const Field* strength = nullptr;  ///< s(x) >= 0, stress; null for 0
   double coefficient = 0;           ///< mu_F >= 0
   bool is_tied = false;             ///< it holds anything, tension too
-  bool is_bonded = false;           ///< at first it holds more than this, perhaps tension, until it breaks
+  bool is_bonded = false;           ///< at first it holds more than this, until it breaks
+  bool holds_tension = false;       ///< the bond does
 
+  /// Whether the sides are one as long as nothing breaks.
+  [[nodiscard]] bool glues() const { return is_tied || holds_tension; }
   /// Whether there is anything to hold.
   [[nodiscard]] bool resists_sliding() const
   {
@@ -129,7 +132,10 @@ struct JointLaw : Joint
   explicit JointLaw(const Joint& joint, Field s = 0.0) : Joint(joint), threshold(std::move(s)) {}
   [[nodiscard]] FrictionCone cone() const
   {
-    return {.strength = &threshold, .coefficient = coefficient, .is_bonded = is_bonded()};
+    return {.strength = &threshold,
+            .coefficient = coefficient,
+            .is_bonded = is_bonded(),
+            .holds_tension = tension.strength > 0};
   }
   [[nodiscard]] std::string words() const;
 };
@@ -140,7 +146,10 @@ struct MixedLaw : Mixed
   static constexpr bool is_minimum = false;
 
   explicit MixedLaw(const Mixed& mixed) : Mixed(mixed) {}
-  [[nodiscard]] FrictionCone cone() const { return {.coefficient = coefficient, .is_bonded = true}; }
+  [[nodiscard]] FrictionCone cone() const
+  {
+    return {.coefficient = coefficient, .is_bonded = true, .holds_tension = true};
+  }
   [[nodiscard]] std::string words() const;
 };
 
@@ -150,7 +159,10 @@ struct EndoLaw : Endo
   static constexpr bool is_minimum = false;
 
   explicit EndoLaw(const Endo& endo) : Endo(endo) {}
-  [[nodiscard]] FrictionCone cone() const { return {.coefficient = coefficient, .is_bonded = true}; }
+  [[nodiscard]] FrictionCone cone() const
+  {
+    return {.coefficient = coefficient, .is_bonded = true, .holds_tension = true};
+  }
   [[nodiscard]] std::string words() const;
 };
 

@@ -6,9 +6,9 @@
 ///
 /// With the jump delta = (g - u^n) n - u^t (obstacles; -[u]^t and g - [u]^n between bodies) a law is a graph
 /// sigma n = t(delta; state). Its resolvent delta*(P), the solution of t(delta*) + gamma delta* = P, makes
-/// T = t(delta*) = P - gamma delta* an explicit function of P and of the state. It is unique while gamma is
-/// larger than softening_slope(). The state of a point is that of the last committed step, and never changes
-/// within a step; committing the state of delta* leaves T as it is at the same P.
+/// T = t(delta*) = P - gamma delta* an explicit function of P and of the state [L08]. It is unique while
+/// gamma is larger than softening_slope(). The state of a point is that of the last committed step, and never
+/// changes within a step; committing the state of delta* leaves T as it is at the same P.
 
 #include <limits>
 
@@ -64,7 +64,7 @@ struct InterfaceResponse
 enum class Unloading
 {
   origin,   ///< along the secant to the origin
-  vertical  ///< at constant opening, until it closes without traction [Talon-Curnier]
+  vertical  ///< at constant opening, until it closes without traction [TC03]
 };
 
 /// Softening in tension: rigid up to the strength ft, then t = ft (1 - delta / delta_c) until the bond is
@@ -108,7 +108,7 @@ struct Joint
 };
 
 /// "mixed": one damage for both modes by delta_eff^2 = (delta^n)_+^2 + beta^2 |delta^t|^2, the shear strength
-/// being beta ft, and friction beside the bond where it is closed [Camacho-Ortiz].
+/// being beta ft, and friction beside the bond where it is closed [CO96].
 struct Mixed
 {
   Tension tension{};
@@ -121,7 +121,7 @@ struct Mixed
   [[nodiscard]] double softening_slope() const { return tension.slope(); }
 };
 
-/// "endo": elastic and plastic joint with damage [code_aster, JOINT_MECA_ENDO]: with S(a) = (1-a)^3 / a^{1/2}
+/// "endo": elastic and plastic joint with damage [R70125, JOINT_MECA_ENDO]: with S(a) = (1-a)^3 / a^{1/2}
 /// the energy 1/2 K_n (delta^n - p^n)^2 + 1/2 K_t |delta^t - p^t|^2 + 1/2 S(alpha) (B_n p_n^2 + B_t |p_t|^2)
 /// + D_1 alpha, plastic flow along the normals of |X^t| + mu X^n <= 0, X = sigma - S B p.
 struct Endo

@@ -82,6 +82,9 @@ std::string describe_law(const problem::Problem<dim>& problem)
   for (const auto& pair : problem.pairs()) laws.push_back(pair.contact.law);
   if (std::ranges::all_of(laws, [](const auto& law) { return cone(law).is_tied; }))
     return "linear elasticity of bodies tied to each other: the solution exists and is unique";
+  if (std::ranges::any_of(laws, [](const auto& law) { return cone(law).is_bonded; }))
+    return "cohesive: existence and uniqueness are not known once the interface softens; loading without "
+           "softening, with a given friction threshold: unique";
   const bool minimum = std::ranges::all_of(laws, problem::is_minimum);
   if (!minimum)
     return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "

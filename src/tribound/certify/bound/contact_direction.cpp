@@ -74,34 +74,35 @@ void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Po
 }
 
 template <int dim>
-void ContactTerms<dim>::resolve_normal(int k, const Fields& fields,
-                                       std::vector<contact::ContactDatumPart<dim>>& parts,
-                                       std::vector<Integrals>& integrals) const
+void ContactTerms<dim>::resolve_normal(int k, std::vector<Part>& parts) const
 {
   // A jump of N is a point in 2D, where halving costs little, and a curve in 3D.
   constexpr int deepest = dim == 2 ? 30 : 3;
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure;
-  const auto is_enough = [&](const Integrals& value, const contact::ContactDatumPart<dim>& part)
+  const auto is_enough = [&](const Part& part)
   {
-    const Missed& missed = is_open(segment, part, value) ? value.missed_open : value.missed;
+    const Missed& missed = is_open(segment, part) ? part.integrals.missed_open : part.integrals.missed;
     return norm_scale(segment) * (missed.normal + missed.tangential) <=
-           allowed * fem::fraction<dim - 1>(part.part);
+           allowed * fem::fraction<dim - 1>(part.data.part);
   };
   for (int depth = 0; depth < deepest && parts.size() < max_pieces; ++depth)
   {
     const std::size_t n_before = parts.size();
     for (std::size_t i = 0; i < n_before; ++i)
     {
-      if (is_enough(integrals[i], parts[i])) continue;
-      const auto pieces = halves(parts[i].part);
-      for (std::size_t j = 1; j < pieces.size(); ++j)
+      if (is_enough(parts[i])) continue;
+      const Part whole = parts[i];
+      const auto pieces = halves(whole.data.part);
+      for (std::size_t j = 0; j < pieces.size(); ++j)
       {
-        parts.push_back({pieces[j], parts[i].gap, parts[i].strength});
-        integrals.push_back(integrate(k, fields, pieces[j]));
+        Part half{{pieces[j], whole.data.gap, whole.data.strength}, on_half(whole.fields, j), {}};
+        half.integrals = integrate(k, half.fields, pieces[j]);
+        if (j == 0)
+          parts[i] = half;
+        else
+          parts.push_back(half);
       }
-      parts[i].part = pieces[0];
-      integrals[i] = integrate(k, fields, pieces[0]);
     }
     if (parts.size() == n_before) break;
   }
@@ -110,12 +111,10 @@ void ContactTerms<dim>::resolve_normal(int k, const Fields& fields,
 template void ContactTerms<2>::add_varying_traction(int, std::span<const Point<2>>, double&, double&) const;
 template void ContactTerms<2>::add_missed(int, const Piece&, std::span<const Point<2>>,
                                           std::span<const Point<2>>, Integrals&) const;
-template void ContactTerms<2>::resolve_normal(int, const Fields&, std::vector<contact::ContactDatumPart<2>>&,
-                                              std::vector<Integrals>&) const;
+template void ContactTerms<2>::resolve_normal(int, std::vector<Part>&) const;
 template void ContactTerms<3>::add_varying_traction(int, std::span<const Point<3>>, double&, double&) const;
 template void ContactTerms<3>::add_missed(int, const Piece&, std::span<const Point<3>>,
                                           std::span<const Point<3>>, Integrals&) const;
-template void ContactTerms<3>::resolve_normal(int, const Fields&, std::vector<contact::ContactDatumPart<3>>&,
-                                              std::vector<Integrals>&) const;
+template void ContactTerms<3>::resolve_normal(int, std::vector<Part>&) const;
 
 }  // namespace tribound::certify

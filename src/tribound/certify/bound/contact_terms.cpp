@@ -70,6 +70,44 @@ ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRu
   for (int q = 0; q < points.size(); ++q)
     fem::orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
                                      std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+  for (const Piece& half : halves(fem::reference_simplex<dim - 1>()))
+  {
+    const std::vector<double> of_half = coefficients_on(half);
+    to_half_.insert(to_half_.end(), of_half.begin(), of_half.end());
+  }
+}
+
+/// (theta_i o map, theta_j) for the map of the reference simplex onto the part, [i * n + j]: exact.
+template <int dim>
+std::vector<double> ContactTerms<dim>::coefficients_on(const Piece& part) const
+{
+  const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
+  std::vector<double> result(static_cast<std::size_t>(n_) * n_, 0.0);
+  std::array<double, max_n> theta;
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    const FacetPoint s = fem::point_in<dim - 1>(part, rule.points[q]);
+    fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
+    for (int i = 0; i < n_; ++i)
+      for (int j = 0; j < n_; ++j) result[i * n_ + j] += rule.weights[q] * theta[i] * theta_[q * n_ + j];
+  }
+  return result;
+}
+
+template <int dim>
+auto ContactTerms<dim>::changed(const Fields& fields, std::span<const double> coefficients) const -> Fields
+{
+  Fields result;
+  for (int j = 0; j < n_; ++j)
+  {
+    result.augmented[j] = result.dis[j] = Point<dim>::Zero();
+    for (int i = 0; i < n_; ++i)
+    {
+      result.augmented[j] += coefficients[i * n_ + j] * fields.augmented[i];
+      result.dis[j] += coefficients[i * n_ + j] * fields.dis[i];
+    }
+  }
+  return result;
 }
 
 template <int dim>
@@ -88,7 +126,10 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
   const contact::SegmentValues<dim> values = form_.values(k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
   for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = values.augmented_traction(u, q);
-  return {project(augmented), project(on_segment(t.dis, k))};
+  Fields result;
+  std::ranges::copy(project(augmented), result.augmented.begin());
+  std::ranges::copy(project(on_segment(t.dis, k)), result.dis.begin());
+  return result;
 }
 
 template <int dim>
@@ -98,7 +139,6 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form_.space().mesh(), segment.slave);
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
-  std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree)> theta;
   const problem::ContactLaw& law = segment.contact->law;
   const double tangential_weight = problem::tangential_weight(law);
   Integrals result;
@@ -118,15 +158,14 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   double round_off = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
-    fem::orthonormal_values<dim - 1>(form_.space().degree(), points[q], std::span(theta).first(n_));
     const Point<dim>& n = normals[q];
     const double closing = closings[q] *= segment.gamma;
     Point<dim> p = closing * n;
     Point<dim> dis = Point<dim>::Zero();
     for (int i = 0; i < n_; ++i)
     {
-      p += theta[i] * fields.augmented[i];
-      dis += theta[i] * fields.dis[i];
+      p += theta_[q * n_ + i] * fields.augmented[i];
+      dis += theta_[q * n_ + i] * fields.dis[i];
     }
     const problem::LawPoint<dim> point = form_.law_point(k, points[q], places[q], n);
     augmented[q] = p + tangential_weight * point.gamma * point.state.slip;
@@ -156,11 +195,12 @@ template <int dim>
 auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                               const Integrals& whole) const -> Halved
 {
-  Halved result{part, halves(piece), {}, 0};
+  Halved result{part, halves(piece), {}, {}, 0};
   Integrals sum;
   for (std::size_t i = 0; i < result.pieces.size(); ++i)
   {
-    result.values[i] = integrate(k, fields, result.pieces[i], whole.of_normal);
+    result.fields[i] = on_half(fields, i);
+    result.values[i] = integrate(k, result.fields[i], result.pieces[i], whole.of_normal);
     sum += result.values[i];
     result.change += fem::fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
   }
@@ -171,28 +211,24 @@ auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, con
 /// Halves the parts on which T is rough, and of these those again, until that changes nothing any more. What
 /// it did change last, where there is no end of it, is added.
 template <int dim>
-void ContactTerms<dim>::settle(int k, const Fields& fields,
-                               std::span<const contact::ContactDatumPart<dim>> parts,
-                               std::span<Integrals> integrals) const
+void ContactTerms<dim>::settle(int k, std::span<Part> parts) const
 {
   double rounding = 0;  // what is left where T is a polynomial all the same never settles
-  for (const Integrals& part : integrals) rounding = std::max(rounding, std::pow(1e3 * part.round_off, 2));
+  for (const Part& part : parts) rounding = std::max(rounding, std::pow(1e3 * part.integrals.round_off, 2));
   // What a bond does between the points is not enclosed: its parts are halved twice at least.
   const int least_depth = cone(form_.segments()[k].contact->law).is_bonded ? 2 : 1;
   std::vector<Halved> active;
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (is_rough<dim>(integrals[i].kinks))
+    if (Integrals& whole = parts[i].integrals; is_rough<dim>(whole.kinks))
     {
-      active.push_back(halve(k, fields, i, parts[i].part, integrals[i]));
-      integrals[i] = {.kinks = integrals[i].kinks,
-                      .deviation = integrals[i].deviation,
-                      .of_normal = integrals[i].of_normal};
+      active.push_back(halve(k, parts[i].fields, i, parts[i].data.part, whole));
+      whole = {.kinks = whole.kinks, .deviation = whole.deviation, .of_normal = whole.of_normal};
     }
   for (int depth = 1; !active.empty(); ++depth)
   {
     Integrals total;
     double change = 0;
-    for (const Integrals& part : integrals) total += part;
+    for (const Part& part : parts) total += part.integrals;
     for (const Halved& halved : active)
     {
       change += halved.change;
@@ -204,14 +240,14 @@ void ContactTerms<dim>::settle(int k, const Fields& fields,
     std::vector<Halved> next;
     for (const Halved& halved : active)
     {
-      Integrals& sum = integrals[halved.part];
+      Integrals& sum = parts[halved.part].integrals;
       const bool enough =
           last || (depth >= least_depth && halved.change * static_cast<double>(active.size()) <= negligible);
       for (std::size_t i = 0; i < halved.pieces.size(); ++i)
         if (enough || !is_rough<dim>(halved.values[i].kinks))
           sum += halved.values[i];
         else
-          next.push_back(halve(k, fields, halved.part, halved.pieces[i], halved.values[i]));
+          next.push_back(halve(k, halved.fields[i], halved.part, halved.pieces[i], halved.values[i]));
       if (last && !done) sum += {.normal = halved.change, .tangential = halved.change};
     }
     active = std::move(next);
@@ -226,42 +262,41 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   if (!t.reg.empty()) add_traction(k, on_segment(t.reg, k), result.reg2n, result.reg2t);
   if (problem::cone(segment.contact->law).is_tied) return result;  // T = P is its own projection
   const Fields on_k = fields(k, u, t);
-  const std::span<const contact::ContactDatumPart<dim>> given = form_.data().contact_parts(k);
-  std::vector<contact::ContactDatumPart<dim>> parts(given.begin(), given.end());
-  if (parts.empty()) parts.push_back({fem::reference_simplex<dim - 1>(), 0, 0});
-  std::vector<Integrals> integrals;
-  integrals.reserve(parts.size());
-  for (const auto& part : parts) integrals.push_back(integrate(k, on_k, part.part));
-  if (segment.varying_normal != nullptr) resolve_normal(k, on_k, parts, integrals);
-  if (rule_ == ContactRule::resolved) settle(k, on_k, parts, integrals);
-  for (std::size_t i = 0; i < parts.size(); ++i) add_part(segment, parts[i], integrals[i], result);
+  std::vector<Part> parts;
+  if (form_.data().contact_parts(k).empty())
+    parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0}, on_k, {}});
+  for (const contact::ContactDatumPart<dim>& data : form_.data().contact_parts(k))
+    parts.push_back({data, changed(on_k, coefficients_on(data.part)), {}});
+  for (Part& part : parts) part.integrals = integrate(k, part.fields, part.data.part);
+  if (segment.varying_normal != nullptr) resolve_normal(k, parts);
+  if (rule_ == ContactRule::resolved) settle(k, parts);
+  for (const Part& part : parts) add_part(segment, part, result);
   return result;
 }
 
 /// Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
 /// polynomial up to gamma delta and the deviation of N, with which it was seen at the points, too.
 template <int dim>
-bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment,
-                                const contact::ContactDatumPart<dim>& part, const Integrals& integrals) const
+bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment, const Part& part) const
 {
-  return integrals.kinks.lowest >
-         (1 + kinks_.amplification()) * (segment.gamma * part.gap + integrals.deviation);
+  return part.integrals.kinks.lowest >
+         (1 + kinks_.amplification()) * (segment.gamma * part.data.gap + part.integrals.deviation);
 }
 
 /// T is Lipschitz continuous in g and s: [.]_- and the projections on balls do not expand, and neither does
 /// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
 /// the rule and at most 3 |K|^{1/2} times what the remainders change.
 template <int dim>
-void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment,
-                                 const contact::ContactDatumPart<dim>& part, const Integrals& integrals,
+void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment, const Part& part,
                                  ContactSquares& squares) const
 {
+  const auto& [data, fields, integrals] = part;
   const double scale = norm_scale(segment);
-  const double missed = misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(part.part));
-  const bool open = is_open(segment, part, integrals);
+  const double missed = misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(data.part));
+  const bool open = is_open(segment, part);
   const Missed& of_normal = open ? integrals.missed_open : integrals.missed;
-  const double pressure = open ? 0 : segment.gamma * part.gap;
-  const double limit = cone(segment.contact->law).closed_limit(part.strength, -pressure);
+  const double pressure = open ? 0 : segment.gamma * data.gap;
+  const double limit = cone(segment.contact->law).closed_limit(data.strength, -pressure);
   squares.cnt += std::pow(
       std::sqrt(scale * integrals.normal) + std::sqrt(scale * of_normal.normal) + missed * pressure, 2);
   squares.frc += std::pow(

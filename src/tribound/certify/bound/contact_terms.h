@@ -11,6 +11,9 @@
 #include "tribound/certify/bound/kinks.h"
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/degree.h"
+#include "tribound/fem/polynomials.h"
+#include "tribound/fem/simplex_parts.h"
 
 namespace tribound::certify
 {
@@ -64,11 +67,15 @@ class ContactTerms
   using FacetPoint = Point<dim - 1>;
   using Piece = fem::Part<dim - 1>;  ///< of the segment, in its coordinates
 
-  /// Vector polynomials of degree p on a segment in the orthonormal basis of the reference simplex.
+  static constexpr int n_halves = 1 << (dim - 1);
+  static constexpr int max_n = fem::polynomial_dimension(dim - 1, fem::max_degree);
+
+  /// Vector polynomials of degree p on a piece, in the orthonormal basis of the reference simplex in the
+  /// coordinates of the piece.
   struct Fields
   {
-    std::vector<Point<dim>> augmented;  ///< {sigma(u)} - gamma [u]: P(u) without the gap
-    std::vector<Point<dim>> dis;        ///< Pi_k T
+    std::array<Point<dim>, max_n> augmented;  ///< {sigma(u)} - gamma [u]: P(u) without the gap
+    std::array<Point<dim>, max_n> dis;        ///< Pi_k T
   };
   /// Squares of what norms may be larger by where N is no polynomial.
   struct Missed
@@ -100,12 +107,21 @@ class ContactTerms
     }
   };
 
+  /// A part of a segment on which the data are smooth.
+  struct Part
+  {
+    contact::ContactDatumPart<dim> data;
+    Fields fields;
+    Integrals integrals;
+  };
+
   /// A piece halved along each edge.
   struct Halved
   {
     std::size_t part;  ///< number of the part of the segment
-    std::array<Piece, 1 << (dim - 1)> pieces;
-    std::array<Integrals, 1 << (dim - 1)> values;
+    std::array<Piece, n_halves> pieces;
+    std::array<Fields, n_halves> fields;
+    std::array<Integrals, n_halves> values;
     double change;  ///< of the integrals, and what no point has seen
   };
 
@@ -121,6 +137,15 @@ class ContactTerms
   void add_varying_traction(int k, std::span<const Point<dim>> coefficients, double& normal_part,
                             double& tangential_part) const;
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Tractions& t) const;
+  [[nodiscard]] std::vector<double> coefficients_on(const Piece& part) const;
+  /// Those with other coefficients: [i * n + j] takes i to j.
+  [[nodiscard]] Fields changed(const Fields& fields, std::span<const double> coefficients) const;
+  /// Those on a piece in the coordinates of one of its halves.
+  [[nodiscard]] Fields on_half(const Fields& whole, std::size_t half) const
+  {
+    const std::size_t size = to_half_.size() / n_halves;
+    return changed(whole, std::span(to_half_).subspan(half * size, size));
+  }
   /// `known`: the deviation of N on a larger piece; absent: it is looked for.
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece,
                                     const std::optional<problem::NormalDeviation>& known = {}) const;
@@ -128,23 +153,20 @@ class ContactTerms
   void add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
                   std::span<const Point<dim>> dis, Integrals& integrals) const;
   /// Halves parts until N is a polynomial on each but for something negligible.
-  void resolve_normal(int k, const Fields& fields, std::vector<contact::ContactDatumPart<dim>>& parts,
-                      std::vector<Integrals>& integrals) const;
+  void resolve_normal(int k, std::vector<Part>& parts) const;
   /// Whether P^n > 0 on a part, whatever gap and N are between the points.
-  [[nodiscard]] bool is_open(const contact::ContactSegment<dim>& segment,
-                             const contact::ContactDatumPart<dim>& part, const Integrals& integrals) const;
-  void add_part(const contact::ContactSegment<dim>& segment, const contact::ContactDatumPart<dim>& part,
-                const Integrals& integrals, ContactSquares& squares) const;
+  [[nodiscard]] bool is_open(const contact::ContactSegment<dim>& segment, const Part& part) const;
+  void add_part(const contact::ContactSegment<dim>& segment, const Part& part, ContactSquares& squares) const;
   [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                              const Integrals& whole) const;
-  void settle(int k, const Fields& fields, std::span<const contact::ContactDatumPart<dim>> parts,
-              std::span<Integrals> integrals) const;
+  void settle(int k, std::span<Part> parts) const;
 
   const contact::NitscheForm<dim>& form_;
   ContactRule rule_;
-  std::vector<double> theta_;  ///< basis at the points of the rule, [q * n + i]
-  int n_;                      ///< dim P^p(k)
-  KinkFinder<dim> kinks_;      ///< for P^{p+2}, in which P^n is up to the remainder of the gap
+  std::vector<double> theta_;    ///< basis at the points of the rule, [q * n + i]
+  int n_;                        ///< dim P^p(k)
+  std::vector<double> to_half_;  ///< coefficients_on() the halves of the reference simplex
+  KinkFinder<dim> kinks_;        ///< for P^{p+2}, in which P^n is up to the remainder of the gap
 };
 
 }  // namespace tribound::certify

@@ -106,7 +106,7 @@ Eigen::MatrixXd Support<dim>::fixed_gram() const
     }
   add_segments(mesh_, segments_, assembly_, grams,
                [](const problem::FrictionCone& law, const Point<dim>&, const auto& z)
-               { return law.is_tied ? Eigen::MatrixXd(z) : Eigen::MatrixXd(0, z.cols()); });
+               { return law.glues() ? Eigen::MatrixXd(z) : Eigen::MatrixXd(0, z.cols()); });
   return grams.sum();
 }
 
@@ -117,7 +117,7 @@ Eigen::MatrixXd Support<dim>::contact_gram(bool with_friction) const
   add_segments(mesh_, segments_, assembly_, grams,
                [&](const problem::FrictionCone& law, const Point<dim>& n, const auto& z)
                {
-                 if (law.is_tied) return Eigen::MatrixXd(0, z.cols());
+                 if (law.glues()) return Eigen::MatrixXd(0, z.cols());
                  return with_friction && law.resists_sliding() ? Eigen::MatrixXd(z)
                                                                : Eigen::MatrixXd(n.transpose() * z);
                });

@@ -1,7 +1,7 @@
 #pragma once
 
-/// @file softening.h
-/// What the mesh size has to be where an interface softens (method section 12.1).
+/// @file interface_check.h
+/// What interfaces with a bond ask of mesh and data (method section 12.1).
 
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -18,9 +18,9 @@ struct SofteningMargin
 template <int dim>
 [[nodiscard]] SofteningMargin softening_margin(const NitscheForm<dim>& form);
 
-/// Throws InputError where slope >= gamma, naming the facet, both, and the facet size that would do. All
-/// ranks together.
+/// Throws InputError, naming the place, where slope >= gamma, with the facet size that would do; where there
+/// is a gap under a bond; and where gap or threshold of a law that softens are no polynomials.
 template <int dim>
-void check_softening(const NitscheForm<dim>& form);
+void check_interfaces(const NitscheForm<dim>& form);
 
 }  // namespace tribound::contact

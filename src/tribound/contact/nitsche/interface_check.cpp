@@ -1,0 +1,94 @@
+#include "tribound/contact/nitsche/interface_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+
+#include "tribound/base/error.h"
+
+namespace tribound::contact
+{
+
+template <int dim>
+SofteningMargin softening_margin(const NitscheForm<dim>& form)
+{
+  SofteningMargin margin;
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+  {
+    const double slope = problem::softening_slope(form.segments()[k].contact->law);
+    if (slope > margin.ratio * form.segments()[k].gamma) margin = {slope / form.segments()[k].gamma, k};
+  }
+  return margin;
+}
+
+namespace
+{
+
+/// "the interface "base" at (1, 0)"
+template <int dim>
+std::string place(const NitscheForm<dim>& form, const ContactSegment<dim>& segment, const Point<dim>& x)
+{
+  const int tag = segment.slave.facet.tag;
+  return fmt::format("the interface \"{}\" at ({:.6g})", form.space().mesh().boundary_names()[tag],
+                     fmt::join(x, ", "));
+}
+
+template <int dim>
+void check_gap(const NitscheForm<dim>& form, std::size_t k)
+{
+  constexpr double closed = 1e-8;  // of the size of a facet
+  const ContactSegment<dim>& segment = form.segments()[k];
+  for (const ContactPoint<dim>& point : form.contact_points(k))
+    if (point.state.damage < 1 && point.gap > closed * segment.h)
+      throw InputError(
+          {}, fmt::format("{} has a gap of {:.4g} under a bond", place(form, segment, point.x), point.gap),
+          "a gap of 0 where it is bonded");
+}
+
+/// T is Lipschitz continuous in gap and threshold with the constant 1 where nothing softens: the bound takes
+/// what rules miss of them by that.
+template <int dim>
+void check_data(const NitscheForm<dim>& form, std::size_t k)
+{
+  const ContactSegment<dim>& segment = form.segments()[k];
+  if (problem::softening_slope(segment.contact->law) == 0) return;
+  for (const ContactDatumPart<dim>& part : form.data().contact_parts(k))
+    if (part.gap > 0 || part.strength > 0)
+      throw InputError(
+          {},
+          fmt::format("{} softens, and its gap or threshold is no polynomial of degree {}",
+                      place(form, segment, form.contact_points(k)[0].x), form.space().degree() + 2),
+          "numbers, or polynomials");
+}
+
+}  // namespace
+
+template <int dim>
+void check_interfaces(const NitscheForm<dim>& form)
+{
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+  {
+    if (!problem::cone(form.segments()[k].contact->law).is_bonded) continue;
+    check_gap(form, k);
+    check_data(form, k);
+  }
+  const SofteningMargin margin = softening_margin(form);
+  if (margin.ratio < 1) return;
+  const ContactSegment<dim>& segment = form.segments()[margin.segment];
+  const Point<dim> centre =
+      simplex_map(form.space().mesh(), segment.slave)(Point<dim - 1>::Constant(1.0 / dim));
+  throw InputError(
+      {},
+      fmt::format("{} softens with the slope {:.4g}, and gamma = {:.4g} has to be larger",
+                  place(form, segment, centre), margin.ratio * segment.gamma, segment.gamma),
+      fmt::format("facets there of less than {:.4g} (now {:.4g}), or a gamma0 of more than {:.4g}",
+                  segment.h / margin.ratio, segment.h, form.gamma0() * margin.ratio));
+}
+
+template SofteningMargin softening_margin(const NitscheForm<2>&);
+template SofteningMargin softening_margin(const NitscheForm<3>&);
+template void check_interfaces(const NitscheForm<2>&);
+template void check_interfaces(const NitscheForm<3>&);
+
+}  // namespace tribound::contact

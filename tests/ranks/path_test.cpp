@@ -1,0 +1,78 @@
+/// @file path_test.cpp
+/// Load paths with interfaces that remember, on several ranks against one.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/bonded_path.h"
+#include "tribound/mesh/share_out.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+/// Energy, bound, forces, integrals of damage, slip and what was dissipated, of each step.
+template <int dim>
+std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, int degree,
+                           std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr)
+{
+  const problem::Problem<dim> problem = data.on(mesh);
+  adapt::Method method{.degree = degree, .newton = {.tolerance = 1e-11}};
+  method.stopping.criterion = adapt::Stopping::last_bounded;
+  method.solver.method = algebra::LinearMethod::direct;
+  adapt::LoadPath<dim> path(problem, method, {}, std::move(mesh), nullptr, std::move(whole));
+  std::vector<double> numbers;
+  const auto add = [&](const adapt::LoadStep<dim>& step)
+  {
+    const contact::NitscheForm<dim>& form = step.at->discrete.form;
+    std::array<double, 4> sums{};
+    for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
+    {
+      const double weight = form.contact_points()[i].weight;
+      const problem::InterfaceResponse<dim>& response = step.responses[i];
+      sums[0] += weight * response.state.damage;
+      sums[1] += weight * response.state.slipped;
+      sums[2] += weight * response.dissipated;
+      sums[3] += weight * response.stored;
+    }
+    form.space().mesh().ranks().sum(std::span(sums));
+    const auto contact = contact::contact_resultants<dim>(form, step.level.traction);
+    numbers.insert(numbers.end(), sums.begin(), sums.end());
+    numbers.insert(numbers.end(), {step.level.norms.energy, step.level.norms.sigma,
+                                   step.level.estimate.total_sharp, contact.normal, contact.tangential});
+    EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+  };
+  for (const double t : path_of_t) EXPECT_EQ(path.advance(t, add), "");
+  return numbers;
+}
+
+template <int dim>
+void expect_same(const problem::ContactLaw& law, int degree, bool pairs)
+{
+  SCOPED_TRACE(problem::words(law));
+  const Ranks ranks = Ranks::world();
+  const mesh::MeshData<dim> data = peeled_mesh<dim>(pairs);
+  const ProblemData<dim> problem = peeled<dim>(law, pairs);
+  const auto whole = ranks.is_first() ? std::make_shared<const mesh::Mesh<dim>>(data) : nullptr;
+  const std::vector<double> alone = follow<dim>(mesh::Mesh<dim>(data), problem, degree);
+  const std::vector<double> together =
+      follow<dim>(mesh::share_out<dim>(ranks, whole.get()), problem, degree, whole);
+  ASSERT_EQ(together.size(), alone.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_NEAR(together[i], alone[i], 1e-9) << i;
+}
+
+TEST(LoadPath, IsTheSameOnAllRanks)
+{
+  for (const problem::ContactLaw& law : bonded_laws())
+    for (const bool pairs : {false, true}) expect_same<2>(law, 2, pairs);
+  expect_same<3>(bonded_laws()[1], 1, true);
+  expect_same<3>(bonded_laws()[3], 1, false);
+}
+
+}  // namespace
+}  // namespace tribound::test

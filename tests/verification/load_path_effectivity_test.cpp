@@ -1,0 +1,106 @@
+/// @file load_path_effectivity_test.cpp
+/// The bound against the dual norm of the residual at every step of load paths, at the first Newton iterates
+/// and at the last, with interfaces that break, slip and remember.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/bonded_path.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/truth/true_error.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+struct Seen
+{
+  double least = HUGE_VAL;
+  double most = 0;
+  int count = 0;
+};
+
+/// The step once more from the displacement before it, with the bound of each of its first iterates.
+template <int dim>
+void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const double> before, Seen& seen)
+{
+  const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  const int degree = form.space().degree();
+  certify::DualNorm<dim> dual_norm(
+      form, {.refinements = dim == 2 ? 2 : 1, .degree = dim == 2 ? degree + 2 : degree + 1});
+  const certify::Estimator<dim> estimator(form, certify::ContactRule::resolved);
+  const auto check = [&](std::span<const double> u, std::span<const Point<dim>> traction)
+  {
+    const certify::Stress<dim> stress = certify::equilibrate<dim>(form, u, traction);
+    EXPECT_LE(certify::check_identities<dim>(form, traction, stress).largest(degree), 1e-9);
+    const double bound = estimator(u, stress).total_sharp;
+    const double below = dual_norm(u);
+    EXPECT_GE(bound, below);
+    seen.least = std::min(seen.least, bound / below);
+    seen.most = std::max(seen.most, bound / below);
+    ++seen.count;
+  };
+  const solve::NewtonOptions options{.max_steps = 2, .damping = false};
+  (void)solve::solve<dim>(form, before, options, {},
+                          [&](const solve::NewtonIterate<dim>& iterate)
+                          {
+                            check(iterate.u(), iterate.traction);
+                            return false;
+                          });
+  check(step.level.u, step.level.traction);
+}
+
+template <int dim>
+void expect_guaranteed(const problem::ContactLaw& law, int degree, bool pairs, Seen& seen)
+{
+  SCOPED_TRACE(
+      fmt::format("{}D, {}, degree {}, {}", dim, problem::words(law), degree, pairs ? "pair" : "obstacle"));
+  mesh::Mesh<dim> mesh(peeled_mesh<dim>(pairs));
+  const problem::Problem<dim> problem = peeled<dim>(law, pairs).on(mesh);
+  adapt::Method method{.degree = degree};
+  method.stopping.criterion = adapt::Stopping::last_bounded;
+  adapt::LoadPath<dim> path(problem, method, {}, std::move(mesh));
+  std::vector<double> before;
+  for (const double t : path_of_t)
+    ASSERT_EQ(path.advance(t,
+                           [&](const adapt::LoadStep<dim>& step)
+                           {
+                             SCOPED_TRACE(fmt::format("step {}", step.number));
+                             expect_above_dual_norm<dim>(step, before, seen);
+                             before = step.level.u;
+                           }),
+              "");
+}
+
+TEST(LoadPathBound, IsAboveTheDualNormIn2D)
+{
+  for (const int degree : {1, 2, 3})
+  {
+    Seen seen;
+    for (const problem::ContactLaw& law : bonded_laws())
+      for (const bool pairs : {false, true})
+        if (degree < 3 || !pairs) expect_guaranteed<2>(law, degree, pairs, seen);
+    fmt::print("2D, p = {}: {} iterates {:.3f} to {:.3f}\n", degree, seen.count, seen.least, seen.most);
+  }
+}
+
+TEST(LoadPathBound, IsAboveTheDualNormIn3D)
+{
+  for (const int degree : {1, 2})
+  {
+    Seen seen;
+    const std::vector<problem::ContactLaw> laws = bonded_laws();
+    for (std::size_t i = 0; i < laws.size(); ++i)
+      if (degree == 1 ? i != 0 : i == 3) expect_guaranteed<3>(laws[i], degree, i % 2 == 1, seen);
+    fmt::print("3D, p = {}: {} iterates {:.3f} to {:.3f}\n", degree, seen.count, seen.least, seen.most);
+  }
+}
+
+}  // namespace
+}  // namespace tribound::test
