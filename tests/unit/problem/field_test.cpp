@@ -91,6 +91,23 @@ TEST(Field, CopiesAreIndependent)
   EXPECT_EQ(many[99](Point<2>(0, 4)), 4);
 }
 
+TEST(Field, FollowsTheLoadFactor)
+{
+  const problem::Field field("2*t*x + t^2", Where{});
+  EXPECT_TRUE(field.uses_time());
+  EXPECT_EQ(field(Point<2>(3, 0)), 7);  // t = 1
+  const problem::Field later = field.at(0.5);
+  EXPECT_EQ(later(Point<2>(3, 0)), 3.25);
+  EXPECT_EQ(later.at(-1)(Point<2>(3, 0)), -5);
+  EXPECT_EQ(later.degree(), 1);
+  const problem::Field folded = problem::Field("t*(4 - t)", Where{}).at(4);
+  EXPECT_TRUE(folded.is_zero());
+  EXPECT_EQ(folded.at(2).constant(), 4);  // it is still the formula
+  EXPECT_FALSE(problem::Field("2*x", Where{}).uses_time());
+  EXPECT_EQ(problem::Field("2*x", Where{}).at(5)(Point<2>(1, 0)), 2);
+  EXPECT_THROW((void)problem::Field("1/t", Where{}).at(0), InputError);
+}
+
 struct BadFormula
 {
   std::string formula;
@@ -116,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
                                "did you mean \"max\"?"},
                     BadFormula{"1 + X", "unknown name \"X\" at character 5",
                                "allowed are x, y, z, pi, e and the functions"},
-                    BadFormula{"2*t", "unknown name \"t\" at character 3", "abs, acos"},
+                    BadFormula{"2*q", "unknown name \"q\" at character 3", "abs, acos"},
                     BadFormula{"_pi", "unknown name \"_pi\" at character 1", "did you mean \"pi\"?"},
                     BadFormula{"1e", "unexpected \"1e\" at character 1", ""},
                     BadFormula{"1+", "something is missing at character 3", ""},

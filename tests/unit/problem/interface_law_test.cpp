@@ -72,8 +72,8 @@ void expect_reference(const Law& law, const Json& c, const Json& step)
   const Tensor<dim> axes = frame<dim>();
   const Json& before = step["before"];
   const LawPoint<dim> point{axes.col(0),
-                            c["gamma"],
                             c["parameters"].value("s", 0.0),
+                            c["gamma"],
                             {before["D"], before.value("q", 0.0), tangential<dim>(axes, before["w"])}};
   const Point<dim> P = step["Pn"].get<double>() * axes.col(0) + tangential<dim>(axes, step["Pt"]);
   const InterfaceResponse<dim> response = respond<dim>(law, point, P);
