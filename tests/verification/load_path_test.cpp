@@ -246,12 +246,51 @@ TEST(LoadPath, NumbersOfAnIndependentProgram)
                   {
                     SCOPED_TRACE(step.number);
                     EXPECT_EQ(step.cuts, 0);
-                    EXPECT_LE(step.level.steps.size(), 40);  // full ones, and if these go round in circles halved ones
+                    EXPECT_LE(step.level.steps.size(),
+                              40);  // full ones, and if these go round in circles halved ones
                     EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
                     expect_numbers(step, c["steps"][i++]);
                   });
       EXPECT_EQ(i, c["steps"].size());
     }
+}
+
+/// Laws, data and meshes that do not go together are refused by name.
+TEST(LoadPath, RefusesWhatDoesNotHold)
+{
+  const auto message = [](const problem::ContactLaw& law, double gamma0, Field gap)
+  {
+    Path path({4, 2}, 2);
+    path.E = 1;
+    path.method.gamma0 = gamma0;
+    path.boundaries = {problem::with_displacement<2>("top", {Field(0.0), formula("t")}),
+                       problem::with_contact<2>("bottom", law, std::move(gap))};
+    try
+    {
+      path.follow({0.1}, [](const adapt::LoadStep<2>&) {});
+    }
+    catch (const InputError& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto expect =
+      [&](const problem::ContactLaw& law, const std::string& part, double gamma0 = 10, const Field& gap = 0.0)
+  { EXPECT_NE(message(law, gamma0, gap).find(part), std::string::npos) << message(law, gamma0, gap); };
+  const problem::Tension soft{1, 1, Unloading::origin};
+  EXPECT_EQ(message(problem::JointLaw({.tension = soft}), 10, 0.0), "");
+  expect(problem::JointLaw({.tension = {10, 1, Unloading::origin}}),
+         "the interface \"bottom\" at (0.25, 0) softens with the slope 50, and gamma =");
+  expect(problem::JointLaw({.tension = soft}), "has a gap of 0.01 under a bond", 10, 0.01);
+  expect(problem::JointLaw({.tension = {1, 0, Unloading::origin}}), "needs a fracture energy");
+  expect(problem::JointLaw({.cohesion = 1, .stick = true}), "needs a tensile strength");
+  expect(problem::JointLaw({.tension = soft, .slip_length = 1}), "a slip length needs a cohesion");
+  expect(problem::JointLaw({.cohesion = 1, .slip_length = 1}, formula("0.1*exp(5*x)")), "no polynomial");
+  expect(problem::MixedLaw({.tension = soft, .shear_ratio = 0.2}), "a gamma0 of 40 or more");
+  expect(problem::MixedLaw({.tension = {1, 1, Unloading::vertical}, .coefficient = 0.3}),
+         "unloading to the origin only");
+  expect(problem::EndoLaw({5, 4, 0.8, 0.3, 3, 0.003}), "must hold of the strengths");
 }
 
 }  // namespace

@@ -53,8 +53,9 @@ struct PathOptions
 
 /// Follows a load path. The first step of all starts from scratch, every other from the displacement of the
 /// one before; what a step commits is the jump of its resolvent, once it has converged (method section 12.2).
-/// Keeps references to problem, method and stop. On a mesh that is shared out all ranks call its members
-/// together.
+/// With an adaptive stopping criterion what it commits has the linearisation error of the step; the bound
+/// does not cover what earlier steps have left. Keeps references to problem, method and stop. On a mesh that
+/// is shared out all ranks call its members together.
 template <int dim>
 class LoadPath
 {

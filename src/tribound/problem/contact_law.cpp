@@ -245,6 +245,19 @@ InterfaceState<dim> admissible(const ContactLaw& law, InterfaceState<dim> state)
   return state;
 }
 
+std::string fault(const ContactLaw& law)
+{
+  return std::visit(
+      []<Law L>(const L& l) -> std::string
+      {
+        if constexpr (has_bond<L>)
+          return problem::fault(l);
+        else
+          return {};
+      },
+      law);
+}
+
 double softening_slope(const ContactLaw& law)
 {
   return std::visit(

@@ -219,6 +219,9 @@ template <int dim>
 template <int dim>
 [[nodiscard]] InterfaceState<dim> admissible(const ContactLaw& law, InterfaceState<dim> state);
 
+/// What is wrong with the constants of a law with a bond; empty: nothing.
+[[nodiscard]] std::string fault(const ContactLaw& law);
+
 /// What gamma has to exceed: Joint::softening_slope() and others; 0 without bond.
 [[nodiscard]] double softening_slope(const ContactLaw& law);
 

@@ -193,6 +193,18 @@ class EndoStep
 
 }  // namespace
 
+std::string fault(const Endo& law)
+{
+  for (const double constant : {law.normal_stiffness, law.tangential_stiffness, law.coefficient,
+                                law.normal_hardening, law.tangential_hardening, law.energy})
+    if (!(constant > 0 && std::isfinite(constant))) return "all constants must be positive";
+  const double least = law.coefficient * law.tensile_strength();
+  const double cohesion = law.cohesion();
+  return cohesion < least * (1 - 1e-12) || cohesion > std::sqrt(2.0) * least * (1 + 1e-12)
+             ? "mu tension <= cohesion <= 2^(1/2) mu tension must hold of the strengths"
+             : "";
+}
+
 double Endo::softening_slope() const
 {
   // G has one root while the stiffnesses in series exceed this multiple of the hardening moduli.

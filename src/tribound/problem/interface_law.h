@@ -11,6 +11,7 @@
 /// changes within a step; committing the state of delta* leaves T as it is at the same P.
 
 #include <limits>
+#include <string>
 
 #include "tribound/base/types.h"
 
@@ -83,6 +84,8 @@ struct Tension
   {
     return strength * (1 - damage) / (damage * critical_opening());
   }
+  /// What is wrong with its constants; empty: nothing.
+  [[nodiscard]] std::string fault() const;
   /// Dissipated per area while the damage grows from `before` to `after` without closing: Gc from 0 to 1.
   [[nodiscard]] double dissipated(double before, double after) const;
 };
@@ -141,6 +144,11 @@ struct Endo
   [[nodiscard]] double tensile_strength() const;
   [[nodiscard]] double cohesion() const;
 };
+
+/// What is wrong with the constants of a law; empty: nothing.
+[[nodiscard]] std::string fault(const Joint& law);
+[[nodiscard]] std::string fault(const Mixed& law);
+[[nodiscard]] std::string fault(const Endo& law);
 
 template <int dim>
 [[nodiscard]] InterfaceResponse<dim> respond(const Joint& law, const LawPoint<dim>& point,

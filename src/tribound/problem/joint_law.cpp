@@ -14,6 +14,23 @@ double Tension::dissipated(double before, double after) const
   return whole * ((after - after * after / 2) - (before - before * before / 2));
 }
 
+std::string Tension::fault() const
+{
+  if (!(strength >= 0 && fracture_energy >= 0)) return "strength and fracture energy must be 0 or more";
+  if (strength > 0 && fracture_energy <= 0) return "a tensile strength needs a fracture energy";
+  return strength <= 0 && fracture_energy > 0 ? "a fracture energy needs a tensile strength" : "";
+}
+
+std::string fault(const Joint& law)
+{
+  if (std::string of_bond = law.tension.fault(); !of_bond.empty()) return of_bond;
+  if (!(law.cohesion >= 0 && law.coefficient >= 0)) return "cohesion and coefficient must be 0 or more";
+  if (!(law.slip_length > 0)) return "the slip length must be positive";
+  if (std::isfinite(law.slip_length) && law.cohesion <= 0) return "a slip length needs a cohesion";
+  if (law.stick && law.tension.strength <= 0) return "what sticks until it breaks needs a tensile strength";
+  return law.stick && law.cohesion > 0 ? "what sticks until it breaks has no cohesion beside that" : "";
+}
+
 double Joint::softening_slope() const
 {
   return std::max(tension.slope(), cohesion / slip_length);

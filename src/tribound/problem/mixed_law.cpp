@@ -6,6 +6,17 @@
 namespace tribound::problem
 {
 
+std::string fault(const Mixed& law)
+{
+  if (std::string of_bond = law.tension.fault(); !of_bond.empty()) return of_bond;
+  if (law.tension.strength <= 0) return "a tensile strength is needed";
+  if (!(law.shear_ratio > 0)) return "the shear ratio must be positive";
+  if (!(law.coefficient >= 0)) return "the coefficient must be 0 or more";
+  return law.coefficient > 0 && law.tension.unloading == Unloading::vertical
+             ? "friction goes with unloading to the origin only"
+             : "";
+}
+
 namespace
 {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tribound/base/error.h"
@@ -46,6 +47,26 @@ void check_gap(const NitscheForm<dim>& form, std::size_t k)
           "a gap of 0 where it is bonded");
 }
 
+/// Constants of the law, and what its gamma_t asks for.
+template <int dim>
+void check_law(const NitscheForm<dim>& form, std::size_t k)
+{
+  const ContactSegment<dim>& segment = form.segments()[k];
+  const problem::ContactLaw& law = segment.contact->law;
+  const auto fail = [&](const std::string& what, const std::string& hint)
+  { throw InputError({}, place(form, segment, form.contact_points(k)[0].x) + ": " + what, hint); };
+  if (const std::string fault = problem::fault(law); !fault.empty())
+    fail(fault, "other constants of the law");
+  const double weight = problem::tangential_weight(law);
+  if (weight == 1) return;
+  if (segment.varying_normal != nullptr)
+    fail("a shear ratio that is not 1 goes with directions that do not vary on a facet", "shear ratio 1");
+  const int p = form.space().degree();
+  const double least = std::max(1.0, 0.4 * p * p) / weight;
+  if (form.gamma0() < least)
+    fail("the shear ratio is too small for gamma0", fmt::format("a gamma0 of {:.4g} or more", least));
+}
+
 /// T is Lipschitz continuous in gap and threshold with the constant 1 where nothing softens: the bound takes
 /// what rules miss of them by that.
 template <int dim>
@@ -70,6 +91,7 @@ void check_interfaces(const NitscheForm<dim>& form)
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
     if (!problem::cone(form.segments()[k].contact->law).is_bonded) continue;
+    check_law(form, k);
     check_gap(form, k);
     check_data(form, k);
   }
