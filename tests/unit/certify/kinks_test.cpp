@@ -69,8 +69,8 @@ void expect_sound(const problem::ContactLaw& law, std::mt19937& dice)
     values.push_back(at(s));
     thresholds.push_back(std::holds_alternative<problem::Tresca>(law) ? threshold(s) : 0);
   }
-  const certify::Kinks kinks =
-      certify::KinkFinder<dim>(rule, 3)(law, std::span(&normal, 1), values, thresholds, certify::Bond::none, 1e-14);
+  const certify::Kinks kinks = certify::KinkFinder<dim>(rule, 3)(law, std::span(&normal, 1), values,
+                                                                 thresholds, certify::Bond::none, 1e-14);
 
   constexpr int m = 60;
   std::array<bool, 2> pressed{};

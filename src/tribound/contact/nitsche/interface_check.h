@@ -20,8 +20,8 @@ template <int dim>
 
 /// Throws InputError, naming the place: where the constants of a law do not go together (problem::fault);
 /// where slope >= gamma, with the facet size that would do; where there is a gap under a bond; where gap or
-/// threshold of a law that softens are no polynomials; where gamma_t is not gamma and the direction of contact
-/// varies, or gamma_0 is too small for it.
+/// threshold of a law that softens are no polynomials; where gamma_t is not gamma and the direction of
+/// contact varies, or gamma_0 is too small for it.
 template <int dim>
 void check_interfaces(const NitscheForm<dim>& form);
 
