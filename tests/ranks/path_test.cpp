@@ -30,20 +30,10 @@ std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, i
   const auto add = [&](const adapt::LoadStep<dim>& step)
   {
     const contact::NitscheForm<dim>& form = step.at->discrete.form;
-    std::array<double, 4> sums{};
-    for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
-    {
-      const double weight = form.contact_points()[i].weight;
-      const problem::InterfaceResponse<dim>& response = step.responses[i];
-      sums[0] += weight * response.state.damage;
-      sums[1] += weight * response.state.slipped;
-      sums[2] += weight * response.dissipated;
-      sums[3] += weight * response.stored;
-    }
-    form.space().mesh().ranks().sum(std::span(sums));
+    const InterfaceIntegrals sums = integrals<dim>(step);
     const auto contact = contact::contact_resultants<dim>(form, step.level.traction);
-    numbers.insert(numbers.end(), sums.begin(), sums.end());
-    numbers.insert(numbers.end(), {step.level.norms.energy, step.level.norms.sigma,
+    numbers.insert(numbers.end(), {sums.damage, sums.slipped, sums.dissipated, sums.stored,
+                                   step.level.norms.energy, step.level.norms.sigma,
                                    step.level.estimate.total_sharp, contact.normal, contact.tangential});
     EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
   };

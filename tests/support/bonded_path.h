@@ -36,6 +36,33 @@ inline constexpr std::array path_of_t = {0.5, 1.1, 0.4, -0.8, 1.5};
   return problem::Field(formula, Where{});
 }
 
+/// Integrals over the contact boundary after a step.
+struct InterfaceIntegrals
+{
+  double damage = 0;
+  double slipped = 0;
+  double dissipated = 0;  ///< in the step
+  double stored = 0;
+};
+
+template <int dim>
+[[nodiscard]] InterfaceIntegrals integrals(const adapt::LoadStep<dim>& step)
+{
+  const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  std::array<double, 4> sums{};
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
+  {
+    const double weight = form.contact_points()[i].weight;
+    const problem::InterfaceResponse<dim>& response = step.responses[i];
+    sums[0] += weight * response.state.damage;
+    sums[1] += weight * response.state.slipped;
+    sums[2] += weight * response.dissipated;
+    sums[3] += weight * response.stored;
+  }
+  form.space().mesh().ranks().sum(std::span(sums));
+  return {sums[0], sums[1], sums[2], sums[3]};
+}
+
 /// On the block of `block()`, or on two blocks where `pairs`.
 template <int dim>
 [[nodiscard]] ProblemData<dim> peeled(problem::ContactLaw law, bool pairs)

@@ -2,18 +2,16 @@
 /// Load paths with interfaces that remember against closed formulas and the numbers of an independent
 /// program, tests/verification/data/cohesive.json.
 
-#include "tribound/adapt/load_path.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "support/meshes.h"
-#include "tribound/certify/truth/true_error.h"
+#include "support/bonded_path.h"
 
 namespace tribound::test
 {
@@ -31,18 +29,13 @@ json reference()
   return json::parse(in);
 }
 
-Field formula(const std::string& text)
-{
-  return Field(text, Where{});
-}
-
 /// At t = 1, 2, ... the values of a list.
 Field table(const std::vector<double>& values)
 {
   std::string text = "0";
   for (std::size_t i = 0; i < values.size(); ++i)
     text += fmt::format(" + (t == {}) * ({:.17g})", i + 1, values[i]);
-  return formula(text);
+  return in_time(text);
 }
 
 struct Path
@@ -110,7 +103,7 @@ TEST(LoadPath, BarAgainstTheSeriesOfSprings)
       Path path({4, 2}, degree);
       path.boundaries = {problem::with_displacement<2>("left", {Field(0.0), std::nullopt}),
                          problem::with_displacement<2>("right", {Field(0.0), std::nullopt}),
-                         problem::with_displacement<2>("top", {Field(0.0), formula("t")}),
+                         problem::with_displacement<2>("top", {Field(0.0), in_time("t")}),
                          problem::with_contact<2>("bottom", problem::JointLaw({bond(2, 0.02, unloading)}))};
       std::vector<double> t;
       for (const json& step : steps) t.push_back(step["U"]);
@@ -124,10 +117,7 @@ TEST(LoadPath, BarAgainstTheSeriesOfSprings)
                     EXPECT_EQ(step.cuts, 0);
                     EXPECT_LE(step.level.steps.size(), 6);
                     expect_uniform(step, expected["Tn_exact"], 0, expected["D_exact"]);
-                    double in_step = 0;
-                    for (std::size_t q = 0; q < step.responses.size(); ++q)
-                      in_step +=
-                          step.at->discrete.form.contact_points()[q].weight * step.responses[q].dissipated;
+                    const double in_step = integrals<2>(step).dissipated;
                     EXPECT_NEAR(in_step, expected["dissipated_step"].get<double>(), 1e-12);
                     dissipated += in_step;
                   });
@@ -199,15 +189,9 @@ void expect_numbers(const adapt::LoadStep<2>& step, const json& expected)
   near(step.level.norms.sigma, "sigma_norm", 1e-8, 0);
   near(contact.normal, "contact_normal", 1e-8, 1e-12);
   near(contact.tangential, "contact_tangential", 1e-8, 1e-12);
-  double damage = 0;
-  double dissipated = 0;
-  for (std::size_t i = 0; i < step.responses.size(); ++i)
-  {
-    damage += form.contact_points()[i].weight * step.responses[i].state.damage;
-    dissipated += form.contact_points()[i].weight * step.responses[i].dissipated;
-  }
-  near(damage, "damage_integral", 1e-8, 1e-10);
-  near(dissipated, "dissipated_step", 1e-8, 1e-11);
+  const InterfaceIntegrals sums = integrals<2>(step);
+  near(sums.damage, "damage_integral", 1e-8, 1e-10);
+  near(sums.dissipated, "dissipated_step", 1e-8, 1e-11);
   const certify::BoundComponents& eta = step.level.estimate.global;
   near(eta.str, "eta_str", 1e-6, 0);
   near(eta.cnt, "eta_cnt", 1e-6, 1e-11);
@@ -232,12 +216,12 @@ TEST(LoadPath, NumbersOfAnIndependentProgram)
         path.boundaries.insert(
             path.boundaries.end(),
             {problem::with_displacement<2>("left", {Field(0.0), Field(0.0)}),
-             problem::with_displacement<2>("top", {formula("t*x/2*0.03"), formula("t*x/2*0.09")}),
-             problem::with_traction<2>("right", {formula("0.01*t"), Field(0.0)})});
+             problem::with_displacement<2>("top", {in_time("t*x/2*0.03"), in_time("t*x/2*0.09")}),
+             problem::with_traction<2>("right", {in_time("0.01*t"), Field(0.0)})});
       else
         path.boundaries.insert(path.boundaries.end(),
-                               {problem::with_traction<2>("top", {Field(0.0), formula("-0.1-0.1*x")}),
-                                problem::with_traction<2>("right", {formula("0.03*t"), Field(0.0)})});
+                               {problem::with_traction<2>("top", {Field(0.0), in_time("-0.1-0.1*x")}),
+                                problem::with_traction<2>("right", {in_time("0.03*t"), Field(0.0)})});
       std::vector<double> t;
       for (const json& step : c["steps"]) t.push_back(step["ell"]);
       std::size_t i = 0;
@@ -263,7 +247,7 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
     Path path({4, 2}, 2);
     path.E = 1;
     path.method.gamma0 = gamma0;
-    path.boundaries = {problem::with_displacement<2>("top", {Field(0.0), formula("t")}),
+    path.boundaries = {problem::with_displacement<2>("top", {Field(0.0), in_time("t")}),
                        problem::with_contact<2>("bottom", law, std::move(gap))};
     try
     {
@@ -286,7 +270,7 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
   expect(problem::JointLaw({.tension = {1, 0, Unloading::origin}}), "needs a fracture energy");
   expect(problem::JointLaw({.cohesion = 1, .stick = true}), "needs a tensile strength");
   expect(problem::JointLaw({.tension = soft, .slip_length = 1}), "a slip length needs a cohesion");
-  expect(problem::JointLaw({.cohesion = 1, .slip_length = 1}, formula("0.1*exp(5*x)")), "no polynomial");
+  expect(problem::JointLaw({.cohesion = 1, .slip_length = 1}, in_time("0.1*exp(5*x)")), "no polynomial");
   expect(problem::MixedLaw({.tension = soft, .shear_ratio = 0.2}), "a gamma0 of 40 or more");
   expect(problem::MixedLaw({.tension = {1, 1, Unloading::vertical}, .coefficient = 0.3}),
          "unloading to the origin only");

@@ -46,7 +46,7 @@ Method LoadPath<dim>::method_of_step() const
   Method method = method_;
   method.newton.reference_force = reference_force_;
   if (!last_) return method;
-  method.newton.full_steps = options_.full_steps;
+  method.full_steps = options_.full_steps;
   method.other_starts = false;
   return method;
 }
@@ -126,15 +126,13 @@ template <int dim>
 std::string LoadPath<dim>::advance(double t, const Observer& observer, const StepObserver& step_observer)
 {
   const Ranks& ranks = grid_->mesh.ranks();
-  const bool is_first = !last_;
-  const double whole = is_first ? 0 : t - last_->t;
+  const double whole = last_ ? t - last_->t : 0;  // the first step of all is not cut
   double size = whole;
   int cuts = 0;
   for (;;)
   {
-    const double from = is_first && !last_ ? t : last_->t;
-    const bool arrives = is_first || std::abs(t - from) <= std::abs(size) * (1 + 1e-10);
-    const double to = arrives ? t : from + size;
+    const bool arrives = !last_ || std::abs(t - last_->t) <= std::abs(size) * (1 + 1e-10);
+    const double to = arrives ? t : last_->t + size;
     std::string failure;
     try
     {
@@ -153,14 +151,14 @@ std::string LoadPath<dim>::advance(double t, const Observer& observer, const Ste
       if (static_cast<int>(last_->level.steps.size()) <= options_.few_steps) size *= options_.growth;
       if (std::abs(size) > std::abs(whole)) size = whole;
     }
-    else if (is_first || std::abs(size) / 2 <= options_.smallest * std::abs(whole))
+    else if (std::abs(size) / 2 <= options_.smallest * std::abs(whole))
       return fmt::format("load step {} at t = {:.9g}: {}", last_ ? last_->number + 1 : 1, to, failure);
     else
     {
       size /= 2;
       ++cuts;
     }
-    if (ranks.any(stop_ && *stop_)) return fmt::format("interrupted at t = {:.9g}", last_ ? last_->t : t);
+    if (ranks.any(stop_ && *stop_)) return fmt::format("interrupted at t = {:.9g}", last_->t);
   }
 }
 

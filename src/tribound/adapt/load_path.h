@@ -48,7 +48,7 @@ struct PathOptions
   double growth = 1.4;      ///< by this factor, up to the distance to the next target
   double smallest = 1e-6;   ///< step, over the first one of its target
   double tolerance = 0.01;  ///< of the verdict
-  int full_steps = 20;      ///< NewtonOptions::full_steps
+  int full_steps = 20;      ///< Method::full_steps
 };
 
 /// Follows a load path. The first step of all starts from scratch, every other from the displacement of the
@@ -61,8 +61,8 @@ class LoadPath
 {
  public:
   /// Throws InputError for a problem that is not well posed (check_rigid_motions) and where an interface
-  /// softens faster than gamma allows (check_interfaces), or
-  /// for the regularised variant. `whole`: as Levels has it.
+  /// softens faster than gamma allows (check_interfaces), or for the regularised variant. `whole`: as Levels
+  /// has it.
   LoadPath(const problem::Problem<dim>& problem, const Method& method, const PathOptions& options,
            mesh::Mesh<dim> mesh, const std::atomic<bool>* stop = nullptr,
            std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr);

@@ -40,6 +40,9 @@ struct Method
   algebra::SolverOptions solver{};
   certify::ContactRule contact_rule = certify::ContactRule::resolved;
 
+  /// With newton.damping: so many steps are tried full before it begins anew with halved ones. Where a front
+  /// moves full steps are half as many; pressed shut or sliding back they may go round in circles.
+  int full_steps = 0;
   /// Whether Newton's method may begin anew from other starts; not along a path, whose branch it could leave.
   bool other_starts = true;
 

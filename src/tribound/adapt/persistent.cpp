@@ -207,11 +207,11 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   if (easier) first.equilibrium = easier->equilibrium;
   const auto attempt = [&](std::span<const double> u)
   {
-    if (method.newton.damping && method.newton.full_steps > 0)
+    if (method.newton.damping && method.full_steps > 0)
     {
       solve::NewtonOptions full = method.newton;
       full.damping = false;
-      full.max_steps = std::min(full.full_steps, full.max_steps);
+      full.max_steps = std::min(method.full_steps, full.max_steps);
       auto result = solve::solve<dim>(form, u, full, method.solver, observer, delta, first.equilibrium);
       if (result.message.empty()) return result;
       first.equilibrium = std::move(result.equilibrium);

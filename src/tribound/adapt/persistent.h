@@ -12,7 +12,7 @@
 namespace tribound::adapt
 {
 
-/// solve(), at first with newton.full_steps full steps; without method.other_starts no more. From scratch in
+/// solve(), at first with method.full_steps full steps; without method.other_starts no more. From scratch in
 /// 3D by way of easier problems on the same mesh. With degree p >= 2 that is the one with degree p / 2,
 /// rounded up, solved to a relative residual of 1e-4 and found likewise: most steps then cost a fraction.
 /// With degree 1, on a mesh with some 16 facets across the contact boundary or more, it is the one with a

@@ -99,6 +99,21 @@ template <class L>
 constexpr bool has_bond =
     std::derived_from<L, Joint> || std::derived_from<L, Mixed> || std::derived_from<L, Endo>;
 
+/// What a law with a bond has, or the value for those without.
+template <class Value, class Of>
+Value of_bond(const ContactLaw& law, const Value& without, const Of& of)
+{
+  return std::visit(
+      [&]<Law L>(const L& l) -> Value
+      {
+        if constexpr (has_bond<L>)
+          return of(l);
+        else
+          return without;
+      },
+      law);
+}
+
 /// P with the slip that friction without bond remembers.
 template <int dim>
 Point<dim> remembered(const LawPoint<dim>& point, const Point<dim>& P)
@@ -247,41 +262,17 @@ InterfaceState<dim> admissible(const ContactLaw& law, InterfaceState<dim> state)
 
 std::string fault(const ContactLaw& law)
 {
-  return std::visit(
-      []<Law L>(const L& l) -> std::string
-      {
-        if constexpr (has_bond<L>)
-          return problem::fault(l);
-        else
-          return {};
-      },
-      law);
+  return of_bond<std::string>(law, {}, [](const auto& l) { return problem::fault(l); });
 }
 
 double softening_slope(const ContactLaw& law)
 {
-  return std::visit(
-      []<Law L>(const L& l)
-      {
-        if constexpr (has_bond<L>)
-          return l.softening_slope();
-        else
-          return 0.0;
-      },
-      law);
+  return of_bond(law, 0.0, [](const auto& l) { return l.softening_slope(); });
 }
 
 double tangential_weight(const ContactLaw& law)
 {
-  return std::visit(
-      []<Law L>(const L& l)
-      {
-        if constexpr (has_bond<L>)
-          return l.tangential_weight();
-        else
-          return 1.0;
-      },
-      law);
+  return of_bond(law, 1.0, [](const auto& l) { return l.tangential_weight(); });
 }
 
 FrictionCone cone(const ContactLaw& law)

@@ -25,6 +25,12 @@ void axpy(double a, std::span<const double> x, std::span<double> y)
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += a * x[i];
 }
 
+/// What residuals are relative to: NewtonOptions::reference_force.
+double force_scale(double of_problem, double reference)
+{
+  return reference > 0 ? std::clamp(of_problem, reference, 10 * reference) : of_problem;
+}
+
 /// The state of the iteration on one mesh.
 template <int dim>
 class Newton
@@ -37,7 +43,7 @@ class Newton
         delta_(delta),
         linear_tolerance_(linear_tolerance),
         equilibrium_(std::move(equilibrium)),
-        scale_(solve::force_scale(equilibrium_->force_scale(), newton.reference_force))
+        scale_(force_scale(equilibrium_->force_scale(), newton.reference_force))
   {
   }
 
@@ -331,11 +337,6 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
 }
 
 }  // namespace
-
-double force_scale(double of_iterate, double reference)
-{
-  return reference > 0 ? std::clamp(of_iterate, reference, 10 * reference) : of_iterate;
-}
 
 template <int dim>
 NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,

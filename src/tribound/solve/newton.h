@@ -23,11 +23,10 @@ struct NewtonOptions
   double tolerance = 1e-10;  ///< relative residual
   int max_steps = 50;
   bool damping = true;  ///< false: always full steps (for comparisons; may cycle)
-  /// With damping: so many steps are tried full before it begins anew with halved ones. Where a front moves
-  /// full steps are half as many; pressed shut or sliding back they may go round in circles.
-  int full_steps = 0;
-  double reference_force =
-      0;  ///< of earlier load steps: what the residual is compared with, see force_scale()
+  /// The largest force of earlier load steps, if > 0: residuals are relative to forces no smaller, for a
+  /// state without load has no size of its own, and at most ten times larger, or one far off would set its
+  /// own.
+  double reference_force = 0;
   /// Whether t^k of the result is in equilibrium; a start for another solve has no use for it.
   bool balanced = true;
 };
@@ -97,11 +96,6 @@ struct NewtonAdvice
 
 template <int dim>
 using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
-
-/// The size of the forces to which residuals are relative: with `reference` > 0, the largest of the load
-/// steps before, neither smaller, for a state without load has no size of its own, nor ten times larger, or
-/// an iterate far off would take its own forces for it.
-[[nodiscard]] double force_scale(double of_iterate, double reference);
 
 /// Solves the discrete problem, with T_delta in the place of T for delta > 0. `start` is a solution carried
 /// from a coarser mesh (then the first step linearises there), or empty (then the first step is closed and

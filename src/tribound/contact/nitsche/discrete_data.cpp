@@ -44,6 +44,8 @@ double effect_of_interference(const problem::Problem<dim>& problem, const mesh::
                               std::span<const ContactSegment<dim>> segments,
                               std::span<const Point<dim - 1>> points, double size, double volume)
 {
+  std::vector<Point<dim>> places(points.size());
+  std::vector<double> gaps(points.size());
   std::array<double, 2> most{};
   auto& [stiffest, interference] = most;
   for (const ContactSegment<dim>& segment : segments)
@@ -52,8 +54,9 @@ double effect_of_interference(const problem::Problem<dim>& problem, const mesh::
     const problem::Material& material = problem.material(mesh.region(segment.slave.facet.cell));
     stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
     const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
-    for (const Point<dim - 1>& s : points)
-      interference = std::max(interference, -(*segment.contact->gap)(map(s)));
+    std::ranges::transform(points, places.begin(), map);
+    segment.contact->gap->template evaluate<dim>(places, gaps);
+    interference = std::max(interference, -std::ranges::min(gaps));
   }
   mesh.ranks().max(std::span(most));
   return stiffest * interference / size * std::sqrt(volume);

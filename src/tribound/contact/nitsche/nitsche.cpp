@@ -91,21 +91,6 @@ void NitscheForm<dim>::set_history(std::shared_ptr<const ContactHistory<dim>> hi
 }
 
 template <int dim>
-std::vector<problem::InterfaceResponse<dim>> NitscheForm<dim>::advance(std::span<const double> u) const
-{
-  std::vector<problem::InterfaceResponse<dim>> result(n_contact_points());
-  parallel_for(segments_.size(),
-               [&](std::size_t k)
-               {
-                 const SegmentValues<dim> on_segment = values(k);
-                 for (int q = 0; q < n_segment_points(); ++q)
-                   result[k * n_segment_points() + q] = problem::advance<dim>(
-                       segments_[k].contact->law, law_point(k, q), augmented_traction(on_segment, u, k, q));
-               });
-  return result;
-}
-
-template <int dim>
 problem::LawPoint<dim> NitscheForm<dim>::law_point(std::size_t k, const Point<dim - 1>& s,
                                                    const Point<dim>& x, const Point<dim>& n) const
 {
@@ -142,10 +127,10 @@ Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_
 }
 
 template <int dim>
-template <class Evaluate>
-std::vector<Point<dim>> NitscheForm<dim>::at_contact_points(const Evaluate& evaluate) const
+template <class Value, class Evaluate>
+std::vector<Value> NitscheForm<dim>::at_contact_points(const Evaluate& evaluate) const
 {
-  std::vector<Point<dim>> result(n_contact_points());
+  std::vector<Value> result(n_contact_points());
   parallel_for(segments_.size(),
                [&](std::size_t k)
                {
@@ -159,15 +144,16 @@ std::vector<Point<dim>> NitscheForm<dim>::at_contact_points(const Evaluate& eval
 template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u, double delta) const
 {
-  return at_contact_points([&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
-                           { return respond(k, q, augmented_traction(on_segment, u, k, q), delta); });
+  return at_contact_points<Point<dim>>(
+      [&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
+      { return respond(k, q, augmented_traction(on_segment, u, k, q), delta); });
 }
 
 template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind, std::span<const double> u,
                                                               std::span<const double> w, double delta) const
 {
-  return at_contact_points(
+  return at_contact_points<Point<dim>>(
       [&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
       {
         const Point<dim> at_w = augmented_traction(on_segment, w, k, q);
@@ -175,6 +161,17 @@ std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind
           return traction_derivative(kind, k, q, at_w, delta) * at_w;
         const Point<dim> at_u = augmented_traction(on_segment, u, k, q);
         return respond(k, q, at_u, delta) + traction_derivative(kind, k, q, at_u, delta) * (at_w - at_u);
+      });
+}
+
+template <int dim>
+std::vector<problem::InterfaceResponse<dim>> NitscheForm<dim>::advance(std::span<const double> u) const
+{
+  return at_contact_points<problem::InterfaceResponse<dim>>(
+      [&](const SegmentValues<dim>& on_segment, std::size_t k, int q)
+      {
+        return problem::advance<dim>(segments_[k].contact->law, law_point(k, q),
+                                     augmented_traction(on_segment, u, k, q));
       });
 }
 

@@ -168,8 +168,8 @@ class NitscheForm
   void put_block_entries(const SegmentValues<dim>& on_segment, std::span<const Tensor<dim>> block,
                          std::size_t position, algebra::Triplets& entries) const;
   /// evaluate(values on segment k, k, q) at every contact point.
-  template <class Evaluate>
-  [[nodiscard]] std::vector<Point<dim>> at_contact_points(const Evaluate& evaluate) const;
+  template <class Value, class Evaluate>
+  [[nodiscard]] std::vector<Value> at_contact_points(const Evaluate& evaluate) const;
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;

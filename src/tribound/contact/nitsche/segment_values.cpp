@@ -38,14 +38,24 @@ SegmentTables<dim>::SegmentTables(const fem::LagrangeBasis<dim>& basis,
   }
 }
 
+namespace
+{
+
+/// gamma n n^T + gamma_t (I - n n^T).
+template <int dim>
+Tensor<dim> penalty(const ContactSegment<dim>& segment)
+{
+  const double weight = problem::tangential_weight(segment.contact->law);
+  return segment.gamma *
+         (weight * Tensor<dim>::Identity() + (1 - weight) * segment.normal * segment.normal.transpose());
+}
+
+}  // namespace
+
 template <int dim>
 SegmentValues<dim>::SegmentValues(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                   const ContactSegment<dim>& segment, const SegmentTable<dim>& table)
-    : gamma_(segment.gamma),
-      tangential_weight_(problem::tangential_weight(segment.contact->law)),
-      weights_(gamma_ * (tangential_weight_ * Tensor<dim>::Identity() +
-                         (1 - tangential_weight_) * segment.normal * segment.normal.transpose())),
-      n_sides_(segment.master ? 2 : 1)
+    : gamma_(penalty(segment)), n_sides_(segment.master ? 2 : 1)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const auto make_side = [&](const SegmentSide<dim>& side, const fem::Tabulation<dim>* tabulation) -> Side
@@ -75,11 +85,12 @@ Point<dim> SegmentValues<dim>::augmented_traction(std::span<const double> u, int
     stress += sigma<dim>(*side.material, fem::gradient_at<dim>(side.nodes, u, side.table->gradients_at(q),
                                                                side.inverse_transpose)) *
               side.side->stress_direction;
-  return stress - weighted(jump(u, q));
+  return stress - gamma_ * jump(u, q);
 }
 
-/// Column b is, for gamma_t = gamma, sigma(phi e_b) m - gamma [phi e_b] = lambda (d_b phi) m + mu m_b grad
-/// phi + (mu grad phi . m - gamma sign phi) e_b.
+/// Column b is sigma(phi e_b) m - Gamma [phi e_b] = lambda (d_b phi) m + mu m_b grad phi + mu grad phi . m
+/// e_b
+/// - sign phi Gamma e_b, Gamma = gamma n n^T + gamma_t (I - n n^T).
 template <int dim>
 Tensor<dim> SegmentValues<dim>::augmented_derivative(const Side& side, int i, int q) const
 {
@@ -87,13 +98,8 @@ Tensor<dim> SegmentValues<dim>::augmented_derivative(const Side& side, int i, in
   const Point<dim> gradient = side.inverse_transpose * side.table->gradients_at(q)[i];
   Tensor<dim> block =
       side.material->lambda * m * gradient.transpose() + side.material->mu * gradient * m.transpose();
-  const double jump = side.side->sign * side.table->values_at(q)[i];
-  if (tangential_weight_ != 1)
-  {
-    block.diagonal().array() += side.material->mu * gradient.dot(m);
-    return block - jump * weights_;
-  }
-  block.diagonal().array() += side.material->mu * gradient.dot(m) - gamma_ * jump;
+  block.diagonal().array() += side.material->mu * gradient.dot(m);
+  block -= side.side->sign * side.table->values_at(q)[i] * gamma_;
   return block;
 }
 

@@ -77,15 +77,7 @@ class SegmentValues
   [[nodiscard]] Tensor<dim> augmented_derivative(const Side& side, int i, int q) const;
 
  private:
-  /// gamma v^n n + gamma_t v^t.
-  [[nodiscard]] Point<dim> weighted(const Point<dim>& v) const
-  {
-    return tangential_weight_ == 1 ? Point<dim>(gamma_ * v) : Point<dim>(weights_ * v);
-  }
-
-  double gamma_;
-  double tangential_weight_;  ///< gamma_t / gamma
-  Tensor<dim> weights_;       ///< gamma n n^T + gamma_t (I - n n^T)
+  Tensor<dim> gamma_;  ///< gamma n n^T + gamma_t (I - n n^T)
   std::array<Side, 2> sides_;
   std::size_t n_sides_;
 };
