@@ -31,11 +31,6 @@ namespace tribound::test
 /// Values of t, one for each step.
 inline constexpr std::array path_of_t = {0.5, 1.1, 0.4, -0.8, 1.5};
 
-[[nodiscard]] inline problem::Field in_time(const std::string& formula)
-{
-  return problem::Field(formula, Where{});
-}
-
 /// Integrals over the contact boundary after a step.
 struct InterfaceIntegrals
 {
@@ -69,10 +64,10 @@ template <int dim>
 {
   std::array<std::optional<problem::Field>, dim> lifted;
   std::array<problem::Field, dim> pulled;
-  lifted[0] = in_time("0.015*t*x");
-  lifted[1] = in_time("0.045*t*x");
-  pulled[0] = in_time("0.01*t");
-  if constexpr (dim == 3) lifted[2] = in_time("0.01*t*x*z");
+  lifted[0] = formula("0.015*t*x");
+  lifted[1] = formula("0.045*t*x");
+  pulled[0] = formula("0.01*t");
+  if constexpr (dim == 3) lifted[2] = formula("0.01*t*x*z");
   ProblemData<dim> data{.boundaries = {clamped<dim>("left"), problem::with_displacement<dim>("top", lifted),
                                        problem::with_traction<dim>("right", pulled)}};
   if (!pairs)

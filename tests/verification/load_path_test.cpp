@@ -35,7 +35,7 @@ Field table(const std::vector<double>& values)
   std::string text = "0";
   for (std::size_t i = 0; i < values.size(); ++i)
     text += fmt::format(" + (t == {}) * ({:.17g})", i + 1, values[i]);
-  return in_time(text);
+  return formula(text);
 }
 
 struct Path
@@ -103,7 +103,7 @@ TEST(LoadPath, BarAgainstTheSeriesOfSprings)
       Path path({4, 2}, degree);
       path.boundaries = {problem::with_displacement<2>("left", {Field(0.0), std::nullopt}),
                          problem::with_displacement<2>("right", {Field(0.0), std::nullopt}),
-                         problem::with_displacement<2>("top", {Field(0.0), in_time("t")}),
+                         problem::with_displacement<2>("top", {Field(0.0), formula("t")}),
                          problem::with_contact<2>("bottom", problem::JointLaw({bond(2, 0.02, unloading)}))};
       std::vector<double> t;
       for (const json& step : steps) t.push_back(step["U"]);
@@ -216,12 +216,12 @@ TEST(LoadPath, NumbersOfAnIndependentProgram)
         path.boundaries.insert(
             path.boundaries.end(),
             {problem::with_displacement<2>("left", {Field(0.0), Field(0.0)}),
-             problem::with_displacement<2>("top", {in_time("t*x/2*0.03"), in_time("t*x/2*0.09")}),
-             problem::with_traction<2>("right", {in_time("0.01*t"), Field(0.0)})});
+             problem::with_displacement<2>("top", {formula("t*x/2*0.03"), formula("t*x/2*0.09")}),
+             problem::with_traction<2>("right", {formula("0.01*t"), Field(0.0)})});
       else
         path.boundaries.insert(path.boundaries.end(),
-                               {problem::with_traction<2>("top", {Field(0.0), in_time("-0.1-0.1*x")}),
-                                problem::with_traction<2>("right", {in_time("0.03*t"), Field(0.0)})});
+                               {problem::with_traction<2>("top", {Field(0.0), formula("-0.1-0.1*x")}),
+                                problem::with_traction<2>("right", {formula("0.03*t"), Field(0.0)})});
       std::vector<double> t;
       for (const json& step : c["steps"]) t.push_back(step["ell"]);
       std::size_t i = 0;
@@ -247,7 +247,7 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
     Path path({4, 2}, 2);
     path.E = 1;
     path.method.gamma0 = gamma0;
-    path.boundaries = {problem::with_displacement<2>("top", {Field(0.0), in_time("t")}),
+    path.boundaries = {problem::with_displacement<2>("top", {Field(0.0), formula("t")}),
                        problem::with_contact<2>("bottom", law, std::move(gap))};
     try
     {
@@ -270,7 +270,7 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
   expect(problem::JointLaw({.tension = {1, 0, Unloading::origin}}), "needs a fracture energy");
   expect(problem::JointLaw({.cohesion = 1, .stick = true}), "needs a tensile strength");
   expect(problem::JointLaw({.tension = soft, .slip_length = 1}), "a slip length needs a cohesion");
-  expect(problem::JointLaw({.cohesion = 1, .slip_length = 1}, in_time("0.1*exp(5*x)")), "no polynomial");
+  expect(problem::JointLaw({.cohesion = 1, .slip_length = 1}, formula("0.1*exp(5*x)")), "no polynomial");
   expect(problem::MixedLaw({.tension = soft, .shear_ratio = 0.2}), "a gamma0 of 40 or more");
   expect(problem::MixedLaw({.tension = {1, 1, Unloading::vertical}, .coefficient = 0.3}),
          "unloading to the origin only");
