@@ -112,9 +112,10 @@ ExitCode verify_command(const Arguments& arguments)
 {
   const Progress progress(arguments.quiet);
   const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config));
+  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config));
   const algebra::Environment environment;
-  return std::visit([&](const auto& m) { return verify(config, m, arguments.refinements, progress); }, mesh);
+  return std::visit([&](auto& m) { return verify(config, std::move(m), arguments.refinements, progress); },
+                    mesh);
 }
 
 ExitCode study_command(const Arguments& arguments)

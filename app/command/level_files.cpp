@@ -46,7 +46,7 @@ class CellComponents
 }  // namespace
 
 template <int dim>
-void write_level_fields(const std::filesystem::path& directory, int number,
+void write_level_fields(const std::filesystem::path& directory, const io::SeriesPlace& place,
                         const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
                         std::span<const io::CellField> further)
 {
@@ -55,13 +55,15 @@ void write_level_fields(const std::filesystem::path& directory, int number,
   std::vector<io::CellField> fields = components.fields();
   fields.insert(fields.end(), further.begin(), further.end());
   const std::array tensors = {io::equilibrated_stress_field(discrete.space, level.stress)};
-  io::write_level_vtu<dim>(io::level_files(directory, number, discrete.mesh.ranks()), number,
+  io::write_level_vtu<dim>(io::level_files(directory, place, discrete.mesh.ranks()), place,
                            discrete.form.problem(), discrete.space, level.u, fields, tensors);
 }
 
-template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<2>&,
-                                 const adapt::CertifiedLevel<2>&, std::span<const io::CellField>);
-template void write_level_fields(const std::filesystem::path&, int, const adapt::Discretisation<3>&,
-                                 const adapt::CertifiedLevel<3>&, std::span<const io::CellField>);
+template void write_level_fields(const std::filesystem::path&, const io::SeriesPlace&,
+                                 const adapt::Discretisation<2>&, const adapt::CertifiedLevel<2>&,
+                                 std::span<const io::CellField>);
+template void write_level_fields(const std::filesystem::path&, const io::SeriesPlace&,
+                                 const adapt::Discretisation<3>&, const adapt::CertifiedLevel<3>&,
+                                 std::span<const io::CellField>);
 
 }  // namespace tribound::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/command/interrupt.h"
+#include "app/command/run_history.h"
 #include "app/command/run_report.h"
 #include "app/console/balance_text.h"
 #include "app/console/forecast.h"
@@ -16,6 +17,7 @@
 #include "tribound/base/clock.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/case/resolve.h"
+#include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
@@ -88,6 +90,9 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   const std::atomic<bool>& stop = stop_on_signals();
   const std::vector<bool> slides = slides_as_a_whole<dim>(problem, mesh, whole.get());
+  if (config.history)
+    return run_history<dim>(config, problem, std::move(mesh), slides, stop, progress, std::move(whole),
+                            begin);
   const std::unique_ptr<adapt::Levels<dim>> levels =
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
   RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
@@ -136,10 +141,13 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
 template <int dim>
 void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json)
 {
-  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  if (config.history) problem = problem.at(config.history->steps.front());
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
-  const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
+  contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
+  if (auto history = contact::history_at_first(form)) form.set_history(std::move(history));
+  contact::check_interfaces(form);
   contact::check_rigid_motions(form);
   require_mesh_elsewhere(config);
   try_output_directory(config.output.directory);

@@ -8,6 +8,7 @@
 
 #include "app/console/console.h"
 #include "tribound/adapt/levels.h"
+#include "tribound/base/clock.h"
 #include "tribound/case/config.h"
 #include "tribound/io/record/report.h"
 #include "tribound/mesh/mesh.h"

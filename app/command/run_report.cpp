@@ -9,18 +9,12 @@
 
 #include "app/console/balance_text.h"
 #include "app/console/console.h"
-#include "app/page/page_volume.h"
 #include "app/program_facts.h"
 #include "app/shared_file.h"
 #include "tribound/algebra/linear_solver.h"
-#include "tribound/case/resolve.h"
-#include "tribound/doctor/run_warnings.h"
-#include "tribound/doctor/solution_facts.h"
-#include "tribound/io/fields/contact_line.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/state/checkpoint.h"
-#include "tribound/mesh/gmsh_text.h"
 
 namespace tribound::app
 {
@@ -30,22 +24,6 @@ namespace
 
 /// Seconds of work that a program which is killed may lose: the first levels take less time than files.
 constexpr double most_lost = 1.0;
-
-/// Cells of several ranks that are gathered on one.
-constexpr std::int64_t most_in_one = 1'000'000;
-
-template <int dim>
-bool is_complete(const mesh::Mesh<dim>& mesh)
-{
-  return mesh.n_cells() == mesh.n_global_cells();
-}
-
-/// Whether the page can show what the first rank has of a level.
-template <int dim>
-bool fits_page(const KeptLevel<dim>& shown)
-{
-  return dim == 3 || shown.is_merged || is_complete(shown.discrete->mesh);
-}
 
 /// What writing throws, to be thrown again when the level is printed, on all ranks.
 template <typename Write>
@@ -75,51 +53,18 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
       printed_(printed),
       page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
       moment_about_(moment_point<dim>(config.output, first.mesh)),
-      slides_(std::move(slides))
+      slides_(std::move(slides)),
+      free_sides_(free_sides(config, first.mesh.boundary_names()))
 {
-  const fem::LagrangeSpace<dim>& space = first.space;
-  const contact::NitscheForm<dim>& form = first.form;
-  ranks_.on_first(
-      [&]
-      {
-        require_mesh_elsewhere(config);
-        directory_.emplace(output_.directory);
-        if (earlier) return;
-        remove_results(output_.directory, {"certificate.json", "report.html", "convergence.csv", "newton.csv",
-                                           "contact.csv", "adapted.msh", io::checkpoint_name});
-        io::remove_series(output_.directory);
-      });
-  if (earlier) record_.earlier = *earlier;
-  record_.facts = case_file::case_facts(config, dim);
-  record_.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
-  record_.build = library_facts();
-  record_.build.processes = ranks_.size();
-  for (const std::string& name : first.mesh.boundary_names())
-    if (std::ranges::count(config.boundaries, name, &case_file::BoundaryConfig::name) == 0)
-      free_sides_.push_back(name);
-  record_.effective = config.effective;
-  record_.case_file = effective_file_name(config);
-  record_.tolerance = config.adapt.tolerance;
-  record_.statements = certify::statements(form, config.method.contact_rule);
+  ranks_.on_first([&] { directory_ = take_directory(config, earlier != nullptr); });
+  record_ = first_record(config, problem, first.space, first.form.constraints(), begin);
+  record_.statements = certify::statements(first.form, contact_rule_);
   record_.statements.assumptions.emplace_back(
       "linear_solver",
-      describe_solver(algebra::choose_method(config.method.solver, dim, space.n_global_dofs())));
-  record_.setup = seconds_since(begin);
+      describe_solver(algebra::choose_method(config.method.solver, dim, first.space.n_global_dofs())));
+  if (earlier) record_.earlier = *earlier;
   if (!ranks_.is_first()) printed_ = Printed::nothing;
   if (printed_ == Printed::everything) print_header(record_.facts, record_.mesh);
-}
-
-template <int dim>
-std::shared_ptr<const KeptLevel<dim>> RunReport<dim>::gather(const adapt::LevelView<dim>& view) const
-{
-  if (!view.discrete.mesh.partition()) return last_;
-  // In 3D the page shows the surface, and of few cells the inside.
-  const std::int64_t most = dim == 2 || output_.mesh ? most_in_one : std::int64_t{max_volume_cells};
-  std::optional<adapt::Excerpt<dim>> excerpt = dim == 2 || view.discrete.mesh.n_global_cells() <= most
-                                                   ? adapt::excerpt<dim>(view, method_, most)
-                                                   : adapt::boundary_excerpt<dim>(view, method_);
-  if (!excerpt) return nullptr;
-  return std::make_shared<const KeptLevel<dim>>(view.number, *std::move(excerpt));
 }
 
 template <int dim>
@@ -127,16 +72,13 @@ void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<d
 {
   if (shown)
   {
-    const contact::NitscheForm<dim>& form = shown->discrete->form;
-    if (output_.mesh && is_complete(shown->discrete->mesh))
-      io::write_file(output_.directory / "adapted.msh", mesh::gmsh_text(shown->discrete->mesh, free_sides_));
-    io::write_contact_csv(output_.directory / "contact.csv", form, shown->level.u, level.number);
+    write_contact_and_mesh(*shown, output_, free_sides_);
     if (output_.vtu)
       io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", level.number),
-                                 level.number, form, shown->level.u);
+                                 {level.number}, shown->discrete->form, shown->level.u);
   }
   if (!output_.vtu) return;
-  write_level_fields<dim>(output_.directory, level.number, *level.discrete, level.level);
+  write_level_fields<dim>(output_.directory, level.place(), *level.discrete, level.level);
   if (shown) io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number);
 }
 
@@ -186,42 +128,6 @@ void RunReport<dim>::rethrow(const std::exception_ptr& failure) const
 }
 
 template <int dim>
-void RunReport<dim>::judge(const adapt::LevelView<dim>& view)
-{
-  record_.status = view.verdict.status;
-  record_.reason = view.verdict.reason;
-  const io::LevelRecord& level = record_.levels.back();
-  record_.warnings.clear();
-  const bool is_shared = view.discrete.mesh.partition() != nullptr;
-  if (!view.level.solved() || (is_shared && (!shown_ || shown_->number != view.number))) return;
-  const std::vector<doctor::ContactOutcome> outcomes =
-      is_shared ? doctor::contact_outcomes<dim>(shown_->discrete->form, shown_->level.u)
-                : doctor::contact_outcomes<dim>(view.discrete.form, view.level.u);
-  record_.warnings =
-      doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement}, outcomes);
-}
-
-template <int dim>
-void RunReport<dim>::update_statements(const adapt::LevelView<dim>& view)
-{
-  if (view.level.steps.empty()) return;
-  const bool uses_friedrichs = view.level.estimate.global.quad > 0;
-  record_.statements = certify::statements(
-      view.discrete.form, contact_rule_,
-      uses_friedrichs ? view.level.friedrichs : std::optional<certify::FriedrichsConstant>());
-  if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))
-    record_.statements.assumptions.emplace_back(
-        "stress",
-        fmt::format("zero as far as can be known: here norms of stresses up to {:.3g} are nothing but "
-                    "rounding, and so is the bound",
-                    view.level.norms.round_off));
-  record_.statements.assumptions.emplace_back(
-      "linear_solver",
-      describe_solver(view.level.steps) +
-          (view.level.tightened ? ", beyond solver.tolerance on the last mesh, where it was too loose" : ""));
-}
-
-template <int dim>
 io::LevelTimes RunReport<dim>::take_back(int number)
 {
   if (record_.levels.empty() || record_.levels.back().level != number) return {};
@@ -266,10 +172,12 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
     shown_.reset();  // makes room for this one
     last_.reset();
     last_ = std::make_shared<const KeptLevel<dim>>(view);
-    shown_ = gather(view);
+    shown_ = gather(view, last_, output_, method_);
   }
-  update_statements(view);
-  ranks_.together([&] { judge(view); });
+  update_statements(record_, view, contact_rule_);
+  record_.status = view.verdict.status;
+  record_.reason = view.verdict.reason;
+  ranks_.together([&] { update_warnings(record_, view, shown_.get()); });
   count_time(begin);
   if ((printed_ == Printed::everything || printed_ == Printed::levels) && !again)
     print_level(record_.levels.back());

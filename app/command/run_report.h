@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "app/background.h"
-#include "app/command/level_files.h"
+#include "app/command/report_parts.h"
 #include "app/command/run.h"
-#include "app/output_directory.h"
 #include "app/page/report_page.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/base/clock.h"
@@ -23,15 +22,6 @@
 
 namespace tribound::app
 {
-
-/// What a run says on stdout.
-enum class Printed
-{
-  everything,
-  levels,   ///< a line per level, as a part of something larger
-  verdict,  ///< status and warnings at the end
-  nothing
-};
 
 /// Keeps the record of a run and writes the files, level by level: beside the computation of the next level
 /// where OpenMP offers a second thread. The files do not depend on that.
@@ -69,8 +59,6 @@ class RunReport
  private:
   [[nodiscard]] bool writes_all_levels() const { return output_.levels == case_file::FieldLevels::all; }
   [[nodiscard]] bool is_restarted() const { return record_.earlier.first_cells > 0; }
-  /// What the first rank shows of a level; null elsewhere.
-  [[nodiscard]] std::shared_ptr<const KeptLevel<dim>> gather(const adapt::LevelView<dim>& view) const;
   void write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const;
   /// Hands the files of the last level that are due to the background.
   void start_writing();
@@ -80,10 +68,6 @@ class RunReport
   void rethrow(const std::exception_ptr& failure) const;
   /// Removes the record of the level, if it is the last, and returns its times.
   io::LevelTimes take_back(int number);
-  /// What the certificate says about the level: its data, and how its systems were solved.
-  void update_statements(const adapt::LevelView<dim>& view);
-  /// Its verdict, and warnings about it.
-  void judge(const adapt::LevelView<dim>& view);
   /// The times of the last level get the wall time since `begin`, which begins anew, and the CPU time since
   /// the last call.
   void count_time(Clock::time_point& begin);
@@ -93,7 +77,7 @@ class RunReport
   Ranks ranks_;
   certify::ContactRule contact_rule_;
   Printed printed_;
-  std::optional<OutputDirectory> directory_;
+  std::unique_ptr<OutputDirectory> directory_;
   io::RunRecord record_;
   ReportPage page_;
   std::shared_ptr<const KeptLevel<dim>> last_;   ///< the last level that has a bound

@@ -250,7 +250,7 @@ void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
   result.error = error.global;
   const case_file::Config config = variant_config(config_, study_.variants[variant].name);
   if (config.output.vtu)
-    write_level_fields<dim>(config.output.directory, static_cast<int>(number), discrete, kept.level,
+    write_level_fields<dim>(config.output.directory, {static_cast<int>(number)}, discrete, kept.level,
                             {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
 }
 
@@ -290,6 +290,10 @@ ExitCode study(const case_file::Config& config, mesh::Mesh<dim> mesh, const Prog
   if (config.adapt.marking.strategy == adapt::Marking::uniform)
     throw InputError({.file = config.file, .key = "adapt.marking"}, "is \"uniform\"",
                      "the study compares an adaptive marking, such as \"doerfler\", with uniform refinement");
+  if (config.history)
+    throw InputError(
+        {.file = config.file, .key = "history"}, "a study is of a single load step",
+        "tribound run, which refines the mesh for all steps; tribound verify for their true errors");
   return StudyCommand<dim>(config, std::move(mesh), progress).run();
 }
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 
 #include "app/output_directory.h"
 #include "app/result/verification.h"
+#include "tribound/adapt/load_path.h"
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/resolve.h"
@@ -110,26 +112,16 @@ certify::RicherSolution richer_solution(const contact::NitscheForm<dim>& form, s
 
 }  // namespace
 
-template <int dim>
-ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, int refinements,
-                const Progress& progress)
+namespace
 {
-  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
-  const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
-  const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
-  contact::check_rigid_motions(form);
-  check_size(config, mesh, refinements);
-  const OutputDirectory directory(config.output.directory);
-  remove_results(config.output.directory, {"verify.json"});
 
-  Verification result;
-  result.facts = case_file::case_facts(config, dim);
-  result.mesh = io::mesh_facts<dim>(problem, space, form.constraints());
-  result.refinements = refinements;
-  print_header(result.facts, result.mesh);
-
-  Stages stages(progress);
-  certify::DualNorm<dim> dual_norm(form, dual_space(config, refinements));
+/// Newton's method on a form from `start`, each of its iterates verified and added to `result`.
+template <int dim>
+solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, std::span<const double> start,
+                                         const solve::NewtonOptions& options, const case_file::Config& config,
+                                         Verification& result, const Progress& progress)
+{
+  certify::DualNorm<dim> dual_norm(form, dual_space(config, result.refinements));
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
                        dual_norm.space().n_dofs()};
   const certify::Estimator<dim> estimator(form, config.method.contact_rule);
@@ -148,27 +140,127 @@ ExitCode verify(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
   };
   algebra::SolverOptions solver = config.method.solver;
   solver.tolerance = 0;  // as far as rounding lets it be: the identities are not what is to fail
-  const solve::NewtonResult<dim> newton =
-      stages.time("iterates", "solving, with bound and dual norm of every iterate",
-                  [&] { return solve::solve<dim>(form, {}, config.method.newton, solver, observer); });
-  result.converged = newton.status == solve::NewtonStatus::converged;
+  return solve::solve<dim>(form, start, options, solver, observer);
+}
 
-  result.richer_degree = solution_space(config, refinements).degree;
+/// The iterates of a committed load step, once more from the displacement of the step before: its form still
+/// has the history that that one has left.
+template <int dim>
+void verify_step(const adapt::LoadStep<dim>& step, std::span<const double> before,
+                 const case_file::Config& config, Verification& result, const Progress& progress)
+{
+  solve::NewtonOptions options = config.method.newton;
+  options.reference_force = step.reference_force;
+  const std::size_t first = result.iterates.size();
+  const bool converged =
+      verify_iterates<dim>(step.at->discrete.form, before, options, config, result, progress).status ==
+      solve::NewtonStatus::converged;
+  result.converged = result.converged && converged;
+  for (std::size_t i = first; i < result.iterates.size(); ++i)
+  {
+    VerifiedIterate& iterate = result.iterates[i];
+    iterate.load_step = step.number;
+    iterate.t = step.t;
+    iterate.identities *= std::min(1.0, (iterate.norms.sigma + iterate.bound) / step.largest_sigma);
+  }
+}
+
+constexpr const char* announcement = "solving, with bound and dual norm of every iterate";
+
+/// Once the input is known to be good: takes the directory and prints what is going to be verified.
+template <int dim>
+std::unique_ptr<OutputDirectory> begin(const case_file::Config& config, const problem::Problem<dim>& problem,
+                                       const fem::LagrangeSpace<dim>& space,
+                                       const fem::Constraints& constraints, Verification& result)
+{
+  auto directory = std::make_unique<OutputDirectory>(config.output.directory);
+  remove_results(config.output.directory, {"verify.json"});
+  result.mesh = io::mesh_facts<dim>(problem, space, constraints);
+  print_header(result.facts, result.mesh);
+  return directory;
+}
+
+/// Not empty: why the load steps end before the last one.
+template <int dim>
+std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
+                        const case_file::Config& config, Verification& result, const Progress& progress,
+                        std::unique_ptr<OutputDirectory>& directory)
+{
+  adapt::LoadPath<dim> path(problem, config.method, {}, std::move(mesh));
+  path.prepare(config.history->steps.front());
+  const fem::LagrangeSpace<dim>& space = path.grid().space;
+  directory = begin<dim>(config, problem, space, fem::dirichlet<dim>(problem, space), result);
+  std::vector<double> before;
+  result.converged = true;
+  const auto committed = [&](const adapt::LoadStep<dim>& step)
+  {
+    verify_step<dim>(step, before, config, result, progress);
+    before = step.level.u;
+  };
+  Stages stages(progress);
+  std::string why = stages.time("iterates", announcement,
+                                [&]
+                                {
+                                  std::string failure;
+                                  for (const double t : config.history->steps)
+                                    if (failure.empty()) failure = path.advance(t, committed);
+                                  return failure;
+                                });
+  result.times = stages.times();
+  if (why.empty() && !result.converged) why = "Newton's method did not converge a second time";
+  return why;
+}
+
+/// Not empty: why there is no solution.
+template <int dim>
+std::string verify_single(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                          const case_file::Config& config, Verification& result, const Progress& progress,
+                          std::unique_ptr<OutputDirectory>& directory)
+{
+  const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
+  const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
+  contact::check_rigid_motions(form);
+  directory = begin<dim>(config, problem, space, form.constraints(), result);
+  Stages stages(progress);
+  const solve::NewtonResult<dim> newton = stages.time(
+      "iterates", announcement,
+      [&] { return verify_iterates<dim>(form, {}, config.method.newton, config, result, progress); });
+  result.converged = newton.status == solve::NewtonStatus::converged;
+  result.richer_degree = solution_space(config, result.refinements).degree;
   if (result.converged)
     result.richer =
         stages.time("richer", fmt::format("solving with degree {} on the refined mesh", result.richer_degree),
-                    [&] { return richer_solution<dim>(form, newton.u, config, refinements); });
+                    [&] { return richer_solution<dim>(form, newton.u, config, result.refinements); });
   result.times = stages.times();
+  return result.converged ? std::string() : newton.message;
+}
+
+}  // namespace
+
+template <int dim>
+ExitCode verify(const case_file::Config& config, mesh::Mesh<dim> mesh, int refinements,
+                const Progress& progress)
+{
+  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  check_size(config, mesh, refinements);
+  std::unique_ptr<OutputDirectory> directory;
+  Verification result;
+  result.facts = case_file::case_facts(config, dim);
+  result.refinements = refinements;
+  std::string failure = config.history
+                            ? verify_path<dim>(problem, std::move(mesh), config, result, progress, directory)
+                            : verify_single<dim>(problem, mesh, config, result, progress, directory);
+  if (result.iterates.empty()) throw SolveError(failure);
 
   write_verification(config.output.directory, result);
   print_verification(result, (config.output.directory / "verify.json").string());
   if (const std::string problem_found = violation(result); !problem_found.empty())
     throw SolveError(problem_found);
-  if (!result.converged) throw SolveError(newton.message);
+  if (!result.converged || !failure.empty()) throw SolveError(failure);
   return ExitCode::success;
 }
 
-template ExitCode verify(const case_file::Config&, const mesh::Mesh<2>&, int, const Progress&);
-template ExitCode verify(const case_file::Config&, const mesh::Mesh<3>&, int, const Progress&);
+template ExitCode verify(const case_file::Config&, mesh::Mesh<2>, int, const Progress&);
+template ExitCode verify(const case_file::Config&, mesh::Mesh<3>, int, const Progress&);
 
 }  // namespace tribound::app

@@ -129,14 +129,26 @@ std::string newton_text(const solve::NewtonStep& step, std::optional<double> rel
 
 std::string level_text(const io::LevelRecord& level)
 {
-  const std::string bound = io::relative_bound(level)
-                                ? fmt::format("{:.4g} %", 100 * *io::relative_bound(level))
+  const std::optional<double> relative =
+      level.load_step ? io::bound_along_path(level) : io::relative_bound(level);
+  const std::string bound = relative                  ? fmt::format("{:.4g} %", 100 * *relative)
                             : !level.bound            ? std::string("none")
                             : io::is_round_off(level) ? std::string("rounding")
                                                       : fmt::format("{:.4g}", level.bound->total_sharp);
+  if (level.load_step)
+    return line(fmt::format("step {}", level.level),
+                fmt::format("t = {:<12.9g}  newton {:>2}  bound {:<8}  {:.2f} s{}", level.load_step->t,
+                            io::newton_steps(level), bound, level.times.level,
+                            level.load_step->cuts > 0 ? fmt::format("  cut {} times", level.load_step->cuts)
+                                                      : std::string()));
   return line(fmt::format("level {}", level.level),
               fmt::format("{:>8} cells  {:>8} dofs  newton {:>2}  bound {:<8}  {:.2f} s", level.cells,
                           level.dofs, io::newton_steps(level), bound, level.times.level));
+}
+
+std::string pass_text(int pass, std::int64_t cells, std::int64_t dofs)
+{
+  return line(fmt::format("pass {}", pass), fmt::format("{} cells, {} degrees of freedom", cells, dofs));
 }
 
 std::string certificate_text(const io::RunRecord& run)
@@ -196,7 +208,12 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
 std::string verdict_text(const io::RunRecord& run, const std::string& directory)
 {
   std::string reason = run.reason;
-  if (run.status == certify::RunStatus::certified)
+  if (run.status == certify::RunStatus::certified && io::has_history(run))
+    reason = fmt::format(
+        "the bound of every load step is at most adapt.tolerance = {:g} % of the largest "
+        "||sigma(u_h)|| of the path up to it",
+        100 * run.tolerance);
+  else if (run.status == certify::RunStatus::certified)
     reason = run.levels.empty() || !io::is_round_off(run.levels.back())
                  ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
                                100 * run.tolerance)
@@ -259,6 +276,11 @@ void print_header(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 void print_level(const io::LevelRecord& level)
 {
   print(level_text(level));
+}
+
+void print_pass(int pass, std::int64_t cells, std::int64_t dofs)
+{
+  print(pass_text(pass, cells, dofs));
 }
 
 void print_summary(const io::RunRecord& run, const std::string& directory)

@@ -83,6 +83,15 @@ io::Json table(std::string_view text)
   return text.empty() || io::json_text(packed, -1).size() > largest_table ? io::Json(nullptr) : packed;
 }
 
+io::Json tables_json(const io::RunRecord& run, const std::string& contact)
+{
+  io::Json tables{{"convergence.csv", table(io::convergence_csv(run))},
+                  {"newton.csv", table(io::newton_csv(run))},
+                  {"contact.csv", table(contact)}};
+  if (io::has_history(run)) tables["history.csv"] = table(io::history_csv(run));
+  return tables;
+}
+
 /// The effective case with its text.
 io::Json case_json(const io::RunRecord& run)
 {
@@ -110,11 +119,12 @@ std::size_t n_triangles(std::span<const PageLevel> levels)
 /// The files of a run, in the order in which a reader wants them.
 std::vector<std::string> run_files(const io::RunRecord& run)
 {
-  std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv", "newton.csv",
-                                    "contact.csv",      "adapted.msh", "series.pvd"};
+  std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv", "history.csv",
+                                    "newton.csv",       "contact.csv", "adapted.msh",     "series.pvd"};
+  const std::string_view stem = io::has_history(run) ? "step" : "level";
   for (const io::LevelRecord& level : run.levels)
     for (const std::string& name :
-         {io::level_file_name("level", level.level), fmt::format("level_{:03}.pvtu", level.level),
+         {io::level_file_name(stem, level.level), fmt::format("{}_{:03}.pvtu", stem, level.level),
           io::level_file_name("contact", level.level)})
       names.push_back(name);
   return names;
@@ -215,10 +225,7 @@ void ReportPage::write(const std::filesystem::path& directory, const io::RunReco
        {"components", components_json(io::run_kind(run.levels))},
        {"case", case_json(run)},
        {"newton", newton_json(run)},
-       {"tables",
-        {{"convergence.csv", table(io::convergence_csv(run))},
-         {"newton.csv", table(io::newton_csv(run))},
-         {"contact.csv", table(levels_.empty() ? std::string{} : read_text(directory / "contact.csv"))}}},
+       {"tables", tables_json(run, levels_.empty() ? std::string{} : read_text(directory / "contact.csv"))},
        {"machine", machine_json()},
        {"files", files_json(directory, run_files(run))},
        {"volume", volume_},

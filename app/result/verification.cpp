@@ -23,6 +23,12 @@ std::string number_or_dash(const std::optional<double>& value)
   return value ? fmt::format("{:.4f}", *value) : "-";
 }
 
+/// Whether it is the first of a load step.
+bool begins_load_step(const std::vector<VerifiedIterate>& iterates, std::size_t i)
+{
+  return iterates[i].load_step > 0 && (i == 0 || iterates[i - 1].load_step != iterates[i].load_step);
+}
+
 std::string iterate_line(const VerifiedIterate& iterate)
 {
   return fmt::format("{:>4}  {:>9.3e}  {:>12.6g}  {:>12.6g}  {:>12.6g}  {:>11}  {:>10.1e}\n",
@@ -32,6 +38,7 @@ std::string iterate_line(const VerifiedIterate& iterate)
 
 std::string richer_text(const Verification& v)
 {
+  if (v.iterates.back().load_step > 0) return {};
   if (!v.richer) return line("richer", "not computed, because Newton's method did not converge");
   const double sigma_norm = v.iterates.back().norms.sigma;
   const std::string where =
@@ -65,16 +72,18 @@ std::string status_text(const Verification& v)
 
 io::Json json(const VerifiedIterate& iterate)
 {
-  return {{"step", iterate.step.step},
-          {"residual", iterate.step.residual},
-          {"damping", iterate.step.damping},
-          {"delta", iterate.step.delta},
-          {"bound", iterate.bound},
-          {"bound_plain", iterate.bound_plain},
-          {"dual_norm", iterate.dual_norm},
-          {"effectivity", io::number_or_null(iterate.effectivity())},
-          {"sigma_norm", iterate.norms.sigma},
-          {"identities", iterate.identities}};
+  io::Json object{{"step", iterate.step.step},
+                  {"residual", iterate.step.residual},
+                  {"damping", iterate.step.damping},
+                  {"delta", iterate.step.delta},
+                  {"bound", iterate.bound},
+                  {"bound_plain", iterate.bound_plain},
+                  {"dual_norm", iterate.dual_norm},
+                  {"effectivity", io::number_or_null(iterate.effectivity())},
+                  {"sigma_norm", iterate.norms.sigma},
+                  {"identities", iterate.identities}};
+  if (iterate.load_step > 0) object.update({{"load_step", iterate.load_step}, {"t", iterate.t}});
+  return object;
 }
 
 io::Json json(const std::optional<certify::RicherSolution>& solution, int degree)
@@ -99,16 +108,32 @@ std::string VerifiedIterate::refusal() const
   return certify::identity_violation(identities);
 }
 
+namespace
+{
+
+/// Of the last iterate, or the last one of a load step.
+std::string refusal_of_a_solution(const Verification& v)
+{
+  for (std::size_t i = 0; i < v.iterates.size(); ++i)
+    if (i + 1 == v.iterates.size() || begins_load_step(v.iterates, i + 1))
+      if (std::string refusal = v.iterates[i].refusal(); !refusal.empty()) return refusal;
+  return {};
+}
+
+}  // namespace
+
 std::string violation(const Verification& verification)
 {
   for (const VerifiedIterate& iterate : verification.iterates)
     if (const auto e = iterate.effectivity(); e && *e < 1 && iterate.refusal().empty())
       return fmt::format(
-          "the guarantee is violated: after Newton step {} the bound {:.9g} is below the dual norm of the "
+          "the guarantee is violated: after Newton step {}{} the bound {:.9g} is below the dual norm of the "
           "residual, "
           "which is at least {:.9g} (effectivity {:.6f})",
-          iterate.step.step, iterate.bound, iterate.dual_norm, *e);
-  return verification.iterates.back().refusal();
+          iterate.step.step,
+          iterate.load_step > 0 ? fmt::format(" of load step {}", iterate.load_step) : std::string(),
+          iterate.bound, iterate.dual_norm, *e);
+  return refusal_of_a_solution(verification);
 }
 
 std::string verification_text(const Verification& v, const std::string& directory)
@@ -119,7 +144,13 @@ std::string verification_text(const Verification& v, const std::string& director
                        v.dual_space.degree, v.dual_space.cells, v.refinements, v.dual_space.dofs)) +
       fmt::format("{:>4}  {:>9}  {:>12}  {:>12}  {:>12}  {:>11}  {:>10}\n", "step", "residual", "plain bound",
                   "bound", "dual norm", "effectivity", "identities");
-  for (const VerifiedIterate& iterate : v.iterates) text += iterate_line(iterate);
+  for (std::size_t i = 0; i < v.iterates.size(); ++i)
+  {
+    if (begins_load_step(v.iterates, i))
+      text += line(fmt::format("load step {}", v.iterates[i].load_step),
+                   fmt::format("t = {:.9g}", v.iterates[i].t));
+    text += iterate_line(v.iterates[i]);
+  }
   const VerifiedIterate& last = v.iterates.back();
   text +=
       line("||sigma||", last.norms.sigma > 0 ? fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}",
@@ -135,7 +166,7 @@ const char* guarantee(const Verification& v)
 {
   const std::string problem = violation(v);
   if (problem.empty()) return "holds";
-  return problem == v.iterates.back().refusal() ? "not certified" : "violated";
+  return problem == refusal_of_a_solution(v) ? "not certified" : "violated";
 }
 
 }  // namespace

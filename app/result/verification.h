@@ -26,7 +26,9 @@ struct VerifiedIterate
   double bound_plain = 0;  ///< with plain sums, as in the paper
   double dual_norm = 0;
   contact::StressNorms norms;  ///< of u^k
-  double identities = 0;       ///< the largest defect, relative to the stress
+  double identities = 0;       ///< the largest defect, relative to the stress, or to the largest of a path
+  int load_step = 0;           ///< from 1, or 0: there are none
+  double t = 0;                ///< of the load step
 
   [[nodiscard]] std::optional<double> effectivity() const
   {
@@ -50,15 +52,17 @@ struct Verification
   io::MeshFacts mesh;
   int refinements = 0;
   RicherSpaceFacts dual_space;
-  std::vector<VerifiedIterate> iterates;  ///< k = 1, 2, ...; the last is the solution
+  std::vector<VerifiedIterate> iterates;  ///< k = 1, 2, ..., load step by load step; the last is the solution
   bool converged = false;
   int richer_degree = 0;
-  std::optional<certify::RicherSolution> richer;  ///< what the solution was measured against, if it is one
+  /// What the solution was measured against, if it is one and there are no load steps.
+  std::optional<certify::RicherSolution> richer;
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
 };
 
 /// What is wrong when an effectivity is below 1 although the identities hold, naming the iterate; then when
-/// they do not hold for the last one, which `tribound run` would not certify; empty when the guarantee holds.
+/// they do not hold for the last one of a load step, which `tribound run` would not certify; empty when the
+/// guarantee holds.
 [[nodiscard]] std::string violation(const Verification& verification);
 
 /// The table of the iterates, the errors and where the file is.

@@ -12,7 +12,7 @@ const trueErrors = [
 /** The curves of levels, relative to the norm of the stress; components that are round-off are left out. */
 export function boundCurves(levels, components) {
   const curve = (style, value) => ({ ...style, points: levels
-    .map((level) => ({ x: level.dofs, y: value(level) / level.sigma_norm, level: level.level }))
+    .map((level) => ({ x: level.dofs, y: value(level) / (level.largest_sigma ?? level.sigma_norm), level: level.level }))
     .filter(({ y }) => y > 0 && Number.isFinite(y)) });
   const bound = curve({ name: "bound", colour: "currentColor", strokeWidth: 2.75, isBound: true }, (level) => level.bound);
   const floor = Math.min(...bound.points.map(({ y }) => y)) * 1e-3;

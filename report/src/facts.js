@@ -100,9 +100,9 @@ export function levelsSection({ certificate: run, machine }) {
   return section("times", "Times", "Levels, times, machine", null, levelTable(run), timesAndMachine(run.times, machine, run.program));
 }
 
-const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level",
+const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level", "history.csv": "a row per load step",
   "newton.csv": "a row per Newton step", "contact.csv": "the contact boundary, point by point",
-  "series.pvd": "all levels, for ParaView", "adapted.msh": "the last mesh, for Gmsh",
+  "series.pvd": "all levels or load steps, for ParaView", "adapted.msh": "the last mesh, for Gmsh",
   "case.toml": "the case as it was solved", "case_effective.toml": "the case as it was solved",
   "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
   "../report.html": "the study that this run belongs to" };
@@ -127,6 +127,6 @@ export function filesSection(files, data) {
   return section("files", "Files", "The other files", null, data ? heldTables(data) : null,
     files.length === 0 ? null : element("p", { class: "lead" }, "They lie beside this page:"),
     element("ul", { class: "files" }, files.filter((name) => !vtu.includes(name)).map(item)),
-    vtu.length === 0 ? null : element("details", {}, element("summary", {}, `Fields of each level (${vtu.length} files)`),
+    vtu.length === 0 ? null : element("details", {}, element("summary", {}, `Fields of each level or load step (${vtu.length} files)`),
       element("ul", { class: "files files-many" }, vtu.map(item))));
 }

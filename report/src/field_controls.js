@@ -5,9 +5,10 @@ import { exportButtons } from "./export.js";
 
 const control = (label, ...inputs) => element("label", { class: "control" }, element("span", {}, label), ...inputs);
 
-/** `set(changes)` of the state; `view`: the actions home, svgs, rows. */
+/** `stages`: stagesOf(); `set(changes)` of the state; `view`: the actions home, svgs, rows. */
 export class FieldControls {
-  constructor(last, nLevels, set, view) {
+  constructor(last, nLevels, stages, set, view) {
+    this.stages = stages;
     const button = (title, name, onclick) => element("button", { type: "button", title, onclick }, name);
     const check = (id) => element("input", { id, type: "checkbox", onchange: (event) => set({ [id]: event.target.checked }) });
     const slider = (id, max, value) => element("input", { id, type: "range", min: 0, max, step: 1, oninput: (event) => set(value(Number(event.target.value))) });
@@ -26,9 +27,9 @@ export class FieldControls {
     this.place = slider("cut-place", 100, (value) => ({ place: value / 100 }));
     const hasContact = last.profiles?.some(({ paired }) => !paired) || last.contact;
     this.range = element("span", { class: "control" }, element("span", {}, "Colours from"), this.low, element("span", {}, "to"), this.high,
-      button("colours from the values of this level", "Auto", () => set({ range: null })));
+      button(`colours from the values of this ${stages.name}`, "Auto", () => set({ range: null })));
     this.element = element("div", { class: "controls screen-only" }, control("Field", this.field), this.range,
-      nLevels > 1 ? control("Level", this.level, this.levelText) : null, control("Deformation", this.factor, this.factorText),
+      nLevels > 1 ? control(stages.name === "level" ? "Level" : "Step", this.level, this.levelText) : null, control("Deformation", this.factor, this.factorText),
       button("displacements at true scale", "1 : 1", () => set({ factor: 1 })),
       last.interfaces?.length > 0 ? control("Apart", this.explosion) : null,
       element("label", { class: "control" }, this.mesh, element("span", {}, "Mesh")),
@@ -53,7 +54,7 @@ export class FieldControls {
     this.usual = usual;
     this.field.value = field.id;
     this.level.value = state.level;
-    this.levelText.textContent = `${surface.level} of ${lastLevel}, ${count(surface.cells)} cells`;
+    this.levelText.textContent = `${this.stages.text(surface.level)} of ${lastLevel}, ${count(surface.cells)} cells`;
     this.factor.value = (25 * state.factor) / usual;
     this.factorText.textContent = `\u00d7 ${number(state.factor, 3)}`;
     this.explosion.value = 100 * state.explosion;

@@ -17,6 +17,7 @@ import { colourRange, cornerPositions, fieldRows, fieldsOf, readSurface, vertexP
 import { colours, fieldLegend, onScale, shownStates } from "./scales.js";
 import { hasWebGL, Scene } from "./scene.js";
 import { SoftwareScene } from "./software.js";
+import { stagesOf } from "./stages.js";
 
 const paperWidth = 530; // CSS pixels of the picture on paper, beside its legend
 const manySegments = 30000; // beyond, the mesh is not drawn unless asked for
@@ -28,7 +29,8 @@ class FieldView {
     this.levels = data.fields;
     const is2d = this.levels.at(-1).dimension === 2;
     this.state = { level: this.levels.length - 1, field: "von_mises", range: null, factor: null, mesh: null, obstacle: is2d, axis: null, place: 0.5, side: 1, explosion: 0 };
-    this.bodies = new Bodies(data.certificate.levels, () => this.set({ bodies: true }));
+    this.stages = stagesOf(data.certificate);
+    this.bodies = new Bodies(this.stages.all, () => this.set({ bodies: true }));
     this.build(is2d);
   }
 
@@ -40,7 +42,7 @@ class FieldView {
     this.legend = element("div", { class: "view-legend" });
     this.print = element("svg:svg", { class: "view-overlay print-only", "aria-hidden": "true" });
     this.note = element("p", { class: "note" });
-    this.controls = new FieldControls(this.levels.at(-1), this.levels.length, (changes) => this.set(changes), {
+    this.controls = new FieldControls(this.levels.at(-1), this.levels.length, this.stages, (changes) => this.set(changes), {
       home: () => { this.home(); this.draw(); },
       svgs: () => { this.keepPicture(); return [this.print]; },
       rows: () => fieldRows(this.current, this.shown, this.field),
@@ -212,8 +214,9 @@ class FieldView {
     const { state, current: surface } = this;
     this.controls.show(state, { surface, lastLevel: this.levels.at(-1).level, field: this.field, range: this.range, usual: this.usual });
     this.note.textContent = noteText(surface, state, { isCut: this.cut !== null, isInside: this.inside !== null, isSlow: this.isSlow,
-      nLeftOut: this.levels.at(-1).level + 1 - this.levels.length });
-    this.place.setAttribute("aria-label", `${this.field.label} on level ${surface.level}, displacements times ${number(state.factor, 3)}`);
+      stage: this.stages.name,
+      nLeftOut: this.levels.at(-1).level + (this.stages.name === "level" ? 1 : 0) - this.levels.length });
+    this.place.setAttribute("aria-label", `${this.field.label} on ${this.stages.name} ${surface.level}, displacements times ${number(state.factor, 3)}`);
   }
 
   /** The whole body, with room for its displacements. */

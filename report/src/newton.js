@@ -1,6 +1,7 @@
 // Newton's method, step by step.
 
 import { number, percent, seconds, section, table, withoutNoise } from "./dom.js";
+import { stagesOf } from "./stages.js";
 
 /**
  * The sum of the components in a row, or null where one is not known: a step in 3D whose linearisation part alone is too large has
@@ -25,10 +26,11 @@ function stepCells(level, step, row, components, isFirst) {
 
 /** `rows`: those of newton.csv; an unknown number is null. */
 export function newtonSection(run, rows, components) {
-  const steps = run.levels.flatMap((level) => level.newton.map((step, i) => stepCells(level, step,
-    rows.find((row) => row.level === level.level && row.step === step.step), components, i === 0)));
+  const stages = stagesOf(run);
+  const steps = stages.all.flatMap((level) => level.newton.map((step, i) => stepCells(level, step,
+    rows.find((row) => (row.load_step ?? row.level) === level.level && row.step === step.step), components, i === 0)));
   if (steps.length === 0) return null;
-  const body = table(["#level", "#step", "#residual", "#damping", "#bound, plain sums", "#linearisation", "#of the rest",
+  const body = table([`#${stages.name === "level" ? "level" : "load step"}`, "#step", "#residual", "#damping", "#bound, plain sums", "#linearisation", "#of the rest",
     "#linear iterations", "#time", ""], steps, { class: "newton long" });
   body.classList.add("table-tall");
   body.tabIndex = 0;

@@ -6,6 +6,7 @@ import { contactSection } from "./contact.js";
 import { convergenceSection } from "./convergence.js";
 import { caseSection, filesSection, guaranteeSection, levelsSection } from "./facts.js";
 import { fieldsSection } from "./fields.js";
+import { historySection } from "./history.js";
 import { newtonSection } from "./newton.js";
 import { header } from "./verdict.js";
 
@@ -18,7 +19,7 @@ export function runPage(data, trueErrors) {
   const fields = fieldsSection(data, components);
   const contact = contactSection(data);
   const { element: top, showContact } = header(data);
-  const sections = [fields.element, boundSection(run, components), convergenceSection(run, components), contact.element,
+  const sections = [fields.element, historySection(run), boundSection(run, components), convergenceSection(run, components), contact.element,
     newtonSection(run, data.newton, components),
     guaranteeSection(run), caseSection(data), levelsSection(data),
     filesSection(trueErrors ? [...data.files, "../report.html"] : data.files, data)].filter(Boolean);

@@ -11,7 +11,20 @@ const verdicts = {
   failed: { title: "Failed", mark: "\u00d7" },
 };
 
-function sentence({ status, relative, bound, tolerance, reason }) {
+const isSolved = ({ status }) => status === "certified" || status === "budget";
+
+/** The largest bound of all load steps, relative to the stress of the path up to it. */
+const worstStep = (steps) => Math.max(...steps.map((step) => step.relative_path ?? 0));
+
+function pathSentence({ status, steps, tolerance, reason }) {
+  const guaranteed = `In every load step the error, measured by the dual norm of the residual, is guaranteed to be at most ${percent(worstStep(steps))} `
+    + "of the largest norm of the stress up to it";
+  return `${guaranteed}; ${percent(tolerance)} was asked for.${status === "certified" ? "" : ` ${reason[0].toUpperCase()}${reason.slice(1)}.`}`;
+}
+
+function sentence(run) {
+  const { status, relative, bound, tolerance, reason } = run;
+  if (run.steps && isSolved(run)) return pathSentence(run);
   const share = relative === null ? `${number(bound)} of a stress that is zero` : `${percent(relative)} of the norm of the stress`;
   const guaranteed = `The error, measured by the dual norm of the residual, is guaranteed to be at most ${share}`;
   switch (status) {
@@ -45,8 +58,6 @@ export function figure(value, name, note) {
     element("div", { class: "figure-name" }, name), note ? element("div", { class: "figure-note" }, typeset(note)) : null);
 }
 
-const isSolved = ({ status }) => status === "certified" || status === "budget";
-
 /** The smallest factor of safety against sliding that the certificate has. */
 function safetyFigure(run) {
   const parts = Object.entries(run.contact?.boundaries ?? {}).filter(([, { sliding }]) => sliding?.safety_factor > 0);
@@ -64,7 +75,8 @@ function figures(run, contact) {
   if (run.cells === undefined) return null;
   const force = run.d === 2 ? "S L" : "S L\u00b2";
   return [
-    run.relative === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
+    run.steps ? figure(percent(worstStep(run.steps)), "bound of the error", `largest of ${plural(run.steps.length, "load step", "load steps")}`)
+      : run.relative === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
     ...(isSolved(run) ? [
       safetyFigure(run),
       contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", `S, ${placeText(contact.place)}`) : null,

@@ -91,12 +91,14 @@
 #include "tribound/adapt/persistent.h"
 #include "tribound/adapt/rate.h"
 #include "tribound/adapt/regularisation.h"
+#include "tribound/adapt/replay.h"
 
 // The results.
 #include "tribound/io/fields/contact_line.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/level_record.h"
+#include "tribound/io/record/load_step_record.h"
 #include "tribound/io/record/report.h"
 #include "tribound/io/record/solution_figures.h"
 #include "tribound/io/record/tables.h"

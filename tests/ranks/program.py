@@ -97,6 +97,34 @@ def the_same_as_one(name, *arguments):
         expect(f"{name} {n}", lines[0] == lines[1], "contact.csv", len(lines[0]), len(lines[1]))
 
 
+def load_steps_the_same_as_one(name, *arguments):
+    def steps(n):
+        return list(csv.DictReader((out(name, n) / "history.csv").open()))
+
+    def damage(n):
+        rows = csv.DictReader((out(name, n) / "contact.csv").open())
+        return sum(float(row["weight"]) * float(row["damage"]) for row in rows)
+
+    for n in (1, 2, 3):
+        code = run_case(name, n, *arguments)
+        expect(f"{name} {n}", code.returncode in (0, 3), code.returncode, code.stderr)
+        expect(f"{name} {n}", len(steps(n)) == len(steps(1)) > 1, len(steps(n)))
+        for row, alone in zip(steps(n), steps(1)):
+            scale = max(abs(float(alone["work"])), abs(float(alone["total_sharp"])), float(alone["energy"]))
+            for key, value in alone.items():
+                if key.startswith("t_") or value == row[key]:
+                    continue
+                expect(f"{name} {n} step {alone['step']} {key}", key not in COUNTS and abs(float(value) - float(row[key])) <= 1e-7 * scale + 1e-9,
+                       value, row[key])
+        number = int(steps(n)[-1]["step"])
+        pieces = [out(name, n) / f"step_{number:03}" / f"part_{rank:04}.vtu" for rank in range(n)] if n > 1 else []
+        files = [out(name, n) / file for file in ("step_001.pvtu" if n > 1 else "step_001.vtu", f"contact_{number:03}.vtu", "series.pvd")]
+        for file in pieces + files:
+            expect(f"{name} {n}", file.is_file(), file)
+        expect(f"{name} {n}", not (out(name, n) / "unfinished_pass").exists(), "unfinished_pass")
+        expect(f"{name} {n}", abs(damage(n) - damage(1)) <= 1e-8 * damage(1), damage(n), damage(1))
+
+
 def bad_input_is_told_once():
     result = run_case("bad", 2, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "nitsche.gamma0=-1")
     expect("bad input", result.returncode == 1 and result.stderr.count("tribound:") == 1, result.returncode, result.stderr)
@@ -208,6 +236,8 @@ the_same_as_one("dam", f"{EXAMPLES}/05_dam/case.toml")
 the_same_as_one("dam3d", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=direct")
 the_same_as_one("multigrid", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=iterative", "--set",
                 "newton.stopping=tolerance", "--set", "newton.tolerance=3e-11")
+load_steps_the_same_as_one("peeled", f"{EXAMPLES}/17_double_cantilever/case.toml", "--set", "adapt.max_levels=1", "--set", "history.steps=[0.2, 0.5, 0.8]")
+load_steps_the_same_as_one("sheared", f"{EXAMPLES}/18_shear_cycle/case.toml", "--set", "adapt.max_levels=1")
 the_same_as_one("blocks", f"{EXAMPLES}/07_three_blocks/case.toml")
 the_same_as_one("joint", f"{CASES}/joint.toml", "--set", "adapt.max_levels=4")
 the_same_as_one("rock3d", f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "adapt.max_levels=1", "--set", "solver.method=direct")

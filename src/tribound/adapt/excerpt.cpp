@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/adapt/gathered_history.h"
 #include "tribound/adapt/merged_cells.h"
 #include "tribound/base/sorted.h"
 #include "tribound/fem/nested.h"
@@ -89,14 +90,22 @@ std::optional<Excerpt<dim>> gathered(const LevelView<dim>& view, const Method& m
   fields.u = ranks.gather<double>(fields.u);
   fields.stress = ranks.gather<double>(fields.stress);
   fields.components = ranks.gather<certify::BoundComponents>(fields.components);
+  const GatheredHistory<dim> history = gather_history(discrete.form);
   return ranks.together(
       [&]() -> std::optional<Excerpt<dim>>
       {
         if (!ranks.is_first()) return std::nullopt;
         mesh::PickedOut<dim> picked = mesh::pick_out<dim>(discrete.mesh, fields.cells, bodies);
         Excerpt<dim> result;
-        result.discrete = std::make_shared<const Discretisation<dim>>(std::move(picked.mesh),
-                                                                      discrete.form.problem(), method);
+        auto merged =
+            std::make_shared<Discretisation<dim>>(std::move(picked.mesh), discrete.form.problem(), method);
+        if (!history.states.empty())
+        {
+          auto remembered = history_on(merged->form, history);
+          if (!remembered) return std::nullopt;
+          merged->form.set_history(std::move(remembered));
+        }
+        result.discrete = merged;
         CertifiedLevel<dim>& level = result.level;
         level.steps = view.level.steps;
         level.norms = view.level.norms;

@@ -6,19 +6,16 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <new>
 #include <optional>
 #include <utility>
 
+#include "tribound/adapt/finer.h"
 #include "tribound/base/clock.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/contact/support/rigid_motion.h"
-#include "tribound/fem/nested.h"
-#include "tribound/mesh/bisect.h"
-#include "tribound/mesh/share_out.h"
 
 namespace tribound::adapt
 {
@@ -40,46 +37,6 @@ template <int dim>
 std::int64_t free_dofs(const Discretisation<dim>& discrete)
 {
   return fem::n_free_dofs(discrete.space, discrete.form.constraints());
-}
-
-/// The next mesh, and how the solution gets there.
-template <int dim>
-struct Finer
-{
-  std::int64_t n_cells;
-  std::function<mesh::Mesh<dim>()> mesh;                                     ///< makes it, once
-  std::function<std::vector<double>(const fem::LagrangeSpace<dim>&)> carry;  ///< onto a space on it
-};
-
-template <int dim>
-Finer<dim> bisected(const Discretisation<dim>& discrete, std::span<const double> u,
-                    std::span<const Index> marked)
-{
-  auto finer = std::make_shared<mesh::Bisected<dim>>(mesh::bisect<dim>(discrete.mesh, marked));
-  return {finer->mesh.n_cells(), [finer] { return std::move(finer->mesh); },
-          [finer, &discrete, u](const fem::LagrangeSpace<dim>& space)
-          { return fem::nested_interpolant<dim>(discrete.space, u, finer->parent, space); }};
-}
-
-/// The same of a mesh that is shared out: its cells take the values at their nodes with them.
-template <int dim>
-Finer<dim> bisected_part(const Discretisation<dim>& discrete, std::span<const double> u,
-                         std::span<const Index> marked)
-{
-  auto part = std::make_shared<mesh::BisectedPart<dim>>(mesh::bisect_part<dim>(discrete.mesh, marked));
-  const std::int64_t n_cells = discrete.mesh.ranks().sum(static_cast<std::int64_t>(part->cells.size()));
-  auto balanced = std::make_shared<std::optional<mesh::Balanced<dim>>>();
-  return {n_cells,
-          [=, &discrete]
-          {
-            const std::vector<double> values =
-                fem::nested_values<dim>(discrete.space, u, part->cells, part->parent);
-            *balanced = mesh::balance<dim>(discrete.mesh, std::move(part->cells), values,
-                                           dim * discrete.space.basis().n_nodes());
-            return std::move((*balanced)->mesh);
-          },
-          [balanced](const fem::LagrangeSpace<dim>& space)
-          { return fem::from_cell_values<dim>(space, (*balanced)->cells, (*balanced)->values); }};
 }
 
 }  // namespace
@@ -302,8 +259,7 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
   const std::vector<Index> marked = mark(view());
-  const Finer<dim> finer = current_->mesh.partition() ? bisected_part<dim>(*current_, level_.u, marked)
-                                                      : bisected<dim>(*current_, level_.u, marked);
+  const Finer<dim> finer = finer_mesh<dim>(current_->space, level_.u, marked);
   RefinementSeconds seconds{.bisect = lap()};
   NextMesh is_next{.cells = finer.n_cells, .ranks = current_->mesh.ranks()};
   if (limit)

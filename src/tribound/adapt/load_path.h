@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tribound/adapt/level.h"
+#include "tribound/base/clock.h"
 
 namespace tribound::adapt
 {
@@ -20,9 +21,11 @@ namespace tribound::adapt
 template <int dim>
 struct DiscreteAtTime
 {
-  DiscreteAtTime(const problem::Problem<dim>& general, double t, std::shared_ptr<const Grid<dim>> grid,
-                 const Method& method, std::shared_ptr<const contact::ContactHistory<dim>> history);
+  DiscreteAtTime(const problem::Problem<dim>& general, double load_factor,
+                 std::shared_ptr<const Grid<dim>> grid, const Method& method,
+                 std::shared_ptr<const contact::ContactHistory<dim>> history);
 
+  double t;
   problem::Problem<dim> problem;
   Discretisation<dim> discrete;
 };
@@ -37,8 +40,13 @@ struct LoadStep
   std::shared_ptr<const DiscreteAtTime<dim>> at;
   CertifiedLevel<dim> level;
   certify::Verdict verdict;
+  double largest_sigma = 0;    ///< of ||sigma(u_h)|| over the path so far, which the verdict is relative to
+  double reference_force = 0;  ///< NewtonOptions::reference_force that it was solved with
   /// At the contact points of the form: what the step has committed.
   std::vector<problem::InterfaceResponse<dim>> responses;
+  std::vector<double> forces;  ///< a(u, phi_i) - (t, phi_i)_C: loads and reactions, by degree of freedom
+  double work = 0;             ///< of them since the step before, by the trapezoidal rule; energy
+  double seconds = 0;          ///< wall time, attempts that failed included
 };
 
 /// What steps are allowed to do.
@@ -66,6 +74,11 @@ class LoadPath
   LoadPath(const problem::Problem<dim>& problem, const Method& method, const PathOptions& options,
            mesh::Mesh<dim> mesh, const std::atomic<bool>* stop = nullptr,
            std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr);
+  /// The same path on a refinement of the mesh of `coarser`, where the problem is known to be well posed.
+  LoadPath(const LoadPath& coarser, mesh::Mesh<dim> mesh);
+
+  /// What the first step, at t, does before anything is solved; throws what it would of bad input.
+  void prepare(double t);
 
   using Observer = std::function<void(const LoadStep<dim>&)>;
 
@@ -74,13 +87,16 @@ class LoadPath
   [[nodiscard]] std::string advance(double t, const Observer& observer = {}, const StepObserver& step = {});
 
   /// The last committed step; null before the first.
-  [[nodiscard]] const LoadStep<dim>* last() const { return last_.get(); }
+  [[nodiscard]] const std::shared_ptr<const LoadStep<dim>>& last() const { return last_; }
+  [[nodiscard]] const Grid<dim>& grid() const { return *grid_; }
 
  private:
   [[nodiscard]] std::string try_step(double t, int cuts, const StepObserver& observer);
   [[nodiscard]] Method method_of_step() const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   void commit(std::shared_ptr<LoadStep<dim>> step);
+  /// Loads, reactions and what they do.
+  void account(LoadStep<dim>& step);
   /// What only a whole mesh tells, at the first step.
   void check(const DiscreteAtTime<dim>& at);
 
@@ -90,11 +106,14 @@ class LoadPath
   std::shared_ptr<const Grid<dim>> grid_;
   const std::atomic<bool>* stop_;
   std::shared_ptr<const mesh::Mesh<dim>> whole_;  ///< until the first step
+  bool is_well_posed_ = false;
+  std::shared_ptr<DiscreteAtTime<dim>> prepared_;  ///< the first step
   std::shared_ptr<const LoadStep<dim>> last_;
   std::shared_ptr<const contact::ContactHistory<dim>> history_;
   std::optional<certify::FriedrichsConstant> friedrichs_;
   double reference_force_ = 0;  ///< largest of the committed steps
   double largest_sigma_ = 0;    ///< ||sigma|| of the committed steps
+  Clock::time_point begin_;     ///< of the step in work
 };
 
 }  // namespace tribound::adapt

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "tribound/case/geometry_reader.h"
+#include "tribound/case/interface_reader.h"
 #include "tribound/case/node.h"
 #include "tribound/case/physics.h"
 #include "tribound/case/table_reader.h"
@@ -228,11 +229,35 @@ io::EffectiveCase effective_case(Node document, const Config& config, std::span<
   return {to_toml(document), {overrides.begin(), overrides.end()}};
 }
 
+bool remembers(const std::optional<problem::Contact>& contact)
+{
+  return contact && problem::has_memory(contact->law);
+}
+
+/// An interface alone is a history of one step.
+void read_load_steps(const TableReader& root, Config& config)
+{
+  root.read("history", config.history, read_history);
+  if (!config.history && (std::ranges::any_of(config.boundaries, remembers, &BoundaryConfig::contact) ||
+                          std::ranges::any_of(config.contacts, remembers, &ContactConfig::contact)))
+    config.history.emplace();
+  // What a step leaves to the next ones is not in their bounds: all of it is solved for.
+  if (config.history) config.method.stopping.criterion = adapt::Stopping::last_bounded;
+}
+
+void check_regularisation(const TableReader& root, const Config& config)
+{
+  if (config.method.regularisation && config.history)
+    throw InputError(root.find("regularisation")->where,
+                     root.has("history") ? "stands beside [history]" : "stands beside an interface",
+                     "drop it: load steps go by the plain method");
+}
+
 Config read_document(const Node& document, std::string file)
 {
-  const TableReader root(
-      document, {"title", "degree", "mesh", "material", "load", "boundary", "contact", "nitsche", "newton",
-                 "obstacle", "shape", "regularisation", "adapt", "certify", "solver", "study", "output"});
+  const TableReader root(document, {"title", "degree", "mesh", "material", "load", "boundary", "contact",
+                                    "nitsche", "newton", "obstacle", "shape", "history", "regularisation",
+                                    "adapt", "certify", "solver", "study", "output"});
   Config config;
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
@@ -248,6 +273,7 @@ Config read_document(const Node& document, std::string file)
             [&](const Node& node) { return read_obstacles(node, case_directory); });
   root.read("shape", config.shapes, [&](const Node& node) { return read_shapes(node, case_directory); });
   check_surfaces(config);
+  read_load_steps(root, config);
   const auto read_method = [&](std::string_view key, const auto& read)
   {
     if (const Node* node = root.find(key)) read(*node, config.method);
@@ -255,12 +281,16 @@ Config read_document(const Node& document, std::string file)
   read_method("nitsche", read_nitsche);
   read_method("newton", read_newton);
   root.read("regularisation", config.method.regularisation, read_regularisation);
+  check_regularisation(root, config);
   root.read("adapt", config.adapt, read_adapt);
   read_method("certify", read_certify);
   root.read("solver", config.method.solver, read_solver);
   root.read("study", config.study, [&](const Node& node) { return read_study(node, config.method.degree); });
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
+  if (config.output.checkpoint && config.history)
+    throw InputError({.file = config.file, .key = "output.checkpoint"},
+                     "is for adaptive runs, and this is one over load steps", "drop it");
   return config;
 }
 
@@ -296,12 +326,12 @@ mesh::FindSeams find_seams(const Config& config)
 std::string friction_name(const Config& config)
 {
   std::string text;
-  for (const problem::LawKind& kind : problem::law_kinds())
+  for (const std::string_view law : problem::law_names)
     if (std::ranges::any_of(config.boundaries, [&](const BoundaryConfig& boundary)
-                            { return boundary.contact && name(boundary.contact->law) == kind.name; }) ||
-        std::ranges::any_of(config.contacts, [&](const ContactConfig& contact)
-                            { return name(contact.contact.law) == kind.name; }))
-      text += (text.empty() ? "" : "+") + std::string(kind.name);
+                            { return boundary.contact && name(boundary.contact->law) == law; }) ||
+        std::ranges::any_of(config.contacts,
+                            [&](const ContactConfig& contact) { return name(contact.contact.law) == law; }))
+      text += (text.empty() ? "" : "+") + std::string(law);
   return text;
 }
 

@@ -16,6 +16,7 @@
 #include "tribound/adapt/method.h"
 #include "tribound/base/error.h"
 #include "tribound/case/geometry.h"
+#include "tribound/case/history.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/mesh/seams.h"
 #include "tribound/mesh/source.h"
@@ -110,6 +111,7 @@ struct Config
   std::vector<ContactConfig> contacts;
   std::vector<SurfaceConfig> obstacles;
   std::vector<SurfaceConfig> shapes;
+  std::optional<HistoryConfig> history;  ///< absent: one step without memory, t = 1
   adapt::Method method;
   adapt::AdaptOptions adapt;
   StudyConfig study;

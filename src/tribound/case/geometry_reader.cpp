@@ -113,6 +113,9 @@ SurfaceConfig read_surface(const Entry& entry, bool is_obstacle, const std::file
       break;
     case Kind::distance:
       surface.distance = read_formula(*found);
+      if (problem::Field(surface.distance, found->where).uses_time())
+        throw InputError(found->where, "names t, the load factor, and obstacles do not move",
+                         "a gap that names t, such as gap = \"0.1*t\", in place of the obstacle");
       break;
     case Kind::surface:
       read_triangles(*found, table, is_obstacle, case_directory, surface);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tribound/case/geometry_reader.h"
+#include "tribound/case/interface_reader.h"
 #include "tribound/case/table_reader.h"
 
 namespace tribound::case_file
@@ -97,6 +98,16 @@ void read_obstacle(const Node& node, BoundaryConfig& boundary)
   boundary.geometry = read_obstacle_geometry(table);
 }
 
+/// `interface`: what touches an obstacle and remembers.
+void read_memory(const Node& node, BoundaryConfig& boundary)
+{
+  const TableReader table(node, interface_keys({"gap", "obstacle", "shape", "normal"}));
+  problem::Contact contact = read_interface(table, problem::Field(0.0, node.where));
+  table.read("gap", *contact.gap, to_field);
+  boundary.contact = std::move(contact);
+  boundary.geometry = read_obstacle_geometry(table);
+}
+
 /// A name, or an array of them.
 std::vector<std::string> read_names(const Node& node)
 {
@@ -158,14 +169,25 @@ void read_sides(const TableReader& table, ContactConfig& config)
                        "two boundaries, or parts of one that are groups of their own");
 }
 
+/// The law of a pair: `friction` and its keys, or `interface`.
+problem::Contact read_pair_law(const TableReader& table)
+{
+  const Node* interface = table.find("interface");
+  if (interface == nullptr) return problem::Contact(read_law(table, problem::law_kinds()), std::nullopt);
+  for (const std::string_view key : law_keys({}))
+    if (const Node* other = table.find(key))
+      throw InputError(other->where, "stands beside interface", "it belongs into the table of interface");
+  return read_interface(TableReader(*interface, interface_keys()), std::nullopt);
+}
+
 ContactConfig read_pair(const Node& node)
 {
-  const TableReader table(
-      node, law_keys({"slave", "master", "joint", "gap", "pairing", "reach", "shape", "normal"}));
+  const TableReader table(node, law_keys({"slave", "master", "joint", "gap", "pairing", "reach", "shape",
+                                          "normal", "interface"}));
   ContactConfig config;
   config.where = node.where;
   read_sides(table, config);
-  config.contact = problem::Contact(read_law(table, problem::law_kinds()), std::nullopt);
+  config.contact = read_pair_law(table);
   if (!cone(config.contact.law).is_tied)
     table.read("gap", config.contact.gap, read_gap);
   else if (const Node* gap = table.find("gap"))
@@ -193,7 +215,9 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
   if (boundary.contact)
     for (const std::string_view key : {"displacement", "traction", "pressure"})
       if (table.has(key))
-        fail(key, "stands beside contact on the same boundary",
+        fail(key,
+             fmt::format("stands beside {} on the same boundary",
+                         table.has("contact") ? "contact" : "interface"),
              "a part of the boundary is either in contact or has displacement, traction and pressure; "
              "split the group in the mesh; a pressure in the joint itself, such as uplift, is not modelled");
   if (boundary.displacement.empty()) return;
@@ -215,17 +239,25 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
 
 BoundaryConfig read_boundary(const Entry& entry)
 {
-  const TableReader table(entry.node, {"displacement", "traction", "pressure", "contact"});
+  const TableReader table(entry.node, {"displacement", "traction", "pressure", "contact", "interface"});
   if (std::get<Node::Table>(entry.node.value).empty())
-    throw InputError(entry.where, "nothing is given on this boundary",
-                     "displacement, traction, pressure or contact; traction-free is traction = [0, 0]");
+    throw InputError(
+        entry.where, "nothing is given on this boundary",
+        "displacement, traction, pressure, contact or interface; traction-free is traction = [0, 0]");
   BoundaryConfig boundary;
   boundary.name = entry.name;
   boundary.where = entry.where;
   table.read("displacement", boundary.displacement, read_displacement);
   table.read("traction", boundary.traction, to_fields);
   table.read("pressure", boundary.pressure, to_field);
-  if (const Node* contact = table.find("contact")) read_obstacle(*contact, boundary);
+  const Node* interface = table.find("interface");
+  if (const Node* contact = table.find("contact"))
+  {
+    if (interface != nullptr)
+      throw InputError(interface->where, "stands beside contact on the same boundary", "one of them");
+    read_obstacle(*contact, boundary);
+  }
+  if (interface != nullptr) read_memory(*interface, boundary);
   check_boundary(table, boundary);
   return boundary;
 }

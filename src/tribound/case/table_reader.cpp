@@ -101,14 +101,7 @@ double to_number(const Node& node)
 
 problem::Field to_field(const Node& node)
 {
-  if (const auto* text = std::get_if<std::string>(&node.value))
-  {
-    problem::Field field(*text, node.where);
-    if (field.uses_time())
-      throw InputError(node.where, "names t, the load factor, and a case is one load step",
-                       "x, y, z alone; programs follow load paths with adapt/load_path.h");
-    return field;
-  }
+  if (const auto* text = std::get_if<std::string>(&node.value)) return problem::Field(*text, node.where);
   if (!std::holds_alternative<std::int64_t>(node.value) && !std::holds_alternative<double>(node.value))
     fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
   const double number = to_number(node);

@@ -39,7 +39,7 @@ FacetOutcome<dim> add_facet(std::span<const contact::ContactPoint<dim>> points, 
     const contact::ContactState<dim>& state = states[q];
     const double share = points[q].weight / measure;
     facet.centre += share * state.point;
-    facet.pressure += share * state.pressure;
+    facet.pressure += share * std::max(0.0, state.pressure);  // a bond may be in tension
     facet.closed = facet.closed && state.pressure > 0;
     if (state.pressure > 0) outcome.closed += measure * share;
     if (state.pressure > 0 && state.status == problem::ContactStatus::slip)
@@ -166,7 +166,7 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
     outcome.boundary = form.problem().boundary(segment.slave.facet.tag).name;
     outcome.has_master = segment.master.has_value();
     const problem::FrictionCone friction = cone(segment.contact->law);
-    outcome.has_friction = friction.resists_sliding();
+    outcome.has_friction = friction.resists_sliding() && !friction.is_bonded;
     if (friction.coefficient > 0) outcome.coefficient = friction.coefficient;
     facets.push_back(
         add_facet<dim>(form.contact_points(k), segment.measure, form.contact_states(u, k), outcome));

@@ -126,12 +126,18 @@ LagrangeSpace<dim>::LagrangeSpace(const mesh::Mesh<dim>& mesh, int degree) : mes
 }
 
 template <int dim>
-double LagrangeSpace<dim>::norm(std::span<const double> values) const
+double LagrangeSpace<dim>::dot(std::span<const double> a, std::span<const double> b) const
 {
   double sum = 0;
   for (Index k = 0; k < n_owned_nodes(); ++k)
-    for (int a = 0; a < dim; ++a) sum += std::pow(values[dim * owned_node(k) + a], 2);
-  return std::sqrt(mesh_->ranks().sum(sum));
+    for (Index i = dim * owned_node(k); i < dim * (owned_node(k) + 1); ++i) sum += a[i] * b[i];
+  return mesh_->ranks().sum(sum);
+}
+
+template <int dim>
+double LagrangeSpace<dim>::norm(std::span<const double> values) const
+{
+  return std::sqrt(dot(values, values));
 }
 
 template <int dim>

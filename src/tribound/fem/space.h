@@ -52,8 +52,10 @@ class LagrangeSpace
   {
     return dim * (numbers_ ? numbers_->n : std::int64_t{n_nodes_});
   }
-  /// Euclidean length of values at the degrees of freedom of all ranks; ghosts' do not matter. All ranks call
-  /// it together, as update().
+  /// Euclidean product of values at the degrees of freedom of all ranks; ghosts' do not matter. All ranks
+  /// call it together, as update().
+  [[nodiscard]] double dot(std::span<const double> a, std::span<const double> b) const;
+  /// Euclidean length, likewise.
   [[nodiscard]] double norm(std::span<const double> values) const;
   /// Values at nodes of other ranks become those that the owners have.
   template <class T>

@@ -290,6 +290,12 @@ std::string_view name(const ContactLaw& law)
   return std::visit([](const auto& l) { return l.name; }, law);
 }
 
+bool has_memory(const ContactLaw& law)
+{
+  return std::holds_alternative<JointLaw>(law) || std::holds_alternative<MixedLaw>(law) ||
+         std::holds_alternative<EndoLaw>(law);
+}
+
 bool is_minimum(const ContactLaw& law)
 {
   return std::visit([](const auto& l) { return l.is_minimum; }, law);

@@ -194,6 +194,11 @@ concept FrictionLaw = Law<L> && std::constructible_from<L, std::span<const Field
 
 using ContactLaw = std::variant<Frictionless, Tresca, Coulomb, Tied, JointLaw, MixedLaw, EndoLaw>;
 
+/// name() of all, in this order.
+inline constexpr std::array law_names = {Frictionless::name, Tresca::name,   Coulomb::name, Tied::name,
+                                         JointLaw::name,     MixedLaw::name, EndoLaw::name};
+static_assert(law_names.size() == std::variant_size_v<ContactLaw>);
+
 /// T(P) with limit and status; T_delta with the regularised projections of method section 7 for delta > 0.
 template <int dim>
 [[nodiscard]] Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
@@ -229,6 +234,9 @@ template <int dim>
 [[nodiscard]] double tangential_weight(const ContactLaw& law);
 
 [[nodiscard]] FrictionCone cone(const ContactLaw& law);
+
+/// Whether it is one of interface_law.h.
+[[nodiscard]] bool has_memory(const ContactLaw& law);
 
 /// Such as "Tresca friction, threshold 0.03".
 [[nodiscard]] std::string words(const ContactLaw& law);

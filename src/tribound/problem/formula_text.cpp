@@ -86,7 +86,7 @@ void check_names(const std::string& text, const Where& where)
     {
       const std::string near = closest(name, known);
       fail_at(text, i, where, fmt::format("unknown name \"{}\"", name),
-              fmt::format("{}allowed are x, y, z, pi, e and the functions {}",
+              fmt::format("{}allowed are x, y, z, t, pi, e and the functions {}",
                           near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
                           fmt::join(functions, ", ")));
     }

@@ -29,6 +29,7 @@ class NormalField
   void evaluate(std::span<const Point<dim>> x, std::span<Point<dim>> n) const;
 
   [[nodiscard]] std::span<const Field> components() const { return components_; }
+  [[nodiscard]] std::span<Field> components() { return components_; }
   [[nodiscard]] bool is_constant() const;
   /// Whether all components are.
   [[nodiscard]] bool is_enclosed() const;

@@ -249,6 +249,9 @@ void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
   const auto of_contact = [&](auto& contact)
   {
     if (contact.gap) visit(*contact.gap);
+    if (contact.broken) visit(*contact.broken);
+    if (contact.normal)
+      for (auto& component : contact.normal->components()) visit(component);
     if (auto* tresca = std::get_if<Tresca>(&contact.law)) visit(tresca->threshold);
     if (auto* joint = std::get_if<JointLaw>(&contact.law)) visit(joint->threshold);
   };

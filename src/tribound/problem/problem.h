@@ -41,6 +41,8 @@ struct Contact
   std::optional<NormalField> normal{};
   /// What gap and N were made from, in words, such as "obstacle floor"; empty: what is given.
   std::string geometry{};
+  /// Not 0 where a bond is broken before the first step; absent: nowhere.
+  std::optional<Field> broken{};
   /// The signed distance from the true surface of the body; absent: the facets are that.
   std::optional<Field> true_surface{};
 

@@ -86,7 +86,7 @@ TEST(ContactCsv, RunsAlongEachBoundary)
 {
   const DiscreteProblem<2> box = two_contacts();
   const auto u = interpolate<2>(box.space, [](const Point<2>& x) { return Point<2>(0.1 * x[0], 0.01); });
-  const Table table(io::contact_csv(box.form, u, 0));
+  const Table table(io::contact_csv(box.form, u, {0}));
   ASSERT_EQ(table.size(), box.form.n_contact_points());
 
   std::map<std::string, double> previous;
@@ -113,7 +113,7 @@ TEST(ContactCsv, StatesAreThoseOfTheForm)
   const DiscreteProblem<2> box = two_contacts();
   const auto u =
       interpolate<2>(box.space, [](const Point<2>& x) { return Point<2>(0.1 * x[0], -0.5 * x[0]); });
-  const Table table(io::contact_csv(box.form, u, 0));
+  const Table table(io::contact_csv(box.form, u, {0}));
   const auto traction = box.form.traction(u);
   // Sorted along the boundary, the points of a facet need not be in the order of the rule.
   double sum = 0.0;
@@ -134,7 +134,7 @@ TEST(ContactCsv, NumbersReadBackExactly)
   const DiscreteProblem<2> box = two_contacts();
   const auto u =
       interpolate<2>(box.space, [](const Point<2>& x) { return Point<2>(x[0] / 3.0, -x[0] / 7.0); });
-  const Table table(io::contact_csv(box.form, u, 0));
+  const Table table(io::contact_csv(box.form, u, {0}));
   std::vector<double> written;
   for (std::size_t row = 0; row < table.size(); ++row) written.push_back(table(row, "traction_x"));
   std::vector<double> computed;
@@ -149,7 +149,7 @@ template <int dim>
 void expect_integrals(const DiscreteProblem<dim>& box, const std::vector<double>& u,
                       const std::string& boundary)
 {
-  const Table table(io::contact_csv(box.form, u, 3));
+  const Table table(io::contact_csv(box.form, u, {3}));
   double measure = 0;
   double normal = 0;
   double force = 0;
@@ -186,7 +186,7 @@ TEST(ContactCsv, RoundingOfCoordinatesIsZero)
   mesh::MeshData<2> data = block<2>({4, 2});
   data.vertices[1][1] = 5.55e-17;
   const DiscreteProblem<2> box = two_contacts(data);
-  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
+  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), {0}));
   for (std::size_t row = 0; row < table.size(); ++row)
     if (table.text(row, "boundary") == "bottom")
     {
@@ -207,7 +207,7 @@ TEST(ContactChains, OnePieceAroundACorner)
   EXPECT_EQ(links[0].arc, 0.0);
   EXPECT_NEAR(links[5].arc, 2.5, 1e-15);
 
-  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
+  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), {0}));
   for (std::size_t row = 0; row < table.size(); ++row)
     if (table.text(row, "boundary") == "top")
     {
@@ -231,7 +231,7 @@ TEST(ContactChains, ClosedAndInTwoPieces)
   for (const io::ChainLink& link : links) arcs.push_back(link.arc);
   EXPECT_THAT(arcs, ::testing::Pointwise(::testing::DoubleNear(1e-14), {0., 1., 2., 3., 4., 5., 6.}));
 
-  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), 0));
+  const Table table(io::contact_csv(box.form, std::vector<double>(box.space.n_dofs(), 0.0), {0}));
   for (std::size_t row = 1; row < table.size(); ++row)
   {
     const double distance =
@@ -249,7 +249,7 @@ TEST(ContactCsv, InThreeDimensions)
 {
   const DiscreteProblem<3> box = cube();
   const auto u = interpolate<3>(box.space, [](const Point<3>&) { return Point<3>(0.0, 0.0, -0.1); });
-  const std::string csv = io::contact_csv(box.form, u, 0);
+  const std::string csv = io::contact_csv(box.form, u, {0});
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,slip_x,"
             "slip_y,slip_z,weight,level,pair");

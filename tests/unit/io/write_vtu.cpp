@@ -65,9 +65,9 @@ void write(const std::filesystem::path& directory, int degree, nlohmann::json& m
   const std::vector<io::CellField> cell_fields{{"eta_tot", eta}};
 
   const std::string name = std::to_string(dim) + "d_p" + std::to_string(degree) + ".vtu";
-  io::write_level_vtu<dim>({directory / ("level_" + name)}, degree, box.problem, box.space, u, cell_fields,
+  io::write_level_vtu<dim>({directory / ("level_" + name)}, {degree}, box.problem, box.space, u, cell_fields,
                            tensors);
-  io::write_contact_vtu<dim>(directory / ("contact_" + name), degree, box.form, u);
+  io::write_contact_vtu<dim>(directory / ("contact_" + name), {degree}, box.form, u);
   manifest["files"].push_back({{"level", "level_" + name},
                                {"contact", "contact_" + name},
                                {"dimension", dim},
@@ -82,7 +82,7 @@ void write_without_contact(const std::filesystem::path& directory)
   const DiscreteProblem<2> box(test::box<2>({0, 0}, {1, 1}, {1, 1}), {.boundaries = {clamped<2>("left")}},
                                {.degree = 2});
   const std::vector<double> u(box.space.n_dofs(), 0.0);
-  io::write_contact_vtu<2>(directory / "no_contact.vtu", 0, box.form, u);
+  io::write_contact_vtu<2>(directory / "no_contact.vtu", {0}, box.form, u);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(BadFormula{"9810*mxx(0, 9-y)", "unknown name \"mxx\" at character 6",
                                "did you mean \"max\"?"},
                     BadFormula{"1 + X", "unknown name \"X\" at character 5",
-                               "allowed are x, y, z, pi, e and the functions"},
+                               "allowed are x, y, z, t, pi, e and the functions"},
                     BadFormula{"2*q", "unknown name \"q\" at character 3", "abs, acos"},
                     BadFormula{"_pi", "unknown name \"_pi\" at character 1", "did you mean \"pi\"?"},
                     BadFormula{"1e", "unexpected \"1e\" at character 1", ""},

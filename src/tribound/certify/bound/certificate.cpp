@@ -311,6 +311,20 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
   return result;
 }
 
+void add_history(Statements& statements, bool left_early)
+{
+  statements.covered.emplace_back(
+      "of every load step the residual of that step: equilibrium, the data at its t, and the interface law "
+      "with the history (damage, slip) that the step before has left, at every Newton iterate");
+  statements.not_covered.emplace_back(
+      std::string("errors that earlier load steps have left in the history") +
+      (left_early ? ", that of leaving Newton's method early among them" : ""));
+  statements.not_covered.emplace_back("the size of the load steps");
+  statements.not_covered.emplace_back(
+      "the choice of branch: with softening or Coulomb's friction there may be several solutions, and after "
+      "a peak the quasi-static path need not be the physical one");
+}
+
 template Statements statements(const contact::NitscheForm<2>&, ContactRule,
                                const std::optional<FriedrichsConstant>&);
 template Statements statements(const contact::NitscheForm<3>&, ContactRule,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tribound/base/error.h"
 
@@ -86,6 +88,25 @@ void check_data(const NitscheForm<dim>& form, std::size_t k)
 }  // namespace
 
 template <int dim>
+std::shared_ptr<const ContactHistory<dim>> history_at_first(const NitscheForm<dim>& form)
+{
+  const auto breaks = [](const ContactSegment<dim>& segment)
+  { return segment.contact->broken && problem::cone(segment.contact->law).is_bonded; };
+  const auto segments = form.segments();
+  if (!form.space().mesh().ranks().any(std::ranges::any_of(segments, breaks))) return nullptr;
+  std::vector<problem::InterfaceState<dim>> states;
+  states.reserve(form.n_contact_points());
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    for (const ContactPoint<dim>& point : form.contact_points(k))
+    {
+      states.push_back(problem::fresh_state<dim>(segments[k].contact->law));
+      if (breaks(segments[k]) && (*segments[k].contact->broken)(point.x) != 0) states.back().damage = 1;
+    }
+  return std::make_shared<const ContactHistory<dim>>(std::move(states), form.facet_rule(),
+                                                     form.space().degree() + 2);
+}
+
+template <int dim>
 void check_interfaces(const NitscheForm<dim>& form)
 {
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
@@ -110,6 +131,8 @@ void check_interfaces(const NitscheForm<dim>& form)
 
 template SofteningMargin softening_margin(const NitscheForm<2>&);
 template SofteningMargin softening_margin(const NitscheForm<3>&);
+template std::shared_ptr<const ContactHistory<2>> history_at_first(const NitscheForm<2>&);
+template std::shared_ptr<const ContactHistory<3>> history_at_first(const NitscheForm<3>&);
 template void check_interfaces(const NitscheForm<2>&);
 template void check_interfaces(const NitscheForm<3>&);
 

@@ -3,6 +3,8 @@
 /// @file interface_check.h
 /// What interfaces with a bond ask of mesh and data (method section 12.1).
 
+#include <memory>
+
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::contact
@@ -17,6 +19,11 @@ struct SofteningMargin
 
 template <int dim>
 [[nodiscard]] SofteningMargin softening_margin(const NitscheForm<dim>& form);
+
+/// What the contact points remember before the first step: fresh, but for bonds where Contact::broken is not
+/// 0. Null where there are none. All ranks together.
+template <int dim>
+[[nodiscard]] std::shared_ptr<const ContactHistory<dim>> history_at_first(const NitscheForm<dim>& form);
 
 /// Throws InputError, naming the place: where the constants of a law do not go together (problem::fault);
 /// where slope >= gamma, with the facet size that would do; where there is a gap under a bond; where gap or

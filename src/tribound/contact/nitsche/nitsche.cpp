@@ -312,8 +312,9 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
     const Point<dim> jump = on_segment.jump(u, q);
     const Point<dim> displacement =
         fem::value_at<dim>(space_->cell_nodes(segment.slave.facet.cell), u, table.slave->values_at(q));
+    const problem::InterfaceResponse<dim> committed = problem::advance<dim>(segment.contact->law, point, p);
     states.push_back({x, n, -traction.dot(n), traction, limit, status, gap - jump.dot(n),
-                      jump - jump.dot(n) * n, displacement});
+                      jump - jump.dot(n) * n, displacement, committed.opening, committed.state});
   }
   return states;
 }

@@ -32,9 +32,11 @@ struct ContactState
   Point<dim> traction;  ///< T = [P^n]_- n + [P^t]_S
   double limit;         ///< S_h: what |T^t| may reach
   problem::ContactStatus status;
-  double gap;               ///< g - [u]^n: distance left
-  Point<dim> slip;          ///< [u]^t
-  Point<dim> displacement;  ///< u of the slave
+  double gap;                               ///< g - [u]^n: distance left
+  Point<dim> slip;                          ///< [u]^t
+  Point<dim> displacement;                  ///< u of the slave
+  double opening = 0;                       ///< delta^n of the law's resolvent
+  problem::InterfaceState<dim> state = {};  ///< what a step that ends here commits
 };
 
 /// A quadrature point of a contact segment.
@@ -82,6 +84,8 @@ class NitscheForm
   /// From now on what the contact points remember; without it all are as before the first step. It is of a
   /// form on the same segments. All ranks together.
   void set_history(std::shared_ptr<const ContactHistory<dim>> history);
+  /// Null before the first step.
+  [[nodiscard]] const std::shared_ptr<const ContactHistory<dim>>& history() const { return history_; }
   /// What a step that ends with u commits, by number of the contact points.
   [[nodiscard]] std::vector<problem::InterfaceResponse<dim>> advance(std::span<const double> u) const;
 

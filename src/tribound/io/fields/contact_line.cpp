@@ -101,13 +101,17 @@ std::array<double, 2> extent(const contact::ContactSegment<2>& segment)
 }
 
 template <int dim>
-std::string columns()
+std::string columns(bool has_memory)
 {
-  return dim == 2
-             ? "boundary,facet,x,y,nx,ny,arc,pressure,traction_x,traction_y,limit,status,gap,slip_x,slip_y,"
-               "weight,level,pair"
-             : "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,"
-               "slip_x,slip_y,slip_z,weight,level,pair";
+  std::string names =
+      dim == 2 ? "boundary,facet,x,y,nx,ny,arc,pressure,traction_x,traction_y,limit,status,gap,slip_x,slip_y,"
+                 "weight,level,pair"
+               : "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,"
+                 "slip_x,slip_y,slip_z,weight,level,pair";
+  if (has_memory)
+    names += dim == 2 ? ",damage,opening,plastic_slip_x,plastic_slip_y"
+                      : ",damage,opening,plastic_slip_x,plastic_slip_y,plastic_slip_z";
+  return names;
 }
 
 template <int dim>
@@ -120,8 +124,8 @@ void add_point(CsvTable& table, const Point<dim>& x, double round_off = 0)
 template <int dim>
 struct Rows
 {
-  Rows(const contact::NitscheForm<dim>& f, std::span<const double> displacement, int number)
-      : form(f), u(displacement), level(number)
+  Rows(const contact::NitscheForm<dim>& f, std::span<const double> displacement, const SeriesPlace& at)
+      : form(f), u(displacement), place(at)
   {
     double size = 0;
     for (const Point<dim>& x : f.space().mesh().vertices()) size = std::max(size, x.cwiseAbs().maxCoeff());
@@ -144,16 +148,22 @@ struct Rows
     table.add(state.gap);
     add_point<dim>(table, state.slip);
     table.add(form.contact_points(segment)[q].weight);
-    table.add(level);
+    table.add(place.number);
     const int pair = form.segments()[segment].pair;
     table.add(pair < 0 ? std::string() : std::to_string(pair));
+    if (place.load_factor)
+    {
+      table.add(state.state.damage);
+      table.add(state.opening);
+      add_point<dim>(table, state.state.slip);
+    }
     table.end_row();
   }
 
   static constexpr double relative_round_off = 1e-14;
   const contact::NitscheForm<dim>& form;
   std::span<const double> u;
-  int level;
+  SeriesPlace place;
   double round_off = 0;  ///< of coordinates
 };
 
@@ -218,10 +228,11 @@ std::vector<ChainLink> contact_chains(const contact::NitscheForm<2>& form, int t
 }
 
 template <int dim>
-std::string contact_csv(const contact::NitscheForm<dim>& form, std::span<const double> u, int level)
+std::string contact_csv(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                        const SeriesPlace& place)
 {
-  CsvTable table(columns<dim>());
-  const Rows<dim> rows(form, u, level);
+  CsvTable table(columns<dim>(place.load_factor.has_value()));
+  const Rows<dim> rows(form, u, place);
   const int n_boundaries = static_cast<int>(form.problem().boundaries().size());
   for (int tag = 0; tag < n_boundaries; ++tag)
   {
@@ -235,16 +246,16 @@ std::string contact_csv(const contact::NitscheForm<dim>& form, std::span<const d
 
 template <int dim>
 void write_contact_csv(const std::filesystem::path& path, const contact::NitscheForm<dim>& form,
-                       std::span<const double> u, int level)
+                       std::span<const double> u, const SeriesPlace& place)
 {
-  write_file(path, contact_csv(form, u, level));
+  write_file(path, contact_csv(form, u, place));
 }
 
-template std::string contact_csv(const contact::NitscheForm<2>&, std::span<const double>, int);
-template std::string contact_csv(const contact::NitscheForm<3>&, std::span<const double>, int);
+template std::string contact_csv(const contact::NitscheForm<2>&, std::span<const double>, const SeriesPlace&);
+template std::string contact_csv(const contact::NitscheForm<3>&, std::span<const double>, const SeriesPlace&);
 template void write_contact_csv(const std::filesystem::path&, const contact::NitscheForm<2>&,
-                                std::span<const double>, int);
+                                std::span<const double>, const SeriesPlace&);
 template void write_contact_csv(const std::filesystem::path&, const contact::NitscheForm<3>&,
-                                std::span<const double>, int);
+                                std::span<const double>, const SeriesPlace&);
 
 }  // namespace tribound::io

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/io/fields/vtu.h"
 
 namespace tribound::io
 {
@@ -29,16 +30,16 @@ struct ChainLink
 /// contact.csv: one row per quadrature point of form.facet_rule(), sorted along each boundary in 2D, facet by
 /// facet in 3D. Columns: boundary,facet,x,y[,z],nx,ny[,nz][,arc],pressure,traction_x,traction_y[,traction_z],
 /// limit,status,gap,slip_x,slip_y[,slip_z],weight,level,pair; arc in 2D only, status 0 open, 1 stick, 2 slip,
-/// 3 tied, pair empty against an obstacle. The
+/// 3 tied, pair empty against an obstacle; of a load step `number` also damage,opening,plastic_slip_x,... The
 /// sum of weight times a column is its integral over the boundary as the program takes it. Coordinates and
 /// components of normals that are rounding are 0.
 template <int dim>
 [[nodiscard]] std::string contact_csv(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                      int level);
+                                      const SeriesPlace& place);
 
 /// Writes contact_csv() to `path`. Throws WriteError when the file cannot be written.
 template <int dim>
 void write_contact_csv(const std::filesystem::path& path, const contact::NitscheForm<dim>& form,
-                       std::span<const double> u, int level);
+                       std::span<const double> u, const SeriesPlace& place);
 
 }  // namespace tribound::io

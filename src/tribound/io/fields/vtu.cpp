@@ -137,7 +137,8 @@ bool is_numbered(std::string_view name, std::string_view stem, std::size_t least
 bool is_series_file(std::string_view name)
 {
   return name == "series.pvd" || is_numbered(name, "contact_", 3, ".vtu") ||
-         is_numbered(name, "level_", 3, ".vtu") || is_numbered(name, "level_", 3, ".pvtu");
+         is_numbered(name, "level_", 3, ".vtu") || is_numbered(name, "level_", 3, ".pvtu") ||
+         is_numbered(name, "step_", 3, ".vtu") || is_numbered(name, "step_", 3, ".pvtu");
 }
 
 /// The files of a series in a directory, those in directories of several ranks first, and then these.
@@ -150,7 +151,8 @@ std::vector<std::filesystem::path> series_files(const std::filesystem::path& dir
     const std::string name = entry.path().filename().string();
     const bool is_directory = entry.is_directory(error);
     if (is_series_file(name) && !is_directory) files.push_back(entry.path());
-    if (!is_numbered(name, "level_", 3, "") || !is_directory) continue;
+    if ((!is_numbered(name, "level_", 3, "") && !is_numbered(name, "step_", 3, "")) || !is_directory)
+      continue;
     bool has_others = false;
     for (const auto& piece : std::filesystem::directory_iterator(entry.path(), error))
       if (is_numbered(piece.path().filename().string(), "part_", 1, ".vtu"))
@@ -247,7 +249,7 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
 }
 
 template <int dim>
-void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<dim>& problem,
+void write_level_vtu(const LevelFiles& files, const SeriesPlace& place, const problem::Problem<dim>& problem,
                      const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                      std::span<const CellField> cell_fields, std::span<const TensorField<dim>> tensors)
 {
@@ -255,7 +257,8 @@ void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<
   const TensorField<dim> stress = stress_field(problem, space, u);
 
   VtuGrid grid;
-  grid.time = level;
+  grid.time = place.number;
+  grid.load_factor = place.load_factor;
   grid.n_cells = data.n_cells();
   grid.n_points = data.n_points();
   grid.points = {data.coordinates()};
@@ -277,10 +280,10 @@ void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<
   if (!files.list.empty()) write_vtu_list(files.list, grid, files.pieces);
 }
 
-LevelFiles level_files(const std::filesystem::path& directory, int level, const Ranks& ranks)
+LevelFiles level_files(const std::filesystem::path& directory, const SeriesPlace& place, const Ranks& ranks)
 {
-  if (ranks.size() == 1) return {directory / level_file_name("level", level)};
-  const std::string stem = fmt::format("level_{:03}", level);
+  if (ranks.size() == 1) return {directory / level_file_name(place.stem(), place.number)};
+  const std::string stem = fmt::format("{}_{:03}", place.stem(), place.number);
   const auto piece = [&stem](int rank) { return fmt::format("{}/part_{:04}.vtu", stem, rank); };
   std::error_code error;
   std::filesystem::create_directories(directory / stem, error);
@@ -297,16 +300,16 @@ std::string level_file_name(std::string_view stem, int level)
   return fmt::format("{}_{:03}.vtu", stem, level);
 }
 
-void write_series(const std::filesystem::path& directory, int first, int last)
+void write_series(const std::filesystem::path& directory, int first, int last, std::string_view stem)
 {
   std::error_code error;
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (int level = first; level <= last; ++level)
   {
-    const std::string list = fmt::format("level_{:03}.pvtu", level);
-    text += fmt::format(
-        "<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level,
-        std::filesystem::exists(directory / list, error) ? list : level_file_name("level", level));
+    const std::string list = fmt::format("{}_{:03}.pvtu", stem, level);
+    text +=
+        fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level,
+                    std::filesystem::exists(directory / list, error) ? list : level_file_name(stem, level));
   }
   text += "</Collection>\n</VTKFile>\n";
   write_file(directory / "series.pvd", text);
@@ -325,6 +328,34 @@ void remove_series(const std::filesystem::path& directory)
   }
 }
 
+void make_series_directory(const std::filesystem::path& directory)
+{
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw WriteError(directory, "cannot be made: " + error.message(), "a place to write to");
+  remove_series(directory);
+}
+
+void remove_series_directory(const std::filesystem::path& directory)
+{
+  remove_series(directory);
+  std::error_code error;
+  std::filesystem::remove(directory, error);  // stays where there is anything else in it
+}
+
+void move_series(const std::filesystem::path& from, const std::filesystem::path& to)
+{
+  remove_series(to);
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(from, error))
+  {
+    const std::filesystem::path target = to / entry.path().filename();
+    std::filesystem::rename(entry.path(), target, error);
+    if (error) throw WriteError(target, "cannot be moved here: " + error.message(), "a place to write to");
+  }
+  std::filesystem::remove(from, error);
+}
+
 template std::array<double, 6> symmetric_part(const Tensor<2>&, double);
 template std::array<double, 6> symmetric_part(const Tensor<3>&, double);
 template TensorField<2> stress_field(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
@@ -333,10 +364,10 @@ template TensorField<3> stress_field(const problem::Problem<3>&, const fem::Lagr
                                      std::span<const double>);
 template TensorField<2> equilibrated_stress_field(const fem::LagrangeSpace<2>&, const certify::Stress<2>&);
 template TensorField<3> equilibrated_stress_field(const fem::LagrangeSpace<3>&, const certify::Stress<3>&);
-template void write_level_vtu(const LevelFiles&, int, const problem::Problem<2>&,
+template void write_level_vtu(const LevelFiles&, const SeriesPlace&, const problem::Problem<2>&,
                               const fem::LagrangeSpace<2>&, std::span<const double>,
                               std::span<const CellField>, std::span<const TensorField<2>>);
-template void write_level_vtu(const LevelFiles&, int, const problem::Problem<3>&,
+template void write_level_vtu(const LevelFiles&, const SeriesPlace&, const problem::Problem<3>&,
                               const fem::LagrangeSpace<3>&, std::span<const double>,
                               std::span<const CellField>, std::span<const TensorField<3>>);
 }  // namespace tribound::io

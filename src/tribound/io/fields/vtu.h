@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -61,6 +62,15 @@ template <int dim>
 /// Its eigenvalues, the largest first; tension positive.
 [[nodiscard]] std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma);
 
+/// Where a file stands in a series: of levels, or of load steps.
+struct SeriesPlace
+{
+  int number = 0;
+  std::optional<double> load_factor{};  ///< t of a load step
+
+  [[nodiscard]] std::string_view stem() const { return load_factor ? "step" : "level"; }
+};
+
 /// The files of one level. On several ranks each writes its own cells, and the first a list of all files.
 struct LevelFiles
 {
@@ -69,9 +79,10 @@ struct LevelFiles
   std::vector<std::string> pieces{};  ///< in the list, relative to it
 };
 
-/// level_NNN.vtu, or level_NNN.pvtu with level_NNN/part_RRRR.vtu on several ranks. Makes the directory.
-/// Throws WriteError where that fails.
-[[nodiscard]] LevelFiles level_files(const std::filesystem::path& directory, int level, const Ranks& ranks);
+/// level_NNN.vtu or step_NNN.vtu, or level_NNN.pvtu with level_NNN/part_RRRR.vtu on several ranks. Makes the
+/// directory. Throws WriteError where that fails.
+[[nodiscard]] LevelFiles level_files(const std::filesystem::path& directory, const SeriesPlace& place,
+                                     const Ranks& ranks);
 
 /// Writes the own cells of degree p with their own points each: points and `displacement` (3 components, z =
 /// 0 in 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz),
@@ -79,29 +90,40 @@ struct LevelFiles
 /// of every tensor follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws
 /// WriteError when the file cannot be written.
 template <int dim>
-void write_level_vtu(const LevelFiles& files, int level, const problem::Problem<dim>& problem,
+void write_level_vtu(const LevelFiles& files, const SeriesPlace& place, const problem::Problem<dim>& problem,
                      const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                      std::span<const CellField> cell_fields = {},
                      std::span<const TensorField<dim>> tensors = {});
 
 /// Writes the segments of Gamma_C as curves or triangles of degree p, in the order of form.segments():
 /// point data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick,
-/// 2 slip, 3 tied), `gap`, `slip` at the nodes of each facet; cell data `boundary` (number of the boundary
-/// group). Throws WriteError when the file cannot be written.
+/// 2 slip, 3 tied), `gap`, `slip` at the nodes of each facet, of a load step also `damage` D, `opening`
+/// delta^n, `plastic_slip` w; cell data `boundary` (number of the boundary group). Throws WriteError when the
+/// file cannot be written.
 template <int dim>
-void write_contact_vtu(const std::filesystem::path& path, int level, const contact::NitscheForm<dim>& form,
-                       std::span<const double> u);
+void write_contact_vtu(const std::filesystem::path& path, const SeriesPlace& place,
+                       const contact::NitscheForm<dim>& form, std::span<const double> u);
 
 /// The name of a numbered file, such as "level_003.vtu".
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
-/// Writes series.pvd, which lists level_NNN.vtu, or level_NNN.pvtu where that is there, from `first` to
-/// `last` with the level as time. Throws WriteError when the file cannot be written.
-void write_series(const std::filesystem::path& directory, int first, int last);
+/// Writes series.pvd, which lists level_NNN.vtu (or step_NNN.vtu, by the stem), or .pvtu where that is there,
+/// from `first` to `last` with the number as time. Throws WriteError when the file cannot be written.
+void write_series(const std::filesystem::path& directory, int first, int last,
+                  std::string_view stem = "level");
 
-/// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu and
-/// contact_NNN.vtu, N a digit, at least three of NNN, and series.pvd. Other files stay. Throws InputError
-/// when one cannot be removed.
+/// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu,
+/// the same of steps, and contact_NNN.vtu, N a digit, at least three of NNN, and series.pvd. Other files
+/// stay. Throws InputError when one cannot be removed.
 void remove_series(const std::filesystem::path& directory);
+
+/// A directory for a series that is not complete, without what an earlier run left there. Throws WriteError
+/// where it cannot be made, and as remove_series().
+void make_series_directory(const std::filesystem::path& directory);
+/// Removes it with its series; does nothing where it is not there.
+void remove_series_directory(const std::filesystem::path& directory);
+/// Puts the series in `from`, which is removed, in the place of the one in `to`. Throws WriteError when a
+/// file cannot be moved.
+void move_series(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace tribound::io

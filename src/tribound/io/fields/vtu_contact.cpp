@@ -39,18 +39,32 @@ VtuArray node_array(std::string name, int n_components, const std::vector<contac
                       });
 }
 
+template <int dim>
+void add_memory(VtuGrid& grid, const std::vector<contact::ContactState<dim>>& nodes)
+{
+  using Node = contact::ContactState<dim>;
+  grid.point_data.push_back(node_array<double>(
+      "damage", 1, nodes, [](const auto& put, const Node& node) { put(node.state.damage); }));
+  grid.point_data.push_back(
+      node_array<double>("opening", 1, nodes, [](const auto& put, const Node& node) { put(node.opening); }));
+  grid.point_data.push_back(node_array<double>("plastic_slip", 3, nodes,
+                                               [](const auto& put, const Node& node)
+                                               { put_vector<dim>(put, node.state.slip); }));
+}
+
 }  // namespace
 
 template <int dim>
-void write_contact_vtu(const std::filesystem::path& path, int level, const contact::NitscheForm<dim>& form,
-                       std::span<const double> u)
+void write_contact_vtu(const std::filesystem::path& path, const SeriesPlace& place,
+                       const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   using Node = contact::ContactState<dim>;
   const auto segments = form.segments();
   const std::vector<Node> nodes = contact_nodes(form, u);
 
   VtuGrid grid;
-  grid.time = level;
+  grid.time = place.number;
+  grid.load_factor = place.load_factor;
   grid.n_cells = segments.size();
   grid.n_points = nodes.size();
   const std::uint64_t n_facet_nodes = vtk_nodes<dim - 1>(form.space().degree()).size();
@@ -69,6 +83,7 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const conta
       node_array<double>("gap", 1, nodes, [](const auto& put, const Node& node) { put(node.gap); }),
       node_array<double>("slip", 3, nodes,
                          [](const auto& put, const Node& node) { put_vector<dim>(put, node.slip); })};
+  if (place.load_factor) add_memory(grid, nodes);
   grid.cell_data = {vtu_array<std::int32_t>("boundary", 1, grid.n_cells,
                                             [segments](const auto& put)
                                             {
@@ -78,9 +93,9 @@ void write_contact_vtu(const std::filesystem::path& path, int level, const conta
   write_vtu(path, grid);
 }
 
-template void write_contact_vtu(const std::filesystem::path&, int, const contact::NitscheForm<2>&,
-                                std::span<const double>);
-template void write_contact_vtu(const std::filesystem::path&, int, const contact::NitscheForm<3>&,
-                                std::span<const double>);
+template void write_contact_vtu(const std::filesystem::path&, const SeriesPlace&,
+                                const contact::NitscheForm<2>&, std::span<const double>);
+template void write_contact_vtu(const std::filesystem::path&, const SeriesPlace&,
+                                const contact::NitscheForm<3>&, std::span<const double>);
 
 }  // namespace tribound::io

@@ -38,6 +38,13 @@ struct Placeholder
   std::size_t width;
 };
 
+std::string number(std::string_view name, double value)
+{
+  return fmt::format(
+      "<DataArray type=\"Float64\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>", name,
+      value);
+}
+
 class VtuWriter
 {
  public:
@@ -50,10 +57,10 @@ class VtuWriter
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\" "
         "compressor=\"vtkZLibDataCompressor\">\n"
         "<UnstructuredGrid>\n"
-        "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"
-        "</DataArray></FieldData>\n"
+        "<FieldData>{}{}</FieldData>\n"
         "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-        byte_order, grid.time, grid.n_points, grid.n_cells));
+        byte_order, number("TimeValue", grid.time),
+        grid.load_factor ? number("t", *grid.load_factor) : std::string(), grid.n_points, grid.n_cells));
     declare("PointData", grid.point_data);
     declare("CellData", grid.cell_data);
     declare("Points", grid.points);

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -101,10 +102,11 @@ struct VtuGrid
 {
   std::uint64_t n_points = 0;
   std::uint64_t n_cells = 0;
-  double time = 0.0;                 ///< TimeValue: the level
-  std::vector<VtuArray> points;      ///< one array
-  std::vector<VtuArray> cells;       ///< connectivity, offsets, types
-  std::vector<VtuArray> point_data;  ///< names must be valid in XML attributes
+  double time = 0.0;                  ///< TimeValue: the level, or the number of the load step
+  std::optional<double> load_factor;  ///< field data `t`, where there is one
+  std::vector<VtuArray> points;       ///< one array
+  std::vector<VtuArray> cells;        ///< connectivity, offsets, types
+  std::vector<VtuArray> point_data;   ///< names must be valid in XML attributes
   std::vector<VtuArray> cell_data;
 };
 

@@ -78,6 +78,12 @@ std::optional<double> relative_bound(const LevelRecord& level)
   return level.bound->total_sharp / level.figures.sigma_norm;
 }
 
+std::optional<double> bound_along_path(const LevelRecord& level)
+{
+  if (!level.bound || !level.load_step || level.load_step->largest_sigma == 0.0) return std::nullopt;
+  return level.bound->total_sharp / level.load_step->largest_sigma;
+}
+
 bool is_round_off(const LevelRecord& level)
 {
   const contact::StressNorms norms{.sigma = level.figures.sigma_norm, .round_off = level.figures.round_off};

@@ -11,6 +11,7 @@
 #include "tribound/adapt/loop.h"
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/bound/certificate.h"
+#include "tribound/io/record/load_step_record.h"
 #include "tribound/io/record/solution_figures.h"
 
 namespace tribound::io
@@ -62,6 +63,9 @@ struct LevelRecord
   std::optional<certify::IdentityDefects> identities;
   std::optional<certify::Balance> balance;  ///< where there is a bound
   LevelTimes times;
+  /// Where it is a load step, of which `level` is the number, or the worst one of a pass.
+  std::optional<LoadStepRecord> load_step;
+  std::optional<int> load_step_number;  ///< of the worst step, where `level` is the number of a pass
 };
 
 /// The record of a level that the loop tells of, moments about the given point; `slides`: as
@@ -70,6 +74,9 @@ struct LevelRecord
 template <int dim>
 [[nodiscard]] LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
                                        const std::vector<bool>& slides);
+
+/// bound / largest_sigma of a load step; nothing elsewhere, and where there is no stress.
+[[nodiscard]] std::optional<double> bound_along_path(const LevelRecord& level);
 
 /// Whether it is one of the regularised variant, method section 7.
 [[nodiscard]] bool is_regularised(const LevelRecord& level);

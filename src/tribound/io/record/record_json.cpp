@@ -131,9 +131,40 @@ Json times_json(const RunRecord& run)
   return object;
 }
 
+Json json(const InterfaceFigures& figures)
+{
+  return {{"measure", figures.measure},       {"opened", figures.opened},
+          {"slipping", figures.slipping},     {"broken", figures.broken},
+          {"process", figures.process},       {"damage", figures.damage},
+          {"dissipated", figures.dissipated}, {"dissipated_friction", figures.rubbed},
+          {"stored", figures.stored}};
+}
+
+void add_load_step(Json& object, const LevelRecord& level)
+{
+  const LoadStepRecord& step = *level.load_step;
+  object["t"] = step.t;
+  object["control"] = "load";
+  object["cuts"] = step.cuts;
+  object["relative_path"] = number_or_null(bound_along_path(level));
+  object["largest_sigma"] = step.largest_sigma;
+  object["dissipated"] = step.dissipated;
+  object["dissipated_friction"] = step.rubbed;
+  object["stored"] = step.all.stored;
+  object["work"] = step.work;
+  object["energy_balance"] = step.balance;
+  object["balance"] = level.balance ? balance_json(*level.balance) : Json(nullptr);
+  object["interfaces"] = Json::object();
+  for (const InterfaceFigures& figures : step.interfaces)
+    object["interfaces"][figures.boundary] = json(figures);
+}
+
 Json json(const LevelRecord& level)
 {
-  Json object{{"level", level.level}};
+  Json object;
+  object[level.load_step && !level.load_step_number ? "step" : "level"] = level.level;
+  if (level.load_step_number) object["step"] = *level.load_step_number;
+  if (level.load_step) add_load_step(object, level);
   add_results(object, level);
   object["finishing_steps"] = level.finishing_steps;
   object["solver"] =
@@ -148,6 +179,13 @@ Json json(const LevelRecord& level)
                           {"output_cpu", level.times.output_cpu},
                           {"level_cpu", level.times.level_cpu}});
   return object;
+}
+
+Json json(const std::vector<LevelRecord>& levels)
+{
+  Json array = Json::array();
+  for (const LevelRecord& level : levels) array.push_back(json(level));
+  return array;
 }
 
 Json json(const doctor::Finding& warning)
@@ -226,6 +264,7 @@ Json balance_json(const certify::Balance& balance)
 
 Json levels_json(const RunRecord& run)
 {
+  if (has_history(run)) return json(run.passes);
   Json levels = Json::parse(run.earlier.levels);
   for (const LevelRecord& level : run.levels) levels.push_back(json(level));
   return levels;
@@ -258,6 +297,7 @@ Json certificate(const RunRecord& run)
   for (const doctor::Finding& warning : run.warnings) object["warnings"].push_back(json(warning));
   object["mesh"] = mesh_json(run.mesh);
   object["levels"] = levels_json(run);
+  if (has_history(run)) object["steps"] = json(run.levels);
   object["times"] = times_json(run);
   return object;
 }

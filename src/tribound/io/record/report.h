@@ -32,7 +32,8 @@ struct RunRecord
   certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
   EarlierLevels earlier;
-  std::vector<LevelRecord> levels;  ///< after them
+  std::vector<LevelRecord> levels;  ///< after them; of a run over a history its load steps on the last mesh
+  std::vector<LevelRecord> passes;  ///< over a history: the worst step on each mesh
   double tolerance = 0.0;           ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
   std::vector<doctor::Finding> warnings;  ///< about the last level
@@ -40,6 +41,9 @@ struct RunRecord
   std::string case_file = "case.toml";    ///< where it is written in the output directory
   double setup = 0.0;                     ///< wall time before the first level; s
 };
+
+/// Whether it goes through load steps.
+[[nodiscard]] bool has_history(const RunRecord& run);
 
 /// All its levels as earlier ones.
 [[nodiscard]] EarlierLevels as_earlier(const RunRecord& run);
@@ -51,7 +55,11 @@ struct RunRecord
 /// The text of certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
 
-/// Writes the effective case, convergence.csv, newton.csv and certificate.json, the last one last. Throws
+/// A row for each load step; without rows where there is none.
+[[nodiscard]] std::string history_csv(const RunRecord& run);
+
+/// Writes the effective case, convergence.csv, history.csv where there are load steps, newton.csv and
+/// certificate.json, the last one last. Throws
 /// WriteError when a file cannot be written.
 void write_report(const std::filesystem::path& directory, const RunRecord& run);
 

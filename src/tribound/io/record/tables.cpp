@@ -40,9 +40,10 @@ TableRow component_columns(const adapt::CertifiedStep& record)
   return row;
 }
 
-TableRow newton_row(int level, const adapt::CertifiedStep& record, const certify::RunKind& kind)
+TableRow newton_row(const char* level_name, int level, const adapt::CertifiedStep& record,
+                    const certify::RunKind& kind)
 {
-  TableRow row = {{"level", level},
+  TableRow row = {{level_name, level},
                   {"step", record.step.step},
                   {"residual", record.step.residual},
                   {"damping", record.step.damping}};
@@ -68,6 +69,38 @@ TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind)
                {"t_certify", level.times.stages.certify},
                {"t_level", level.times.level}});
   append(row, further_columns(level, kind));
+  return row;
+}
+
+bool is_load_step(const LevelRecord& level)
+{
+  return level.load_step.has_value();
+}
+
+const char* name_of_level(std::span<const LevelRecord> levels)
+{
+  return std::ranges::any_of(levels, is_load_step) ? "load_step" : "level";
+}
+
+TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
+{
+  const LoadStepRecord& step = level.load_step.value_or(LoadStepRecord());
+  TableRow row = {
+      {"step", level.level}, {"t", step.t}, {"control", "load"}, {"cuts", step.cuts}, {"passes", 1}};
+  TableRow of_level = convergence_row(level, kind);
+  row.insert(row.end(), std::make_move_iterator(of_level.begin() + 1),
+             std::make_move_iterator(of_level.end()));
+  append(row, {{"relative_path", bound_along_path(level)},
+               {"opened", step.all.opened},
+               {"broken", step.all.broken},
+               {"process", step.all.process},
+               {"slipping", step.all.slipping},
+               {"damage", step.all.damage},
+               {"dissipated", step.dissipated},
+               {"dissipated_friction", step.rubbed},
+               {"stored", step.all.stored},
+               {"work", step.work},
+               {"balance", step.balance}});
   return row;
 }
 
@@ -101,9 +134,26 @@ TableRow further_columns(const LevelRecord& level, const certify::RunKind& kind)
 std::string convergence_csv(std::span<const LevelRecord> levels)
 {
   const certify::RunKind kind = run_kind(levels);
+  const bool has_steps = std::ranges::any_of(levels, is_load_step);
+  const auto row_of = [&](const LevelRecord& level)
+  {
+    TableRow row = convergence_row(level, kind);
+    if (has_steps)
+      append(row,
+             {{"load_step", level.load_step_number.value_or(0)}, {"relative_path", bound_along_path(level)}});
+    return row;
+  };
   std::vector<TableRow> rows;
-  for (const LevelRecord& level : levels) rows.push_back(convergence_row(level, kind));
-  return csv_text(convergence_row({}, kind), rows);
+  for (const LevelRecord& level : levels) rows.push_back(row_of(level));
+  return csv_text(row_of({}), rows);
+}
+
+std::string history_csv(std::span<const LevelRecord> steps)
+{
+  const certify::RunKind kind = run_kind(steps);
+  std::vector<TableRow> rows;
+  for (const LevelRecord& step : steps) rows.push_back(history_row(step, kind));
+  return csv_text(history_row({}, kind), rows);
 }
 
 std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels)
@@ -112,13 +162,13 @@ std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels)
   std::vector<TableRow> rows;
   for (const LevelRecord& level : levels)
     for (const adapt::CertifiedStep& record : level.newton)
-      rows.push_back(newton_row(level.level, record, kind));
+      rows.push_back(newton_row(name_of_level(levels), level.level, record, kind));
   return rows;
 }
 
 std::string newton_csv(std::span<const LevelRecord> levels)
 {
-  return csv_text(newton_row(0, {}, run_kind(levels)), newton_rows(levels));
+  return csv_text(newton_row(name_of_level(levels), 0, {}, run_kind(levels)), newton_rows(levels));
 }
 
 }  // namespace tribound::io

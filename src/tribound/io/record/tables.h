@@ -20,8 +20,10 @@ namespace tribound::io
 /// passes between meshes.
 [[nodiscard]] TableRow further_columns(const LevelRecord& level, const certify::RunKind& kind);
 
-/// A row per level.
+/// A row per level; of passes over a history with the number of the step that it is of.
 [[nodiscard]] std::string convergence_csv(std::span<const LevelRecord> levels);
+/// A row per load step.
+[[nodiscard]] std::string history_csv(std::span<const LevelRecord> steps);
 
 /// A row per Newton step of every level; of a step without a bound it has the components that are known.
 [[nodiscard]] std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels);

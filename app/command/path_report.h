@@ -1,0 +1,87 @@
+#pragma once
+
+/// @file path_report.h
+/// What a run over load steps tells and leaves behind, step by step and pass by pass.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command/report_parts.h"
+#include "app/command/run.h"
+#include "app/page/report_page.h"
+#include "tribound/adapt/replay.h"
+
+namespace tribound::app
+{
+
+/// Keeps the record of a run over a history and writes its files: during the first pass step by step, so that
+/// what there is holds should the program be killed, later passes in the place of the one before once they
+/// are complete. On several ranks, which call the members together, the first prints and writes, and each
+/// writes the fields on its own cells.
+template <int dim>
+class PathReport
+{
+ public:
+  /// `slides`: doctor::slides_as_a_whole(); the run began at `begin`. Removes what an earlier run has left in
+  /// the directory. Throws InputError where nothing can be written.
+  PathReport(const case_file::Config& config, const problem::Problem<dim>& problem,
+             const adapt::Grid<dim>& first, std::vector<bool> slides, Clock::time_point begin,
+             Printed printed);
+
+  void begin(int pass, const adapt::Grid<dim>& grid);
+  /// Throws WriteError.
+  void add(const adapt::LoadStep<dim>& step);
+  void complete(const adapt::PassView<dim>& pass);
+  /// The pass in work leads nowhere: the one before is what holds.
+  void give_up();
+  /// The last word. Throws WriteError.
+  [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
+  /// The files of the steps so far, where the run ends by an exception.
+  void fail(const std::string& reason);
+
+ private:
+  /// What the steps of a pass leave.
+  struct Pass
+  {
+    explicit Pass(const std::filesystem::path& page_template) : page(page_template) {}
+
+    int number = 0;
+    std::vector<io::LevelRecord> steps;
+    certify::Statements statements;
+    std::vector<doctor::Finding> warnings;
+    ReportPage page;
+    std::shared_ptr<const KeptLevel<dim>> last;   ///< the last step
+    std::shared_ptr<const KeptLevel<dim>> shown;  ///< what the first rank shows of it
+  };
+
+  /// Where fields are written: those of later passes apart until they are complete.
+  [[nodiscard]] std::filesystem::path fields_directory() const;
+  [[nodiscard]] io::LevelRecord record_of(const adapt::LoadStep<dim>& step,
+                                          const adapt::LevelView<dim>& view) const;
+  void keep(const adapt::LevelView<dim>& view, double t);
+  void write_fields() const;
+  /// The record with the steps of `pass`.
+  void show(const Pass& pass);
+  void write_record();
+  void write_what_holds();
+
+  const case_file::OutputConfig& output_;
+  const adapt::Method& method_;
+  Ranks ranks_;
+  Printed printed_;
+  std::filesystem::path page_template_;
+  std::unique_ptr<OutputDirectory> directory_;
+  io::RunRecord record_;
+  Point<dim> moment_about_;
+  std::vector<bool> slides_;
+  std::vector<std::string> free_sides_;
+  std::unique_ptr<Pass> in_work_;
+  std::unique_ptr<Pass> before_;  ///< the last complete one, while another is in work
+  Clock::time_point written_ = Clock::now();
+  double cpu_before_ = cpu_seconds();
+};
+
+}  // namespace tribound::app

@@ -1,0 +1,57 @@
+#include "app/command/run_history.h"
+
+#include <utility>
+
+#include "app/command/path_report.h"
+#include "tribound/adapt/replay.h"
+#include "tribound/base/rank_failure.h"
+
+namespace tribound::app
+{
+
+template <int dim>
+ExitCode run_history(const case_file::Config& config, const problem::Problem<dim>& problem,
+                     mesh::Mesh<dim> mesh, std::vector<bool> slides, const std::atomic<bool>& stop,
+                     const Progress& progress, std::shared_ptr<const mesh::Mesh<dim>> whole,
+                     Clock::time_point begin)
+{
+  const adapt::PathOptions options{.tolerance = config.adapt.tolerance};
+  auto path = std::make_unique<adapt::LoadPath<dim>>(problem, config.method, options, std::move(mesh), &stop,
+                                                     std::move(whole));
+  path->prepare(config.history->steps.front());
+  const Ranks ranks = path->grid().mesh.ranks();
+  PathReport<dim> report(config, problem, path->grid(), std::move(slides), begin,
+                         progress.quiet() ? Printed::verdict : Printed::everything);
+  const adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
+  const adapt::ReplayObserver<dim> observer{
+      .newton = [&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
+      .begins = [&](int pass, const adapt::Grid<dim>& grid) { report.begin(pass, grid); },
+      .step = [&](const adapt::LoadStep<dim>& step) { report.add(step); },
+      .complete = [&](const adapt::PassView<dim>& pass) { report.complete(pass); },
+      .given_up = [&] { report.give_up(); }};
+  try
+  {
+    return report.close(adapt::replay<dim>(std::move(path), config.history->steps, strategy, observer));
+  }
+  catch (const SolveError& error)
+  {
+    require_all_failed(ranks, error.what());
+    report.fail(error.what());
+    throw;
+  }
+  catch (const InputError& error)  // data that are not valid at a later t: the steps before hold
+  {
+    require_all_failed(ranks, error.what());
+    report.fail(error.what());
+    throw;
+  }
+}
+
+template ExitCode run_history(const case_file::Config&, const problem::Problem<2>&, mesh::Mesh<2>,
+                              std::vector<bool>, const std::atomic<bool>&, const Progress&,
+                              std::shared_ptr<const mesh::Mesh<2>>, Clock::time_point);
+template ExitCode run_history(const case_file::Config&, const problem::Problem<3>&, mesh::Mesh<3>,
+                              std::vector<bool>, const std::atomic<bool>&, const Progress&,
+                              std::shared_ptr<const mesh::Mesh<3>>, Clock::time_point);
+
+}  // namespace tribound::app

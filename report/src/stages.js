@@ -1,0 +1,10 @@
+// What the pictures of a page are of: the load steps of a run, where it has any, else its levels.
+
+import { number } from "./dom.js";
+
+export function stagesOf(run) {
+  if (!run.steps) return { name: "level", all: run.levels, text: (level) => String(level) };
+  const all = run.steps.map((step) => ({ ...step, level: step.step }));
+  const at = (level) => all.find((step) => step.level === level);
+  return { name: "step", all, text: (level) => `${level} (t = ${number(at(level)?.t, 6)})` };
+}

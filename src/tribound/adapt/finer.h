@@ -1,0 +1,33 @@
+#pragma once
+
+/// @file finer.h
+/// A mesh bisected, whole or shared out, and the way of functions there.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "tribound/fem/space.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound::adapt
+{
+
+/// The next mesh, and how functions get there. Refers to the space and the values that it was made from.
+template <int dim>
+struct Finer
+{
+  std::int64_t n_cells;                                                      ///< of all ranks
+  std::function<mesh::Mesh<dim>()> mesh;                                     ///< makes it, once
+  std::function<std::vector<double>(const fem::LagrangeSpace<dim>&)> carry;  ///< u onto a space on it
+};
+
+/// The mesh of `space` with the marked cells bisected (mesh/bisect.h), and u, a function of the space. On a
+/// mesh that is shared out all ranks call it and its members together; cells take the values at their nodes
+/// with them. Throws InputError as bisect() and balance() do.
+template <int dim>
+[[nodiscard]] Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+                                    std::span<const Index> marked);
+
+}  // namespace tribound::adapt

@@ -1,0 +1,50 @@
+#pragma once
+
+/// @file replay.h
+/// A load path followed again and again, from its first step, on meshes that are fine enough for all of its
+/// steps (method section 12.4): no history is ever carried from one mesh to another.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "tribound/adapt/load_path.h"
+#include "tribound/adapt/loop.h"
+
+namespace tribound::adapt
+{
+
+/// A pass: the path on one mesh.
+template <int dim>
+struct PassView
+{
+  int number;  ///< from 0, on the given mesh
+  /// The step with the largest bound, over the path's largest ||sigma|| as all of them are.
+  const LoadStep<dim>& worst;
+  const certify::Verdict& verdict;  ///< the worst of its steps
+};
+
+/// What replay() tells; functions that are empty are not called.
+template <int dim>
+struct ReplayObserver
+{
+  StepObserver newton{};
+  std::function<void(int pass, const Grid<dim>&)> begins{};  ///< before anything is solved on the mesh
+  std::function<void(const LoadStep<dim>&)> step{};
+  std::function<void(const PassView<dim>&)> complete{};
+  std::function<void()> given_up{};  ///< of a pass after the first: the one before is what holds
+};
+
+/// Follows the path t = targets[0], targets[1], ... on the mesh that `first` begins with, and again on finer
+/// ones while the bound of any step is above `options.tolerance` of the path's largest ||sigma(u_h)||: cells
+/// are marked by the largest of their bounds over the steps, by strategy.mark, within strategy.stop and
+/// strategy.limit; the rest of `strategy` is not used. A pass that cannot be followed to its end leaves the
+/// one before as the last; the first one leaves the steps that it has come to, and the verdict says where it
+/// ended. Throws as LoadPath does.
+template <int dim>
+[[nodiscard]] certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, std::span<const double> targets,
+                                      const Strategy<dim>& strategy, const ReplayObserver<dim>& observer);
+
+}  // namespace tribound::adapt

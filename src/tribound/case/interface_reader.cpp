@@ -1,0 +1,176 @@
+#include "tribound/case/interface_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+
+namespace tribound::case_file
+{
+
+namespace
+{
+
+using problem::Unloading;
+
+constexpr std::array<std::string_view, 2> common_keys = {"law", "broken"};
+constexpr std::array<std::string_view, 8> joint_keys = {
+    "tensile_strength", "fracture_energy", "cohesion", "slip_length",
+    "coefficient",      "threshold",       "stick",    "unloading"};
+constexpr std::array<std::string_view, 5> mixed_keys = {"tensile_strength", "fracture_energy", "shear_ratio",
+                                                        "coefficient", "unloading"};
+constexpr std::array<std::string_view, 6> endo_keys = {
+    "normal_stiffness", "tangential_stiffness", "coefficient", "b_normal", "b_tangential", "d1"};
+
+struct InterfaceKind
+{
+  std::string_view name;
+  std::span<const std::string_view> keys;
+  problem::ContactLaw (*read)(const TableReader& table);
+};
+
+void read_tension(const TableReader& table, problem::Tension& tension)
+{
+  table.read("tensile_strength", tension.strength,
+             number_in(not_negative, "the largest tension that it holds, a stress, such as 0.3"));
+  table.read("fracture_energy", tension.fracture_energy,
+             number_in(not_negative, "the energy per area that breaking takes, such as 1e-4"));
+  table.read("unloading", tension.unloading, one_of<Unloading>({"origin", "vertical"}));
+}
+
+void read_coefficient(const TableReader& table, double& coefficient)
+{
+  table.read("coefficient", coefficient, number_in(not_negative, "the friction coefficient, such as 0.6"));
+}
+
+problem::ContactLaw read_joint(const TableReader& table)
+{
+  problem::Joint joint;
+  read_tension(table, joint.tension);
+  table.read("cohesion", joint.cohesion,
+             number_in(not_negative, "the shear stress beside friction that it holds, such as 0.7"));
+  if (const Node* slip_length = table.find("slip_length"))
+  {
+    joint.slip_length =
+        to_number_in(*slip_length, positive, "the slip on which cohesion is lost, a length, such as 2e-3");
+    if (joint.cohesion == 0)
+      throw InputError(slip_length->where, "without cohesion there is nothing to lose by slip",
+                       "cohesion = 0.7 beside it, or neither");
+  }
+  read_coefficient(table, joint.coefficient);
+  table.read("stick", joint.stick, to_bool);
+  problem::Field threshold(0.0, table.where());
+  table.read("threshold", threshold, to_nonnegative_field);
+  return problem::JointLaw(joint, threshold);
+}
+
+problem::ContactLaw read_mixed(const TableReader& table)
+{
+  constexpr auto both = "tensile_strength and fracture_energy, which this law needs";
+  (void)table.require("tensile_strength", both);
+  (void)table.require("fracture_energy", both);
+  problem::Mixed mixed;
+  read_tension(table, mixed.tension);
+  table.read("shear_ratio", mixed.shear_ratio,
+             number_in(positive, "shear strength over tensile strength, such as 1"));
+  read_coefficient(table, mixed.coefficient);
+  return problem::MixedLaw(mixed);
+}
+
+problem::ContactLaw read_endo(const TableReader& table)
+{
+  const auto number = [&](std::string_view key, const std::string& meaning)
+  { return to_number_in(table.require(key, meaning), positive, meaning); };
+  problem::Endo endo{};
+  endo.normal_stiffness = number("normal_stiffness", "K_n, stress per length, such as 2e4");
+  endo.tangential_stiffness = endo.normal_stiffness;
+  table.read("tangential_stiffness", endo.tangential_stiffness,
+             number_in(positive, "K_t, stress per length; that of normal_stiffness where absent"));
+  endo.coefficient = number("coefficient", "mu, such as 0.8");
+  endo.normal_hardening = number("b_normal", "B_n, stress per length");
+  endo.tangential_hardening = number("b_tangential", "B_t, stress per length");
+  endo.energy = number("d1", "D_1, the energy per area that breaking takes");
+  return problem::EndoLaw(endo);
+}
+
+const std::array kinds = {InterfaceKind{"joint", joint_keys, read_joint},
+                          InterfaceKind{"mixed", mixed_keys, read_mixed},
+                          InterfaceKind{"endo", endo_keys, read_endo}};
+
+const InterfaceKind& kind_of(const TableReader& table)
+{
+  std::vector<std::string> names;
+  for (const InterfaceKind& kind : kinds) names.emplace_back(kind.name);
+  const Node& law = table.require("law", "\"joint\", \"mixed\" or \"endo\"");
+  const InterfaceKind& chosen = kinds.at(to_choice(law, names));
+  for (const InterfaceKind& kind : kinds)
+    for (const std::string_view key : kind.keys)
+      if (const Node* node = table.find(key);
+          node != nullptr && std::ranges::find(chosen.keys, key) == chosen.keys.end())
+        throw InputError(node->where, fmt::format("does not belong to law = \"{}\"", chosen.name),
+                         fmt::format("it goes with law = \"{}\"", kind.name));
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<std::string_view> interface_keys(std::initializer_list<std::string_view> others)
+{
+  std::vector<std::string_view> keys(common_keys.begin(), common_keys.end());
+  for (const InterfaceKind& kind : kinds)
+    for (const std::string_view key : kind.keys)
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
+}
+
+problem::Contact read_interface(const TableReader& table, std::optional<problem::Field> gap)
+{
+  problem::Contact contact(kind_of(table).read(table), std::move(gap));
+  if (const std::string fault = problem::fault(contact.law); !fault.empty())
+    throw InputError(table.find("law")->where, fault, "other constants of the law");
+  table.read("broken", contact.broken, to_field);
+  return contact;
+}
+
+namespace
+{
+
+constexpr auto steps_hint = "values of t, such as [0, 0.5, 1], or { from = 0, to = 1, count = 11 }";
+
+std::vector<double> equal_steps(const Node& node)
+{
+  const TableReader table(node, {"from", "to", "count"});
+  const double from = to_number(table.require("from", steps_hint));
+  const double to = to_number(table.require("to", steps_hint));
+  const long count = to_integer_in(table.require("count", steps_hint), 2, 1'000'000,
+                                   "how many values, both ends included, such as 11");
+  std::vector<double> steps;
+  for (long i = 0; i < count; ++i)
+    steps.push_back(
+        i + 1 == count ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
+  return steps;
+}
+
+}  // namespace
+
+HistoryConfig read_history(const Node& node)
+{
+  const TableReader table(node, {"steps"});
+  const Node& steps = table.require("steps", steps_hint);
+  HistoryConfig history{.steps = {}, .where = node.where};
+  const auto* items = std::get_if<Node::Array>(&steps.value);
+  if (steps.is_table())
+    history.steps = equal_steps(steps);
+  else if (items == nullptr)
+    fail_type(steps, "an array of numbers or a table", steps_hint);
+  else
+    for (const Node& item : *items) history.steps.push_back(to_number(item));
+  if (history.steps.empty()) throw InputError(steps.where, "is empty", steps_hint);
+  return history;
+}
+
+}  // namespace tribound::case_file

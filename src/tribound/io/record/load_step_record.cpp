@@ -1,0 +1,95 @@
+#include "tribound/io/record/load_step_record.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace tribound::io
+{
+
+namespace
+{
+
+/// What is summed over points.
+constexpr std::array sums = {
+    &InterfaceFigures::measure,    &InterfaceFigures::opened,  &InterfaceFigures::slipping,
+    &InterfaceFigures::broken,     &InterfaceFigures::process, &InterfaceFigures::damage,
+    &InterfaceFigures::dissipated, &InterfaceFigures::rubbed,  &InterfaceFigures::stored};
+
+template <int dim>
+void add_point(InterfaceFigures& figures, const problem::InterfaceResponse<dim>& response, double weight,
+               bool is_bonded)
+{
+  figures.measure += weight;
+  if (response.status == problem::ContactStatus::open) figures.opened += weight;
+  if (response.status == problem::ContactStatus::slip) figures.slipping += weight;
+  figures.dissipated += weight * response.dissipated;
+  figures.rubbed += weight * response.rubbed;
+  figures.stored += weight * response.stored;
+  if (!is_bonded) return;
+  const double damage = response.state.damage;
+  figures.damage += weight * damage;
+  if (damage >= 1)
+    figures.broken += weight;
+  else if (damage > 0)
+    figures.process += weight;
+}
+
+template <int dim>
+std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step)
+{
+  const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  const auto boundaries = form.problem().boundaries();
+  std::vector<InterfaceFigures> of_boundary(boundaries.size());
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    const bool is_bonded = problem::has_memory(segment.contact->law);
+    const auto points = form.contact_points(k);
+    for (std::size_t q = 0; q < points.size(); ++q)
+      add_point(of_boundary[segment.slave.facet.tag], step.responses[k * points.size() + q], points[q].weight,
+                is_bonded);
+  }
+  std::vector<double> values;
+  for (const InterfaceFigures& figures : of_boundary)
+    for (const auto sum : sums) values.push_back(figures.*sum);
+  form.space().mesh().ranks().sum(std::span(values));
+  std::vector<InterfaceFigures> result;
+  for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
+  {
+    if (form.problem().contact(static_cast<int>(tag)) == nullptr) continue;
+    InterfaceFigures& figures = result.emplace_back();
+    figures.boundary = boundaries[tag].name;
+    for (std::size_t i = 0; i < sums.size(); ++i) figures.*sums[i] = values[tag * sums.size() + i];
+  }
+  return result;
+}
+
+}  // namespace
+
+template <int dim>
+LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStepRecord* before)
+{
+  LoadStepRecord record{.t = step.t,
+                        .cuts = step.cuts,
+                        .largest_sigma = step.largest_sigma,
+                        .interfaces = interface_figures(step)};
+  if (before != nullptr)
+  {
+    record.dissipated = before->dissipated;
+    record.rubbed = before->rubbed;
+    record.work = before->work;
+  }
+  for (const InterfaceFigures& figures : record.interfaces)
+    for (const auto sum : sums) record.all.*sum += figures.*sum;
+  record.dissipated += record.all.dissipated;
+  record.rubbed += record.all.rubbed;
+  record.work += step.work;
+  record.balance = record.work - step.level.norms.energy / 2 - record.all.stored - record.dissipated;
+  return record;
+}
+
+template LoadStepRecord load_step_record(const adapt::LoadStep<2>&, const LoadStepRecord*);
+template LoadStepRecord load_step_record(const adapt::LoadStep<3>&, const LoadStepRecord*);
+
+}  // namespace tribound::io

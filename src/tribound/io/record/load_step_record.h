@@ -1,0 +1,49 @@
+#pragma once
+
+/// @file load_step_record.h
+/// What is written of a load step beside what is written of a level, as plain data.
+
+#include <string>
+#include <vector>
+
+#include "tribound/adapt/load_path.h"
+
+namespace tribound::io
+{
+
+/// What a step has left of an interface; lengths per unit depth in 2D, else areas; energies. Bonds count
+/// where the law has one.
+struct InterfaceFigures
+{
+  std::string boundary{};  ///< the slave, or the boundary at an obstacle
+  double measure = 0;      ///< of the whole
+  double opened = 0;       ///< where delta^n > 0
+  double slipping = 0;     ///< where it has slipped in this step
+  double broken = 0;       ///< where D = 1
+  double process = 0;      ///< where 0 < D < 1
+  double damage = 0;       ///< integral of D
+  double dissipated = 0;   ///< by this step
+  double rubbed = 0;       ///< the part of it that friction takes
+  double stored = 0;
+};
+
+/// Of a load step and, added up, of the steps up to it.
+struct LoadStepRecord
+{
+  double t = 0;
+  int cuts = 0;              ///< how often its size was halved
+  double largest_sigma = 0;  ///< of ||sigma(u_h)|| over the path so far
+  std::vector<InterfaceFigures> interfaces{};
+  InterfaceFigures all{};  ///< their sum
+  // From the first step on:
+  double dissipated = 0;
+  double rubbed = 0;
+  double work = 0;     ///< of loads and reactions, by the trapezoidal rule
+  double balance = 0;  ///< work - a(u, u) / 2 - stored - dissipated: 0 up to that rule and the discretisation
+};
+
+/// `before`: the record of the step before; null for the first. On several ranks all call it together.
+template <int dim>
+[[nodiscard]] LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStepRecord* before);
+
+}  // namespace tribound::io
