@@ -30,6 +30,7 @@ ELEMENTS = {
     "hexahedron": (5, 3),
     "line3": (8, 1),
     "triangle6": (9, 2),
+    "triangle10": (21, 2),
 }
 
 

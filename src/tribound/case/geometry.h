@@ -22,7 +22,8 @@ struct SurfaceConfig
     sphere,
     cylinder,
     distance,  ///< by a formula; obstacles alone
-    surface    ///< triangles from an STL file
+    surface,   ///< triangles from an STL file
+    mesh       ///< the second-order facets of the mesh; shapes alone
   };
 
   /// Where the body is: of a closed surface outside or inside, of an open one on the side into which the

@@ -23,7 +23,14 @@ struct KindKey
 };
 constexpr std::array kind_keys = {KindKey{"plane", Kind::plane},       KindKey{"circle", Kind::circle},
                                   KindKey{"sphere", Kind::sphere},     KindKey{"cylinder", Kind::cylinder},
-                                  KindKey{"distance", Kind::distance}, KindKey{"surface", Kind::surface}};
+                                  KindKey{"distance", Kind::distance}, KindKey{"surface", Kind::surface},
+                                  KindKey{"mesh", Kind::mesh}};
+
+/// Whether an obstacle, or a shape, may be given so.
+bool may_be(Kind kind, bool is_obstacle)
+{
+  return kind != (is_obstacle ? Kind::mesh : Kind::distance);
+}
 
 std::vector<double> read_point(const Node& node)
 {
@@ -84,7 +91,7 @@ SurfaceConfig read_surface(const Entry& entry, bool is_obstacle, const std::file
 {
   std::vector<std::string_view> keys;
   for (const KindKey& kind : kind_keys)
-    if (is_obstacle || kind.kind != Kind::distance) keys.push_back(kind.key);
+    if (may_be(kind.kind, is_obstacle)) keys.push_back(kind.key);
   const std::string hint = fmt::format("one of them: {}", fmt::join(keys, ", "));
   keys.insert(keys.end(), {"side", "translate"});
   const TableReader table(entry.node, keys);
@@ -92,7 +99,7 @@ SurfaceConfig read_surface(const Entry& entry, bool is_obstacle, const std::file
   const Node* found = nullptr;
   for (const KindKey& kind : kind_keys)
   {
-    const Node* node = kind.kind == Kind::distance && !is_obstacle ? nullptr : table.find(kind.key);
+    const Node* node = may_be(kind.kind, is_obstacle) ? table.find(kind.key) : nullptr;
     if (node == nullptr) continue;
     if (found != nullptr)
       throw InputError(node->where, fmt::format("{} stands beside another surface", kind.key), hint);
@@ -119,6 +126,12 @@ SurfaceConfig read_surface(const Entry& entry, bool is_obstacle, const std::file
       break;
     case Kind::surface:
       read_triangles(*found, table, is_obstacle, case_directory, surface);
+      break;
+    case Kind::mesh:
+      (void)to_choice(*found, std::vector<std::string>{"order2"});
+      if (const Node* translate = table.find("translate"))
+        throw InputError(translate->where, "moves the surface of the body itself",
+                         "drop translate: the nodes of the mesh are where the body is");
       break;
   }
   if (const Node* side = table.find("side"); side != nullptr && surface.kind != Kind::surface)

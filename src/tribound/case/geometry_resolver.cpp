@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "tribound/case/quadratic_geometry.h"
 #include "tribound/case/surface_points.h"
 #include "tribound/problem/surface.h"
 
@@ -41,7 +42,7 @@ void check_dimension(const SurfaceConfig& surface)
     if (dim == 2 && problem::Field(surface.distance, surface.kind_where).uses_z())
       throw InputError(surface.kind_where, "uses z in a 2D case", "only x and y vary");
   }
-  else if (surface.kind != Kind::surface)
+  else if (surface.kind != Kind::surface && surface.kind != Kind::mesh)
     check_length<dim>(surface.point, surface);
   if (!surface.direction.empty()) check_length<dim>(surface.direction, surface);
   if (!surface.translate.empty() && surface.translate.size() != dim)
@@ -74,7 +75,8 @@ problem::Surface make_surface(const SurfaceConfig& config, bool is_obstacle)
     case Kind::distance:
       surface = problem::implicit(config.distance, dim, config.kind_where);
       break;
-    case Kind::surface:  // it has no formulas
+    case Kind::surface:  // they have no formulas
+    case Kind::mesh:
       break;
   }
   return config.translate.empty() ? surface : problem::moved(surface, config.translate, config.kind_where);
@@ -84,7 +86,7 @@ problem::Surface make_surface(const SurfaceConfig& config, bool is_obstacle)
 SurfacePoints make_points(const SurfaceConfig& config, bool is_obstacle)
 {
   using Side = SurfaceConfig::Side;
-  if (config.kind != Kind::surface) return {make_surface<3>(config, is_obstacle), config.kind_where};
+  if (config.kind != Kind::surface) return points_of(make_surface<3>(config, is_obstacle), config.kind_where);
   check_dimension<3>(config);
   auto triangles =
       std::make_shared<const mesh::TriangulatedSurface>(mesh::read_stl(config.file, config.kind_where));
@@ -99,7 +101,7 @@ SurfacePoints make_points(const SurfaceConfig& config, bool is_obstacle)
   const bool along_normals = config.side == Side::outside || config.side == Side::front;
   const Point<3> shift =
       config.translate.empty() ? Point<3>(Point<3>::Zero()) : Point<3>(config.translate.data());
-  return {std::move(triangles), along_normals == is_obstacle ? 1.0 : -1.0, shift};
+  return points_of(std::move(triangles), along_normals == is_obstacle ? 1.0 : -1.0, shift);
 }
 
 const SurfaceConfig& named(const std::vector<SurfaceConfig>& surfaces, const std::string& name)
@@ -178,27 +180,80 @@ Geometry gather(const Config& config, const GeometryConfig& geometry, const Make
   return surfaces;
 }
 
-bool has_triangles(const Config& config, const GeometryConfig& geometry)
+/// Whether one of the surfaces is of the kind.
+bool has_kind(const Config& config, const GeometryConfig& geometry, Kind kind)
 {
-  const auto is_made_of = [](const std::vector<SurfaceConfig>& surfaces, const std::string& name)
-  { return !name.empty() && named(surfaces, name).kind == Kind::surface; };
+  const auto is_made_of = [kind](const std::vector<SurfaceConfig>& surfaces, const std::string& name)
+  { return !name.empty() && named(surfaces, name).kind == kind; };
   return is_made_of(config.obstacles, geometry.obstacle) || is_made_of(config.shapes, geometry.shape) ||
          is_made_of(config.shapes, geometry.master_shape);
+}
+
+/// The shape of the facets of the mesh.
+template <int dim>
+auto make_quadratic(const SurfaceConfig& shape, const ContactFacets& facets)
+{
+  if (facets.quadratic == nullptr)
+    throw InputError(shape.kind_where, "the mesh has no second-order facets",
+                     "a mesh file of order 2 (gmsh -order 2, Mesh.ElementOrder = 2), or the shape as one of "
+                     "plane, circle, sphere, cylinder, surface");
+  return std::make_shared<const mesh::QuadraticSurface<dim>>(*facets.quadratic, facets.tags,
+                                                             shape.kind_where);
+}
+
+/// The same with the shape of the mesh and formulas for what it touches.
+template <int dim>
+void apply_quadratic(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
+                     problem::Contact& contact)
+{
+  QuadraticGeometry<dim> surfaces{.shape = make_quadratic<dim>(named(config.shapes, geometry.shape), facets),
+                                  .where = geometry.where};
+  if (!geometry.obstacle.empty())
+    surfaces.obstacle = make_surface<dim>(named(config.obstacles, geometry.obstacle), true);
+  else if (!geometry.master_shape.empty() && geometry.master_shape != geometry.shape)
+    surfaces.obstacle = make_surface<dim>(named(config.shapes, geometry.master_shape), false);
+  apply<dim>(geometry, surfaces, contact);
+}
+
+/// A master with a shape of its own needs distances from it.
+void check_master(const Config& config, const GeometryConfig& geometry)
+{
+  if (geometry.master_shape.empty() || geometry.master_shape == geometry.shape) return;
+  if (named(config.shapes, geometry.master_shape).kind != Kind::mesh) return;
+  throw InputError(
+      geometry.master_shape_where,
+      fmt::format("\"{}\" cannot be the shape of the master alone: the gap is the distance of other points "
+                  "from it, and second-order facets only say where their own points are",
+                  geometry.master_shape),
+      "exchange slave and master, or give the master's shape as one of plane, circle, sphere, cylinder, "
+      "surface");
 }
 
 }  // namespace
 
 template <int dim>
-void apply_geometry(const Config& config, const GeometryConfig& geometry, problem::Contact& contact)
+void apply_geometry(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
+                    problem::Contact& contact)
 {
   contact.geometry = words(geometry);
+  check_master(config, geometry);
   if constexpr (dim == 3)
-    if (has_triangles(config, geometry))
-      return apply<3>(geometry, gather<PointGeometry>(config, geometry, make_points), contact);
+    if (has_kind(config, geometry, Kind::surface))
+    {
+      const auto make = [&](const SurfaceConfig& surface, bool is_obstacle)
+      {
+        return surface.kind == Kind::mesh ? points_of(make_quadratic<3>(surface, facets))
+                                          : make_points(surface, is_obstacle);
+      };
+      return apply<3>(geometry, gather<PointGeometry>(config, geometry, make), contact);
+    }
+  if (has_kind(config, geometry, Kind::mesh)) return apply_quadratic<dim>(config, geometry, facets, contact);
   apply<dim>(geometry, gather<problem::ContactGeometry>(config, geometry, make_surface<dim>), contact);
 }
 
-template void apply_geometry<2>(const Config&, const GeometryConfig&, problem::Contact&);
-template void apply_geometry<3>(const Config&, const GeometryConfig&, problem::Contact&);
+template void apply_geometry<2>(const Config&, const GeometryConfig&, const ContactFacets&,
+                                problem::Contact&);
+template void apply_geometry<3>(const Config&, const GeometryConfig&, const ContactFacets&,
+                                problem::Contact&);
 
 }  // namespace tribound::case_file

@@ -3,15 +3,26 @@
 /// @file geometry_resolver.h
 /// Gap and direction of a contact from obstacles and shapes.
 
+#include <vector>
+
 #include "tribound/case/config.h"
+#include "tribound/mesh/quadratic_facets.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::case_file
 {
 
+/// What the mesh knows of the facets of a contact, of a pair those of the slave.
+struct ContactFacets
+{
+  const mesh::QuadraticFacets* quadratic;  ///< null: the mesh has order 1
+  std::vector<int> tags;                   ///< their groups
+};
+
 /// Sets what `geometry` says of a contact with a rigid obstacle, or with a master. Throws InputError for
-/// surfaces of another dimension.
+/// surfaces of another dimension, and for second-order facets that there are not.
 template <int dim>
-void apply_geometry(const Config& config, const GeometryConfig& geometry, problem::Contact& contact);
+void apply_geometry(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
+                    problem::Contact& contact);
 
 }  // namespace tribound::case_file

@@ -155,26 +155,40 @@ void check_all_mentioned(const Config& config, std::span<const std::string> grou
                     dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
 }
 
+/// The positions of those names that there are.
+std::vector<int> tags_of(std::span<const std::string> groups, std::span<const std::string> boundary_names)
+{
+  std::vector<int> tags;
+  for (std::size_t g = 0; g < boundary_names.size(); ++g)
+    if (std::ranges::find(groups, boundary_names[g]) != groups.end()) tags.push_back(static_cast<int>(g));
+  return tags;
+}
+
 }  // namespace
 
 template <int dim>
 problem::Problem<dim> resolve(const Config& config, std::span<const std::string> region_names,
-                              std::span<const std::string> boundary_names)
+                              std::span<const std::string> boundary_names,
+                              const mesh::QuadraticFacets* quadratic_facets)
 {
+  const auto facets = [&](std::span<const std::string> groups) {
+    return ContactFacets{quadratic_facets, tags_of(groups, boundary_names)};
+  };
   const std::vector<problem::Region<dim>> regions = regions_of<dim>(config, region_names);
   std::vector<problem::BoundaryCondition<dim>> boundaries;
   for (const BoundaryConfig& boundary : config.boundaries)
   {
     (void)problem::group_number(boundary.name, boundary_names, boundary.where, "boundary");
     boundaries.push_back(resolve<dim>(boundary));
-    if (boundaries.back().contact) apply_geometry<dim>(config, boundary.geometry, *boundaries.back().contact);
+    if (boundaries.back().contact)
+      apply_geometry<dim>(config, boundary.geometry, facets({&boundary.name, 1}), *boundaries.back().contact);
   }
   check_all_mentioned<dim>(config, boundary_names);
   std::vector<problem::ContactPair<dim>> pairs;
   for (const ContactConfig& contact : config.contacts)
   {
     pairs.push_back(resolve<dim>(contact));
-    apply_geometry<dim>(config, contact.geometry, pairs.back().contact);
+    apply_geometry<dim>(config, contact.geometry, facets(contact.slave), pairs.back().contact);
   }
   return problem::Problem<dim>(region_names, boundary_names, regions, boundaries, std::move(pairs));
 }
@@ -186,8 +200,8 @@ io::CaseFacts case_facts(const Config& config, int dimension)
 }
 
 template problem::Problem<2> resolve(const Config&, std::span<const std::string>,
-                                     std::span<const std::string>);
+                                     std::span<const std::string>, const mesh::QuadraticFacets*);
 template problem::Problem<3> resolve(const Config&, std::span<const std::string>,
-                                     std::span<const std::string>);
+                                     std::span<const std::string>, const mesh::QuadraticFacets*);
 
 }  // namespace tribound::case_file

@@ -14,18 +14,20 @@
 namespace tribound::case_file
 {
 
-/// The problem of the case on a mesh with these names of regions and boundaries. Throws InputError for a
-/// group that does not exist (listing those that do), for a region without material, for a boundary group of
-/// a mesh file that the case forgets, for vectors of wrong length. Sides of a box that are not mentioned are
-/// traction-free.
+/// The problem of the case on a mesh with these names of regions and boundaries, and second-order facets.
+/// Throws InputError for a group that does not exist (listing those that do), for a region without material,
+/// for a boundary group of a mesh file that the case forgets, for vectors of wrong length. Sides of a box
+/// that are not mentioned are traction-free.
 template <int dim>
 [[nodiscard]] problem::Problem<dim> resolve(const Config& config, std::span<const std::string> region_names,
-                                            std::span<const std::string> boundary_names);
+                                            std::span<const std::string> boundary_names,
+                                            const mesh::QuadraticFacets* quadratic_facets = nullptr);
 
 template <int dim>
 [[nodiscard]] problem::Problem<dim> resolve(const Config& config, const mesh::Mesh<dim>& mesh)
 {
-  return resolve<dim>(config, mesh.region_names(), mesh.boundary_names());
+  return resolve<dim>(config, mesh.region_names(), mesh.boundary_names(),
+                      mesh.labels().quadratic_facets.get());
 }
 
 /// What the case is, for reports.

@@ -1,6 +1,5 @@
 #include "tribound/case/surface_points.h"
 
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -54,31 +53,33 @@ Point<3> on_shape(const PointGeometry& geometry, const Point<3>& x)
 
 }  // namespace
 
-SurfacePoints::SurfacePoints(const problem::Surface& surface, const Where& where)
-    : formulas_(Formulas{problem::Field(surface.distance, where), fields(surface.normal, where),
-                         fields(surface.closest, where)})
+SurfacePoints points_of(const problem::Surface& surface, const Where& where)
 {
+  const auto vector_of = [](std::vector<problem::Field> components)
+  { return [components = std::move(components)](const Point<3>& x) { return at(components, x); }; };
+  return {.distance = [distance = problem::Field(surface.distance, where)](const Point<3>& x)
+          { return distance(x); },
+          .normal = vector_of(fields(surface.normal, where)),
+          .closest = vector_of(fields(surface.closest, where))};
 }
 
-SurfacePoints::SurfacePoints(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
-                             Point<3> shift)
-    : triangles_(std::move(triangles)), sign_(sign), shift_(std::move(shift))
+SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
+                        const Point<3>& shift)
 {
+  const auto nearest = [triangles = std::move(triangles), shift](const Point<3>& x)
+  { return triangles->nearest(x - shift); };
+  return {.distance = [nearest, sign](const Point<3>& x) { return sign * nearest(x).distance; },
+          .normal = [nearest, sign](const Point<3>& x) -> Point<3> { return sign * nearest(x).normal; },
+          .closest = [nearest, shift](const Point<3>& x) -> Point<3> { return nearest(x).point + shift; }};
 }
 
-double SurfacePoints::distance(const Point<3>& x) const
+SurfacePoints points_of(std::shared_ptr<const mesh::QuadraticSurface<3>> shape)
 {
-  return formulas_ ? formulas_->distance(x) : sign_ * triangles_->nearest(x - shift_).distance;
-}
-
-Point<3> SurfacePoints::normal(const Point<3>& x) const
-{
-  return formulas_ ? at(formulas_->normal, x) : Point<3>(sign_ * triangles_->nearest(x - shift_).normal);
-}
-
-Point<3> SurfacePoints::closest(const Point<3>& x) const
-{
-  return formulas_ ? at(formulas_->closest, x) : Point<3>(triangles_->nearest(x - shift_).point + shift_);
+  const auto closest = [shape](const Point<3>& x)
+  { return shape->value(mesh::QuadraticSurface<3>::Nodal::point, x); };
+  return {.distance = [shape, closest](const Point<3>& x) { return (x - closest(x)).dot(shape->normal(x)); },
+          .normal = [shape](const Point<3>& x) { return shape->normal(x); },
+          .closest = closest};
 }
 
 problem::Field gap_of(const PointGeometry& geometry)

@@ -3,40 +3,32 @@
 /// @file surface_points.h
 /// Gaps and directions from surfaces of which only points are known: at least one is made of triangles.
 
+#include <functional>
 #include <memory>
 #include <optional>
 
+#include "tribound/mesh/quadratic_surface.h"
 #include "tribound/mesh/triangulated_surface.h"
 #include "tribound/problem/surface.h"
 
 namespace tribound::case_file
 {
 
-/// A surface in space, by formulas or by triangles.
-class SurfacePoints
+/// A surface in space: phi, grad phi, of triangles the smoothed normal with the sign of phi, and the nearest
+/// point.
+struct SurfacePoints
 {
- public:
-  SurfacePoints(const problem::Surface& surface, const Where& where);
-  /// Moved by `shift`; phi is `sign` times the distance.
-  SurfacePoints(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign, Point<3> shift);
-
-  [[nodiscard]] double distance(const Point<3>& x) const;
-  /// grad phi; of triangles the smoothed normal with the sign of phi.
-  [[nodiscard]] Point<3> normal(const Point<3>& x) const;
-  [[nodiscard]] Point<3> closest(const Point<3>& x) const;
-
- private:
-  struct Formulas
-  {
-    problem::Field distance;
-    std::vector<problem::Field> normal;
-    std::vector<problem::Field> closest;
-  };
-  std::optional<Formulas> formulas_;
-  std::shared_ptr<const mesh::TriangulatedSurface> triangles_;
-  double sign_ = 1;
-  Point<3> shift_ = Point<3>::Zero();
+  std::function<double(const Point<3>&)> distance;
+  std::function<Point<3>(const Point<3>&)> normal;
+  std::function<Point<3>(const Point<3>&)> closest;
 };
+
+[[nodiscard]] SurfacePoints points_of(const problem::Surface& surface, const Where& where);
+/// Moved by `shift`; phi is `sign` times the distance.
+[[nodiscard]] SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
+                                      const Point<3>& shift);
+/// As a shape: X in the place of the nearest point.
+[[nodiscard]] SurfacePoints points_of(std::shared_ptr<const mesh::QuadraticSurface<3>> shape);
 
 /// What problem::ContactGeometry is for formulas. Functions without enclosures: the certificate says so.
 struct PointGeometry

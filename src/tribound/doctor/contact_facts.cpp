@@ -7,6 +7,8 @@
 #include <map>
 #include <numbers>
 
+#include "tribound/mesh/quadratic_facets.h"
+
 namespace tribound::doctor
 {
 
@@ -41,6 +43,8 @@ class Collector
     for (std::size_t k = 0; k < form_.segments().size(); ++k)
       if (form_.segments()[k].slave.facet.tag == tag_) add_segment(k);
     add_spread();
+    if (const auto& facets = form_.space().mesh().labels().quadratic_facets; facets && is_without_shape_)
+      facts_.straightened = mesh::sagitta<dim>(*facets, tag_);
     for (const auto& [k, l] : neighbours) add_kink(form_.segments()[k], form_.segments()[l]);
     return facts_;
   }
@@ -51,6 +55,7 @@ class Collector
     const contact::ContactSegment<dim>& segment = form_.segments()[k];
     if (k == 0 || form_.segments()[k - 1].slave.number != segment.slave.number) ++facts_.facets;
     facts_.measure += segment.measure;
+    if (!segment.contact->true_surface) is_without_shape_ = true;
     mean_ += segment.measure * contact::normal_at_centre(form_.space().mesh(), segment);
     const auto points = form_.contact_points(k);
     if (segment.contact->normal) add_direction(segment, points);
@@ -109,6 +114,7 @@ class Collector
 
   const contact::NitscheForm<dim>& form_;
   int tag_;
+  bool is_without_shape_ = false;
   Point<dim> mean_ = Point<dim>::Zero();
   ContactBoundaryFacts facts_;
 };

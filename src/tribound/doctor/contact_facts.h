@@ -24,6 +24,7 @@ struct ContactBoundaryFacts
   double off_normal =
       0;  ///< degrees: the largest angle between the direction of contact and a facet's normal
   Place off_normal_at;
+  double straightened = 0;  ///< mesh::sagitta() of second-order facets without a shape
   double smallest_gap = 0;  ///< g at the quadrature points
   Place smallest_gap_at;
   double largest_gap = 0;

@@ -75,6 +75,22 @@ Finding surface_finding(const ContactBoundaryFacts& contact)
   return finding;
 }
 
+/// Nothing where the mesh has no curved facets, or the contact has a shape.
+std::optional<Finding> straightened_finding(const ContactBoundaryFacts& contact)
+{
+  if (contact.straightened == 0) return {};
+  Finding finding{.code = "straightened_facets", .severity = Severity::note};
+  finding.numbers = {{"sagitta", contact.straightened}};
+  finding.text = fmt::format(
+      "contact \"{}\" has second-order facets in the mesh, the straight ones in their place are up to {:.3g} "
+      "away",
+      contact.name, contact.straightened);
+  finding.advice =
+      "gap and direction of contact can be those of the curved facets: name a shape in the contact, "
+      "with mesh = \"order2\" in its table";
+  return finding;
+}
+
 /// Nothing where contact acts nearly along the normals of the facets.
 std::optional<Finding> direction_finding(const ContactBoundaryFacts& contact)
 {
@@ -148,6 +164,7 @@ std::vector<Finding> contact_findings(const Diagnosis& diagnosis)
   {
     result.push_back(facets_finding(contact, diagnosis.refines));
     result.push_back(surface_finding(contact));
+    if (auto straightened = straightened_finding(contact)) result.push_back(std::move(*straightened));
     if (auto direction = direction_finding(contact)) result.push_back(std::move(*direction));
     result.push_back(gap_finding(contact, diagnosis.loads.size));
   }

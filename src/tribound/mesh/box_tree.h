@@ -43,6 +43,13 @@ template <int dim>
   return (a.lower.array() <= b.upper.array()).all() && (a.upper.array() >= b.lower.array()).all();
 }
 
+/// Of x from the box; 0 inside.
+template <int dim>
+[[nodiscard]] double square_distance(const BoundingBox<dim>& box, const Point<dim>& x)
+{
+  return (x - x.cwiseMax(box.lower).cwiseMin(box.upper)).squaredNorm();
+}
+
 /// A binary tree of boxes: O(n log n) to build, a visit goes into the boxes that it accepts.
 template <int dim>
 class BoxTree

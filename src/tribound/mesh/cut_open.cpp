@@ -59,11 +59,14 @@ class Cut
   }
   /// Divides the cells around v; all parts but the first get a copy of it.
   void split(Index v);
+  /// Gives the edges between copies the nodes of the edges that were there.
+  void copy_edge_nodes();
 
   MeshData<dim>& data_;
   const Topology<dim>& topology_;
-  std::vector<int> joint_;    ///< per facet: its group if it is cut, else -1
-  std::vector<Index> slave_;  ///< the cell on the slave's side of a cut facet
+  std::vector<int> joint_;              ///< per facet: its group if it is cut, else -1
+  std::vector<Index> slave_;            ///< the cell on the slave's side of a cut facet
+  std::multimap<Index, Index> copies_;  ///< of a vertex
 };
 
 template <int dim>
@@ -179,6 +182,7 @@ void Cut<dim>::split(Index v)
     {
       copy = static_cast<Index>(data_.vertices.size());
       data_.vertices.push_back(Point<dim>(data_.vertices[v]));
+      copies_.emplace(v, copy);
     }
     std::vector<Index> open{first};
     vertex_of[first] = copy;
@@ -199,6 +203,22 @@ void Cut<dim>::split(Index v)
 }
 
 template <int dim>
+void Cut<dim>::copy_edge_nodes()
+{
+  const auto versions = [&](Index v)
+  {
+    std::vector<Index> all{v};
+    for (auto [it, end] = copies_.equal_range(v); it != end; ++it) all.push_back(it->second);
+    return all;
+  };
+  std::vector<EdgeNode<dim>> all;
+  for (const auto& [ends, position] : data_.edge_nodes)
+    for (const Index a : versions(ends[0]))
+      for (const Index b : versions(ends[1])) all.push_back({{a, b}, position});
+  data_.edge_nodes = std::move(all);
+}
+
+template <int dim>
 void Cut<dim>::open()
 {
   std::vector<Index> vertices;
@@ -207,6 +227,7 @@ void Cut<dim>::open()
       vertices.insert(vertices.end(), topology_.facets[f].begin(), topology_.facets[f].end());
   sort_and_unite(vertices);
   for (const Index v : vertices) split(v);
+  copy_edge_nodes();
 
   const auto seen_from = [&](Index f, Index cell)
   { return facet_vertices(data_.cells[cell], topology_.local_facet(cell, f)); };

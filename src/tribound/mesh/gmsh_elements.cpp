@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+
 #include "tribound/mesh/gmsh_library.h"
 
 namespace tribound::mesh
@@ -20,13 +22,16 @@ int mesh_dimension(const Where& where)
 namespace
 {
 
-[[noreturn]] void reject_element_type(const Where& where, int type)
+/// Throws unless it is the type of a simplex of order 1 or 2.
+int order_of_simplex(const Where& where, int dim, int type)
 {
+  for (std::size_t k = 0; k < simplex_type.size(); ++k)
+    if (type == simplex_type[k][dim]) return static_cast<int>(k) + 1;
   const auto [name, order] = gmsh::element_properties(type);
-  if (order != 1)
+  if (order > static_cast<int>(simplex_type.size()))
     throw InputError(where, fmt::format("the mesh has elements of order {} ({})", order, name),
-                     "the geometry is straight-sided whatever the degree of the case; mesh with -order 1 "
-                     "(Mesh.ElementOrder=1)");
+                     "the geometry is straight-sided whatever the degree of the case, and a shape needs no "
+                     "more than order 2; mesh with -order 1 or -order 2 (Mesh.ElementOrder)");
   throw InputError(where, fmt::format("the mesh has elements that are not simplices ({})", name),
                    "only triangles and tetrahedra; mesh with Mesh.RecombineAll=0 and without Recombine or "
                    "Layers{...} with Recombine");
@@ -36,16 +41,24 @@ namespace
 
 // Gmsh tells the type of the first element of an entity for all of that shape, and reading nodes by type
 // overruns its arrays where a second-order element comes later: look at each element first.
-void check_element_types(const Where& where, int mesh_dim)
+int mesh_order(const Where& where, int mesh_dim)
 {
-  for (const int dim : {mesh_dim, mesh_dim - 1})
+  int order = 0;
+  const auto look = [&](int dim, int type)
   {
-    for (const int type : gmsh::element_types(dim))
-      if (type != simplex_type[dim]) reject_element_type(where, type);
-    for (const std::size_t element : gmsh::elements(simplex_type[dim]))
-      if (const int type = gmsh::element_type(element); type != simplex_type[dim])
-        reject_element_type(where, type);
-  }
+    const int found = order_of_simplex(where, dim, type);
+    if (order == 0) order = found;
+    if (found != order)
+      throw InputError(where, fmt::format("the mesh has elements of order {} and of order {}", order, found),
+                       "all cells and facets of one order: mesh again, with -order 1 or -order 2 "
+                       "(Mesh.ElementOrder)");
+  };
+  for (const int dim : {mesh_dim, mesh_dim - 1})
+    for (const int type : gmsh::element_types(dim)) look(dim, type);
+  for (const int dim : {mesh_dim, mesh_dim - 1})
+    for (const std::size_t element : gmsh::elements(simplex_type[order - 1][dim]))
+      look(dim, gmsh::element_type(element));
+  return order;
 }
 
 }  // namespace tribound::mesh

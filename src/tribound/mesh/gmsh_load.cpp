@@ -60,23 +60,32 @@ Groups read_groups(const Where& where, int dim)
   return groups;
 }
 
-/// Simplices named by node tags, and the group of each.
+/// Simplices of one order, named by node tags, and the group of each.
 template <int n_corners>
 struct Simplices
 {
-  std::vector<std::array<std::size_t, n_corners>> nodes;
-  std::vector<int> groups;
+  static constexpr int n_edges = n_corners * (n_corners - 1) / 2;
+
+  int order = 1;
+  std::vector<std::array<std::size_t, n_corners>> nodes{};
+  std::vector<std::array<std::size_t, n_edges>> edge_nodes{};  ///< of order 2, in Gmsh's order
+  std::vector<int> groups{};
 
   /// Appends the simplices of one entity; returns how many there are.
   std::size_t append(int entity, int group)
   {
-    const std::vector<std::size_t> flat = gmsh::element_nodes(simplex_type[n_corners - 1], entity);
+    const std::vector<std::size_t> flat = gmsh::element_nodes(simplex_type[order - 1][n_corners - 1], entity);
+    const std::size_t stride = order == 1 ? n_corners : n_corners + n_edges;
     const std::size_t n_before = nodes.size();
-    const std::size_t n_new = flat.size() / n_corners;
+    const std::size_t n_new = flat.size() / stride;
     nodes.resize(n_before + n_new);
+    if (order > 1) edge_nodes.resize(nodes.size());
     for (std::size_t i = 0; i < n_new; ++i)
-      std::copy_n(flat.begin() + static_cast<std::ptrdiff_t>(i * n_corners), n_corners,
-                  nodes[n_before + i].begin());
+    {
+      const std::size_t* of_simplex = &flat[i * stride];
+      std::copy_n(of_simplex, n_corners, nodes[n_before + i].begin());
+      if (order > 1) std::copy_n(of_simplex + n_corners, n_edges, edge_nodes[n_before + i].begin());
+    }
     groups.resize(nodes.size(), group);
     return n_new;
   }
@@ -85,6 +94,7 @@ struct Simplices
 /// Positions and new numbers of the nodes; both indexed by Gmsh's node tags.
 struct Nodes
 {
+  static constexpr Index edge = -4;    ///< on an edge of a cell or facet of order 2
   static constexpr Index absent = -3;  ///< no node has this tag
   static constexpr Index unused = -2;  ///< in no cell and no boundary facet
   static constexpr Index point = -1;   ///< unused as well, but the node of a point of the geometry
@@ -149,9 +159,9 @@ void check_groups_filled(const Where& where, int dim, const Groups& groups, std:
 
 /// All cells, with the position of their region in groups.names.
 template <int dim>
-Simplices<dim + 1> read_cells(const Where& where, const Nodes& nodes, const Groups& groups)
+Simplices<dim + 1> read_cells(const Where& where, const Nodes& nodes, const Groups& groups, int order)
 {
-  Simplices<dim + 1> cells;
+  Simplices<dim + 1> cells{.order = order};
   std::size_t n_homeless = 0;
   std::string example;
   for (const auto& [_, entity] : gmsh::entities(dim))
@@ -178,27 +188,29 @@ Simplices<dim + 1> read_cells(const Where& where, const Nodes& nodes, const Grou
 
 /// The facets of the boundary groups.
 template <int dim>
-Simplices<dim> read_facets(const Where& where, const Groups& groups)
+Simplices<dim> read_facets(const Where& where, const Groups& groups, int order)
 {
-  Simplices<dim> facets;
+  Simplices<dim> facets{.order = order};
   for (const auto& [entity, group] : groups.of_entity) facets.append(entity, group);
   check_groups_filled(where, dim - 1, groups, facets.groups);
   return facets;
 }
 
-/// Numbers the nodes of cells and facets in ascending order of their tags and returns their positions.
-/// Nodes beside them are dropped where they stem from points of the geometry, else they are an error.
+/// Numbers the corners of cells and facets in ascending order of their tags and returns their positions.
+/// Nodes on edges are dropped; others where they stem from points of the geometry, else they are an error.
 template <int dim>
 std::vector<Point<dim>> number_vertices(const Where& where, Nodes& nodes, const Simplices<dim + 1>& cells,
                                         const Simplices<dim>& facets, bool is_geo)
 {
-  const auto mark = [&](const auto& simplices)
+  const auto mark = [&](const auto& simplices, Index as)
   {
     for (const auto& simplex : simplices)
-      for (const std::size_t tag : simplex) nodes.numbers[tag] = 0;
+      for (const std::size_t tag : simplex) nodes.numbers[tag] = as;
   };
-  mark(cells.nodes);
-  mark(facets.nodes);
+  mark(cells.edge_nodes, Nodes::edge);
+  mark(facets.edge_nodes, Nodes::edge);
+  mark(cells.nodes, 0);
+  mark(facets.nodes, 0);
 
   std::vector<Point<dim>> vertices;
   for (std::size_t tag = 0; tag < nodes.numbers.size(); ++tag)
@@ -221,14 +233,30 @@ void check_plane(const Where& where, const Nodes& nodes, const Simplices<3>& cel
   double size = 0.0;
   for (const auto& cell : cells.nodes)
     for (const std::size_t tag : cell) size = std::max(size, nodes.positions[tag].lpNorm<Eigen::Infinity>());
-  for (const auto& cell : cells.nodes)
-    for (const std::size_t tag : cell)
+  const auto check = [&](const std::array<std::size_t, 3>& tags)
+  {
+    for (const std::size_t tag : tags)
       if (!(std::abs(nodes.positions[tag][2]) <= 1e-12 * size))
         throw InputError(
             where,
             fmt::format("the mesh has triangles only, and node {} at {} is not in the plane z = 0", tag,
                         describe(nodes.positions[tag])),
             "2D meshes live in z = 0; for a 3D problem mesh the volume (gmsh -3)");
+  };
+  std::ranges::for_each(cells.nodes, check);
+  std::ranges::for_each(cells.edge_nodes, check);
+}
+
+/// The nodes on the edges of the facets.
+template <int dim>
+std::vector<EdgeNode<dim>> edge_nodes_of(const Nodes& nodes, const Simplices<dim>& facets)
+{
+  std::vector<EdgeNode<dim>> result;
+  for (std::size_t f = 0; f < facets.edge_nodes.size(); ++f)
+    for (int e = 0; e < facets.n_edges; ++e)  // Gmsh has the edges (0, 1), (1, 2), (2, 0)
+      result.push_back({{nodes.numbers[facets.nodes[f][e]], nodes.numbers[facets.nodes[f][(e + 1) % dim]]},
+                        nodes.positions[facets.edge_nodes[f][e]].template head<dim>()});
+  return result;
 }
 
 template <std::size_t n>
@@ -239,17 +267,17 @@ std::array<Index, n> numbered(const Nodes& nodes, const std::array<std::size_t, 
   return numbers;
 }
 
-/// The loaded model, group by group.
+/// The loaded model, group by group. Cells of order 2 get straight sides.
 template <int dim>
-MeshData<dim> mesh_data(const std::filesystem::path& file)
+MeshData<dim> mesh_data(const std::filesystem::path& file, int order)
 {
   MeshData<dim> data;
   data.source = {.file = file.string()};
   Groups regions = read_groups(data.source, dim);
   Groups boundaries = read_groups(data.source, dim - 1);
   Nodes nodes = read_nodes();
-  Simplices<dim + 1> cells = read_cells<dim>(data.source, nodes, regions);
-  const Simplices<dim> facets = read_facets<dim>(data.source, boundaries);
+  Simplices<dim + 1> cells = read_cells<dim>(data.source, nodes, regions, order);
+  const Simplices<dim> facets = read_facets<dim>(data.source, boundaries, order);
   if constexpr (dim == 2) check_plane(data.source, nodes, cells);
 
   data.vertices = number_vertices<dim>(data.source, nodes, cells, facets, file.extension() == ".geo");
@@ -258,6 +286,7 @@ MeshData<dim> mesh_data(const std::filesystem::path& file)
   data.facets.reserve(facets.nodes.size());
   for (std::size_t f = 0; f < facets.nodes.size(); ++f)
     data.facets.push_back({numbered(nodes, facets.nodes[f]), facets.groups[f]});
+  data.edge_nodes = edge_nodes_of<dim>(nodes, facets);
   data.regions = std::move(cells.groups);
   data.region_names = regions.names.empty() ? std::vector<std::string>{"domain"} : std::move(regions.names);
   data.boundary_names = std::move(boundaries.names);
@@ -271,9 +300,9 @@ std::variant<MeshData<2>, MeshData<3>> load_gmsh(const std::filesystem::path& fi
   const GmshSession session(file);
   const Where where{.file = file.string()};
   const int dim = mesh_dimension(where);
-  check_element_types(where, dim);
-  if (dim == 2) return mesh_data<2>(file);
-  return mesh_data<3>(file);
+  const int order = mesh_order(where, dim);
+  if (dim == 2) return mesh_data<2>(file, order);
+  return mesh_data<3>(file, order);
 }
 
 }  // namespace tribound::mesh

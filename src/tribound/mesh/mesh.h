@@ -32,6 +32,16 @@ struct TaggedFacet
   int tag;  ///< position in MeshData::boundary_names
 };
 
+/// A node inside an edge of a facet; what a reader of a second-order mesh finds.
+template <int dim>
+struct EdgeNode
+{
+  std::array<Index, 2> ends;  ///< vertices
+  Point<dim> position;
+};
+
+struct QuadraticFacets;
+
 /// A facet of the boundary of Omega.
 struct BoundaryFacet
 {
@@ -55,6 +65,8 @@ struct MeshLabels
   std::vector<std::string> boundary_names{};
   Where source{};  ///< for messages
   std::vector<Interface> interfaces{};
+  /// See mesh/quadratic_facets.h; null for a mesh of order 1.
+  std::shared_ptr<const QuadraticFacets> quadratic_facets{};
 };
 
 /// What a reader delivers, not yet verified. Messages about it count cells and vertices from 0.
@@ -65,6 +77,7 @@ struct MeshData : MeshLabels
   std::vector<Cell<dim>> cells{};
   std::vector<int> regions{};  ///< per cell: position in region_names
   std::vector<TaggedFacet<dim>> facets{};
+  std::vector<EdgeNode<dim>> edge_nodes{};  ///< of `facets`; empty for a mesh of order 1
   /// Per cell: how bisect() goes on with it, see mesh/marked_cell.h. Empty for a mesh that does not come from
   /// bisect(), which then starts from the longest edges.
   std::vector<std::uint8_t> bisection_types{};

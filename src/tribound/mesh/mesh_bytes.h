@@ -92,6 +92,7 @@ void put(ByteWriter& bytes, const MeshData<dim>& data)
   bytes.put(data.cells);
   bytes.put(data.regions);
   bytes.put(data.facets);
+  bytes.put(data.edge_nodes);
   bytes.put(data.region_names);
   bytes.put(data.boundary_names);
 }
@@ -103,6 +104,7 @@ void get(ByteReader& bytes, MeshData<dim>& data)
   bytes.get(data.cells);
   bytes.get(data.regions);
   bytes.get(data.facets);
+  bytes.get(data.edge_nodes);
   bytes.get(data.region_names);
   bytes.get(data.boundary_names);
 }

@@ -4,12 +4,14 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "tribound/base/sorted.h"
 #include "tribound/mesh/box.h"
+#include "tribound/mesh/quadratic_facets.h"
 
 namespace tribound::mesh
 {
@@ -54,6 +56,17 @@ void copy_interfaces(const Ranks& ranks, std::vector<Interface>& interfaces)
     }
 }
 
+void copy_quadratic_facets(const Ranks& ranks, std::shared_ptr<const QuadraticFacets>& facets)
+{
+  if (!ranks.first_says(facets != nullptr)) return;
+  QuadraticFacets copy;
+  if (facets) copy = *facets;
+  ranks.copy_from_first(copy.tags);
+  ranks.copy_from_first(copy.nodes);
+  ranks.copy_from_first(copy.points);
+  facets = std::make_shared<const QuadraticFacets>(std::move(copy));
+}
+
 void copy_labels(const Ranks& ranks, MeshLabels& labels)
 {
   copy_texts(ranks, labels.region_names);
@@ -64,6 +77,7 @@ void copy_labels(const Ranks& ranks, MeshLabels& labels)
   copy_texts(ranks, place);
   source = {place[0], place[1], std::stoi(place[2]), std::stoi(place[3])};
   copy_interfaces(ranks, labels.interfaces);
+  copy_quadratic_facets(ranks, labels.quadratic_facets);
 }
 
 /// Cells that are many on one rank, or that are not along the curve.

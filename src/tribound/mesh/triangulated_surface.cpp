@@ -58,11 +58,6 @@ double angle_at(const Point<3>& a, const Point<3>& b, const Point<3>& c)
   return std::atan2((b - a).cross(c - a).norm(), (b - a).dot(c - a));
 }
 
-double square_distance(const BoundingBox<3>& box, const Point<3>& x)
-{
-  return (x - x.cwiseMax(box.lower).cwiseMin(box.upper)).squaredNorm();
-}
-
 }  // namespace
 
 TriangulatedSurface::TriangulatedSurface(std::span<const Point<3>> vertices,

@@ -91,6 +91,11 @@ class Formula
   void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients,
                Sides sides = Sides::inside) const;
 
+  /// The same of f(X(.)), where enclose() of coordinate k of X would give coordinates[k] and zeros behind
+  /// them. A coordinate that is not there is 0.
+  void enclose_composed(std::span<const std::array<Enclosure, 3>> coordinates,
+                        std::span<Enclosure> coefficients) const;
+
   /// Encloses the values over the box between `lower` and `upper` (2 or 3 coordinates), its boundary
   /// included.
   [[nodiscard]] Enclosure enclose_box(std::span<const double> lower, std::span<const double> upper) const;

@@ -25,8 +25,9 @@ struct Value
 class Evaluator
 {
  public:
-  Evaluator(const Region& region, int n_coefficients, std::vector<Value>& stack)
-      : region_(region), n_coefficients_(n_coefficients), stack_(stack)
+  Evaluator(const Region& region, std::span<const std::array<Enclosure, 3>> coordinates, int n_coefficients,
+            std::vector<Value>& stack)
+      : region_(region), coordinates_(coordinates), n_coefficients_(n_coefficients), stack_(stack)
   {
   }
 
@@ -41,6 +42,17 @@ class Evaluator
   void push(const AffineForm& form) { stack_.push_back({.affine = form}); }
   void push(double value) { push(AffineForm::number(value)); }
   void push(const IntervalSeries& series) { stack_.push_back({.series = series}); }
+
+  void push_coordinate(std::size_t k)
+  {
+    if (k >= coordinates_.size()) return push(0.0);
+    const auto& c = coordinates_[k];
+    if (!std::ranges::all_of(c, is_finite)) return push(unknown_series());
+    IntervalSeries series = constant_series(c[0], n_coefficients_);
+    series.length = std::min(n_coefficients_, 3);
+    std::copy_n(c.begin(), series.length, series.c.begin());
+    push(series);
+  }
 
   Value pop()
   {
@@ -97,7 +109,7 @@ class Evaluator
       case Op::number:
         return std::isfinite(node.value) ? push(node.value) : push(unknown_series());
       case Op::variable:
-        return push(AffineForm::variable(node.index));
+        return coordinates_.empty() ? push(AffineForm::variable(node.index)) : push_coordinate(node.index);
       case Op::choose:
         return choose();
       case Op::conjunction:
@@ -252,14 +264,22 @@ class Evaluator
   }
 
   const Region& region_;
+  std::span<const std::array<Enclosure, 3>> coordinates_;  ///< empty: those of the region
   int n_coefficients_;
   std::vector<Value>& stack_;
 };
 
-IntervalSeries evaluate(std::span<const Node> nodes, const Region& region, int n_coefficients)
+IntervalSeries evaluate(std::span<const Node> nodes, const Region& region, int n_coefficients,
+                        std::span<const std::array<Enclosure, 3>> coordinates = {})
 {
   thread_local std::vector<Value> stack;  // kept: it costs as much as the evaluation
-  return Evaluator(region, n_coefficients, stack)(nodes);
+  return Evaluator(region, coordinates, n_coefficients, stack)(nodes);
+}
+
+void take(const IntervalSeries& series, std::span<Enclosure> coefficients)
+{
+  for (std::size_t n = 0; n < coefficients.size(); ++n)
+    coefficients[n] = static_cast<int>(n) < series.n_known ? series.c[n] : Enclosure{};
 }
 
 }  // namespace
@@ -269,10 +289,17 @@ void Formula::enclose(std::span<const double> vertices, int dim, std::span<Enclo
 {
   assert(coefficients.size() <= max_order + 1);
   const Region region(vertices, dim, sides);
-  const IntervalSeries series =
-      problem::evaluate(program_->nodes, region, static_cast<int>(coefficients.size()));
-  for (std::size_t n = 0; n < coefficients.size(); ++n)
-    coefficients[n] = static_cast<int>(n) < series.n_known ? series.c[n] : Enclosure{};
+  take(problem::evaluate(program_->nodes, region, static_cast<int>(coefficients.size())), coefficients);
+}
+
+void Formula::enclose_composed(std::span<const std::array<Enclosure, 3>> coordinates,
+                               std::span<Enclosure> coefficients) const
+{
+  assert(coefficients.size() <= max_order + 1 && !coordinates.empty());
+  constexpr std::array<double, 3> anywhere{};
+  const Region region(anywhere, 3, Sides::closed);  // for constants alone
+  take(problem::evaluate(program_->nodes, region, static_cast<int>(coefficients.size()), coordinates),
+       coefficients);
 }
 
 Enclosure Formula::enclose_box(std::span<const double> lower, std::span<const double> upper) const

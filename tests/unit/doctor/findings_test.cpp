@@ -122,6 +122,18 @@ TEST(Findings, ContactSurface)
   EXPECT_EQ(finding(diagnosis, "contact_facets").severity, doctor::Severity::warning);
 }
 
+TEST(Findings, CurvedFacetsMadeStraight)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  EXPECT_EQ(std::ranges::count(doctor::findings(diagnosis), "straightened_facets", &doctor::Finding::code),
+            0);
+  diagnosis.contacts[0].straightened = 0.01;
+  const doctor::Finding straightened = finding(diagnosis, "straightened_facets");
+  EXPECT_EQ(straightened.severity, doctor::Severity::note);
+  EXPECT_THAT(straightened.text, HasSubstr("up to 0.01 away"));
+  EXPECT_THAT(straightened.advice, HasSubstr("mesh = \"order2\""));
+}
+
 TEST(Findings, ContactAlongAnObliqueDirection)
 {
   doctor::Diagnosis diagnosis = healthy();

@@ -2,6 +2,7 @@
 
 #include <gmsh.h>
 
+#include "tribound/mesh/quadratic_facets.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound
@@ -104,6 +105,8 @@ TEST_P(GmshFormat, IsRead)
   {
     expect_plane(mesh::read_gmsh(saved(directory, plane_geo, version, binary)));
     expect_solid(mesh::read_gmsh(saved(directory, solid_geo, version, binary)));
+    expect_plane(mesh::read_gmsh(saved(directory, plane_geo + "Mesh.ElementOrder = 2;\n", version, binary)));
+    expect_solid(mesh::read_gmsh(saved(directory, solid_geo + "Mesh.ElementOrder = 2;\n", version, binary)));
   }
   else
   {
@@ -130,6 +133,53 @@ TEST(Gmsh, GeometriesAreMeshed)
   const Directory directory;
   expect_plane(mesh::read_gmsh(directory.write("plane.geo", plane_geo)));
   expect_solid(mesh::read_gmsh(directory.write("solid.geo", solid_geo)));
+}
+
+/// How many second-order facets a group has; each of their nodes passes `check`.
+template <int dim, class Check>
+std::size_t check_nodes(const mesh::Mesh<dim>& mesh, int tag, const Check& check)
+{
+  const mesh::QuadraticFacets& facets = *mesh.labels().quadratic_facets;
+  constexpr std::size_t n = mesh::n_facet_nodes<dim>;
+  for (std::size_t f = 0; f < facets.tags.size(); ++f)
+    for (std::size_t a = 0; facets.tags[f] == tag && a < n; ++a)
+      check(Point<dim>(&facets.points[facets.nodes[f * n + a] * dim]));
+  return std::ranges::count(facets.tags, tag);
+}
+
+template <int dim>
+std::size_t n_facets(const mesh::Mesh<dim>& mesh, int tag)
+{
+  return std::ranges::count(mesh.boundary(), tag, &mesh::BoundaryFacet::tag);
+}
+
+/// Cells get straight sides; the facets of the groups keep their nodes, on the circle and on the ball.
+TEST(Gmsh, OfOrderTwoTheNodesOfBoundariesAreKept)
+{
+  const Directory directory;
+  const std::string disc =
+      "SetFactory(\"OpenCASCADE\"); Disk(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.4;\n"
+      "Physical Surface(\"disc\") = {1}; Physical Curve(\"rim\") = {1};\n";
+  const std::string ball =
+      "SetFactory(\"OpenCASCADE\"); Sphere(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.6;\n"
+      "Physical Volume(\"ball\") = {1}; Physical Surface(\"skin\") = {1};\n";
+  const auto is_on_unit_ball = [](const auto& x) { EXPECT_NEAR(x.norm(), 1, 1e-6); };
+  const std::string second = "Mesh.ElementOrder = 2;\n";
+  for (const mesh::MeshFile& file :
+       {saved(directory, disc + second, 2.2, false), directory.write("disc.geo", disc + second)})
+  {
+    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(file));
+    const auto straight = std::get<mesh::Mesh<2>>(mesh::read_gmsh(directory.write("disc1.geo", disc)));
+    EXPECT_EQ(straight.labels().quadratic_facets, nullptr);
+    EXPECT_NEAR(volume(mesh), volume(straight), 1e-12);
+    EXPECT_EQ(mesh.n_cells(), straight.n_cells());
+    EXPECT_EQ(check_nodes(mesh, 0, is_on_unit_ball), n_facets(mesh, 0));
+    EXPECT_GT(n_facets(mesh, 0), 10U);
+  }
+  const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_gmsh(directory.write("ball.geo", ball + second)));
+  EXPECT_EQ(check_nodes(mesh, 0, is_on_unit_ball), n_facets(mesh, 0));
+  EXPECT_GT(n_facets(mesh, 0), 40U);
+  EXPECT_NEAR(mesh::sagitta<3>(*mesh.labels().quadratic_facets, 0), 0.05, 0.05);
 }
 
 TEST(Gmsh, AGeometryThatMeshesItselfIsNotMeshedAgain)

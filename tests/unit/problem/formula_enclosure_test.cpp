@@ -147,6 +147,38 @@ TEST(Enclosure, OfARootIsBoundedDownToZero)
   EXPECT_TRUE(enclose("sqrt(x)", triangle, 2, 15)[15].bounded());
 }
 
+/// With the coordinates put in as their own series, to rounding; a quadratic one as if written out.
+TEST(Enclosure, OfACompositionIsThatOfTheFormulaWrittenOut)
+{
+  const auto composed = [](const std::string& text, const std::vector<std::string>& coordinates)
+  {
+    std::vector<std::array<problem::Enclosure, 3>> series;
+    for (const std::string& coordinate : coordinates)
+    {
+      const auto c = enclose(coordinate, triangle, 2, 2);
+      series.push_back({c[0], c[1], c[2]});
+    }
+    std::vector<problem::Enclosure> result(5);
+    problem::Formula(text, in_case_file).enclose_composed(series, result);
+    return result;
+  };
+  const auto expect_same =
+      [](const std::vector<problem::Enclosure>& a, const std::vector<problem::Enclosure>& b)
+  {
+    for (std::size_t n = 0; n < a.size(); ++n)
+    {
+      const double tolerance = 1e-13 * (1 + b[n].magnitude());
+      EXPECT_NEAR(a[n].lower, b[n].lower, tolerance) << n;
+      EXPECT_NEAR(a[n].upper, b[n].upper, tolerance) << n;
+    }
+  };
+  for (const std::string text : {"exp(x/9)*y + 3", "sqrt(x^2+y^2)", "7", "x > 0 ? y/x : 1"})
+    expect_same(composed(text, {"x", "y"}), enclose(text, triangle, 2, 4));
+  expect_same(composed("exp(x) + z", {"x^2/9", "y"}), enclose("exp(x^2/9)", triangle, 2, 4));
+  expect_range(composed("2*x - y", {"x", "y"})[0], -1, 6);  // of each coordinate for itself
+  EXPECT_FALSE(composed("abs(x - 2)", {"x", "y"})[1].bounded());
+}
+
 TEST(Enclosure, OfABoxHoldsItsBoundary)
 {
   const problem::Formula formula("y > 0 ? 1 : 2", in_case_file);

@@ -137,6 +137,10 @@ std::string describe_geometry(const ContactGeometryFacts& facts)
   if (facts.has_shape)
     text += fmt::format("; the facets are up to {:.3g} away from the given shapes, whose gaps they have",
                         facts.sagitta);
+  if (facts.straightened > 0)
+    text +=
+        fmt::format("; straight contact facets are up to {:.3g} away from those of second order in the mesh",
+                    facts.straightened);
   return text;
 }
 

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/quadratic_facets.h"
 
 namespace tribound::certify
 {
@@ -32,6 +34,21 @@ struct AtVertex
   Point<dim> normal;
   Point<dim> direction;
 };
+
+/// Of the boundaries that have segments here.
+template <int dim>
+double straightened(const contact::NitscheForm<dim>& form)
+{
+  const auto& facets = form.space().mesh().labels().quadratic_facets;
+  if (!facets) return 0;
+  std::set<int> tags;
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+    if (!segment.contact->true_surface && !cone(segment.contact->law).is_tied)
+      tags.insert(segment.slave.facet.tag);
+  double largest = 0;
+  for (const int tag : tags) largest = std::max(largest, mesh::sagitta<dim>(*facets, tag));
+  return largest;
+}
 
 }  // namespace
 
@@ -73,14 +90,15 @@ ContactGeometryFacts contact_geometry(const contact::NitscheForm<dim>& form)
       at[v].push_back({facet.tag, segment.slave.number, normal, direction});
     }
   }
-  std::array<double, 6> all{static_cast<double>(facts.has_shape),
+  std::array<double, 7> all{static_cast<double>(facts.has_shape),
                             static_cast<double>(facts.has_direction),
                             facts.sagitta,
+                            straightened(form),
                             facts.turn,
                             facts.jump,
                             facts.off_normal};
   mesh.ranks().max(std::span(all));
-  return {all[0] > 0, all[1] > 0, all[2], all[3], all[4], all[5]};
+  return {all[0] > 0, all[1] > 0, all[2], all[3], all[4], all[5], all[6]};
 }
 
 template ContactGeometryFacts contact_geometry(const contact::NitscheForm<2>&);

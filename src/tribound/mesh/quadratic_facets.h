@@ -1,0 +1,52 @@
+#pragma once
+
+/// @file quadratic_facets.h
+/// The curved facets of a second-order mesh, of which the cells have the vertices alone.
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound::mesh
+{
+
+/// Vertices and edges of a facet.
+template <int dim>
+inline constexpr int n_facet_nodes = dim*(dim + 1) / 2;
+
+/// (t_y, -t_x) of a tangent in 2D, t x s of two in 3D.
+template <int dim>
+[[nodiscard]] Point<dim> normal_of(const std::array<Point<dim>, dim - 1>& tangents)
+{
+  if constexpr (dim == 2)
+    return {tangents[0][1], -tangents[0][0]};
+  else
+    return cross(tangents[0], tangents[1]);
+}
+
+/// The facets of the boundary groups as they are in the mesh file, whatever becomes of the cells.
+struct QuadraticFacets
+{
+  std::vector<int> tags;  ///< per facet: position in MeshLabels::boundary_names
+  /// Per facet n_facet_nodes: its vertices, so ordered that normal_of() its edges points out of the body,
+  /// then the nodes on its local_edges.
+  std::vector<Index> nodes;
+  std::vector<double> points;  ///< dim coordinates per node
+};
+
+/// Those of the tagged facets of `boundary` whose edges all have a node. Throws InputError for a node that is
+/// not finite, and for an edge with two nodes.
+template <int dim>
+[[nodiscard]] std::shared_ptr<const QuadraticFacets> quadratic_facets(
+    const MeshData<dim>& data, std::span<const BoundaryFacet> boundary);
+
+/// How far the facets of the group `tag` are from the straight ones with their vertices: at the middles of
+/// edges, in 3D of facets, too. 0 where it is no more than the coordinates are rounded by.
+template <int dim>
+[[nodiscard]] double sagitta(const QuadraticFacets& facets, int tag);
+
+}  // namespace tribound::mesh

@@ -1,0 +1,75 @@
+#pragma once
+
+/// @file quadratic_surface.h
+/// The surface made of second-order facets, as a map from the straight facets with their vertices.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tribound/base/error.h"
+#include "tribound/base/types.h"
+#include "tribound/mesh/box_tree.h"
+#include "tribound/mesh/quadratic_facets.h"
+#include "tribound/problem/formula.h"
+
+namespace tribound::mesh
+{
+
+/// X(x) = sum_a N_a(lambda(x)) X_a, lambda the barycentric coordinates of x in the straight facet, X_a its
+/// nodes, N_a Lagrange's functions of degree 2: continuous from the polygon onto the curve or surface. Use of
+/// one object by several threads at once is safe.
+template <int dim>
+class QuadraticSurface
+{
+ public:
+  /// What is interpolated between the nodes.
+  enum class Nodal
+  {
+    point,  ///< X
+    normal  ///< n: at nodes of length 1, the mean of the normals of the facets there, in 3D weighted by
+            ///< angles
+  };
+
+  /// Of the facets of the groups `tags`. Throws InputError at `where`: no facet, nodes so far off that a
+  /// facet folds, normals that turn so far on a facet that n might be 0.
+  QuadraticSurface(const QuadraticFacets& facets, std::span<const int> tags, const Where& where);
+
+  /// X or n, of the straight facet that is nearest to x.
+  [[nodiscard]] Point<dim> value(Nodal what, const Point<dim>& x) const;
+  /// n / |n|: out of the body, continuous.
+  [[nodiscard]] Point<dim> normal(const Point<dim>& x) const { return value(Nodal::normal, x).normalized(); }
+
+  /// Of each component what problem::Formula::enclose gives of a formula over the convex hull of `vertices`
+  /// (dim coordinates each), which is part of one straight facet; further coefficients are 0.
+  [[nodiscard]] std::array<std::array<problem::Enclosure, 3>, dim> enclose(
+      Nodal what, std::span<const double> vertices) const;
+
+ private:
+  static constexpr int n_nodes = n_facet_nodes<dim>;
+  using Barycentric = std::array<double, dim>;
+  using Values = std::array<Point<dim>, n_nodes>;
+
+  struct Facet
+  {
+    std::array<Values, 2> nodal;  ///< by Nodal
+    /// lambda_1, ... = inverse (x - first vertex)
+    Eigen::Matrix<double, dim - 1, dim> inverse;
+    double size;  ///< the longest edge
+
+    [[nodiscard]] const Point<dim>& vertex(int i) const { return nodal[0][i]; }
+    [[nodiscard]] Barycentric barycentric(const Point<dim>& x) const;
+    /// The square of a distance that is at least that of x.
+    [[nodiscard]] double square_distance(const Point<dim>& x) const;
+    [[nodiscard]] std::array<Point<dim>, dim - 1> tangents(const Barycentric& at) const;
+  };
+
+  void find_normals(std::span<const Index> nodes, const Where& where);
+  [[nodiscard]] const Facet& nearest(const Point<dim>& x) const;
+
+  std::vector<Facet> facets_;
+  BoxTree<dim> tree_{{}};
+};
+
+}  // namespace tribound::mesh
