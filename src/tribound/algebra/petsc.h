@@ -90,14 +90,18 @@ class SparseMatrix
 
  private:
   SparseMatrix() = default;
+  /// On one rank: with these rows.
+  SparseMatrix(const SparseMatrix& like, SparseRows rows);
   void create();
+  void take(SparseRows rows);
   void settle();
 
   Index size_ = 0;
   int block_size_ = 1;
   Sharing sharing_;
-  bool has_more_ = false;  ///< a sum whose second pattern is not within the first
-  SparseRows rows_;        ///< the memory of mat_ where it was made of rows on one rank
+  bool has_more_ = false;    ///< on several ranks: a sum whose second pattern is not within the first
+  SparseRows rows_;          ///< on one rank: the memory of mat_
+  std::vector<int> places_;  ///< in rows_, of the entries it was made of
   MatHandle mat_;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tribound/algebra/petsc_detail.h"
+#include "tribound/algebra/sparse_rows.h"
 #include "tribound/base/parallel.h"
 
 namespace tribound::algebra
@@ -84,16 +85,21 @@ void SparseMatrix::settle()
 SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries, Sharing sharing)
     : size_(n), block_size_(block_size), sharing_(std::move(sharing))
 {
+  if (!sharing_)
+  {
+    take(pattern_of(n, entries, places_));
+    set_values(entries.values);
+    return;
+  }
   create();
-  if (sharing_)
-    for (std::size_t k = 0; k < entries.rows.size(); ++k)
-    {
-      int& row = entries.rows[k];
-      int& col = entries.cols[k];
-      const bool counts = row >= 0 && col >= 0 && detail::is_owned(*sharing_, block_size_, row);
-      row = counts ? detail::global_unknown(*sharing_, block_size_, row) : -1;
-      col = counts ? detail::global_unknown(*sharing_, block_size_, col) : -1;
-    }
+  for (std::size_t k = 0; k < entries.rows.size(); ++k)
+  {
+    int& row = entries.rows[k];
+    int& col = entries.cols[k];
+    const bool counts = row >= 0 && col >= 0 && detail::is_owned(*sharing_, block_size_, row);
+    row = counts ? detail::global_unknown(*sharing_, block_size_, row) : -1;
+    col = counts ? detail::global_unknown(*sharing_, block_size_, col) : -1;
+  }
   check(MatSetPreallocationCOO(mat_.get(), static_cast<PetscCount>(entries.rows.size()), entries.rows.data(),
                                entries.cols.data()),
         "building the pattern of a matrix");
@@ -104,25 +110,34 @@ SparseMatrix::SparseMatrix(Index n, int block_size, Triplets entries, Sharing sh
 SparseMatrix::SparseMatrix(int block_size, SparseRows rows, Sharing sharing)
     : size_(static_cast<Index>(rows.begin.size()) - 1), block_size_(block_size), sharing_(std::move(sharing))
 {
-  if (sharing_)
+  if (!sharing_)
   {
-    create();
-    size_ = static_cast<Index>(sharing_->global.size()) * block_size;
-    for (int& column : rows.columns) column = detail::global_unknown(*sharing_, block_size_, column);
-    check(
-        MatMPIAIJSetPreallocationCSR(mat_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()),
+    take(std::move(rows));
+    return;
+  }
+  create();
+  size_ = static_cast<Index>(sharing_->global.size()) * block_size;
+  for (int& column : rows.columns) column = detail::global_unknown(*sharing_, block_size_, column);
+  check(MatMPIAIJSetPreallocationCSR(mat_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()),
         "assembling a matrix");
-  }
-  else
-  {
-    rows_ = std::move(rows);
-    Mat mat = nullptr;
-    check(MatCreateSeqAIJWithArrays(detail::communicator(), size_, size_, rows_.begin.data(),
-                                    rows_.columns.data(), rows_.values.data(), &mat),
-          "creating a matrix");
-    mat_.reset(mat);
-    check(MatSetBlockSize(mat, block_size_), "creating a matrix");
-  }
+  settle();
+}
+
+SparseMatrix::SparseMatrix(const SparseMatrix& like, SparseRows rows)
+    : size_(like.size_), block_size_(like.block_size_)
+{
+  take(std::move(rows));
+}
+
+void SparseMatrix::take(SparseRows rows)
+{
+  rows_ = std::move(rows);
+  Mat mat = nullptr;
+  check(MatCreateSeqAIJWithArrays(detail::communicator(), size_, size_, rows_.begin.data(),
+                                  rows_.columns.data(), rows_.values.data(), &mat),
+        "creating a matrix");
+  mat_.reset(mat);
+  check(MatSetBlockSize(mat, block_size_), "creating a matrix");
   settle();
 }
 
@@ -133,6 +148,12 @@ std::int64_t SparseMatrix::global_size() const
 
 SparseMatrix SparseMatrix::duplicate() const
 {
+  if (!sharing_)
+  {
+    SparseMatrix copy(*this, rows_);
+    copy.places_ = places_;
+    return copy;
+  }
   SparseMatrix copy;
   copy.size_ = size_;
   copy.block_size_ = block_size_;
@@ -165,9 +186,31 @@ std::vector<double> SparseMatrix::diagonal() const
   return d;
 }
 
+namespace
+{
+
+/// PETSc learns that the values have changed.
+void tell_changed(Mat mat)
+{
+  PetscScalar* values = nullptr;
+  check(MatSeqAIJGetArray(mat, &values), "assembling a matrix");
+  check(MatSeqAIJRestoreArray(mat, &values), "assembling a matrix");
+}
+
+}  // namespace
+
 void SparseMatrix::set_values(std::span<const double> values)
 {
-  check(MatSetValuesCOO(mat_.get(), values.data(), INSERT_VALUES), "assembling a matrix");
+  if (sharing_)
+  {
+    check(MatSetValuesCOO(mat_.get(), values.data(), INSERT_VALUES), "assembling a matrix");
+    return;
+  }
+  assert(values.size() == places_.size());
+  std::ranges::fill(rows_.values, 0.0);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (places_[k] >= 0) rows_.values[places_[k]] += values[k];
+  tell_changed(mat_.get());
 }
 
 namespace
@@ -196,15 +239,13 @@ class Pattern
       if (!std::ranges::includes(row(i), other.row(i), {}, name(*this), name(other))) return false;
     return true;
   }
-  [[nodiscard]] PetscInt n() const { return n_; }
-  /// Of the first entry of a row.
-  [[nodiscard]] PetscInt begin(PetscInt i) const { return rows_[i]; }
+
+ private:
   [[nodiscard]] std::span<const PetscInt> row(PetscInt i) const
   {
     return {columns_ + rows_[i], columns_ + rows_[i + 1]};
   }
 
- private:
   Mat mat_;
   const PetscInt* names_;
   PetscInt n_ = 0;
@@ -222,46 +263,13 @@ bool contains_pattern(Mat a, Mat b)
   return !of_a.others || Pattern(of_a.others, of_a.columns).contains(Pattern(of_b.others, of_b.columns));
 }
 
-/// sum += a on one process, whose entries are among those of the sum. PETSc's MatAXPY() goes through the rows
-/// by copies of them: a tenth of the time of a level with two bodies, where both patterns are parts of the
-/// sum's.
-void add_rows(Mat sum, Mat a)
-{
-  const Pattern to(sum);
-  const Pattern from(a);
-  PetscScalar* values = nullptr;
-  const PetscScalar* added = nullptr;
-  check(MatSeqAIJGetArray(sum, &values), "adding matrices");
-  check(MatSeqAIJGetArrayRead(a, &added), "adding matrices");
-  for (PetscInt i = 0; i < from.n(); ++i)
-  {
-    const std::span<const PetscInt> columns = to.row(i);
-    PetscScalar* in_row = values + to.begin(i);
-    const PetscScalar* entry = added + from.begin(i);
-    std::size_t place = 0;
-    for (const PetscInt column : from.row(i))
-    {
-      while (columns[place] != column)
-      {
-        ++place;
-        assert(place < columns.size());
-      }
-      in_row[place++] += *entry++;
-    }
-  }
-  check(MatSeqAIJRestoreArrayRead(a, &added), "adding matrices");
-  check(MatSeqAIJRestoreArray(sum, &values), "adding matrices");
-  check(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY), "adding matrices");  // PETSc learns that it has changed
-  check(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY), "adding matrices");
-}
-
 }  // namespace
 
 SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
 {
+  if (!a.sharing_) return {a, algebra::sum(a.rows_, b.rows_)};
   SparseMatrix result = a.duplicate();
-  const bool has_more = !contains_pattern(a.mat_.get(), b.mat_.get());
-  result.has_more_ = a.sharing_ ? a.sharing_->ranks.any(has_more) : has_more;
+  result.has_more_ = a.sharing_->ranks.any(!contains_pattern(a.mat_.get(), b.mat_.get()));
   check(MatAXPY(result.mat_.get(), 1.0, b.mat_.get(),
                 result.has_more_ ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN),
         "adding matrices");
@@ -271,13 +279,13 @@ SparseMatrix SparseMatrix::sum(const SparseMatrix& a, const SparseMatrix& b)
 
 void SparseMatrix::assign_sum(const SparseMatrix& a, const SparseMatrix& b)
 {
-  const auto add = [this](const SparseMatrix& term)
+  if (!sharing_)
   {
-    if (sharing_)
-      check(MatAXPY(mat_.get(), 1.0, term.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices");
-    else
-      add_rows(mat_.get(), term.mat_.get());
-  };
+    algebra::assign_sum(a.rows_, b.rows_, rows_);
+    return tell_changed(mat_.get());
+  }
+  const auto add = [this](const SparseMatrix& term)
+  { check(MatAXPY(mat_.get(), 1.0, term.mat_.get(), SUBSET_NONZERO_PATTERN), "adding matrices"); };
   if (has_more_)
   {
     check(MatZeroEntries(mat_.get()), "adding matrices");

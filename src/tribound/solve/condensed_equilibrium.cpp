@@ -21,8 +21,7 @@ CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form)
     on_trace
   };
   std::vector<Place> place(form.space().n_dofs(), elsewhere);
-  const algebra::Triplets pattern =
-      form.contact_tangent(contact::Linearisation::closed_sticking, std::vector<double>(place.size(), 0.0));
+  const algebra::Triplets pattern = form.contact_pattern();
   for (std::size_t e = 0; e < pattern.rows.size(); ++e)
   {
     if (pattern.rows[e] < 0 || pattern.cols[e] < 0) continue;
@@ -69,6 +68,7 @@ class CondensedEquilibrium final : public Equilibrium<dim>
         condensed_(dim, std::move(stiffness), std::move(dofs.layer), std::move(dofs.trace), forces.load,
                    form.space().numbers()),
         diagonal_(condensed_.on_layer_and_trace(diagonal)),
+        contact_(form.contact_pattern()),
         force_scale_(forces.scale)
   {
   }
@@ -110,10 +110,11 @@ class CondensedEquilibrium final : public Equilibrium<dim>
     return norm(solve::round_off(diagonal_, condensed_.near(x)));
   }
 
-  algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
+  algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r, double tolerance,
                              std::span<double> d) override
   {
-    std::ranges::copy(condensed_.solve(contact, r, tolerance), d.begin());
+    contact_.values.assign(contact.begin(), contact.end());
+    std::ranges::copy(condensed_.solve(contact_, r, tolerance), d.begin());
     return {.factorised = !std::exchange(used_, true)};
   }
   algebra::LinearMethod method() const override { return algebra::LinearMethod::condensed; }
@@ -123,6 +124,7 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   const contact::NitscheForm<dim>& form_;
   algebra::Condensation condensed_;
   std::vector<double> diagonal_;  ///< of the stiffness, on layer and trace
+  algebra::Triplets contact_;
   double force_scale_;
   bool used_ = false;
 };

@@ -49,9 +49,9 @@ class Equilibrium
   /// What a residual cannot resolve: round-off in K x, estimated through the diagonal of the stiffness.
   [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
 
-  /// d with (K + contact) d = r, contact as NitscheForm::contact_tangent has it, |residual| <= tolerance up
+  /// d with (K + contact) d = r, contact by NitscheForm::contact_tangent_values(), |residual| <= tolerance up
   /// to round-off. Throws SolveError when the matrix is singular.
-  virtual algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r,
+  virtual algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r,
                                      double tolerance, std::span<double> d) = 0;
   [[nodiscard]] virtual algebra::LinearMethod method() const = 0;
   /// ExternalForces::scale.

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "tribound/algebra/triplets.h"
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -26,9 +25,9 @@ struct Linearised
   {
     return form.linearised_traction(kind, u, w, delta);
   }
-  [[nodiscard]] algebra::Triplets tangent(const contact::NitscheForm<dim>& form) const
+  [[nodiscard]] std::vector<double> tangent(const contact::NitscheForm<dim>& form) const
   {
-    return form.contact_tangent(kind, u, delta);
+    return form.contact_tangent_values(kind, u, delta);
   }
 };
 

@@ -20,10 +20,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
       : form_(form),
         stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints()),
                    form.space().numbers()),
-        contact_(form.space().n_dofs(), dim,
-                 form.contact_tangent(contact::Linearisation::closed_sticking,
-                                      std::vector<double>(form.space().n_dofs(), 0.0)),
-                 form.space().numbers()),
+        contact_(form.space().n_dofs(), dim, form.contact_pattern(), form.space().numbers()),
         tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),
         diagonal_(stiffness_.diagonal()),
         forces_(std::move(forces)),
@@ -57,10 +54,10 @@ class SparseEquilibrium final : public Equilibrium<dim>
   double norm(std::span<const double> x) const override { return form_.space().norm(x); }
   double round_off(std::span<const double> x) const override { return norm(solve::round_off(diagonal_, x)); }
 
-  algebra::LinearSolve solve(const algebra::Triplets& contact, std::span<const double> r, double tolerance,
+  algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r, double tolerance,
                              std::span<double> d) override
   {
-    contact_.set_values(contact.values);
+    contact_.set_values(contact);
     tangent_.assign_sum(stiffness_, contact_);
     const algebra::LinearSolve result = linear_solver_.solve(tangent_, r, tolerance, d);
     for (std::size_t i = 0; i < d.size(); ++i)  // multigrid moves fixed ones as far as the tolerance lets it

@@ -101,11 +101,18 @@ TEST(SparseMatrix, SumHasBothPatterns)
   const algebra::SparseMatrix a(30, 3, large);
   for (const algebra::Triplets& other : {part, random_entries(30, 100, 5)})
   {
-    const algebra::SparseMatrix b(30, 3, other);
+    algebra::SparseMatrix b(30, 3, other);
     algebra::SparseMatrix c = algebra::SparseMatrix::sum(a, b);
-    const std::vector<double> expected = sum(multiply(large, ramp(30)), 1, multiply(other, ramp(30)));
-    for (int repetition = 0; repetition < 3; ++repetition, c.assign_sum(a, b))
+    EXPECT_LE(distance(c.multiply(ramp(30)), sum(a.multiply(ramp(30)), 1, b.multiply(ramp(30)))), 1e-10);
+    for (double factor = 1; factor < 4; ++factor)
+    {
+      std::vector<double> values = other.values;
+      for (double& value : values) value *= factor;
+      b.set_values(values);
+      c.assign_sum(a, b);
+      const std::vector<double> expected = sum(multiply(large, ramp(30)), factor, multiply(other, ramp(30)));
       EXPECT_LE(distance(c.multiply(ramp(30)), expected), 1e-10);
+    }
   }
 }
 

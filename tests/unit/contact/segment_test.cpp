@@ -221,6 +221,27 @@ void expect_tangent(const contact::NitscheForm<dim>& form)
   expect_contact_tangent(form, sum(pushed, 1, random_free_vector(form.constraints(), 0.003, 1)), 1e-6);
 }
 
+/// Tractions are evaluated through the nodes of the segments, states at the points themselves.
+template <int dim>
+void expect_tractions_of_states(int p)
+{
+  const Blocks<dim> c({.law = Coulomb(0.3), .p = p, .n_upper = 2, .n_lower = 3});
+  const std::vector<double> u = random_free_vector(c.form.constraints(), 0.1, 5);
+  const std::vector<Point<dim>> t = c.form.traction(u);
+  double largest = 0;
+  for (const Point<dim>& at : t) largest = std::max(largest, at.norm());
+  EXPECT_GT(largest, 0);
+  for (std::size_t k = 0, i = 0; k < c.form.segments().size(); ++k)
+    for (const contact::ContactState<dim>& state : c.form.contact_states(u, k))
+      EXPECT_LE((state.traction - t[i++]).norm(), 1e-12 * largest);
+}
+
+TEST(ContactSegments, TractionsAreThoseOfTheStates)
+{
+  for (int p = 1; p <= 4; ++p) expect_tractions_of_states<2>(p);
+  for (int p = 1; p <= 3; ++p) expect_tractions_of_states<3>(p);
+}
+
 TEST(ContactSegments, TangentIsTheDerivative)
 {
   for (const problem::ContactLaw& law : laws)

@@ -123,9 +123,9 @@ std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> v
 template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions& t) const -> Fields
 {
-  const contact::SegmentValues<dim> values = form_.values(k);
+  const auto without_gap = form_.traction_without_gap(u, k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
-  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = values.augmented_traction(u, q);
+  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = without_gap.col(q);
   Fields result;
   std::ranges::copy(project(augmented), result.augmented.begin());
   std::ranges::copy(project(on_segment(t.dis, k)), result.dis.begin());

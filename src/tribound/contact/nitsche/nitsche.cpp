@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <optional>
 #include <utility>
 
 #include "tribound/base/parallel.h"
@@ -33,7 +32,9 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       n_owned_segments_(std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
                                               { return is_owned(space.mesh(), segment); })),
       points_(make_points()),
-      tables_(space.basis(), segments_, facet_rule().points)
+      tables_(space.basis(), segments_, facet_rule().points),
+      nodes_(space.degree(), facet_rule().points),
+      node_tables_(space.basis(), segments_, nodes_.nodes)
 {
   look_for_bonds();
 }
@@ -102,11 +103,24 @@ problem::LawPoint<dim> NitscheForm<dim>::law_point(std::size_t k, const Point<di
 }
 
 template <int dim>
-Point<dim> NitscheForm<dim>::augmented_traction(const SegmentValues<dim>& values, std::span<const double> u,
-                                                std::size_t k, int q) const
+auto NitscheForm<dim>::traction_without_gap(std::span<const double> u, std::size_t k) const -> Columns
 {
-  const ContactPoint<dim>& point = contact_points(k)[q];
-  return values.augmented_traction(u, q) + segments_[k].gamma * point.gap * point.normal;
+  const SegmentValues<dim> on_segment = at_nodes(k);
+  Columns nodal(dim, nodes_.values.rows());
+  for (int l = 0; l < nodal.cols(); ++l) nodal.col(l) = on_segment.augmented_traction(u, l);
+  return nodal * nodes_.values;
+}
+
+template <int dim>
+auto NitscheForm<dim>::augmented_traction(std::span<const double> u, std::size_t k) const -> Columns
+{
+  Columns result = traction_without_gap(u, k);
+  for (int q = 0; q < n_segment_points(); ++q)
+  {
+    const ContactPoint<dim>& point = contact_points(k)[q];
+    result.col(q) += segments_[k].gamma * point.gap * point.normal;
+  }
+  return result;
 }
 
 template <int dim>
@@ -131,13 +145,8 @@ template <class Value, class Evaluate>
 std::vector<Value> NitscheForm<dim>::at_contact_points(const Evaluate& evaluate) const
 {
   std::vector<Value> result(n_contact_points());
-  parallel_for(segments_.size(),
-               [&](std::size_t k)
-               {
-                 const SegmentValues<dim> on_segment = values(k);
-                 for (int q = 0; q < n_segment_points(); ++q)
-                   result[k * n_segment_points() + q] = evaluate(on_segment, k, q);
-               });
+  const std::size_t n = n_segment_points();
+  parallel_for(segments_.size(), [&](std::size_t k) { evaluate(k, std::span(result).subspan(k * n, n)); });
   return result;
 }
 
@@ -145,33 +154,45 @@ template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::traction(std::span<const double> u, double delta) const
 {
   return at_contact_points<Point<dim>>(
-      [&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
-      { return respond(k, q, augmented_traction(on_segment, u, k, q), delta); });
+      [&](std::size_t k, std::span<Point<dim>> t)
+      {
+        const Columns at_u = augmented_traction(u, k);
+        for (int q = 0; q < n_segment_points(); ++q) t[q] = respond(k, q, at_u.col(q), delta);
+      });
 }
 
 template <int dim>
 std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind, std::span<const double> u,
                                                               std::span<const double> w, double delta) const
 {
-  return at_contact_points<Point<dim>>(
-      [&](const SegmentValues<dim>& on_segment, std::size_t k, int q) -> Point<dim>
-      {
-        const Point<dim> at_w = augmented_traction(on_segment, w, k, q);
-        if (kind == Linearisation::closed_sticking)
-          return traction_derivative(kind, k, q, at_w, delta) * at_w;
-        const Point<dim> at_u = augmented_traction(on_segment, u, k, q);
-        return respond(k, q, at_u, delta) + traction_derivative(kind, k, q, at_u, delta) * (at_w - at_u);
-      });
+  const auto closed_sticking = [&](std::size_t k, std::span<Point<dim>> t)
+  {
+    const Columns at_w = augmented_traction(w, k);
+    for (int q = 0; q < n_segment_points(); ++q)
+      t[q] = traction_derivative(kind, k, q, at_w.col(q), delta) * at_w.col(q);
+  };
+  const auto newton = [&](std::size_t k, std::span<Point<dim>> t)
+  {
+    const Columns at_w = augmented_traction(w, k);
+    const Columns at_u = augmented_traction(u, k);
+    for (int q = 0; q < n_segment_points(); ++q)
+      t[q] = respond(k, q, at_u.col(q), delta) +
+             traction_derivative(kind, k, q, at_u.col(q), delta) * (at_w.col(q) - at_u.col(q));
+  };
+  return kind == Linearisation::newton ? at_contact_points<Point<dim>>(newton)
+                                       : at_contact_points<Point<dim>>(closed_sticking);
 }
 
 template <int dim>
 std::vector<problem::InterfaceResponse<dim>> NitscheForm<dim>::advance(std::span<const double> u) const
 {
   return at_contact_points<problem::InterfaceResponse<dim>>(
-      [&](const SegmentValues<dim>& on_segment, std::size_t k, int q)
+      [&](std::size_t k, std::span<problem::InterfaceResponse<dim>> responses)
       {
-        return problem::advance<dim>(segments_[k].contact->law, law_point(k, q),
-                                     augmented_traction(on_segment, u, k, q));
+        const Columns at_u = augmented_traction(u, k);
+        for (int q = 0; q < n_segment_points(); ++q)
+          responses[q] =
+              problem::advance<dim>(segments_[k].contact->law, law_point(k, q), Point<dim>(at_u.col(q)));
       });
 }
 
@@ -179,114 +200,17 @@ template <int dim>
 void NitscheForm<dim>::add_contact_load(std::span<const Point<dim>> t, std::span<double> vector) const
 {
   assert(t.size() == n_contact_points());
+  Columns weighted(dim, n_segment_points());
   for (std::size_t k = 0; k < segments_.size(); ++k)
   {
-    const SegmentValues<dim> on_segment = values(k);
+    for (int q = 0; q < n_segment_points(); ++q)
+      weighted.col(q) = contact_points(k)[q].weight * t[k * n_segment_points() + q];
+    const Columns nodal = weighted * nodes_.values.transpose();  // (t, theta_l)
+    const SegmentValues<dim> on_segment = at_nodes(k);
     for (const auto& side : on_segment.sides())
-      for (int q = 0; q < n_segment_points(); ++q)
-        fem::add_at_point<dim>(side.nodes, side.table->values_at(q),
-                               side.side->sign * contact_points(k)[q].weight * t[k * n_segment_points() + q],
-                               vector);
+      for (int l = 0; l < nodal.cols(); ++l)
+        fem::add_at_point<dim>(side.nodes, side.table->values_at(l), side.side->sign * nodal.col(l), vector);
   }
-}
-
-template <int dim>
-void NitscheForm<dim>::add_tangent_block(Linearisation kind, std::span<const double> u, std::size_t k,
-                                         double delta, const SegmentValues<dim>& on_segment,
-                                         std::span<Tensor<dim>> block) const
-{
-  const fem::LagrangeBasis<dim>& basis = space_->basis();
-  std::vector<Tensor<dim>> columns(basis.n_nodes() * on_segment.sides().size());  // DT(u)[phi_j e_b]
-  for (int q = 0; q < n_segment_points(); ++q)
-  {
-    const Tensor<dim> m = traction_derivative(kind, k, q, augmented_traction(on_segment, u, k, q), delta);
-    auto column = columns.begin();
-    for (const auto& side : on_segment.sides())
-      for (int j = 0; j < basis.n_nodes(); ++j) *column++ = m * on_segment.augmented_derivative(side, j, q);
-    auto entry = block.begin();
-    for (const auto& side : on_segment.sides())
-      for (int i = 0; i < basis.n_nodes(); ++i)
-      {
-        if (basis.node(i)[side.side->facet.local] > 0) continue;  // phi_i vanishes on the facet
-        const double tested = -side.side->sign * contact_points(k)[q].weight * side.table->values_at(q)[i];
-        for (const Tensor<dim>& of_j : columns) *entry++ += tested * of_j;
-      }
-  }
-}
-
-template <int dim>
-std::vector<std::size_t> NitscheForm<dim>::first_on_facets() const
-{
-  const auto facets = [](const ContactSegment<dim>& segment)
-  {
-    return std::pair(segment.slave.number,
-                     segment.master ? std::optional(segment.master->number) : std::nullopt);
-  };
-  std::vector<std::size_t> first;
-  for (std::size_t k = 0; k < segments_.size(); ++k)
-    if (k == 0 || facets(segments_[k]) != facets(segments_[k - 1])) first.push_back(k);
-  first.push_back(segments_.size());
-  return first;
-}
-
-template <int dim>
-std::size_t NitscheForm<dim>::n_block_entries(std::size_t k) const
-{
-  const fem::LagrangeBasis<dim>& basis = space_->basis();
-  std::size_t n_sides = 0;
-  std::size_t n_rows = 0;
-  segments_[k].for_each_side(
-      [&](const SegmentSide<dim>& side)
-      {
-        ++n_sides;
-        for (int i = 0; i < basis.n_nodes(); ++i) n_rows += basis.node(i)[side.facet.local] == 0 ? 1 : 0;
-      });
-  return n_rows * n_sides * basis.n_nodes() * dim * dim;
-}
-
-template <int dim>
-void NitscheForm<dim>::put_block_entries(const SegmentValues<dim>& on_segment,
-                                         std::span<const Tensor<dim>> block, std::size_t position,
-                                         algebra::Triplets& entries) const
-{
-  const fem::LagrangeBasis<dim>& basis = space_->basis();
-  const auto free_dof = [&](Index node, int a)
-  { return constraints_.fixed[dim * node + a] ? -1 : dim * node + a; };
-  auto entry = block.begin();
-  for (const auto& row : on_segment.sides())
-    for (int i = 0; i < basis.n_nodes(); ++i)
-    {
-      if (basis.node(i)[row.side->facet.local] > 0) continue;
-      for (const auto& column : on_segment.sides())
-        for (const Index node : column.nodes)
-        {
-          for (int a = 0; a < dim; ++a)
-            for (int b = 0; b < dim; ++b)
-              entries.put(position++, free_dof(row.nodes[i], a), free_dof(node, b), (*entry)(a, b));
-          ++entry;
-        }
-    }
-}
-
-template <int dim>
-algebra::Triplets NitscheForm<dim>::contact_tangent(Linearisation kind, std::span<const double> u,
-                                                    double delta) const
-{
-  const std::vector<std::size_t> first = first_on_facets();
-  const std::size_t n_blocks = first.size() - 1;
-  std::vector<std::size_t> begin{0};
-  for (std::size_t g = 0; g < n_blocks; ++g) begin.push_back(begin.back() + n_block_entries(first[g]));
-  algebra::Triplets entries;
-  entries.resize(begin.back());
-  parallel_for(n_blocks,
-               [&](std::size_t g)
-               {
-                 std::vector<Tensor<dim>> block((begin[g + 1] - begin[g]) / (dim * dim), Tensor<dim>::Zero());
-                 for (std::size_t k = first[g]; k < first[g + 1]; ++k)
-                   add_tangent_block(kind, u, k, delta, values(k), block);
-                 put_block_entries(values(first[g]), block, begin[g], entries);
-               });
-  return entries;
 }
 
 template <int dim>

@@ -117,11 +117,10 @@ class NitscheForm
   /// What the law of segment k knows at the point x with coordinates s on it, where N is n.
   [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, const Point<dim - 1>& s, const Point<dim>& x,
                                                  const Point<dim>& n) const;
-  /// What evaluates functions of the space at the contact points of segment k.
-  [[nodiscard]] SegmentValues<dim> values(std::size_t k) const
-  {
-    return {*problem_, *space_, segments_[k], tables_[k]};
-  }
+  /// Vectors at the contact points of a segment.
+  using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
+  /// {sigma(u)} - gamma [u] there, P(u) without the gap.
+  [[nodiscard]] Columns traction_without_gap(std::span<const double> u, std::size_t k) const;
 
   /// T(u) at the contact points.
   [[nodiscard]] std::vector<Point<dim>> traction(std::span<const double> u, double delta = 0) const;
@@ -131,9 +130,13 @@ class NitscheForm
                                                             double delta = 0) const;
   /// vector_i += (t, [phi_i])_C with t given at the contact points.
   void add_contact_load(std::span<const Point<dim>> t, std::span<double> vector) const;
-  /// -(DT(u)[phi_j], [phi_i])_C over free i and j. Rows and columns do not depend on u.
+  /// -(DT(u)[phi_j], [phi_i])_C over free i and j.
   [[nodiscard]] algebra::Triplets contact_tangent(Linearisation kind, std::span<const double> u,
                                                   double delta = 0) const;
+  /// Its entries, whose rows and columns do not depend on u; and these, with the value 0.
+  [[nodiscard]] std::vector<double> contact_tangent_values(Linearisation kind, std::span<const double> u,
+                                                           double delta = 0) const;
+  [[nodiscard]] algebra::Triplets contact_pattern() const;
 
   /// States on segment k at its contact points, or at the points of `table`.
   [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, std::size_t k) const
@@ -152,26 +155,40 @@ class NitscheForm
     const ContactPoint<dim>& point = contact_points(k)[q];
     return {point.normal, point.strength, segments_[k].gamma, point.state};
   }
-  /// P(u) = {sigma(u)} - gamma ([u] - g n), so that P^n = P.n and P^t = P - P^n n.
-  [[nodiscard]] Point<dim> augmented_traction(const SegmentValues<dim>& values, std::span<const double> u,
-                                              std::size_t k, int q) const;
+  /// What evaluates functions of the space at the nodes of segment k.
+  [[nodiscard]] SegmentValues<dim> at_nodes(std::size_t k) const
+  {
+    return {*problem_, *space_, segments_[k], node_tables_[k]};
+  }
+  /// P(u) = {sigma(u)} - gamma ([u] - g n) at its contact points: P^n = P.n and P^t = P - P^n n.
+  [[nodiscard]] Columns augmented_traction(std::span<const double> u, std::size_t k) const;
   /// T from P = `augmented` at a contact point of segment k.
   [[nodiscard]] Point<dim> respond(std::size_t k, int q, const Point<dim>& augmented, double delta) const;
   /// M with DT(u)[w] = M ({sigma(w)} - gamma [w]), from P(u) at point q of segment k.
   [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, int q,
                                                 const Point<dim>& augmented, double delta) const;
-  /// block[i * columns + j](a, b) += -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, i over the nodes of all
+  /// block(dim i + a, dim j + b) += -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, i over the nodes of all
   /// sides that are on the facet, and j over all nodes of all sides.
   void add_tangent_block(Linearisation kind, std::span<const double> u, std::size_t k, double delta,
-                         const SegmentValues<dim>& on_segment, std::span<Tensor<dim>> block) const;
-  /// Segments number first[g], ..., first[g + 1] - 1 lie on the same facets: one block does for them.
-  [[nodiscard]] std::vector<std::size_t> first_on_facets() const;
-  /// Entries of the rows of the block of segment k that belong to nodes on the facets.
-  [[nodiscard]] std::size_t n_block_entries(std::size_t k) const;
-  /// Sets them, from `position` on.
-  void put_block_entries(const SegmentValues<dim>& on_segment, std::span<const Tensor<dim>> block,
-                         std::size_t position, algebra::Triplets& entries) const;
-  /// evaluate(values on segment k, k, q) at every contact point.
+                         Eigen::Ref<Eigen::MatrixXd> block) const;
+  /// -(DT(u)[v], theta_i e_a) = sum_l result(dim i + a, dim l + b) (P(v) without the gap)_b at node l of the
+  /// segment.
+  [[nodiscard]] Eigen::MatrixXd tested_derivative(Linearisation kind, std::span<const double> u,
+                                                  std::size_t k, double delta) const;
+  /// The block of segments number first, ..., last - 1, which lie on the same facets; its entries are number
+  /// position, ... of the tangent, column by column.
+  struct TangentBlock
+  {
+    std::size_t first;
+    std::size_t last;
+    std::size_t position;
+    Eigen::Index n_rows;  ///< of nodes on the facets
+    Eigen::Index n_columns;
+
+    [[nodiscard]] std::size_t end() const { return position + n_rows * n_columns; }
+  };
+  [[nodiscard]] std::vector<TangentBlock> tangent_blocks() const;
+  /// evaluate(k, values) sets them at the contact points of every segment.
   template <class Value, class Evaluate>
   [[nodiscard]] std::vector<Value> at_contact_points(const Evaluate& evaluate) const;
 
@@ -184,7 +201,9 @@ class NitscheForm
   std::vector<double> load_;
   std::size_t n_owned_segments_;
   std::vector<ContactPoint<dim>> points_;
-  SegmentTables<dim> tables_;                           ///< at the contact points
+  SegmentTables<dim> tables_;  ///< at the contact points
+  SegmentNodes<dim> nodes_;
+  SegmentTables<dim> node_tables_;
   std::shared_ptr<const ContactHistory<dim>> history_;  ///< null: none yet
   bool has_bonds_ = false;                              ///< on any rank
 };

@@ -38,6 +38,20 @@ SegmentTables<dim>::SegmentTables(const fem::LagrangeBasis<dim>& basis,
   }
 }
 
+template <int dim>
+SegmentNodes<dim>::SegmentNodes(int degree, std::span<const Point<dim - 1>> points)
+{
+  const fem::LagrangeBasis<dim - 1> basis(degree);
+  const int n = basis.n_nodes();
+  nodes = basis.node_points();
+  const fem::Tabulation<dim - 1> table = basis.tabulate(points);
+  values = Eigen::Map<const Eigen::MatrixXd>(table.values.data(), n, table.n_points);
+  products.resize(table.n_points, n * n);
+  for (int i = 0; i < n; ++i)
+    for (int l = 0; l < n; ++l)
+      products.col(i * n + l) = values.row(i).cwiseProduct(values.row(l)).transpose();
+}
+
 namespace
 {
 
@@ -109,6 +123,8 @@ template fem::Tabulation<3> tabulate(const fem::LagrangeBasis<3>&, const Segment
                                      std::span<const Point<2>>);
 template class SegmentTables<2>;
 template class SegmentTables<3>;
+template struct SegmentNodes<2>;
+template struct SegmentNodes<3>;
 template class SegmentValues<2>;
 template class SegmentValues<3>;
 

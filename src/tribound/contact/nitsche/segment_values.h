@@ -3,6 +3,7 @@
 /// @file segment_values.h
 /// Finite element functions on contact segments: [u], {sigma(u)} and P(u).
 
+#include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
@@ -48,6 +49,18 @@ class SegmentTables
   std::vector<Point<dim - 1>> points_;
   std::vector<fem::Tabulation<dim>> tables_;   ///< of whole facets first, by their local numbers
   std::vector<std::array<int, 2>> tables_of_;  ///< of slave and master; -1: there is none
+};
+
+/// P^p on a segment by values at the nodes of its Lagrange basis theta. [u], {sigma(u)} and P(u) without the
+/// gap are in it: they need be evaluated at the nodes alone, of which there are fewer than points of a rule.
+template <int dim>
+struct SegmentNodes
+{
+  SegmentNodes(int degree, std::span<const Point<dim - 1>> points);
+
+  std::vector<Point<dim - 1>> nodes;
+  Eigen::MatrixXd values;    ///< (l, q): theta_l at point q
+  Eigen::MatrixXd products;  ///< (q, i n + l): theta_i theta_l there, n the number of nodes
 };
 
 /// Evaluates functions of a space on one segment at the points of its table. Keeps references to all it is
