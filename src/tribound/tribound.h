@@ -29,6 +29,8 @@
 #include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/overlay.h"
+#include "tribound/mesh/quadratic_facets.h"
+#include "tribound/mesh/quadratic_surface.h"
 #include "tribound/mesh/refine.h"
 #include "tribound/mesh/share_out.h"
 #include "tribound/mesh/shared_facets.h"

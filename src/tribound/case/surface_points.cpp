@@ -73,7 +73,7 @@ SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangl
           .closest = [nearest, shift](const Point<3>& x) -> Point<3> { return nearest(x).point + shift; }};
 }
 
-SurfacePoints points_of(std::shared_ptr<const mesh::QuadraticSurface<3>> shape)
+SurfacePoints points_of(const std::shared_ptr<const mesh::QuadraticSurface<3>>& shape)
 {
   const auto closest = [shape](const Point<3>& x)
   { return shape->value(mesh::QuadraticSurface<3>::Nodal::point, x); };

@@ -28,7 +28,7 @@ struct SurfacePoints
 [[nodiscard]] SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
                                       const Point<3>& shift);
 /// As a shape: X in the place of the nearest point.
-[[nodiscard]] SurfacePoints points_of(std::shared_ptr<const mesh::QuadraticSurface<3>> shape);
+[[nodiscard]] SurfacePoints points_of(const std::shared_ptr<const mesh::QuadraticSurface<3>>& shape);
 
 /// What problem::ContactGeometry is for formulas. Functions without enclosures: the certificate says so.
 struct PointGeometry
