@@ -113,6 +113,8 @@ void update_statements(io::RunRecord& record, const adapt::LevelView<dim>& view,
   record.statements = certify::statements(
       view.discrete.form, rule,
       uses_friedrichs ? view.level.friedrichs : std::optional<certify::FriedrichsConstant>());
+  if (!record.levels.back().load_step && view.discrete.form.problem().uses_time())
+    record.statements.assumptions.emplace_back("load_factor", "t = 1 in all formulas, without [history]");
   if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))
     record.statements.assumptions.emplace_back(
         "stress",

@@ -212,9 +212,16 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
       solve::NewtonOptions full = method.newton;
       full.damping = false;
       full.max_steps = std::min(method.full_steps, full.max_steps);
-      auto result = solve::solve<dim>(form, u, full, method.solver, observer, delta, first.equilibrium);
-      if (result.message.empty()) return result;
-      first.equilibrium = std::move(result.equilibrium);
+      try
+      {
+        auto result = solve::solve<dim>(form, u, full, method.solver, observer, delta, first.equilibrium);
+        if (result.message.empty()) return result;
+        first.equilibrium = std::move(result.equilibrium);
+      }
+      catch (const SolveError& error)  // far off, where everything slides, a tangent may be singular
+      {
+        require_all_failed(ranks, error.what());
+      }
     }
     return solve::solve<dim>(form, u, method.newton, method.solver, observer, delta, first.equilibrium);
   };

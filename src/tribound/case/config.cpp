@@ -229,30 +229,6 @@ io::EffectiveCase effective_case(Node document, const Config& config, std::span<
   return {to_toml(document), {overrides.begin(), overrides.end()}};
 }
 
-bool remembers(const std::optional<problem::Contact>& contact)
-{
-  return contact && problem::has_memory(contact->law);
-}
-
-/// An interface alone is a history of one step.
-void read_load_steps(const TableReader& root, Config& config)
-{
-  root.read("history", config.history, read_history);
-  if (!config.history && (std::ranges::any_of(config.boundaries, remembers, &BoundaryConfig::contact) ||
-                          std::ranges::any_of(config.contacts, remembers, &ContactConfig::contact)))
-    config.history.emplace();
-  // What a step leaves to the next ones is not in their bounds: all of it is solved for.
-  if (config.history) config.method.stopping.criterion = adapt::Stopping::last_bounded;
-}
-
-void check_regularisation(const TableReader& root, const Config& config)
-{
-  if (config.method.regularisation && config.history)
-    throw InputError(root.find("regularisation")->where,
-                     root.has("history") ? "stands beside [history]" : "stands beside an interface",
-                     "drop it: load steps go by the plain method");
-}
-
 Config read_document(const Node& document, std::string file)
 {
   const TableReader root(document, {"title", "degree", "mesh", "material", "load", "boundary", "contact",
@@ -281,16 +257,13 @@ Config read_document(const Node& document, std::string file)
   read_method("nitsche", read_nitsche);
   read_method("newton", read_newton);
   root.read("regularisation", config.method.regularisation, read_regularisation);
-  check_regularisation(root, config);
   root.read("adapt", config.adapt, read_adapt);
   read_method("certify", read_certify);
   root.read("solver", config.method.solver, read_solver);
   root.read("study", config.study, [&](const Node& node) { return read_study(node, config.method.degree); });
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
-  if (config.output.checkpoint && config.history)
-    throw InputError({.file = config.file, .key = "output.checkpoint"},
-                     "is for adaptive runs, and this is one over load steps", "drop it");
+  check_load_steps(root, config);
   return config;
 }
 

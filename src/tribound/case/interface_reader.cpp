@@ -155,8 +155,6 @@ std::vector<double> equal_steps(const Node& node)
   return steps;
 }
 
-}  // namespace
-
 HistoryConfig read_history(const Node& node)
 {
   const TableReader table(node, {"steps"});
@@ -171,6 +169,35 @@ HistoryConfig read_history(const Node& node)
     for (const Node& item : *items) history.steps.push_back(to_number(item));
   if (history.steps.empty()) throw InputError(steps.where, "is empty", steps_hint);
   return history;
+}
+
+bool remembers(const std::optional<problem::Contact>& contact)
+{
+  return contact && problem::has_memory(contact->law);
+}
+
+}  // namespace
+
+void read_load_steps(const TableReader& root, Config& config)
+{
+  root.read("history", config.history, read_history);
+  if (!config.history && (std::ranges::any_of(config.boundaries, remembers, &BoundaryConfig::contact) ||
+                          std::ranges::any_of(config.contacts, remembers, &ContactConfig::contact)))
+    config.history.emplace();
+  // What a step leaves to the next ones is not in their bounds: all of it is solved for.
+  if (config.history) config.method.stopping.criterion = adapt::Stopping::last_bounded;
+}
+
+void check_load_steps(const TableReader& root, const Config& config)
+{
+  if (!config.history) return;
+  if (config.method.regularisation)
+    throw InputError(root.find("regularisation")->where,
+                     root.has("history") ? "stands beside [history]" : "stands beside an interface",
+                     "drop it: load steps go by the plain method");
+  if (config.output.checkpoint)
+    throw InputError({.file = config.file, .key = "output.checkpoint"},
+                     "is for adaptive runs, and this is one over load steps", "drop it");
 }
 
 }  // namespace tribound::case_file

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tribound/case/history.h"
+#include "tribound/case/config.h"
 #include "tribound/case/table_reader.h"
 #include "tribound/problem/problem.h"
 
@@ -21,7 +21,11 @@ namespace tribound::case_file
 /// The contact that an interface table describes, with `gap` as it is before the table is read.
 [[nodiscard]] problem::Contact read_interface(const TableReader& table, std::optional<problem::Field> gap);
 
-/// [history].
-[[nodiscard]] HistoryConfig read_history(const Node& node);
+/// Reads [history] of a case whose contacts are read already, and how its steps are solved unless [newton]
+/// says otherwise. An interface alone is a history of one step.
+void read_load_steps(const TableReader& root, Config& config);
+
+/// Throws InputError for what does not go with load steps, once all of the case is read.
+void check_load_steps(const TableReader& root, const Config& config);
 
 }  // namespace tribound::case_file
