@@ -32,6 +32,7 @@ std::string valid_case(const std::string& table)
       "mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\nmaterial = { E = 1, nu = 0 }\n";
   if (table.starts_with("load")) text += "load.body = [0, 0]\n";
   if (table == "boundary.top") text += "boundary.top.traction = [0, 0]\n";
+  if (table == "history") text += "history.steps = [1]\n";
   if (table == "regularisation") text += "regularisation = {}\n";
   if (table == "boundary.top.contact") text += "boundary.top.contact = {}\n";
   if (table.starts_with("obstacle.o")) text += "boundary.top.contact.obstacle = 'o'\n";
@@ -165,6 +166,12 @@ void try_out(const Row& row)
     expect_accepted(row, "\"2*x\"");
     expect_accepted(row, "-1");
     expect_refused(row, "[1, 2]");
+  }
+  else if (row.type.starts_with("array of numbers"))
+  {
+    expect_accepted(row, "[0, 1.5, -1]");
+    expect_refused(row, "[]");
+    expect_refused(row, "1");
   }
   else if (row.type == "table")
     expect_refused(row, "1");

@@ -48,7 +48,9 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
 
 int newton_steps(const LevelRecord& level)
 {
-  return static_cast<int>(level.newton.size()) - level.finishing_steps;
+  // A load step is solved to the end whatever the criterion would have asked for.
+  const int not_asked_for = level.load_step ? 0 : level.finishing_steps;
+  return static_cast<int>(level.newton.size()) - not_asked_for;
 }
 
 bool is_regularised(const LevelRecord& level)

@@ -85,7 +85,8 @@ template <int dim>
 [[nodiscard]] certify::RunKind run_kind(const LevelRecord& level);
 [[nodiscard]] certify::RunKind run_kind(std::span<const LevelRecord> levels);
 
-/// Newton steps until the stopping criterion held, without those that finish the last level.
+/// Newton steps until the stopping criterion held, without those that finish the last level; of a load step
+/// all.
 [[nodiscard]] int newton_steps(const LevelRecord& level);
 
 /// delta of T_delta in the last Newton step.
