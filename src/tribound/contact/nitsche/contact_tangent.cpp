@@ -19,8 +19,8 @@ Eigen::MatrixXd NitscheForm<dim>::tested_derivative(Linearisation kind, std::spa
   for (int q = 0; q < n_segment_points(); ++q)
     Eigen::Map<Tensor<dim>>(weighted.col(q).data()) =
         -contact_points(k)[q].weight * traction_derivative(kind, k, q, at_u.col(q), delta);
-  const Eigen::Matrix<double, squared, Eigen::Dynamic> tested = weighted * nodes_.products;
-  const Eigen::Index n = nodes_.values.rows();
+  const Eigen::Matrix<double, squared, Eigen::Dynamic> tested = weighted * nodes_.products();
+  const Eigen::Index n = nodes_.values().rows();
   Eigen::MatrixXd result(dim * n, dim * n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index l = 0; l < n; ++l)

@@ -34,7 +34,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       points_(make_points()),
       tables_(space.basis(), segments_, facet_rule().points),
       nodes_(space.degree(), facet_rule().points),
-      node_tables_(space.basis(), segments_, nodes_.nodes)
+      node_tables_(space.basis(), segments_, nodes_.nodes())
 {
   look_for_bonds();
 }
@@ -106,9 +106,9 @@ template <int dim>
 auto NitscheForm<dim>::traction_without_gap(std::span<const double> u, std::size_t k) const -> Columns
 {
   const SegmentValues<dim> on_segment = at_nodes(k);
-  Columns nodal(dim, nodes_.values.rows());
+  Columns nodal(dim, nodes_.values().rows());
   for (int l = 0; l < nodal.cols(); ++l) nodal.col(l) = on_segment.augmented_traction(u, l);
-  return nodal * nodes_.values;
+  return nodal * nodes_.values();
 }
 
 template <int dim>
@@ -205,7 +205,7 @@ void NitscheForm<dim>::add_contact_load(std::span<const Point<dim>> t, std::span
   {
     for (int q = 0; q < n_segment_points(); ++q)
       weighted.col(q) = contact_points(k)[q].weight * t[k * n_segment_points() + q];
-    const Columns nodal = weighted * nodes_.values.transpose();  // (t, theta_l)
+    const Columns nodal = weighted * nodes_.values().transpose();  // (t, theta_l)
     const SegmentValues<dim> on_segment = at_nodes(k);
     for (const auto& side : on_segment.sides())
       for (int l = 0; l < nodal.cols(); ++l)

@@ -43,13 +43,13 @@ SegmentNodes<dim>::SegmentNodes(int degree, std::span<const Point<dim - 1>> poin
 {
   const fem::LagrangeBasis<dim - 1> basis(degree);
   const int n = basis.n_nodes();
-  nodes = basis.node_points();
+  nodes_ = basis.node_points();
   const fem::Tabulation<dim - 1> table = basis.tabulate(points);
-  values = Eigen::Map<const Eigen::MatrixXd>(table.values.data(), n, table.n_points);
-  products.resize(table.n_points, n * n);
+  values_.assign(table.values.begin(), table.values.end());
+  products_.reserve(values_.size() * n);
   for (int i = 0; i < n; ++i)
     for (int l = 0; l < n; ++l)
-      products.col(i * n + l) = values.row(i).cwiseProduct(values.row(l)).transpose();
+      for (int q = 0; q < table.n_points; ++q) products_.push_back(values_[q * n + i] * values_[q * n + l]);
 }
 
 namespace
@@ -123,8 +123,8 @@ template fem::Tabulation<3> tabulate(const fem::LagrangeBasis<3>&, const Segment
                                      std::span<const Point<2>>);
 template class SegmentTables<2>;
 template class SegmentTables<3>;
-template struct SegmentNodes<2>;
-template struct SegmentNodes<3>;
+template class SegmentNodes<2>;
+template class SegmentNodes<3>;
 template class SegmentValues<2>;
 template class SegmentValues<3>;
 

@@ -54,13 +54,30 @@ class SegmentTables
 /// P^p on a segment by values at the nodes of its Lagrange basis theta. [u], {sigma(u)} and P(u) without the
 /// gap are in it: they need be evaluated at the nodes alone, of which there are fewer than points of a rule.
 template <int dim>
-struct SegmentNodes
+class SegmentNodes
 {
+ public:
   SegmentNodes(int degree, std::span<const Point<dim - 1>> points);
 
-  std::vector<Point<dim - 1>> nodes;
-  Eigen::MatrixXd values;    ///< (l, q): theta_l at point q
-  Eigen::MatrixXd products;  ///< (q, i n + l): theta_i theta_l there, n the number of nodes
+  [[nodiscard]] std::span<const Point<dim - 1>> nodes() const { return nodes_; }
+  /// (l, q): theta_l at point q.
+  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> values() const
+  {
+    return {values_.data(), std::ssize(nodes_), std::ssize(values_) / std::ssize(nodes_)};
+  }
+  /// (q, i n + l): theta_i theta_l there, n the number of nodes.
+  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> products() const
+  {
+    return {products_.data(), std::ssize(values_) / std::ssize(nodes_),
+            std::ssize(nodes_) * std::ssize(nodes_)};
+  }
+
+ private:
+  // No matrices of Eigen of dynamic size: how those are allocated depends on the instructions that a program
+  // is compiled for.
+  std::vector<Point<dim - 1>> nodes_;
+  std::vector<double> values_;
+  std::vector<double> products_;
 };
 
 /// Evaluates functions of a space on one segment at the points of its table. Keeps references to all it is
