@@ -103,6 +103,7 @@ const std::array kinds = {InterfaceKind{"joint", joint_keys, read_joint},
 const InterfaceKind& kind_of(const TableReader& table)
 {
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const InterfaceKind& kind : kinds) names.emplace_back(kind.name);
   const Node& law = table.require("law", "\"joint\", \"mixed\" or \"endo\"");
   const InterfaceKind& chosen = kinds.at(to_choice(law, names));
