@@ -3,6 +3,7 @@
 /// @file arched_block.h
 /// A block on a round side, what it may touch there, and another body below it.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>
@@ -12,7 +13,10 @@
 
 #include "support/meshes.h"
 #include "support/problem_data.h"
+#include "tribound/adapt/method.h"
+#include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/problem/surface.h"
+#include "tribound/solve/newton.h"
 
 namespace tribound::test
 {
@@ -129,6 +133,23 @@ std::pair<mesh::MeshData<dim>, ProblemData<dim>> pair_on_arc(int n, problem::Con
 {
   static const std::vector<problem::ContactLaw> all = {Frictionless(), Tresca(0.004), Coulomb(0.3)};
   return all;
+}
+
+/// The largest pressure on the lower side of a block of this mesh, pressed down by 0.02, degree 2.
+[[nodiscard]] inline double largest_pressure(const problem::Contact& contact, const mesh::Mesh<2>& mesh)
+{
+  ProblemData<2> data = pressed_on<2>(contact);
+  data.boundaries[0] = fixed<2>("top", 0.0, -0.02);
+  const problem::Problem<2> problem = data.on(mesh);
+  const fem::LagrangeSpace<2> space(mesh, 2);
+  const adapt::Method method{.degree = 2};
+  const contact::NitscheForm<2> form(problem, space, method.gamma_0());
+  const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, method.newton, method.solver);
+  double largest = 0;
+  const std::vector<Point<2>> traction = form.traction(newton.u);
+  for (std::size_t i = 0; i < traction.size(); ++i)
+    largest = std::max(largest, -traction[i].dot(form.contact_points()[i].normal));
+  return largest;
 }
 
 }  // namespace tribound::test

@@ -68,22 +68,6 @@ problem::Contact contact_on(const mesh::Mesh<dim>& mesh, const problem::Surface&
   return contact;
 }
 
-double largest_pressure(const problem::Contact& contact, const mesh::Mesh<2>& mesh)
-{
-  ProblemData<2> data = pressed_on<2>(contact);
-  data.boundaries[0] = fixed<2>("top", 0.0, -0.02);
-  const problem::Problem<2> problem = data.on(mesh);
-  const fem::LagrangeSpace<2> space(mesh, 2);
-  const adapt::Method method{.degree = 2};
-  const contact::NitscheForm<2> form(problem, space, method.gamma_0());
-  const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, method.newton, method.solver);
-  double largest = 0;
-  const std::vector<Point<2>> traction = form.traction(newton.u);
-  for (std::size_t i = 0; i < traction.size(); ++i)
-    largest = std::max(largest, -traction[i].dot(form.contact_points()[i].normal));
-  return largest;
-}
-
 /// Gap and direction against the circle's, at points of the facets.
 TEST(Order2, ConvergesToTheCircle)
 {
