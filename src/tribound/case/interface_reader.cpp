@@ -16,21 +16,7 @@ namespace
 
 using problem::Unloading;
 
-constexpr std::array<std::string_view, 2> common_keys = {"law", "broken"};
-constexpr std::array<std::string_view, 8> joint_keys = {
-    "tensile_strength", "fracture_energy", "cohesion", "slip_length",
-    "coefficient",      "threshold",       "stick",    "unloading"};
-constexpr std::array<std::string_view, 5> mixed_keys = {"tensile_strength", "fracture_energy", "shear_ratio",
-                                                        "coefficient", "unloading"};
-constexpr std::array<std::string_view, 6> endo_keys = {
-    "normal_stiffness", "tangential_stiffness", "coefficient", "b_normal", "b_tangential", "d1"};
-
-struct InterfaceKind
-{
-  std::string_view name;
-  std::span<const std::string_view> keys;
-  problem::ContactLaw (*read)(const TableReader& table);
-};
+using ReadLaw = problem::ContactLaw (*)(const TableReader& table);
 
 void read_tension(const TableReader& table, problem::Tension& tension)
 {
@@ -96,23 +82,23 @@ problem::ContactLaw read_endo(const TableReader& table)
   return problem::EndoLaw(endo);
 }
 
-const std::array kinds = {InterfaceKind{"joint", joint_keys, read_joint},
-                          InterfaceKind{"mixed", mixed_keys, read_mixed},
-                          InterfaceKind{"endo", endo_keys, read_endo}};
+const std::array laws = {
+    KeyGroup{"joint",
+             {"tensile_strength", "fracture_energy", "cohesion", "slip_length", "coefficient", "threshold",
+              "stick", "unloading"}},
+    KeyGroup{"mixed", {"tensile_strength", "fracture_energy", "shear_ratio", "coefficient", "unloading"}},
+    KeyGroup{"endo",
+             {"normal_stiffness", "tangential_stiffness", "coefficient", "b_normal", "b_tangential", "d1"}}};
+constexpr std::array<ReadLaw, laws.size()> read_law = {read_joint, read_mixed, read_endo};
 
-const InterfaceKind& kind_of(const TableReader& table)
+/// The law that the table names, a position in `laws`.
+std::size_t choose_law(const TableReader& table)
 {
   std::vector<std::string> names;
-  names.reserve(kinds.size());
-  for (const InterfaceKind& kind : kinds) names.emplace_back(kind.name);
-  const Node& law = table.require("law", "\"joint\", \"mixed\" or \"endo\"");
-  const InterfaceKind& chosen = kinds.at(to_choice(law, names));
-  for (const InterfaceKind& kind : kinds)
-    for (const std::string_view key : kind.keys)
-      if (const Node* node = table.find(key);
-          node != nullptr && std::ranges::find(chosen.keys, key) == chosen.keys.end())
-        throw InputError(node->where, fmt::format("does not belong to law = \"{}\"", chosen.name),
-                         fmt::format("it goes with law = \"{}\"", kind.name));
+  names.reserve(laws.size());
+  for (const KeyGroup& law : laws) names.emplace_back(law.name);
+  const std::size_t chosen = to_choice(table.require("law", "\"joint\", \"mixed\" or \"endo\""), names);
+  refuse_keys_of_others(table, "law", laws, chosen);
   return chosen;
 }
 
@@ -120,9 +106,9 @@ const InterfaceKind& kind_of(const TableReader& table)
 
 std::vector<std::string_view> interface_keys(std::initializer_list<std::string_view> others)
 {
-  std::vector<std::string_view> keys(common_keys.begin(), common_keys.end());
-  for (const InterfaceKind& kind : kinds)
-    for (const std::string_view key : kind.keys)
+  std::vector<std::string_view> keys = {"law", "broken"};
+  for (const KeyGroup& law : laws)
+    for (const std::string_view key : law.keys)
       if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
   keys.insert(keys.end(), others.begin(), others.end());
   return keys;
@@ -130,7 +116,7 @@ std::vector<std::string_view> interface_keys(std::initializer_list<std::string_v
 
 problem::Contact read_interface(const TableReader& table, std::optional<problem::Field> gap)
 {
-  problem::Contact contact(kind_of(table).read(table), std::move(gap));
+  problem::Contact contact(read_law.at(choose_law(table))(table), std::move(gap));
   if (const std::string fault = problem::fault(contact.law); !fault.empty())
     throw InputError(table.find("law")->where, fault, "other constants of the law");
   table.read("broken", contact.broken, to_field);

@@ -69,11 +69,14 @@ problem::ContactLaw read_law(const TableReader& table, std::span<const problem::
   for (const problem::LawKind& kind : kinds) names.emplace_back(kind.name);
   std::size_t chosen = 0;
   table.read("friction", chosen, [&](const Node& node) { return to_choice(node, names); });
+  std::vector<KeyGroup> groups;
+  groups.reserve(kinds.size());
   for (const problem::LawKind& kind : kinds)
-    for (const problem::LawKey& key : kind.keys)
-      if (const Node* node = table.find(key.key); node != nullptr && kind.name != kinds[chosen].name)
-        throw InputError(node->where, fmt::format("does not belong to friction = \"{}\"", names[chosen]),
-                         fmt::format("it goes with friction = \"{}\"", kind.name));
+  {
+    KeyGroup& group = groups.emplace_back(KeyGroup{kind.name, {}});
+    for (const problem::LawKey& key : kind.keys) group.keys.push_back(key.key);
+  }
+  refuse_keys_of_others(table, "friction", groups, chosen);
   std::vector<problem::Field> values;
   for (const problem::LawKey& key : kinds[chosen].keys) values.push_back(read_law_value(table, key));
   return kinds[chosen].make(values);
@@ -89,23 +92,28 @@ std::vector<std::string_view> law_keys(std::initializer_list<std::string_view> o
   return keys;
 }
 
-void read_obstacle(const Node& node, BoundaryConfig& boundary)
+/// Sets what touches an obstacle, with the keys that all of these have beside their law.
+void set_obstacle(const TableReader& table, problem::Contact contact, BoundaryConfig& boundary)
 {
-  const TableReader table(node, law_keys({"gap", "obstacle", "shape", "normal"}));
-  problem::Contact contact(read_law(table, problem::obstacle_law_kinds()), problem::Field(0.0, node.where));
   table.read("gap", *contact.gap, to_field);
   boundary.contact = std::move(contact);
   boundary.geometry = read_obstacle_geometry(table);
+}
+
+void read_obstacle(const Node& node, BoundaryConfig& boundary)
+{
+  const TableReader table(node, law_keys({"gap", "obstacle", "shape", "normal"}));
+  set_obstacle(
+      table,
+      problem::Contact(read_law(table, problem::obstacle_law_kinds()), problem::Field(0.0, node.where)),
+      boundary);
 }
 
 /// `interface`: what touches an obstacle and remembers.
 void read_memory(const Node& node, BoundaryConfig& boundary)
 {
   const TableReader table(node, interface_keys({"gap", "obstacle", "shape", "normal"}));
-  problem::Contact contact = read_interface(table, problem::Field(0.0, node.where));
-  table.read("gap", *contact.gap, to_field);
-  boundary.contact = std::move(contact);
-  boundary.geometry = read_obstacle_geometry(table);
+  set_obstacle(table, read_interface(table, problem::Field(0.0, node.where)), boundary);
 }
 
 /// A name, or an array of them.

@@ -69,6 +69,17 @@ std::vector<const Entry*> TableReader::named() const
   return entries;
 }
 
+void refuse_keys_of_others(const TableReader& table, std::string_view what, std::span<const KeyGroup> groups,
+                           std::size_t chosen)
+{
+  const KeyGroup& own = groups[chosen];
+  for (const KeyGroup& group : groups)
+    for (const std::string_view key : group.keys)
+      if (const Node* node = table.find(key); node != nullptr && std::ranges::count(own.keys, key) == 0)
+        throw InputError(node->where, fmt::format("does not belong to {} = \"{}\"", what, own.name),
+                         fmt::format("it goes with {} = \"{}\"", what, group.name));
+}
+
 void fail_type(const Node& node, std::string_view expected, const std::string& hint)
 {
   throw InputError(node.where, fmt::format("must be {}, found {}", expected, describe(node)), hint);

@@ -65,6 +65,17 @@ class TableReader
   const Where& where_;
 };
 
+/// Keys that go with one of several choices.
+struct KeyGroup
+{
+  std::string_view name;  ///< of the choice
+  std::vector<std::string_view> keys;
+};
+
+/// Throws for a key that is none of the chosen group but one of another; `what` is the key of the choice.
+void refuse_keys_of_others(const TableReader& table, std::string_view what, std::span<const KeyGroup> groups,
+                           std::size_t chosen);
+
 /// A value of the wrong type.
 [[noreturn]] void fail_type(const Node& node, std::string_view expected, const std::string& hint);
 
