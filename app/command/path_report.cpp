@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "app/console/balance_text.h"
@@ -35,7 +35,8 @@ PathReport<dim>::PathReport(const case_file::Config& config, const problem::Prob
       page_template_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
       moment_about_(moment_point<dim>(config.output, first.mesh)),
       slides_(std::move(slides)),
-      free_sides_(free_sides(config, first.mesh.boundary_names()))
+      free_sides_(free_sides(config, first.mesh.boundary_names())),
+      in_work_(0, page_template_)
 {
   ranks_.on_first([&] { directory_ = take_directory(config, false); });
   record_ = first_record(config, problem, first.space, fem::dirichlet<dim>(problem, first.space), begin);
@@ -45,15 +46,15 @@ PathReport<dim>::PathReport(const case_file::Config& config, const problem::Prob
 template <int dim>
 std::filesystem::path PathReport<dim>::fields_directory() const
 {
-  return in_work_->number == 0 ? output_.directory : output_.directory / unfinished;
+  return in_work_.number == 0 ? output_.directory : output_.directory / unfinished;
 }
 
 template <int dim>
 void PathReport<dim>::begin(int pass, const adapt::Grid<dim>& grid)
 {
-  before_ = std::move(in_work_);
-  in_work_ = std::make_unique<Pass>(page_template_);
-  in_work_->number = pass;
+  if (pass > 0) before_.emplace(record_, std::move(in_work_));
+  record_.levels.clear();
+  in_work_ = Pass(pass, page_template_);
   if (pass > 0) ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
   if (printed_ == Printed::everything)
     print_pass(pass, grid.mesh.n_global_cells(), grid.space.n_global_dofs());
@@ -64,7 +65,7 @@ io::LevelRecord PathReport<dim>::record_of(const adapt::LoadStep<dim>& step,
                                            const adapt::LevelView<dim>& view) const
 {
   io::LevelRecord record = io::level_record<dim>(view, moment_about_, slides_);
-  const std::vector<io::LevelRecord>& steps = in_work_->steps;
+  const std::vector<io::LevelRecord>& steps = record_.levels;
   record.load_step = io::load_step_record<dim>(step, steps.empty() ? nullptr : &*steps.back().load_step);
   return record;
 }
@@ -72,9 +73,9 @@ io::LevelRecord PathReport<dim>::record_of(const adapt::LoadStep<dim>& step,
 template <int dim>
 void PathReport<dim>::keep(const adapt::LevelView<dim>& view, double t)
 {
-  in_work_->shown.reset();
-  in_work_->last = std::make_shared<const KeptLevel<dim>>(view, t);
-  in_work_->shown = gather(view, in_work_->last, output_, method_);
+  in_work_.shown.reset();
+  in_work_.last = std::make_shared<const KeptLevel<dim>>(view, t);
+  in_work_.shown = gather(view, in_work_.last, output_, method_);
 }
 
 template <int dim>
@@ -83,48 +84,40 @@ void PathReport<dim>::add(const adapt::LoadStep<dim>& step)
   const Clock::time_point begin = Clock::now();
   const std::shared_ptr<const adapt::Discretisation<dim>> discrete(step.at, &step.at->discrete);
   const adapt::LevelView<dim> view{step.number, *discrete, step.level, step.verdict, step.seconds, discrete};
-  in_work_->steps.push_back(record_of(step, view));
+  record_.levels.push_back(record_of(step, view));
   keep(view, step.t);
-  show(*in_work_);
   update_statements(record_, view, method_.contact_rule);
   certify::add_history(record_.statements, method_.stopping.criterion != adapt::Stopping::tolerance &&
                                                method_.stopping.criterion != adapt::Stopping::last_bounded);
-  ranks_.together([&] { update_warnings(record_, view, in_work_->shown.get()); });
-  in_work_->statements = record_.statements;
-  in_work_->warnings = record_.warnings;
+  ranks_.together([&] { update_warnings(record_, view, in_work_.shown.get()); });
   ranks_.together([&] { write_fields(); });
-  io::LevelTimes& times = in_work_->steps.back().times;
+  io::LevelTimes& times = record_.levels.back().times;
   times.stages.output = seconds_since(begin);
   times.level += times.stages.output;
   const double cpu_now = cpu_seconds();
   times.level_cpu = cpu_now - std::exchange(cpu_before_, cpu_now);
-  if (printed_ == Printed::everything) print_level(in_work_->steps.back());
-  if (in_work_->number > 0 || !ranks_.first_says(seconds_since(written_) > most_lost)) return;
-  show(*in_work_);
+  if (printed_ == Printed::everything) print_level(record_.levels.back());
+  if (in_work_.number > 0 || !ranks_.first_says(seconds_since(written_) > most_lost)) return;
   write_record();
 }
 
 template <int dim>
-void PathReport<dim>::write_fields() const
+void PathReport<dim>::write_fields()
 {
-  const KeptLevel<dim>* shown = in_work_->shown.get();
+  const KeptLevel<dim>* shown = in_work_.shown.get();
   if (shown != nullptr && fits_page(*shown))
-    in_work_->page.add(shown->number, shown->discrete->form, shown->level);
+    in_work_.page.add(shown->number, shown->discrete->form, shown->level);
   if (!output_.vtu) return;
   const std::filesystem::path directory = fields_directory();
-  const KeptLevel<dim>& last = *in_work_->last;
-  write_level_fields<dim>(directory, last.place(), *last.discrete, last.level);
-  if (shown == nullptr) return;
-  io::write_contact_vtu<dim>(directory / io::level_file_name("contact", last.number), last.place(),
-                             shown->discrete->form, shown->level.u);
-  io::write_series(directory, 1, last.number, last.place().stem());
+  const KeptLevel<dim>& last = *in_work_.last;
+  write_vtu_files(directory, last, shown);
+  if (shown != nullptr) io::write_series(directory, 1, last.number, last.place().stem());
 }
 
 template <int dim>
 void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
 {
-  const io::LevelRecord& worst = in_work_->steps.at(pass.worst.number - 1);
-  io::LevelRecord& record = record_.passes.emplace_back(worst);
+  io::LevelRecord& record = record_.passes.emplace_back(record_.levels.at(pass.worst.number - 1));
   record.level = pass.number;
   record.load_step_number = pass.worst.number;
   ranks_.on_first(
@@ -135,7 +128,6 @@ void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
   before_.reset();
   record_.status = pass.verdict.status;
   record_.reason = pass.verdict.reason;
-  show(*in_work_);
   write_record();
 }
 
@@ -143,16 +135,7 @@ template <int dim>
 void PathReport<dim>::give_up()
 {
   ranks_.on_first([&] { io::remove_series_directory(fields_directory()); });
-  in_work_ = std::move(before_);
-  show(*in_work_);
-}
-
-template <int dim>
-void PathReport<dim>::show(const Pass& pass)
-{
-  record_.levels = pass.steps;
-  record_.statements = pass.statements;
-  record_.warnings = pass.warnings;
+  std::tie(record_, in_work_) = *std::exchange(before_, std::nullopt);
 }
 
 template <int dim>
@@ -165,16 +148,16 @@ void PathReport<dim>::write_record()
 template <int dim>
 void PathReport<dim>::write_what_holds()
 {
-  if (in_work_ && in_work_->number > 0 && before_) give_up();
+  if (before_) give_up();
   write_record();
   ranks_.together(
       [&]
       {
-        if (!in_work_ || !in_work_->shown) return;
-        const KeptLevel<dim>& shown = *in_work_->shown;
+        if (!in_work_.shown) return;
+        const KeptLevel<dim>& shown = *in_work_.shown;
         write_contact_and_mesh(shown, output_, free_sides_);
-        if (fits_page(shown)) in_work_->page.add_last(shown.number, shown.discrete->form, shown.level);
-        in_work_->page.write(output_.directory, record_);
+        if (fits_page(shown)) in_work_.page.add_last(shown.number, shown.discrete->form, shown.level);
+        in_work_.page.write(output_.directory, record_);
       });
 }
 
@@ -184,8 +167,7 @@ ExitCode PathReport<dim>::close(const certify::Verdict& verdict)
   record_.status = verdict.status;
   record_.reason = verdict.reason;
   write_what_holds();
-  if (printed_ == Printed::everything) print_summary(record_, output_.directory.string());
-  if (printed_ == Printed::verdict) print_verdict(record_, output_.directory.string());
+  print_end(record_, printed_, output_.directory);
   return exit_code(verdict.status);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/command/report_parts.h"
@@ -43,18 +44,15 @@ class PathReport
   void fail(const std::string& reason);
 
  private:
-  /// What the steps of a pass leave.
+  /// What the steps of a pass leave beside the record.
   struct Pass
   {
-    explicit Pass(const std::filesystem::path& page_template) : page(page_template) {}
+    Pass(int n, const std::filesystem::path& page_template) : number(n), page(page_template) {}
 
-    int number = 0;
-    std::vector<io::LevelRecord> steps;
-    certify::Statements statements;
-    std::vector<doctor::Finding> warnings;
+    int number;
     ReportPage page;
-    std::shared_ptr<const KeptLevel<dim>> last;   ///< the last step
-    std::shared_ptr<const KeptLevel<dim>> shown;  ///< what the first rank shows of it
+    std::shared_ptr<const KeptLevel<dim>> last{};   ///< the last step
+    std::shared_ptr<const KeptLevel<dim>> shown{};  ///< what the first rank shows of it
   };
 
   /// Where fields are written: those of later passes apart until they are complete.
@@ -62,9 +60,7 @@ class PathReport
   [[nodiscard]] io::LevelRecord record_of(const adapt::LoadStep<dim>& step,
                                           const adapt::LevelView<dim>& view) const;
   void keep(const adapt::LevelView<dim>& view, double t);
-  void write_fields() const;
-  /// The record with the steps of `pass`.
-  void show(const Pass& pass);
+  void write_fields();
   void write_record();
   void write_what_holds();
 
@@ -74,12 +70,12 @@ class PathReport
   Printed printed_;
   std::filesystem::path page_template_;
   std::unique_ptr<OutputDirectory> directory_;
-  io::RunRecord record_;
+  io::RunRecord record_;  ///< with the steps of the pass in work
   Point<dim> moment_about_;
   std::vector<bool> slides_;
   std::vector<std::string> free_sides_;
-  std::unique_ptr<Pass> in_work_;
-  std::unique_ptr<Pass> before_;  ///< the last complete one, while another is in work
+  Pass in_work_;
+  std::optional<std::pair<io::RunRecord, Pass>> before_;  ///< the last complete one, while another is in work
   Clock::time_point written_ = Clock::now();
   double cpu_before_ = cpu_seconds();
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/console/console.h"
 #include "app/page/page_volume.h"
 #include "app/program_facts.h"
 #include "tribound/case/resolve.h"
@@ -106,6 +107,22 @@ void write_contact_and_mesh(const KeptLevel<dim>& shown, const case_file::Output
 }
 
 template <int dim>
+void write_vtu_files(const std::filesystem::path& directory, const KeptLevel<dim>& level,
+                     const KeptLevel<dim>* shown)
+{
+  write_level_fields<dim>(directory, level.place(), *level.discrete, level.level);
+  if (shown != nullptr)
+    io::write_contact_vtu<dim>(directory / io::level_file_name("contact", level.number), level.place(),
+                               shown->discrete->form, shown->level.u);
+}
+
+void print_end(const io::RunRecord& record, Printed printed, const std::filesystem::path& directory)
+{
+  if (printed == Printed::everything) print_summary(record, directory.string());
+  if (printed == Printed::verdict) print_verdict(record, directory.string());
+}
+
+template <int dim>
 void update_statements(io::RunRecord& record, const adapt::LevelView<dim>& view, certify::ContactRule rule)
 {
   if (view.level.steps.empty()) return;
@@ -157,6 +174,8 @@ template void write_contact_and_mesh(const KeptLevel<2>&, const case_file::Outpu
                                      const std::vector<std::string>&);
 template void write_contact_and_mesh(const KeptLevel<3>&, const case_file::OutputConfig&,
                                      const std::vector<std::string>&);
+template void write_vtu_files(const std::filesystem::path&, const KeptLevel<2>&, const KeptLevel<2>*);
+template void write_vtu_files(const std::filesystem::path&, const KeptLevel<3>&, const KeptLevel<3>*);
 template void update_statements(io::RunRecord&, const adapt::LevelView<2>&, certify::ContactRule);
 template void update_statements(io::RunRecord&, const adapt::LevelView<3>&, certify::ContactRule);
 template void update_warnings(io::RunRecord&, const adapt::LevelView<2>&, const KeptLevel<2>*);

@@ -62,6 +62,14 @@ template <int dim>
 void write_contact_and_mesh(const KeptLevel<dim>& shown, const case_file::OutputConfig& output,
                             const std::vector<std::string>& free_sides);
 
+/// The fields of a level as VTU files, and of what is `shown` of it, unless null, the contact boundary.
+template <int dim>
+void write_vtu_files(const std::filesystem::path& directory, const KeptLevel<dim>& level,
+                     const KeptLevel<dim>* shown);
+
+/// What is said at the end of a run.
+void print_end(const io::RunRecord& record, Printed printed, const std::filesystem::path& directory);
+
 /// What the certificate says about the level: its data, and how its systems were solved.
 template <int dim>
 void update_statements(io::RunRecord& record, const adapt::LevelView<dim>& view, certify::ContactRule rule);

@@ -70,15 +70,9 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
 template <int dim>
 void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const
 {
-  if (shown)
-  {
-    write_contact_and_mesh(*shown, output_, free_sides_);
-    if (output_.vtu)
-      io::write_contact_vtu<dim>(output_.directory / io::level_file_name("contact", level.number),
-                                 {level.number}, shown->discrete->form, shown->level.u);
-  }
+  if (shown) write_contact_and_mesh(*shown, output_, free_sides_);
   if (!output_.vtu) return;
-  write_level_fields<dim>(output_.directory, level.place(), *level.discrete, level.level);
+  write_vtu_files(output_.directory, level, shown);
   if (shown) io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number);
 }
 
@@ -239,8 +233,7 @@ ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
   record_.status = verdict.status;
   record_.reason = verdict.reason;
   write_what_holds();
-  if (printed_ == Printed::everything) print_summary(record_, output_.directory.string());
-  if (printed_ == Printed::verdict) print_verdict(record_, output_.directory.string());
+  print_end(record_, printed_, output_.directory);
   return exit_code(verdict.status);
 }
 

@@ -15,20 +15,6 @@ namespace tribound::adapt
 namespace
 {
 
-/// certified < budget < not certified.
-int severity(certify::RunStatus status)
-{
-  switch (status)
-  {
-    case certify::RunStatus::certified:
-      return 0;
-    case certify::RunStatus::budget:
-      return 1;
-    default:
-      return 2;
-  }
-}
-
 /// What the steps of a pass add up to.
 template <int dim>
 class Pass
@@ -43,7 +29,7 @@ class Pass
     for (std::size_t i = 0; i < cells.size(); ++i)
       if (cells[i].total_sharp() > cells_[i].total_sharp()) cells_[i] = cells[i];
     if (!worst_ || step->level.estimate.total_sharp > worst_->level.estimate.total_sharp) worst_ = step;
-    if (severity(step->verdict.status) > severity(verdict_.status))
+    if (step->verdict.status > verdict_.status)
       verdict_ = {step->verdict.status,
                   fmt::format("load step {} at t = {:.9g}: {}", step->number, step->t, step->verdict.reason)};
   }

@@ -16,6 +16,7 @@
 namespace tribound::certify
 {
 
+/// From the second on the later the worse.
 enum class RunStatus
 {
   uncertified,    ///< no bound computed

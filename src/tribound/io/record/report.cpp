@@ -35,11 +35,6 @@ bool has_history(const RunRecord& run)
   return !run.levels.empty() && run.levels.front().load_step;
 }
 
-std::string history_csv(const RunRecord& run)
-{
-  return history_csv(has_history(run) ? std::span(run.levels) : std::span<const LevelRecord>());
-}
-
 std::string convergence_csv(const RunRecord& run)
 {
   if (has_history(run)) return convergence_csv(run.passes);
@@ -61,7 +56,7 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
 {
   if (!run.effective.text.empty()) write_file(directory / run.case_file, run.effective.text);
   write_file(directory / "convergence.csv", convergence_csv(run));
-  if (has_history(run)) write_file(directory / "history.csv", history_csv(run));
+  if (has_history(run)) write_file(directory / "history.csv", history_csv(run.levels));
   write_file(directory / "newton.csv", newton_csv(run));
   write_file(directory / "certificate.json", certificate_json(run));
 }

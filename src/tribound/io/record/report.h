@@ -55,9 +55,6 @@ struct RunRecord
 /// The text of certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
 
-/// A row for each load step; without rows where there is none.
-[[nodiscard]] std::string history_csv(const RunRecord& run);
-
 /// Writes the effective case, convergence.csv, history.csv where there are load steps, newton.csv and
 /// certificate.json, the last one last. Throws
 /// WriteError when a file cannot be written.
