@@ -36,6 +36,7 @@ PathReport<dim>::PathReport(const case_file::Config& config, const problem::Prob
       moment_about_(moment_point<dim>(config.output, first.mesh)),
       slides_(std::move(slides)),
       free_sides_(free_sides(config, first.mesh.boundary_names())),
+      watch_(config.history->watch),
       in_work_(0, page_template_)
 {
   ranks_.on_first([&] { directory_ = take_directory(config, false); });
@@ -66,7 +67,8 @@ io::LevelRecord PathReport<dim>::record_of(const adapt::LoadStep<dim>& step,
 {
   io::LevelRecord record = io::level_record<dim>(view, moment_about_, slides_);
   const std::vector<io::LevelRecord>& steps = record_.levels;
-  record.load_step = io::load_step_record<dim>(step, steps.empty() ? nullptr : &*steps.back().load_step);
+  record.load_step =
+      io::load_step_record<dim>(step, steps.empty() ? nullptr : &*steps.back().load_step, watch_);
   return record;
 }
 
@@ -126,6 +128,7 @@ void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
         if (pass.number > 0) io::move_series(fields_directory(), output_.directory);
       });
   before_.reset();
+  record_.path = pass.end;
   record_.status = pass.verdict.status;
   record_.reason = pass.verdict.reason;
   write_record();

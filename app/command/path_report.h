@@ -74,6 +74,7 @@ class PathReport
   Point<dim> moment_about_;
   std::vector<bool> slides_;
   std::vector<std::string> free_sides_;
+  const std::vector<adapt::Watch>& watch_;
   Pass in_work_;
   std::optional<std::pair<io::RunRecord, Pass>> before_;  ///< the last complete one, while another is in work
   Clock::time_point written_ = Clock::now();

@@ -142,7 +142,7 @@ template <int dim>
 void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json)
 {
   problem::Problem<dim> problem(case_file::resolve(config, mesh));
-  if (config.history) problem = problem.at(config.history->steps.front());
+  if (config.history) problem = problem.at(config.history->program.targets.front());
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());

@@ -18,7 +18,7 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
   const adapt::PathOptions options{.tolerance = config.adapt.tolerance};
   auto path = std::make_unique<adapt::LoadPath<dim>>(problem, config.method, options, std::move(mesh), &stop,
                                                      std::move(whole));
-  path->prepare(config.history->steps.front());
+  path->prepare(config.history->program.targets.front());
   const Ranks ranks = path->grid().mesh.ranks();
   PathReport<dim> report(config, problem, path->grid(), std::move(slides), begin,
                          progress.quiet() ? Printed::verdict : Printed::everything);
@@ -31,7 +31,7 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
       .given_up = [&] { report.give_up(); }};
   try
   {
-    return report.close(adapt::replay<dim>(std::move(path), config.history->steps, strategy, observer));
+    return report.close(adapt::replay<dim>(std::move(path), config.history->program, strategy, observer));
   }
   catch (const SolveError& error)
   {

@@ -8,7 +8,7 @@
 
 #include "app/output_directory.h"
 #include "app/result/verification.h"
-#include "tribound/adapt/load_path.h"
+#include "tribound/adapt/path_program.h"
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/resolve.h"
@@ -143,17 +143,17 @@ solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, 
   return solve::solve<dim>(form, start, options, solver, observer);
 }
 
-/// The iterates of a committed load step, once more from the displacement of the step before: its form still
-/// has the history that that one has left.
+/// The iterates of a committed load step, once more from where they began: its form still has the history
+/// that the step before has left.
 template <int dim>
-void verify_step(const adapt::LoadStep<dim>& step, std::span<const double> before,
+void verify_step(const adapt::LoadStep<dim>& step, std::span<const double> start,
                  const case_file::Config& config, Verification& result, const Progress& progress)
 {
   solve::NewtonOptions options = config.method.newton;
   options.reference_force = step.reference_force;
   const std::size_t first = result.iterates.size();
   const bool converged =
-      verify_iterates<dim>(step.at->discrete.form, before, options, config, result, progress).status ==
+      verify_iterates<dim>(step.at->discrete.form, start, options, config, result, progress).status ==
       solve::NewtonStatus::converged;
   result.converged = result.converged && converged;
   for (std::size_t i = first; i < result.iterates.size(); ++i)
@@ -187,25 +187,20 @@ std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> me
                         std::unique_ptr<OutputDirectory>& directory)
 {
   adapt::LoadPath<dim> path(problem, config.method, {}, std::move(mesh));
-  path.prepare(config.history->steps.front());
+  path.prepare(config.history->program.targets.front());
   const fem::LagrangeSpace<dim>& space = path.grid().space;
   directory = begin<dim>(config, problem, space, fem::dirichlet<dim>(problem, space), result);
   std::vector<double> before;
   result.converged = true;
   const auto committed = [&](const adapt::LoadStep<dim>& step)
   {
-    verify_step<dim>(step, before, config, result, progress);
+    verify_step<dim>(step, step.start.empty() ? before : step.start, config, result, progress);
     before = step.level.u;
   };
   Stages stages(progress);
-  std::string why = stages.time("iterates", announcement,
-                                [&]
-                                {
-                                  std::string failure;
-                                  for (const double t : config.history->steps)
-                                    if (failure.empty()) failure = path.advance(t, committed);
-                                  return failure;
-                                });
+  std::string why =
+      stages.time("iterates", announcement,
+                  [&] { return adapt::follow<dim>(path, config.history->program, committed, {}).failure; });
   result.times = stages.times();
   if (why.empty() && !result.converged) why = "Newton's method did not converge a second time";
   return why;

@@ -137,8 +137,9 @@ std::string level_text(const io::LevelRecord& level)
                                                       : fmt::format("{:.4g}", level.bound->total_sharp);
   if (level.load_step)
     return line(fmt::format("step {}", level.level),
-                fmt::format("t = {:<12.9g}  newton {:>2}  bound {:<8}  {:.2f} s{}", level.load_step->t,
+                fmt::format("t = {:<12.9g}  newton {:>2}  bound {:<8}  {:.2f} s{}{}", level.load_step->t,
                             io::newton_steps(level), bound, level.times.level,
+                            level.load_step->control == "load" ? "" : "  by " + level.load_step->control,
                             level.load_step->cuts > 0 ? fmt::format("  cut {} times", level.load_step->cuts)
                                                       : std::string()));
   return line(fmt::format("level {}", level.level),
@@ -205,6 +206,18 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
   return text + verdict_text(run, directory);
 }
 
+std::string path_text(const adapt::PathEnd& path)
+{
+  std::string text;
+  if (path.peak)
+    text += line("peak", fmt::format("t = {:.9g} at load step {}; halving its steps changed it by {:.2g}",
+                                     path.peak->t, path.peak->number, path.peak->change));
+  if (!path.dropped.empty())
+    text += line("left out", fmt::format("t = {}: from there on damage was given, not t",
+                                         fmt::join(path.dropped, ", ")));
+  return text;
+}
+
 std::string verdict_text(const io::RunRecord& run, const std::string& directory)
 {
   std::string reason = run.reason;
@@ -218,7 +231,8 @@ std::string verdict_text(const io::RunRecord& run, const std::string& directory)
                  ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
                                100 * run.tolerance)
                  : std::string("the stress is zero up to rounding, and so is the bound of its error");
-  return line("status", certify::to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
+  return path_text(run.path) +
+         line("status", certify::to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
          line_if_any("results", directory);
 }
 

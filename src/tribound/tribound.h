@@ -90,6 +90,7 @@
 #include "tribound/adapt/load_path.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/adapt/mark.h"
+#include "tribound/adapt/path_program.h"
 #include "tribound/adapt/persistent.h"
 #include "tribound/adapt/rate.h"
 #include "tribound/adapt/regularisation.h"

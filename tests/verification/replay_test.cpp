@@ -70,7 +70,8 @@ Replayed replayed(const problem::ContactLaw& law, const adapt::AdaptOptions& opt
   result.verdict = adapt::replay<dim>(
       std::make_unique<adapt::LoadPath<dim>>(
           problem, method, adapt::PathOptions{.tolerance = options.tolerance}, std::move(mesh), &stop),
-      path_of_t, adapt::make_strategy<dim>(options), observer);
+      adapt::PathProgram{.targets = {path_of_t.begin(), path_of_t.end()}}, adapt::make_strategy<dim>(options),
+      observer);
   return result;
 }
 

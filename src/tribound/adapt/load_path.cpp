@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "tribound/base/error.h"
@@ -13,6 +15,21 @@
 
 namespace tribound::adapt
 {
+
+namespace
+{
+
+/// Steps without bound before those with one, all numbered anew.
+void put_before(std::span<const solve::NewtonStep> first, std::vector<CertifiedStep>& steps)
+{
+  std::vector<CertifiedStep> all;
+  for (const solve::NewtonStep& step : first) all.push_back({step, {}});
+  std::ranges::move(steps, std::back_inserter(all));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].step.step = static_cast<int>(i) + 1;
+  steps = std::move(all);
+}
+
+}  // namespace
 
 template <int dim>
 DiscreteAtTime<dim>::DiscreteAtTime(const problem::Problem<dim>& general, double load_factor,
@@ -52,8 +69,8 @@ template <int dim>
 Method LoadPath<dim>::method_of_step() const
 {
   Method method = method_;
-  method.newton.reference_force = reference_force_;
-  if (!last_) return method;
+  method.newton.reference_force = position_.reference_force;
+  if (!last()) return method;
   method.full_steps = options_.full_steps;
   method.other_starts = false;
   return method;
@@ -61,24 +78,31 @@ Method LoadPath<dim>::method_of_step() const
 
 /// Not empty: why Newton's method has not come to t.
 template <int dim>
-std::string LoadPath<dim>::try_step(double t, int cuts, const StepObserver& observer)
+std::string LoadPath<dim>::try_step(Attempt attempt, const StepObserver& observer)
 {
+  const double t = attempt.t;
   auto step = std::make_shared<LoadStep<dim>>();
-  step->number = last_ ? last_->number + 1 : 1;
+  step->number = last() ? last()->number + 1 : 1;
   step->t = t;
-  step->cuts = cuts;
-  step->reference_force = reference_force_;
+  step->cuts = attempt.cuts;
+  step->control = std::move(attempt.control);
+  step->start = std::move(attempt.start);
+  step->reference_force = position_.reference_force;
   const Method method = method_of_step();
-  if (!last_ && (!prepared_ || prepared_->t != t)) prepare(t);
-  step->at = last_ ? std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method, history_)
-                   : std::exchange(prepared_, nullptr);
+  if (!last() && (!prepared_ || prepared_->t != t)) prepare(t);
+  step->at = last()
+                 ? std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method, position_.history)
+                 : std::exchange(prepared_, nullptr);
   const contact::NitscheForm<dim>& form = step->at->discrete.form;
-  const std::span<const double> start =
-      last_ ? std::span<const double>(last_->level.u) : std::span<const double>();
+  std::span<const double> start = step->start;
+  if (start.empty() && last()) start = last()->level.u;
   step->level = solve_and_certify<dim>(form, start, method, observer, 0, {}, friedrichs_);
   step->level.equilibrium.reset();
   friedrichs_ = step->level.friedrichs;
   if (!step->level.solved()) return step->level.failure;
+  if (attempt.fault)
+    if (std::string why = attempt.fault(form, step->level.u); !why.empty()) return why;
+  put_before(attempt.found_by, step->level.steps);
   commit(std::move(step));
   return {};
 }
@@ -88,8 +112,8 @@ void LoadPath<dim>::prepare(double t)
 {
   prepared_ = std::make_shared<DiscreteAtTime<dim>>(problem_, t, grid_, method_, nullptr);
   contact::NitscheForm<dim>& form = prepared_->discrete.form;
-  history_ = contact::history_at_first(form);
-  if (history_) form.set_history(history_);
+  position_.history = contact::history_at_first(form);
+  if (position_.history) form.set_history(position_.history);
   check(*prepared_);
 }
 
@@ -112,9 +136,9 @@ template <int dim>
 certify::Verdict LoadPath<dim>::judge(const CertifiedLevel<dim>& level) const
 {
   contact::StressNorms norms = level.norms;
-  norms.sigma = largest_sigma_;
+  norms.sigma = position_.largest_sigma;
   certify::IdentityDefects identities = level.identities;
-  const double share = (level.norms.sigma + level.estimate.total) / largest_sigma_;
+  const double share = (level.norms.sigma + level.estimate.total) / position_.largest_sigma;
   if (share < 1)
     for (double* defect : {&identities.divergence, &identities.jump, &identities.neumann, &identities.contact,
                            &identities.symmetry})
@@ -127,20 +151,21 @@ void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
 {
   const contact::NitscheForm<dim>& form = step->at->discrete.form;
   const CertifiedLevel<dim>& level = step->level;
-  largest_sigma_ = std::max(largest_sigma_, level.norms.sigma);
-  step->largest_sigma = largest_sigma_;
+  position_.largest_sigma = std::max(position_.largest_sigma, level.norms.sigma);
+  step->largest_sigma = position_.largest_sigma;
   step->verdict = judge(level);
   step->responses = form.advance(level.u);
 
   std::vector<problem::InterfaceState<dim>> states;
   states.reserve(step->responses.size());
   for (const auto& response : step->responses) states.push_back(response.state);
-  history_ = std::make_shared<const contact::ContactHistory<dim>>(std::move(states), form.facet_rule(),
-                                                                  method_.degree + 2);
+  position_.history = std::make_shared<const contact::ContactHistory<dim>>(
+      std::move(states), form.facet_rule(), method_.degree + 2);
   account(*step);
   step->seconds = seconds_since(begin_);
   begin_ = Clock::now();
-  last_ = std::move(step);
+  if (last()) position_.before_last = {last()->t, last()->level.u};
+  position_.last = std::move(step);
 }
 
 template <int dim>
@@ -151,58 +176,67 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
   const std::vector<double>& u = step.level.u;
   std::vector<double> contact_load(space.n_dofs(), 0.0);
   form.add_contact_load(step.level.traction, contact_load);
-  reference_force_ =
-      std::max(reference_force_, solve::external_forces(form).scale + space.norm(contact_load));
+  position_.reference_force =
+      std::max(position_.reference_force, solve::external_forces(form).scale + space.norm(contact_load));
 
   step.forces = contact::apply_stiffness<dim>(form.problem(), space, u);
   for (std::size_t i = 0; i < u.size(); ++i) step.forces[i] -= contact_load[i];
   std::vector<double> mean = step.forces;
   std::vector<double> moved = u;
-  if (last_)
+  if (last())
     for (std::size_t i = 0; i < u.size(); ++i)
     {
-      mean[i] += last_->forces[i];
-      moved[i] -= last_->level.u[i];
+      mean[i] += last()->forces[i];
+      moved[i] -= last()->level.u[i];
     }
   step.work = space.dot(mean, moved) / 2;
 }
 
 template <int dim>
-std::string LoadPath<dim>::advance(double t, const Observer& observer, const StepObserver& step_observer)
+std::string LoadPath<dim>::interruption() const
 {
-  const Ranks& ranks = grid_->mesh.ranks();
-  const auto interruption = [&]
-  { return ranks.any(stop_ && *stop_) ? fmt::format("interrupted at t = {:.9g}", last_->t) : std::string(); };
-  if (last_)
-    if (std::string why = interruption(); !why.empty()) return why;
-  const double whole = last_ ? t - last_->t : 0;  // the first step of all is not cut
+  const bool ends = last() && grid_->mesh.ranks().any(stop_ && *stop_);
+  return ends ? fmt::format("interrupted at t = {:.9g}", last()->t) : std::string();
+}
+
+template <int dim>
+std::string LoadPath<dim>::guarded(const std::function<std::string()>& step) const
+{
+  try
+  {
+    return step();
+  }
+  catch (const SolveError& error)
+  {
+    require_all_failed(grid_->mesh.ranks(), error.what());
+    return error.what();
+  }
+}
+
+template <int dim>
+std::string LoadPath<dim>::advance(double t, const Observer& observer, const StepObserver& step_observer,
+                                   bool may_cut)
+{
+  if (std::string why = interruption(); !why.empty()) return why;
+  const double whole = last() ? t - last()->t : 0;  // the first step of all is not cut
   double size = whole;
   int cuts = 0;
   begin_ = Clock::now();
   for (;;)
   {
-    const bool arrives = !last_ || std::abs(t - last_->t) <= std::abs(size) * (1 + 1e-10);
-    const double to = arrives ? t : last_->t + size;
-    std::string failure;
-    try
-    {
-      failure = try_step(to, cuts, step_observer);
-    }
-    catch (const SolveError& error)
-    {
-      require_all_failed(ranks, error.what());
-      failure = error.what();
-    }
+    const bool arrives = !last() || std::abs(t - last()->t) <= std::abs(size) * (1 + 1e-10);
+    const double to = arrives ? t : last()->t + size;
+    const std::string failure = guarded([&] { return try_step({.t = to, .cuts = cuts}, step_observer); });
     if (failure.empty())
     {
-      if (observer) observer(*last_);
+      if (observer) observer(*last());
       if (arrives) return {};
       cuts = 0;
-      if (static_cast<int>(last_->level.steps.size()) <= options_.few_steps) size *= options_.growth;
+      if (static_cast<int>(last()->level.steps.size()) <= options_.few_steps) size *= options_.growth;
       if (std::abs(size) > std::abs(whole)) size = whole;
     }
-    else if (std::abs(size) / 2 <= options_.smallest * std::abs(whole))
-      return fmt::format("load step {} at t = {:.9g}: {}", last_ ? last_->number + 1 : 1, to, failure);
+    else if (!may_cut || std::abs(size) / 2 <= options_.smallest * std::abs(whole))
+      return fmt::format("load step {} at t = {:.9g}: {}", last() ? last()->number + 1 : 1, to, failure);
     else
     {
       size /= 2;
@@ -210,6 +244,87 @@ std::string LoadPath<dim>::advance(double t, const Observer& observer, const Ste
     }
     if (std::string why = interruption(); !why.empty()) return why;
   }
+}
+
+template <int dim>
+typename Bordered<dim>::Form LoadPath<dim>::form_at(double t) const
+{
+  const auto at = std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method_, position_.history);
+  return {at, &at->discrete.form};
+}
+
+/// The step that begins with theta times the one before.
+template <int dim>
+std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta,
+                                       const StepObserver& observer)
+{
+  const LoadStep<dim>& now = *last();
+  const PathPoint& before = position_.before_last;
+  PathPoint point{now.t + theta * (now.t - before.t), now.level.u};
+  for (std::size_t i = 0; i < point.u.size(); ++i) point.u[i] += theta * (now.level.u[i] - before.u[i]);
+
+  if (!bordered_) bordered_ = std::make_shared<Bordered<dim>>(form_at(now.t), method_.solver);
+  const double committed = control.measure.value(now.at->discrete.form, now.level.u);
+  const double target = committed + control.increment;
+  const BorderedOptions options{.max_steps = options_.full_steps,
+                                .tolerance = std::max(method_.newton.tolerance, 1e-10),
+                                .force = position_.reference_force,
+                                .t_before = now.t,
+                                .largest_change = control.largest_change,
+                                .difference = 1e-6 * control.largest_change};
+  Attempt attempt{.t = 0, .cuts = control.cuts, .control = control.name};
+  const auto note = [&](const solve::NewtonStep& step)
+  {
+    attempt.found_by.push_back(step);
+    if (observer) observer({step, {}});
+  };
+  try
+  {
+    const std::string why =
+        (*bordered_)([this](double t) { return form_at(t); }, control.measure, target, options, point, note);
+    if (!why.empty()) return why;
+  }
+  catch (const InputError& error)  // data that are not valid at the t of an iterate
+  {
+    require_all_failed(grid_->mesh.ranks(), error.what());
+    return error.what();
+  }
+  attempt.t = point.t;
+  attempt.start = std::move(point.u);
+  attempt.fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
+  {
+    constexpr double most = 1e-3;  // of the increment; Newton's method at t moves by its tolerance
+    const bool left = std::abs(control.measure.value(form, u) - target) > most * std::abs(control.increment);
+    return left ? std::string("Newton's method leaves the path that was found for u and t") : std::string();
+  };
+  return try_step(std::move(attempt), observer);
+}
+
+template <int dim>
+std::string LoadPath<dim>::follow(const Control<dim>& control, const Observer& observer,
+                                  const StepObserver& step_observer)
+{
+  assert(last() && !position_.before_last.u.empty());
+  begin_ = Clock::now();
+  const double usual = control.last_increment != 0 ? control.increment / control.last_increment : 1;
+  std::vector<double> thetas = {usual, 2 * usual, 0.5 * usual};
+  const double last_change = last()->t - position_.before_last.t;
+  if (control.failed && last_change != 0)
+    for (const double part : {1.0, 0.5, 0.25})
+      thetas.push_back(part * (*control.failed - last()->t) / last_change);
+  std::string failure;
+  for (const double theta : thetas)
+  {
+    failure = guarded([&] { return try_control(control, theta, step_observer); });
+    if (failure.empty())
+    {
+      if (observer) observer(*last());
+      return {};
+    }
+    if (std::string why = interruption(); !why.empty()) return why;
+  }
+  return fmt::format("load step {} by {}, after t = {:.9g}: {}", last()->number + 1, control.name, last()->t,
+                     failure);
 }
 
 template struct DiscreteAtTime<2>;

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "tribound/adapt/bordered.h"
 #include "tribound/adapt/level.h"
+#include "tribound/adapt/path_measure.h"
 #include "tribound/base/clock.h"
 
 namespace tribound::adapt
@@ -36,7 +38,10 @@ struct LoadStep
 {
   int number = 0;  ///< from 1
   double t = 0;
-  int cuts = 0;  ///< how often its size was halved
+  int cuts = 0;                 ///< how often its size was halved
+  std::string control{"load"};  ///< what was given: "load" is t; else Control::name
+  /// What Newton's method at t began with, where this is not the displacement of the step before.
+  std::vector<double> start{};
   std::shared_ptr<const DiscreteAtTime<dim>> at;
   CertifiedLevel<dim> level;
   certify::Verdict verdict;
@@ -57,6 +62,19 @@ struct PathOptions
   double smallest = 1e-6;   ///< step, over the first one of its target
   double tolerance = 0.01;  ///< of the verdict
   int full_steps = 20;      ///< Method::full_steps
+};
+
+/// A step along which not t but C(u) is given.
+template <int dim>
+struct Control
+{
+  std::string name;                 ///< "damage" or "displacement"
+  const PathMeasure<dim>& measure;  ///< C
+  double increment = 0;             ///< of C(u)
+  double last_increment = 0;        ///< of the step before; 0: it was none of this measure
+  double largest_change = 0;        ///< of t
+  std::optional<double> failed{};   ///< t at which Newton's method has failed from where the step begins
+  int cuts = 0;
 };
 
 /// Follows a load path. The first step of all starts from scratch, every other from the displacement of the
@@ -82,16 +100,53 @@ class LoadPath
 
   using Observer = std::function<void(const LoadStep<dim>&)>;
 
-  /// Steps up to t, in one or, where Newton's method fails, more steps; `observer` sees each that is
-  /// committed. Not empty: why it ended before; the last committed step stays.
-  [[nodiscard]] std::string advance(double t, const Observer& observer = {}, const StepObserver& step = {});
+  /// Steps up to t, in one or, where Newton's method fails and they may be cut, more steps; `observer` sees
+  /// each that is committed. Not empty: why it ended before; the last committed step stays.
+  [[nodiscard]] std::string advance(double t, const Observer& observer = {}, const StepObserver& step = {},
+                                    bool may_cut = true);
+
+  /// One step under control, after two steps at least: u and t are found together from several extrapolations
+  /// of these (Bordered), then t stays and Newton's method of all other steps has the last word, so that its
+  /// iterates are certified as ever. Not empty: why there is none; the last committed step stays.
+  [[nodiscard]] std::string follow(const Control<dim>& control, const Observer& observer = {},
+                                   const StepObserver& step = {});
+
+  /// Where it is, to come back to.
+  struct Position
+  {
+    std::shared_ptr<const LoadStep<dim>> last;
+    PathPoint before_last;
+    std::shared_ptr<const contact::ContactHistory<dim>> history;
+    double reference_force = 0;  ///< largest of the committed steps
+    double largest_sigma = 0;    ///< ||sigma|| of the committed steps
+  };
+  [[nodiscard]] Position position() const { return position_; }
+  void go_back(Position position) { position_ = std::move(position); }
+  /// Not empty: it is to end here.
+  [[nodiscard]] std::string interruption() const;
 
   /// The last committed step; null before the first.
-  [[nodiscard]] const std::shared_ptr<const LoadStep<dim>>& last() const { return last_; }
+  [[nodiscard]] const std::shared_ptr<const LoadStep<dim>>& last() const { return position_.last; }
   [[nodiscard]] const Grid<dim>& grid() const { return *grid_; }
 
  private:
-  [[nodiscard]] std::string try_step(double t, int cuts, const StepObserver& observer);
+  /// A step to t.
+  struct Attempt
+  {
+    double t;
+    int cuts = 0;
+    std::string control{"load"};
+    std::vector<double> start{};                ///< LoadStep::start
+    std::vector<solve::NewtonStep> found_by{};  ///< the steps that led there
+    /// Not empty: why this solution is none for the path; may be empty.
+    std::function<std::string(const contact::NitscheForm<dim>&, std::span<const double> u)> fault{};
+  };
+  [[nodiscard]] std::string try_step(Attempt attempt, const StepObserver& observer);
+  [[nodiscard]] std::string try_control(const Control<dim>& control, double theta,
+                                        const StepObserver& observer);
+  /// Its failure, or that of a matrix.
+  [[nodiscard]] std::string guarded(const std::function<std::string()>& step) const;
+  [[nodiscard]] typename Bordered<dim>::Form form_at(double t) const;
   [[nodiscard]] Method method_of_step() const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   void commit(std::shared_ptr<LoadStep<dim>> step);
@@ -108,12 +163,10 @@ class LoadPath
   std::shared_ptr<const mesh::Mesh<dim>> whole_;  ///< until the first step
   bool is_well_posed_ = false;
   std::shared_ptr<DiscreteAtTime<dim>> prepared_;  ///< the first step
-  std::shared_ptr<const LoadStep<dim>> last_;
-  std::shared_ptr<const contact::ContactHistory<dim>> history_;
+  Position position_;
+  std::shared_ptr<Bordered<dim>> bordered_;  ///< from the first step under control on
   std::optional<certify::FriedrichsConstant> friedrichs_;
-  double reference_force_ = 0;  ///< largest of the committed steps
-  double largest_sigma_ = 0;    ///< ||sigma|| of the committed steps
-  Clock::time_point begin_;     ///< of the step in work
+  Clock::time_point begin_;  ///< of the step in work
 };
 
 }  // namespace tribound::adapt

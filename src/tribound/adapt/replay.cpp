@@ -36,7 +36,9 @@ class Pass
 
   [[nodiscard]] bool holds() const { return certify::is_bound(verdict_.status); }
   [[nodiscard]] const certify::Verdict& verdict() const { return verdict_; }
-  [[nodiscard]] PassView<dim> view() const { return {number_, *worst_, verdict_}; }
+  [[nodiscard]] PassView<dim> view() const { return {number_, *worst_, verdict_, end}; }
+
+  PathEnd end{};
 
   /// With the largest bound of every cell over all steps, for those who mark by it.
   [[nodiscard]] CertifiedLevel<dim> to_mark() const
@@ -54,10 +56,10 @@ class Pass
   certify::Verdict verdict_{certify::RunStatus::certified, {}};
 };
 
-/// Not empty: why the path was not followed to its end.
+/// Goes through the program, and adds its steps to the pass.
 template <int dim>
-std::string follow(LoadPath<dim>& path, std::span<const double> targets, const ReplayObserver<dim>& observer,
-                   Pass<dim>& pass)
+void go_through(const PathProgram& program, LoadPath<dim>& path, const ReplayObserver<dim>& observer,
+                Pass<dim>& pass)
 {
   const auto committed = [&](const LoadStep<dim>& step)
   {
@@ -66,15 +68,13 @@ std::string follow(LoadPath<dim>& path, std::span<const double> targets, const R
   };
   try
   {
-    for (const double t : targets)
-      if (std::string why = path.advance(t, committed, observer.newton); !why.empty()) return why;
+    pass.end = follow<dim>(path, program, committed, observer.newton);
   }
   catch (const std::bad_alloc&)
   {
     require_all_failed(path.grid().mesh.ranks(), "out of memory");
-    return "out of memory";
+    pass.end.failure = "out of memory";
   }
-  return {};
 }
 
 /// The path on the next mesh, or why there is none.
@@ -100,7 +100,7 @@ std::string refine(std::unique_ptr<LoadPath<dim>>& path, const Pass<dim>& pass, 
 }  // namespace
 
 template <int dim>
-certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, std::span<const double> targets,
+certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram& program,
                         const Strategy<dim>& strategy, const ReplayObserver<dim>& observer)
 {
   std::unique_ptr<LoadPath<dim>> path = std::move(first);
@@ -109,7 +109,8 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, std::span<const do
   {
     if (observer.begins) observer.begins(number, path->grid());
     Pass<dim> pass(number);
-    const std::string why = follow(*path, targets, observer, pass);
+    go_through(program, *path, observer, pass);
+    const std::string& why = pass.end.failure;
     if (!why.empty() || !pass.holds())
     {
       if (number == 0)
@@ -133,9 +134,9 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, std::span<const do
   }
 }
 
-template certify::Verdict replay(std::unique_ptr<LoadPath<2>>, std::span<const double>, const Strategy<2>&,
+template certify::Verdict replay(std::unique_ptr<LoadPath<2>>, const PathProgram&, const Strategy<2>&,
                                  const ReplayObserver<2>&);
-template certify::Verdict replay(std::unique_ptr<LoadPath<3>>, std::span<const double>, const Strategy<3>&,
+template certify::Verdict replay(std::unique_ptr<LoadPath<3>>, const PathProgram&, const Strategy<3>&,
                                  const ReplayObserver<3>&);
 
 }  // namespace tribound::adapt

@@ -7,11 +7,11 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 
 #include "tribound/adapt/load_path.h"
 #include "tribound/adapt/loop.h"
+#include "tribound/adapt/path_program.h"
 
 namespace tribound::adapt
 {
@@ -24,6 +24,7 @@ struct PassView
   /// The step with the largest bound, over the path's largest ||sigma|| as all of them are.
   const LoadStep<dim>& worst;
   const certify::Verdict& verdict;  ///< the worst of its steps
+  const PathEnd& end;
 };
 
 /// What replay() tells; functions that are empty are not called.
@@ -37,14 +38,14 @@ struct ReplayObserver
   std::function<void()> given_up{};  ///< of a pass after the first: the one before is what holds
 };
 
-/// Follows the path t = targets[0], targets[1], ... on the mesh that `first` begins with, and again on finer
+/// Follows the program on the mesh that `first` begins with, and again, with its own steps, on finer
 /// ones while the bound of any step is above `options.tolerance` of the path's largest ||sigma(u_h)||: cells
 /// are marked by the largest of their bounds over the steps, by strategy.mark, within strategy.stop and
 /// strategy.limit; the rest of `strategy` is not used. A pass that cannot be followed to its end leaves the
 /// one before as the last; the first one leaves the steps that it has come to, and the verdict says where it
 /// ended. Throws as LoadPath does.
 template <int dim>
-[[nodiscard]] certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, std::span<const double> targets,
+[[nodiscard]] certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram& program,
                                       const Strategy<dim>& strategy, const ReplayObserver<dim>& observer);
 
 }  // namespace tribound::adapt

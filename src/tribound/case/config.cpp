@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "tribound/case/geometry_reader.h"
-#include "tribound/case/interface_reader.h"
+#include "tribound/case/history_reader.h"
 #include "tribound/case/node.h"
 #include "tribound/case/physics.h"
 #include "tribound/case/table_reader.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file interface_reader.h
-/// Interfaces with a memory and the load steps that they go through, as the case file has them.
+/// Interfaces with a memory, as the case file has them.
 
 #include <initializer_list>
 #include <string_view>
@@ -20,12 +20,5 @@ namespace tribound::case_file
 
 /// The contact that an interface table describes, with `gap` as it is before the table is read.
 [[nodiscard]] problem::Contact read_interface(const TableReader& table, std::optional<problem::Field> gap);
-
-/// Reads [history] of a case whose contacts are read already, and how its steps are solved unless [newton]
-/// says otherwise. An interface alone is a history of one step.
-void read_load_steps(const TableReader& root, Config& config);
-
-/// Throws InputError for what does not go with load steps, once all of the case is read.
-void check_load_steps(const TableReader& root, const Config& config);
 
 }  // namespace tribound::case_file

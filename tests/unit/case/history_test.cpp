@@ -54,11 +54,11 @@ TEST(History, Steps)
 {
   const std::string contact = "boundary.b.contact = {}\n";
   EXPECT_FALSE(config_of(contact).history);
-  EXPECT_THAT(config_of(contact + "[history]\nsteps = [0, 40, 2.5]\n").history->steps,
+  EXPECT_THAT(config_of(contact + "[history]\nsteps = [0, 40, 2.5]\n").history->program.targets,
               ElementsAre(0, 40, 2.5));
-  EXPECT_THAT(config_of(contact + "[history]\nsteps = { from = 1, to = -1, count = 5 }\n").history->steps,
+  EXPECT_THAT(config_of(contact + "[history]\nsteps = { from = 1, to = -1, count = 5 }\n").history->program.targets,
               ElementsAre(1, 0.5, 0, -0.5, -1));
-  EXPECT_THAT(config_of("boundary.b.interface = { law = 'joint' }\n").history->steps, ElementsAre(1));
+  EXPECT_THAT(config_of("boundary.b.interface = { law = 'joint' }\n").history->program.targets, ElementsAre(1));
 }
 
 TEST(History, StepsAreSolvedToTheEndUnlessToldOtherwise)

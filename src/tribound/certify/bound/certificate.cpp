@@ -319,7 +319,7 @@ void add_history(Statements& statements, bool left_early)
 {
   statements.covered.emplace_back(
       "of every load step the residual of that step: equilibrium, the data at its t, and the interface law "
-      "with the history (damage, slip) that the step before has left, at every Newton iterate");
+      "with the history (damage, slip) that the step before has left, at every Newton iterate at that t");
   statements.not_covered.emplace_back(
       std::string("errors that earlier load steps have left in the history") +
       (left_early ? ", that of leaving Newton's method early among them" : ""));

@@ -73,7 +73,7 @@ class CsvTable
 /// A cell with the name of its column: a whole number, a number that may be unknown, or a text.
 struct TableCell
 {
-  const char* name;
+  std::string name;
   std::variant<long, std::optional<double>, std::string> value;
 };
 

@@ -68,9 +68,11 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
 }  // namespace
 
 template <int dim>
-LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStepRecord* before)
+LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStepRecord* before,
+                                std::span<const adapt::Watch> watch)
 {
   LoadStepRecord record{.t = step.t,
+                        .control = step.control,
                         .cuts = step.cuts,
                         .largest_sigma = step.largest_sigma,
                         .interfaces = interface_figures(step)};
@@ -86,10 +88,16 @@ LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStep
   record.rubbed += record.all.rubbed;
   record.work += step.work;
   record.balance = record.work - step.level.norms.energy / 2 - record.all.stored - record.dissipated;
+  const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  for (const adapt::Watch& watched : watch)
+    record.watched.emplace_back(watched.name,
+                                form.space().dot(adapt::functional<dim>(form, watched.gauges), step.level.u));
   return record;
 }
 
-template LoadStepRecord load_step_record(const adapt::LoadStep<2>&, const LoadStepRecord*);
-template LoadStepRecord load_step_record(const adapt::LoadStep<3>&, const LoadStepRecord*);
+template LoadStepRecord load_step_record(const adapt::LoadStep<2>&, const LoadStepRecord*,
+                                         std::span<const adapt::Watch>);
+template LoadStepRecord load_step_record(const adapt::LoadStep<3>&, const LoadStepRecord*,
+                                         std::span<const adapt::Watch>);
 
 }  // namespace tribound::io

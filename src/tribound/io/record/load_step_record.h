@@ -3,7 +3,9 @@
 /// @file load_step_record.h
 /// What is written of a load step beside what is written of a level, as plain data.
 
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tribound/adapt/load_path.h"
@@ -31,19 +33,23 @@ struct InterfaceFigures
 struct LoadStepRecord
 {
   double t = 0;
-  int cuts = 0;              ///< how often its size was halved
-  double largest_sigma = 0;  ///< of ||sigma(u_h)|| over the path so far
+  std::string control{"load"};  ///< adapt::LoadStep::control
+  int cuts = 0;                 ///< how often its size was halved
+  double largest_sigma = 0;     ///< of ||sigma(u_h)|| over the path so far
   std::vector<InterfaceFigures> interfaces{};
   InterfaceFigures all{};  ///< their sum
   // From the first step on:
   double dissipated = 0;
   double rubbed = 0;
-  double work = 0;     ///< of loads and reactions, by the trapezoidal rule
+  double work = 0;  ///< of loads and reactions, by the trapezoidal rule
+  std::vector<std::pair<std::string, double>>
+      watched{};       ///< what the case watches; a length times its factors
   double balance = 0;  ///< work - a(u, u) / 2 - stored - dissipated: 0 up to that rule and the discretisation
 };
 
 /// `before`: the record of the step before; null for the first. On several ranks all call it together.
 template <int dim>
-[[nodiscard]] LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStepRecord* before);
+[[nodiscard]] LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStepRecord* before,
+                                              std::span<const adapt::Watch> watch = {});
 
 }  // namespace tribound::io

@@ -144,7 +144,7 @@ void add_load_step(Json& object, const LevelRecord& level)
 {
   const LoadStepRecord& step = *level.load_step;
   object["t"] = step.t;
-  object["control"] = "load";
+  object["control"] = step.control;
   object["cuts"] = step.cuts;
   object["relative_path"] = number_or_null(bound_along_path(level));
   object["largest_sigma"] = step.largest_sigma;
@@ -154,6 +154,7 @@ void add_load_step(Json& object, const LevelRecord& level)
   object["work"] = step.work;
   object["energy_balance"] = step.balance;
   object["balance"] = level.balance ? balance_json(*level.balance) : Json(nullptr);
+  for (const auto& [name, value] : step.watched) object["watch"][name] = value;
   object["interfaces"] = Json::object();
   for (const InterfaceFigures& figures : step.interfaces)
     object["interfaces"][figures.boundary] = json(figures);
@@ -262,6 +263,17 @@ Json balance_json(const certify::Balance& balance)
   return object;
 }
 
+Json path_json(const adapt::PathEnd& path)
+{
+  Json object{{"dropped", path.dropped}, {"peak", nullptr}};
+  if (path.peak)
+    object["peak"] = {{"t", path.peak->t},
+                      {"step", path.peak->number},
+                      {"change", path.peak->change},
+                      {"increment", path.peak->step}};
+  return object;
+}
+
 Json levels_json(const RunRecord& run)
 {
   if (has_history(run)) return json(run.passes);
@@ -297,7 +309,11 @@ Json certificate(const RunRecord& run)
   for (const doctor::Finding& warning : run.warnings) object["warnings"].push_back(json(warning));
   object["mesh"] = mesh_json(run.mesh);
   object["levels"] = levels_json(run);
-  if (has_history(run)) object["steps"] = json(run.levels);
+  if (has_history(run))
+  {
+    object["steps"] = json(run.levels);
+    object["path"] = path_json(run.path);
+  }
   object["times"] = times_json(run);
   return object;
 }

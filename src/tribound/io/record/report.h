@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tribound/adapt/path_program.h"
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/doctor/findings.h"
 #include "tribound/io/record/facts.h"
@@ -34,6 +35,7 @@ struct RunRecord
   EarlierLevels earlier;
   std::vector<LevelRecord> levels;  ///< after them; of a run over a history its load steps on the last mesh
   std::vector<LevelRecord> passes;  ///< over a history: the worst step on each mesh
+  adapt::PathEnd path;              ///< over a history: what came of it on that mesh
   double tolerance = 0.0;           ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
   std::vector<doctor::Finding> warnings;  ///< about the last level

@@ -86,7 +86,7 @@ TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
 {
   const LoadStepRecord& step = level.load_step.value_or(LoadStepRecord());
   TableRow row = {
-      {"step", level.level}, {"t", step.t}, {"control", "load"}, {"cuts", step.cuts}, {"passes", 1}};
+      {"step", level.level}, {"t", step.t}, {"control", step.control}, {"cuts", step.cuts}, {"passes", 1}};
   TableRow of_level = convergence_row(level, kind);
   row.insert(row.end(), std::make_move_iterator(of_level.begin() + 1),
              std::make_move_iterator(of_level.end()));
@@ -101,6 +101,7 @@ TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
                {"stored", step.all.stored},
                {"work", step.work},
                {"balance", step.balance}});
+  for (const auto& [name, value] : step.watched) row.push_back({"watch." + name, std::optional(value)});
   return row;
 }
 
@@ -153,7 +154,7 @@ std::string history_csv(std::span<const LevelRecord> steps)
   const certify::RunKind kind = run_kind(steps);
   std::vector<TableRow> rows;
   for (const LevelRecord& step : steps) rows.push_back(history_row(step, kind));
-  return csv_text(history_row({}, kind), rows);
+  return csv_text(history_row(steps.empty() ? LevelRecord() : steps.front(), kind), rows);
 }
 
 std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels)

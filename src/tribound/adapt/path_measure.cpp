@@ -1,0 +1,114 @@
+#include "tribound/adapt/path_measure.h"
+
+#include <fmt/format.h>
+
+#include "tribound/fem/evaluation.h"
+
+namespace tribound::adapt
+{
+
+namespace
+{
+
+/// c_i += factor / |Gamma| times the integral of phi_i over the boundary.
+template <int dim>
+void add_mean(const fem::LagrangeSpace<dim>& space, int tag, const Point<dim>& factor, std::span<double> c)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(space.degree());
+  const fem::FacetTabulation<dim> table = fem::tabulate_on_facets<dim>(space.basis(), rule.points);
+  std::vector<double> integrals(c.size(), 0.0);
+  double area = 0;
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  {
+    if (facet.tag != tag) continue;
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+    {
+      fem::add_at_point<dim>(space.cell_nodes(facet.cell), table.on_facet[facet.local].values_at(q),
+                             dx * factor, integrals);
+      if (facet.cell < mesh.n_owned_cells()) area += dx;
+    }
+  }
+  area = mesh.ranks().sum(area);
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] += integrals[i] / area;
+}
+
+/// c_i += factor / |Gamma| times the integral of -[phi_i]^n over the contact boundary.
+template <int dim>
+void add_mean_opening(const contact::NitscheForm<dim>& form, int tag, double factor, std::span<double> c)
+{
+  std::vector<Point<dim>> t(form.n_contact_points(), Point<dim>::Zero());
+  double area = 0;
+  for (std::size_t i = 0; i < t.size(); ++i)
+  {
+    if (form.segments()[i / form.n_segment_points()].slave.facet.tag != tag) continue;
+    t[i] = -factor * form.contact_points()[i].normal;
+    if (i < form.n_owned_contact_points()) area += form.contact_points()[i].weight;
+  }
+  area = form.space().mesh().ranks().sum(area);
+  for (Point<dim>& value : t) value /= area > 0 ? area : 1.0;
+  form.add_contact_load(t, c);
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<double> functional(const contact::NitscheForm<dim>& form, std::span<const Gauge> gauges)
+{
+  const fem::LagrangeSpace<dim>& space = form.space();
+  std::vector<double> c(space.n_dofs(), 0.0);
+  for (const Gauge& gauge : gauges)
+  {
+    const int tag =
+        problem::group_number(gauge.boundary, space.mesh().boundary_names(), gauge.where, "boundary");
+    if (gauge.component.value_or(0) >= dim)
+      throw InputError(gauge.where, "names the third component of two",
+                       "one of " + gauge.boundary + ".x, .y");
+    if (gauge.component)
+      add_mean<dim>(space, tag, gauge.factor * Point<dim>::Unit(*gauge.component), c);
+    else if (form.problem().contact(tag) != nullptr)
+      add_mean_opening(form, tag, gauge.factor, c);
+    else
+      throw InputError(gauge.where, fmt::format("\"{}\" touches nothing that could open", gauge.boundary),
+                       "a boundary with contact, or a component: " + gauge.boundary + ".x");
+  }
+  return c;
+}
+
+template <int dim>
+double PathMeasure<dim>::value(const contact::NitscheForm<dim>& form, std::span<const double> u) const
+{
+  if (!functional_.empty()) return form.space().dot(functional_, u);
+  const std::vector<problem::InterfaceResponse<dim>> responses = form.advance(u);
+  double sum = 0;
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
+    if (problem::has_memory(form.segments()[i / form.n_segment_points()].contact->law))
+      sum += form.contact_points()[i].weight * responses[i].state.damage;
+  return form.space().mesh().ranks().sum(sum);
+}
+
+template <int dim>
+double PathMeasure<dim>::derivative(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                    std::span<const double> d) const
+{
+  if (!functional_.empty()) return form.space().dot(functional_, d);
+  const std::vector<problem::InterfaceResponse<dim>> responses = form.advance(u);
+  const std::size_t n = form.n_segment_points();
+  double sum = 0;
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+  {
+    if (!problem::has_memory(form.segments()[k].contact->law)) continue;
+    const auto change = form.traction_without_gap(d, k);
+    for (std::size_t q = 0; q < n; ++q)
+      sum += form.contact_points(k)[q].weight *
+             responses[k * n + q].damage_gradient.dot(change.col(static_cast<Eigen::Index>(q)));
+  }
+  return form.space().mesh().ranks().sum(sum);
+}
+
+template std::vector<double> functional(const contact::NitscheForm<2>&, std::span<const Gauge>);
+template std::vector<double> functional(const contact::NitscheForm<3>&, std::span<const Gauge>);
+template class PathMeasure<2>;
+template class PathMeasure<3>;
+
+}  // namespace tribound::adapt

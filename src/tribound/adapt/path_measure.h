@@ -1,0 +1,61 @@
+#pragma once
+
+/// @file path_measure.h
+/// Quantities C(u) that grow along a load path, by which it is followed where the load factor is not known
+/// beforehand (method section 12.6).
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/base/error.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::adapt
+{
+
+/// A term of a linear functional of u: `factor` times the mean of a component over a boundary or, where there
+/// is none, the mean of the opening -[u]^n that displacement adds to the gap of a contact boundary.
+struct Gauge
+{
+  std::string boundary;
+  std::optional<int> component{};
+  double factor = 1;
+  Where where{};  ///< for messages
+};
+
+/// A quantity that is told of every step.
+struct Watch
+{
+  std::string name;
+  std::vector<Gauge> gauges;
+};
+
+/// c with c.u = the sum of the gauges, complete for own degrees of freedom. Throws InputError where there is
+/// no such boundary or component, and where a boundary that is to open touches nothing. All ranks together.
+template <int dim>
+[[nodiscard]] std::vector<double> functional(const contact::NitscheForm<dim>& form,
+                                             std::span<const Gauge> gauges);
+
+/// C(u), either c.u or the integral of the damage D over all interfaces with a bond (length in 2D, area).
+template <int dim>
+class PathMeasure
+{
+ public:
+  /// The integral of D.
+  PathMeasure() = default;
+  /// c.u; c is not empty.
+  explicit PathMeasure(std::vector<double> c) : functional_(std::move(c)) {}
+
+  /// With the damage that u leads to from the history of the form. All ranks together, as derivative().
+  [[nodiscard]] double value(const contact::NitscheForm<dim>& form, std::span<const double> u) const;
+  /// C'(u)[d], d with the values of ghosts.
+  [[nodiscard]] double derivative(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                  std::span<const double> d) const;
+
+ private:
+  std::vector<double> functional_;
+};
+
+}  // namespace tribound::adapt

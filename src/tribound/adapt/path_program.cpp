@@ -1,0 +1,255 @@
+#include "tribound/adapt/path_program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tribound::adapt
+{
+
+namespace
+{
+
+constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
+constexpr double growth = 1.4;           ///< of a step after one that was easy
+constexpr int few_steps = 12;            ///< of Newton's method: it was
+
+/// Length or area of all interfaces with a bond.
+template <int dim>
+double bonded_measure(const contact::NitscheForm<dim>& form)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
+    if (problem::has_memory(form.segments()[i / form.n_segment_points()].contact->law))
+      sum += form.contact_points()[i].weight;
+  return form.space().mesh().ranks().sum(sum);
+}
+
+/// C at the last step of a path.
+template <int dim>
+double value_at(const LoadPath<dim>& path, const PathMeasure<dim>& measure)
+{
+  return measure.value(path.last()->at->discrete.form, path.last()->level.u);
+}
+
+/// A stage: what grows, by how much, and when it is enough.
+template <int dim>
+struct Stage
+{
+  const char* name;
+  PathMeasure<dim> measure;
+  double step;
+  double until;            ///< value of the measure
+  bool to_damage = false;  ///< whether PathProgram::enough_damage and t_min end it
+};
+
+template <int dim>
+class Follower
+{
+ public:
+  using Observer = typename LoadPath<dim>::Observer;
+  using Position = typename LoadPath<dim>::Position;
+
+  Follower(LoadPath<dim>& path, const PathProgram& program, const Observer& observer,
+           const StepObserver& newton)
+      : path_(path), program_(program), observer_(observer), newton_(newton)
+  {
+    for (std::size_t i = 1; i < program.targets.size(); ++i)
+      largest_change_ = std::max(largest_change_, std::abs(program.targets[i] - program.targets[i - 1]));
+  }
+
+  PathEnd run()
+  {
+    by_load();
+    if (!end_.failure.empty() || program_.following == Following::load) return end_;
+    const bool under_control = program_.following != Following::automatic || failed_;
+    if (under_control) end_.failure = go(main_stage());
+    if (end_.failure.empty() && program_.then) end_.failure = go(stage_of(*program_.then, false));
+    return end_;
+  }
+
+ private:
+  [[nodiscard]] const contact::NitscheForm<dim>& form() const { return path_.last()->at->discrete.form; }
+
+  void by_load();
+  [[nodiscard]] Stage<dim> main_stage() const;
+  [[nodiscard]] Stage<dim> stage_of(const DisplacementStage& stage, bool to_damage) const
+  {
+    return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until,
+            to_damage};
+  }
+  [[nodiscard]] std::string go(const Stage<dim>& stage);
+  [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
+  [[nodiscard]] Control<dim> control(const Stage<dim>& stage, double increment) const
+  {
+    return {.name = stage.name,
+            .measure = stage.measure,
+            .increment = increment,
+            .largest_change = largest_change_};
+  }
+  /// The step with the largest t.
+  struct Summit
+  {
+    double t;
+    double fall;    ///< of t to the step after it
+    Position from;  ///< the step before it, or where the search began
+  };
+  void look_for_peak(const Stage<dim>& stage, double size);
+  [[nodiscard]] std::optional<Summit> summit_with(const Stage<dim>& stage, double size, double end,
+                                                  const Position& from);
+
+  LoadPath<dim>& path_;
+  const PathProgram& program_;
+  const Observer& observer_;
+  const StepObserver& newton_;
+  double largest_change_ = 0;       ///< of t, between neighbours in the list
+  std::optional<double> failed_{};  ///< the value of t that ended Following::automatic
+  PathEnd end_{};
+  double direction_ = 1;  ///< of t, in the list
+  /// Before the last two steps of a stage.
+  std::vector<Position> positions_{};
+};
+
+template <int dim>
+void Follower<dim>::by_load()
+{
+  const bool is_automatic = program_.following == Following::automatic;
+  for (std::size_t i = 0; i < program_.targets.size() && end_.failure.empty() && !failed_; ++i)
+  {
+    const double t = program_.targets[i];
+    end_.failure = path_.advance(t, observer_, newton_, !is_automatic);
+    if (end_.failure.empty() || !is_automatic || i < 2 || !path_.interruption().empty()) continue;
+    failed_ = t;
+    end_.failure.clear();
+    end_.dropped.assign(program_.targets.begin() + static_cast<std::ptrdiff_t>(i), program_.targets.end());
+  }
+  if (!end_.failure.empty() && is_automatic && path_.interruption().empty())
+    end_.failure += "; to go on by damage takes two load steps before: smaller history.steps";
+  if (program_.targets.size() > 1 && program_.targets.back() < program_.targets.front()) direction_ = -1;
+}
+
+template <int dim>
+Stage<dim> Follower<dim>::main_stage() const
+{
+  if (program_.following == Following::displacement) return stage_of(program_.displacement, true);
+  const double measure = bonded_measure(form());
+  return {"damage", PathMeasure<dim>(), program_.damage_step.value_or(measure / 50),
+          program_.enough_damage * measure, true};
+}
+
+/// Whether the measure, which is `now`, has come as far as it should, or damage and t have.
+template <int dim>
+bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
+{
+  constexpr double margin = 1e-9;
+  const double left = (stage.until - now) * (stage.step < 0 ? -1 : 1);
+  if (left <= margin * std::abs(stage.step)) return true;
+  if (!stage.to_damage) return false;
+  const bool has_fallen =
+      program_.t_min && end_.peak && direction_ * (path_.last()->t - *program_.t_min) <= 0;
+  const double measure = bonded_measure(form());
+  return has_fallen ||
+         (measure > 0 && value_at(path_, PathMeasure<dim>()) >= program_.enough_damage * measure);
+}
+
+/// Not empty: why it was not gone through.
+template <int dim>
+std::string Follower<dim>::go(const Stage<dim>& stage)
+{
+  double size = stage.step;
+  double last_increment = 0;
+  int cuts = 0;
+  positions_.clear();
+  for (int n = 0; n < program_.max_steps;)
+  {
+    const double now = value_at(path_, stage.measure);
+    if (is_over(stage, now)) return {};
+    Control<dim> control = this->control(stage, size);
+    if (std::abs(size) > std::abs(stage.until - now)) control.increment = stage.until - now;
+    control.last_increment = last_increment;
+    control.cuts = cuts;
+    if (n == 0) control.failed = failed_;
+    const Position position = path_.position();
+    const std::string failure = path_.follow(control, observer_, newton_);
+    if (failure.empty())
+    {
+      ++n;
+      cuts = 0;
+      last_increment = control.increment;
+      positions_.push_back(position);
+      if (positions_.size() > 2) positions_.erase(positions_.begin());
+      if (!end_.peak && direction_ * (path_.last()->t - position.last->t) < 0) look_for_peak(stage, size);
+      const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= few_steps;
+      if (was_easy && std::abs(size) < std::abs(stage.step))
+        size = std::abs(growth * size) < std::abs(stage.step) ? growth * size : stage.step;
+    }
+    else if (!path_.interruption().empty() || std::abs(size) / 2 < smallest * std::abs(stage.step))
+      return failure;
+    else
+    {
+      size /= 2;
+      ++cuts;
+    }
+  }
+  return {};
+}
+
+/// Notes the peak that the last step has left behind.
+template <int dim>
+void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
+{
+  constexpr double accuracy = 1e-3;
+  constexpr int max_halvings = 8;
+  const LoadStep<dim>& highest = *positions_.back().last;
+  end_.peak = Peak{.t = highest.t, .number = highest.number, .change = 0, .step = size};
+  Peak& peak = *end_.peak;
+  const double end = value_at(path_, stage.measure);
+  std::optional<Summit> summit = Summit{highest.t, 0, positions_.front()};
+  for (int i = 0; i < max_halvings; ++i)
+  {
+    summit = summit_with(stage, peak.step / 2, end, summit->from);
+    if (!summit) return;
+    peak.change = summit->t - peak.t;
+    peak.t = summit->t;
+    peak.step /= 2;
+    if (std::max(std::abs(peak.change), summit->fall) <= accuracy * std::abs(peak.t)) return;
+  }
+}
+
+/// The summit on the path from `from` to the value `end` of the measure with steps of this size.
+template <int dim>
+auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end, const Position& from)
+    -> std::optional<Summit>
+{
+  LoadPath<dim> beside = path_;
+  beside.go_back(from);
+  Summit summit{from.last->t, 0, from};
+  Control<dim> control = this->control(stage, size);
+  double left = std::abs(end - value_at(beside, stage.measure));
+  for (; left > 0.5 * std::abs(size); left -= std::abs(size))
+  {
+    const Position before = beside.position();
+    if (!beside.follow(control, {}, newton_).empty()) return std::nullopt;
+    control.last_increment = size;
+    summit.fall = direction_ * (summit.t - beside.last()->t);
+    if (summit.fall > 0) return summit;
+    summit = {beside.last()->t, 0, before};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+template <int dim>
+PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
+               const typename LoadPath<dim>::Observer& observer, const StepObserver& newton)
+{
+  return Follower<dim>(path, program, observer, newton).run();
+}
+
+template PathEnd follow(LoadPath<2>&, const PathProgram&, const LoadPath<2>::Observer&, const StepObserver&);
+template PathEnd follow(LoadPath<3>&, const PathProgram&, const LoadPath<3>::Observer&, const StepObserver&);
+
+}  // namespace tribound::adapt

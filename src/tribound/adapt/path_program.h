@@ -1,0 +1,73 @@
+#pragma once
+
+/// @file path_program.h
+/// What a load path goes through: values of t, and beyond them what damage or displacements lead to (method
+/// section 12.6).
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/adapt/load_path.h"
+#include "tribound/adapt/path_measure.h"
+
+namespace tribound::adapt
+{
+
+/// Steps of c.u, until it has a value.
+struct DisplacementStage
+{
+  std::vector<Gauge> gauges{};
+  double step = 0;
+  double until = std::numeric_limits<double>::infinity();  ///< -infinity for step < 0
+};
+
+/// What is given after the values of t.
+enum class Following
+{
+  load,       ///< nothing
+  automatic,  ///< damage, from the first value on that Newton's method does not come to
+  damage,
+  displacement
+};
+
+struct PathProgram
+{
+  std::vector<double> targets{};  ///< the values of t, not empty
+  Following following = Following::load;
+  std::optional<double> damage_step{};  ///< of the integral of D; a fiftieth of all interfaces where absent
+  DisplacementStage displacement{};     ///< of Following::displacement
+  double enough_damage = 0.99;          ///< mean D of all interfaces at which a stage ends
+  std::optional<double> t_min{};        ///< a stage ends with t at or beyond it, after the peak
+  int max_steps = 200;                  ///< of a stage
+  std::optional<DisplacementStage> then{};  ///< after all
+};
+
+/// The largest t (where the list decreases, the smallest) before the path turns back: the level at which a
+/// structure fails.
+struct Peak
+{
+  double t = 0;
+  int number = 0;     ///< of the step with that t, before it was looked at more closely
+  double change = 0;  ///< of t when the steps around it were halved for the last time
+  double step = 0;    ///< their increment then
+};
+
+/// What came of a program.
+struct PathEnd
+{
+  std::string failure{};          ///< not empty: why it was not followed to its end
+  std::vector<double> dropped{};  ///< values of t that were left out for Following::automatic
+  std::optional<Peak> peak{};     ///< where there was one
+};
+
+/// Follows the program. Steps that fail are halved, down to 1/1024. At a peak the steps around it are tried
+/// again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
+/// `observer` sees the committed steps of the path. Throws as LoadPath does, and as functional().
+template <int dim>
+[[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
+                             const typename LoadPath<dim>::Observer& observer, const StepObserver& newton);
+
+}  // namespace tribound::adapt

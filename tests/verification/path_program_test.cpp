@@ -1,0 +1,205 @@
+/// @file path_program_test.cpp
+/// Load paths beyond their peak: bars that snap back against the closed formula, peaks, stages, and what
+/// cannot be followed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "support/bonded_path.h"
+#include "tribound/adapt/path_program.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+using problem::Field;
+
+constexpr double ft = 2;
+constexpr double Gc = 6e-4;
+constexpr double critical = 2 * Gc / ft;
+
+/// A bar of length 1 on a bond, pulled at its top by t: the bond softens three times as fast as the bar is
+/// stiff.
+template <int dim>
+struct Bar
+{
+  explicit Bar(int degree, problem::ContactLaw law = problem::JointLaw({.tension = {ft, Gc}}))
+      : mesh(block<dim>({2, 6}, {1, 2, 1})), problem(data(std::move(law)).on(mesh::Mesh<dim>(mesh)))
+  {
+    method.degree = degree;
+    method.newton.tolerance = 1e-12;
+    method.stopping.criterion = adapt::Stopping::last_bounded;
+  }
+
+  static ProblemData<dim> data(problem::ContactLaw law)
+  {
+    std::array<std::optional<Field>, dim> top;
+    top[1] = formula("t");
+    ProblemData<dim> data;
+    data.boundaries = {problem::with_displacement<dim>("top", top),
+                       problem::with_contact<dim>("bottom", std::move(law))};
+    data.regions = {{.name = "box", .material = material()}};
+    for (const char* side :
+         dim == 2 ? std::vector{"left", "right"} : std::vector{"left", "right", "front", "back"})
+    {
+      std::array<std::optional<Field>, dim> held;
+      held[side[0] == 'f' || side[0] == 'b' ? 2 : 0] = Field(0.0);
+      data.boundaries.push_back(problem::with_displacement<dim>(side, held));
+    }
+    return data;
+  }
+  static problem::Material material() { return problem::lame(1000, 0.2, problem::PlaneModel::strain); }
+
+  mesh::MeshData<dim> mesh;
+  problem::Problem<dim> problem;
+  adapt::Method method{};
+};
+
+struct Followed
+{
+  adapt::PathEnd end;
+  std::vector<double> t;
+  std::vector<std::string> control;
+  std::size_t most_newton_steps = 0;
+};
+
+/// Every step has the exact traction, sigma = ft (1 - delta / delta_c) and t = sigma / M + delta.
+template <int dim>
+Followed follow_exactly(const Bar<dim>& bar, const adapt::PathProgram& program,
+                        const adapt::PathOptions& options = {})
+{
+  const double M = Bar<dim>::material().lambda + 2 * Bar<dim>::material().mu;
+  adapt::LoadPath<dim> path(bar.problem, bar.method, options, mesh::Mesh<dim>(bar.mesh));
+  Followed result;
+  const auto check = [&](const adapt::LoadStep<dim>& step)
+  {
+    SCOPED_TRACE(step.t);
+    EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified) << step.verdict.reason;
+    EXPECT_LE(step.level.estimate.total, 1e-8);
+    result.t.push_back(step.t);
+    result.control.push_back(step.control);
+    result.most_newton_steps = std::max(result.most_newton_steps, step.level.steps.size());
+    for (const problem::InterfaceResponse<dim>& response : step.responses)
+    {
+      const double damage = response.state.damage;
+      const double pulled = damage < 1 ? M * (step.t - damage * critical) : 0;
+      EXPECT_NEAR(-response.traction[1], pulled, 1e-9);  // n = (0, -1)
+      if (damage > 0)
+      {
+        EXPECT_NEAR(-response.traction[1], ft * (1 - damage), 1e-9);
+      }
+    }
+  };
+  result.end = adapt::follow<dim>(path, program, check, {});
+  return result;
+}
+
+template <int dim>
+void expect_a_snap_back(const Followed& followed, const std::string& control)
+{
+  EXPECT_EQ(followed.end.failure, "");
+  const double M = Bar<dim>::material().lambda + 2 * Bar<dim>::material().mu;
+  ASSERT_TRUE(followed.end.peak);
+  EXPECT_NEAR(followed.end.peak->t, ft / M, 0.2 * ft / M);
+  EXPECT_LE(followed.end.peak->t, ft / M * (1 + 1e-9));
+  EXPECT_LT(followed.t.back(), critical * 1.1);
+  EXPECT_EQ(followed.control.back(), control);
+  EXPECT_LE(followed.most_newton_steps, 6U);
+}
+
+TEST(PathProgram, BarThroughItsSnapBackByDamage)
+{
+  for (const int degree : {1, 2})
+  {
+    // The tip of the path lies between two steps of the list; damage takes over where Newton's method fails.
+    const Followed automatic = follow_exactly(
+        Bar<2>(degree),
+        {.targets = {0.0009, 0.0016, 0.0025}, .following = adapt::Following::automatic, .damage_step = 0.2});
+    expect_a_snap_back<2>(automatic, "damage");
+    EXPECT_THAT(automatic.end.dropped, testing::ElementsAre(0.0025));
+  }
+  expect_a_snap_back<3>(follow_exactly(Bar<3>(1), {.targets = {0.0009, 0.0017},
+                                                   .following = adapt::Following::damage,
+                                                   .damage_step = 0.2}),
+                        "damage");
+}
+
+TEST(PathProgram, BarThroughItsSnapBackByOpening)
+{
+  const adapt::Gauge opening{.boundary = "bottom"};
+  const adapt::Gauge top{.boundary = "top", .component = 1, .factor = 0.1};
+  // An opening alone is zero before the bond softens.
+  const adapt::PathProgram program{.targets = {0.0009, 0.0017},
+                                   .following = adapt::Following::displacement,
+                                   .displacement = {.gauges = {opening, top}, .step = 5e-5, .until = 6.5e-4}};
+  for (const int degree : {1, 2, 3})
+    expect_a_snap_back<2>(follow_exactly(Bar<2>(degree), program), "displacement");
+}
+
+TEST(PathProgram, EveryLawWithABondIsFollowed)
+{
+  for (const problem::ContactLaw& law :
+       {problem::ContactLaw(problem::JointLaw({.tension = {ft, Gc, problem::Unloading::vertical}})),
+        problem::ContactLaw(problem::MixedLaw({.tension = {ft, Gc}, .shear_ratio = 0.8}))})
+    expect_a_snap_back<2>(follow_exactly(Bar<2>(2, law), {.targets = {0.0009, 0.0017, 0.003},
+                                                          .following = adapt::Following::automatic,
+                                                          .damage_step = 0.3}),
+                          "damage");
+}
+
+/// After the bond is broken the bar is lifted off, a rigid motion but for what holds it.
+TEST(PathProgram, GoesOnByADisplacement)
+{
+  const Followed followed = follow_exactly(
+      Bar<2>(2), {.targets = {0.0009, 0.0017, 0.003},
+                  .following = adapt::Following::automatic,
+                  .damage_step = 0.3,
+                  .enough_damage = 1,
+                  .then = adapt::DisplacementStage{
+                      .gauges = {{.boundary = "top", .component = 1}}, .step = 2e-4, .until = 1.2e-3}});
+  EXPECT_EQ(followed.end.failure, "");
+  EXPECT_THAT(followed.control, testing::Contains("damage"));
+  EXPECT_EQ(followed.control.back(), "displacement");
+  EXPECT_NEAR(followed.t.back(), 1.2e-3, 1e-12);
+}
+
+TEST(PathProgram, EndsAtStops)
+{
+  adapt::PathProgram program{
+      .targets = {0.0009, 0.0017}, .following = adapt::Following::damage, .damage_step = 0.1, .max_steps = 3};
+  EXPECT_EQ(follow_exactly(Bar<2>(1), program).t.size(), 5U);
+  program.max_steps = 100;
+  program.t_min = 0.0015;
+  const Followed followed = follow_exactly(Bar<2>(1), program);
+  EXPECT_LE(followed.t.back(), 0.0015);
+  EXPECT_GT(followed.t.at(followed.t.size() - 2), 0.0015);
+}
+
+TEST(PathProgram, PeakOfHalvedSteps)
+{
+  const Followed followed = follow_exactly(
+      Bar<2>(2), {.targets = {0.0009, 0.0017}, .following = adapt::Following::damage, .damage_step = 0.4});
+  const double exact = ft / (Bar<2>::material().lambda + 2 * Bar<2>::material().mu);
+  const auto highest = std::ranges::max_element(followed.t);
+  ASSERT_TRUE(followed.end.peak);
+  EXPECT_EQ(followed.end.peak->number, highest - followed.t.begin() + 1);
+  EXPECT_GE(followed.end.peak->t, *highest);
+  EXPECT_NEAR(followed.end.peak->t, exact, 0.002 * exact);
+  EXPECT_LE(std::abs(followed.end.peak->change), 1e-3 * exact);
+}
+
+TEST(PathProgram, WhatCannotBeFollowedIsSaid)
+{
+  const Followed load = follow_exactly(Bar<2>(1), {.targets = {0.0009, 0.0017, 0.0019}}, {.smallest = 0.1});
+  EXPECT_THAT(load.end.failure, testing::HasSubstr("load step"));
+  const Followed early =
+      follow_exactly(Bar<2>(1), {.targets = {0.0009, 0.0019}, .following = adapt::Following::automatic});
+  EXPECT_THAT(early.end.failure, testing::HasSubstr("takes two load steps before"));
+}
+
+}  // namespace
+}  // namespace tribound::test
