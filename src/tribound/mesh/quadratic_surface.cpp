@@ -85,6 +85,7 @@ QuadraticSurface<dim>::QuadraticSurface(const QuadraticFacets& facets, std::span
 {
   std::vector<Index> nodes;
   std::vector<BoundingBox<dim>> boxes;
+  std::vector<BoundingBox<dim>> curved_boxes;
   for (std::size_t f = 0; f < facets.tags.size(); ++f)
   {
     if (std::ranges::find(tags, facets.tags[f]) == tags.end()) continue;
@@ -101,11 +102,14 @@ QuadraticSurface<dim>::QuadraticSurface(const QuadraticFacets& facets, std::span
     facet.size = diameter<dim>(vertices);
     facets_.push_back(facet);
     boxes.push_back(bounding_box<dim>(vertices));
+    curved_boxes.push_back(QuadraticPiece<dim>(facet.nodal[0], Point<dim>::Zero()).box());
   }
   if (facets_.empty())
     throw InputError(where, "the boundary has no facets of second order", "a mesh of order 2");
   find_normals(nodes, where);
+  find_rim(nodes);
   tree_ = BoxTree<dim>(boxes);
+  curved_tree_ = BoxTree<dim>(curved_boxes);
 }
 
 template <int dim>
@@ -196,8 +200,13 @@ template <int dim>
 Point<dim> QuadraticSurface<dim>::value(Nodal what, const Point<dim>& x) const
 {
   const Facet& facet = nearest(x);
-  const Barycentric lambda = facet.barycentric(x);
-  return polar_form<dim>(facet.nodal[static_cast<int>(what)], lambda, lambda);
+  return facet.at(what, facet.barycentric(x));
+}
+
+template <int dim>
+Point<dim> QuadraticSurface<dim>::Facet::at(Nodal what, const Barycentric& lambda) const
+{
+  return polar_form<dim>(nodal[static_cast<int>(what)], lambda, lambda);
 }
 
 // With B_ij = Q(v_i, v_j), v_i the vertices, and c their mean, for xi and x in the convex hull K:

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file quadratic_surface.h
-/// The surface made of second-order facets, as a map from the straight facets with their vertices.
+/// The surface made of second-order facets: as a map from the straight facets with their vertices, and its
+/// distance from any point.
 
 #include <array>
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include "tribound/base/types.h"
 #include "tribound/mesh/box_tree.h"
 #include "tribound/mesh/quadratic_facets.h"
+#include "tribound/mesh/quadratic_piece.h"
 #include "tribound/problem/formula.h"
 
 namespace tribound::mesh
@@ -41,6 +43,20 @@ class QuadraticSurface
   /// n / |n|: out of the body, continuous.
   [[nodiscard]] Point<dim> normal(const Point<dim>& x) const { return value(Nodal::normal, x).normalized(); }
 
+  /// The nearest point of the facets to a point.
+  struct Foot
+  {
+    Point<dim> point;
+    double distance;    ///< signed: > 0 outside of the body
+    Point<dim> normal;  ///< n / |n| there
+  };
+  /// The point y of the facets, curved as they are, that is nearest to x: of all of them, up to rounding, by
+  /// bounds that rule out the others. The distance is |x - y|, its sign that of (x - y).m, m the normal of
+  /// the facet, n where facets meet; on the rim, where x - y need not be along a normal, it is (x - y).m
+  /// itself: the distance from the plane that goes on there. Continuous where y is and does not pass a corner
+  /// of the rim.
+  [[nodiscard]] Foot foot(const Point<dim>& x) const;
+
   /// Of each component what problem::Formula::enclose gives of a formula over the convex hull of `vertices`
   /// (dim coordinates each), which is part of one straight facet; further coefficients are 0.
   [[nodiscard]] std::array<std::array<problem::Enclosure, 3>, dim> enclose(
@@ -56,20 +72,33 @@ class QuadraticSurface
     std::array<Values, 2> nodal;  ///< by Nodal
     /// lambda_1, ... = inverse (x - first vertex)
     Eigen::Matrix<double, dim - 1, dim> inverse;
-    double size;  ///< the longest edge
+    double size;                       ///< the longest edge
+    std::array<bool, n_nodes> is_rim;  ///< nodes, those on edges for the edge: no facet on the other side
 
     [[nodiscard]] const Point<dim>& vertex(int i) const { return nodal[0][i]; }
     [[nodiscard]] Barycentric barycentric(const Point<dim>& x) const;
     /// The square of a distance that is at least that of x.
     [[nodiscard]] double square_distance(const Point<dim>& x) const;
     [[nodiscard]] std::array<Point<dim>, dim - 1> tangents(const Barycentric& at) const;
+    [[nodiscard]] Point<dim> at(Nodal what, const Barycentric& lambda) const;
+  };
+
+  struct Place
+  {
+    std::size_t facet;
+    Barycentric lambda;
+    double square;  ///< of the distance
   };
 
   void find_normals(std::span<const Index> nodes, const Where& where);
+  void find_rim(std::span<const Index> nodes);
   [[nodiscard]] const Facet& nearest(const Point<dim>& x) const;
+  [[nodiscard]] Place nearest_node(const Point<dim>& x) const;
+  static void search(const QuadraticPiece<dim>& piece, std::size_t facet, int depth, Place& best);
 
   std::vector<Facet> facets_;
-  BoxTree<dim> tree_{{}};
+  BoxTree<dim> tree_{{}};         ///< of the straight facets
+  BoxTree<dim> curved_tree_{{}};  ///< of the curved ones
 };
 
 }  // namespace tribound::mesh
