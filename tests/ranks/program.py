@@ -196,7 +196,8 @@ def a_run_goes_on():
 def bodies_go_on():
     """Joints and several boxes: the interfaces come with the mesh; an obstacle comes from its file again, a shape from the first mesh."""
     for name, case in (("blocks", f"{EXAMPLES}/07_three_blocks/case.toml"), ("joint", f"{CASES}/joint.toml"),
-                       ("triangles", f"{CASES}/on_triangles.toml"), ("order2", f"{CASES}/order2.toml")):
+                       ("triangles", f"{CASES}/on_triangles.toml"), ("order2", f"{CASES}/order2.toml"),
+                       ("order2_pair", f"{CASES}/order2_pair.toml")):
         run_case(f"{name}_begun", 3, case, "--set", "output.checkpoint=true", "--set", "adapt.max_levels=1", "--set", "adapt.tolerance=1e-9")
         for n in (1, 2):
             shutil.copytree(out(f"{name}_begun", 3), out(f"{name}_on", n))
@@ -244,6 +245,7 @@ the_same_as_one("joint", f"{CASES}/joint.toml", "--set", "adapt.max_levels=4")
 the_same_as_one("rock3d", f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "adapt.max_levels=1", "--set", "solver.method=direct")
 the_same_as_one("triangles", f"{CASES}/on_triangles.toml")
 the_same_as_one("order2", f"{CASES}/order2.toml")
+the_same_as_one("order2_pair", f"{CASES}/order2_pair.toml")
 bad_input_is_told_once()
 commands_for_one_process()
 interrupted()

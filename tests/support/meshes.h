@@ -151,6 +151,11 @@ mesh::MeshData<dim> side_by_side(mesh::MeshData<dim> a, const mesh::MeshData<dim
     facet.tag += first_boundary;
     a.facets.push_back(facet);
   }
+  for (auto node : b.edge_nodes)
+  {
+    for (Index& v : node.ends) v += first_vertex;
+    a.edge_nodes.push_back(node);
+  }
   for (const std::string& name : b.region_names) a.region_names.push_back(name + suffix);
   for (const std::string& name : b.boundary_names) a.boundary_names.push_back(name + suffix);
   return a;

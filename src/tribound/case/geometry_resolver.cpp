@@ -82,11 +82,10 @@ problem::Surface make_surface(const SurfaceConfig& config, bool is_obstacle)
   return config.translate.empty() ? surface : problem::moved(surface, config.translate, config.kind_where);
 }
 
-/// The same of any surface in space.
-SurfacePoints make_points(const SurfaceConfig& config, bool is_obstacle)
+/// Triangles from a file.
+SurfacePoints<3> make_triangles(const SurfaceConfig& config, bool is_obstacle)
 {
   using Side = SurfaceConfig::Side;
-  if (config.kind != Kind::surface) return points_of(make_surface<3>(config, is_obstacle), config.kind_where);
   check_dimension<3>(config);
   auto triangles =
       std::make_shared<const mesh::TriangulatedSurface>(mesh::read_stl(config.file, config.kind_where));
@@ -102,6 +101,15 @@ SurfacePoints make_points(const SurfaceConfig& config, bool is_obstacle)
   const Point<3> shift =
       config.translate.empty() ? Point<3>(Point<3>::Zero()) : Point<3>(config.translate.data());
   return points_of(std::move(triangles), along_normals == is_obstacle ? 1.0 : -1.0, shift);
+}
+
+/// The same of any surface but facets of the mesh.
+template <int dim>
+SurfacePoints<dim> make_points(const SurfaceConfig& config, bool is_obstacle)
+{
+  if constexpr (dim == 3)
+    if (config.kind == Kind::surface) return make_triangles(config, is_obstacle);
+  return points_of<dim>(make_surface<dim>(config, is_obstacle), config.kind_where);
 }
 
 const SurfaceConfig& named(const std::vector<SurfaceConfig>& surfaces, const std::string& name)
@@ -167,38 +175,67 @@ void apply(const GeometryConfig& config, const Geometry& surfaces, problem::Cont
   }
 }
 
-/// The surfaces of a contact: make(surface, whether it is an obstacle). A master is to its slave what an
-/// obstacle is, with the same normal.
+enum class Role
+{
+  obstacle,
+  slave,  ///< or the body on an obstacle
+  master
+};
+
+/// The surfaces of a contact: make(surface, role). A master is to its slave what an obstacle is, with the
+/// same normal.
 template <class Geometry, class Make>
 Geometry gather(const Config& config, const GeometryConfig& geometry, const Make& make)
 {
   Geometry surfaces{.where = geometry.where};
-  if (!geometry.obstacle.empty()) surfaces.obstacle = make(named(config.obstacles, geometry.obstacle), true);
-  if (!geometry.shape.empty()) surfaces.shape = make(named(config.shapes, geometry.shape), false);
+  if (!geometry.obstacle.empty())
+    surfaces.obstacle = make(named(config.obstacles, geometry.obstacle), Role::obstacle);
+  if (!geometry.shape.empty()) surfaces.shape = make(named(config.shapes, geometry.shape), Role::slave);
   if (!geometry.master_shape.empty())
-    surfaces.obstacle = make(named(config.shapes, geometry.master_shape), false);
+    surfaces.obstacle = make(named(config.shapes, geometry.master_shape), Role::master);
   return surfaces;
 }
 
-/// Whether one of the surfaces is of the kind.
-bool has_kind(const Config& config, const GeometryConfig& geometry, Kind kind)
+bool is_of_kind(const std::vector<SurfaceConfig>& surfaces, const std::string& name, Kind kind)
 {
-  const auto is_made_of = [kind](const std::vector<SurfaceConfig>& surfaces, const std::string& name)
-  { return !name.empty() && named(surfaces, name).kind == kind; };
-  return is_made_of(config.obstacles, geometry.obstacle) || is_made_of(config.shapes, geometry.shape) ||
-         is_made_of(config.shapes, geometry.master_shape);
+  return !name.empty() && named(surfaces, name).kind == kind;
 }
 
-/// The shape of the facets of the mesh.
-template <int dim>
-auto make_quadratic(const SurfaceConfig& shape, const ContactFacets& facets)
+/// Whether distances from one of the surfaces have no formula.
+bool needs_points(const Config& config, const GeometryConfig& geometry)
 {
-  if (facets.quadratic == nullptr)
+  return is_of_kind(config.obstacles, geometry.obstacle, Kind::surface) ||
+         is_of_kind(config.shapes, geometry.shape, Kind::surface) ||
+         is_of_kind(config.shapes, geometry.master_shape, Kind::surface) ||
+         (geometry.master_shape != geometry.shape &&
+          is_of_kind(config.shapes, geometry.master_shape, Kind::mesh));
+}
+
+/// The shape of the facets of the groups `tags`.
+template <int dim>
+auto make_quadratic(const SurfaceConfig& shape, const mesh::QuadraticFacets* facets,
+                    std::span<const int> tags)
+{
+  if (facets == nullptr)
     throw InputError(shape.kind_where, "the mesh has no second-order facets",
                      "a mesh file of order 2 (gmsh -order 2, Mesh.ElementOrder = 2), or the shape as one of "
                      "plane, circle, sphere, cylinder, surface");
-  return std::make_shared<const mesh::QuadraticSurface<dim>>(*facets.quadratic, facets.tags,
-                                                             shape.kind_where);
+  return std::make_shared<const mesh::QuadraticSurface<dim>>(*facets, tags, shape.kind_where);
+}
+
+/// The same by points.
+template <int dim>
+void apply_points(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
+                  problem::Contact& contact)
+{
+  const auto make = [&](const SurfaceConfig& surface, Role role)
+  {
+    if (surface.kind != Kind::mesh) return make_points<dim>(surface, role == Role::obstacle);
+    if (role == Role::master)
+      return points_around<dim>(make_quadratic<dim>(surface, facets.quadratic, facets.master_tags));
+    return points_on<dim>(make_quadratic<dim>(surface, facets.quadratic, facets.tags));
+  };
+  apply<dim>(geometry, gather<PointGeometry<dim>>(config, geometry, make), contact);
 }
 
 /// The same with the shape of the mesh and formulas for what it touches.
@@ -206,27 +243,14 @@ template <int dim>
 void apply_quadratic(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
                      problem::Contact& contact)
 {
-  QuadraticGeometry<dim> surfaces{.shape = make_quadratic<dim>(named(config.shapes, geometry.shape), facets),
-                                  .where = geometry.where};
+  QuadraticGeometry<dim> surfaces{
+      .shape = make_quadratic<dim>(named(config.shapes, geometry.shape), facets.quadratic, facets.tags),
+      .where = geometry.where};
   if (!geometry.obstacle.empty())
     surfaces.obstacle = make_surface<dim>(named(config.obstacles, geometry.obstacle), true);
   else if (!geometry.master_shape.empty() && geometry.master_shape != geometry.shape)
     surfaces.obstacle = make_surface<dim>(named(config.shapes, geometry.master_shape), false);
   apply<dim>(geometry, surfaces, contact);
-}
-
-/// A master with a shape of its own needs distances from it.
-void check_master(const Config& config, const GeometryConfig& geometry)
-{
-  if (geometry.master_shape.empty() || geometry.master_shape == geometry.shape) return;
-  if (named(config.shapes, geometry.master_shape).kind != Kind::mesh) return;
-  throw InputError(
-      geometry.master_shape_where,
-      fmt::format("\"{}\" cannot be the shape of the master alone: the gap is the distance of other points "
-                  "from it, and second-order facets only say where their own points are",
-                  geometry.master_shape),
-      "exchange slave and master, or give the master's shape as one of plane, circle, sphere, cylinder, "
-      "surface");
 }
 
 }  // namespace
@@ -236,19 +260,12 @@ void apply_geometry(const Config& config, const GeometryConfig& geometry, const 
                     problem::Contact& contact)
 {
   contact.geometry = words(geometry);
-  check_master(config, geometry);
-  if constexpr (dim == 3)
-    if (has_kind(config, geometry, Kind::surface))
-    {
-      const auto make = [&](const SurfaceConfig& surface, bool is_obstacle)
-      {
-        return surface.kind == Kind::mesh ? points_of(make_quadratic<3>(surface, facets))
-                                          : make_points(surface, is_obstacle);
-      };
-      return apply<3>(geometry, gather<PointGeometry>(config, geometry, make), contact);
-    }
-  if (has_kind(config, geometry, Kind::mesh)) return apply_quadratic<dim>(config, geometry, facets, contact);
-  apply<dim>(geometry, gather<problem::ContactGeometry>(config, geometry, make_surface<dim>), contact);
+  if (needs_points(config, geometry)) return apply_points<dim>(config, geometry, facets, contact);
+  if (is_of_kind(config.shapes, geometry.shape, Kind::mesh))
+    return apply_quadratic<dim>(config, geometry, facets, contact);
+  const auto make = [](const SurfaceConfig& surface, Role role)
+  { return make_surface<dim>(surface, role == Role::obstacle); };
+  apply<dim>(geometry, gather<problem::ContactGeometry>(config, geometry, make), contact);
 }
 
 template void apply_geometry<2>(const Config&, const GeometryConfig&, const ContactFacets&,

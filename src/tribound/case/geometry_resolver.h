@@ -12,11 +12,12 @@
 namespace tribound::case_file
 {
 
-/// What the mesh knows of the facets of a contact, of a pair those of the slave.
+/// What the mesh knows of the facets of a contact.
 struct ContactFacets
 {
   const mesh::QuadraticFacets* quadratic;  ///< null: the mesh has order 1
-  std::vector<int> tags;                   ///< their groups
+  std::vector<int> tags;                   ///< their groups, of a pair those of the slave
+  std::vector<int> master_tags{};          ///< of a pair those of the master
 };
 
 /// Sets what `geometry` says of a contact with a rigid obstacle, or with a master. Throws InputError for

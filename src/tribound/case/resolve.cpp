@@ -171,8 +171,8 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
                               std::span<const std::string> boundary_names,
                               const mesh::QuadraticFacets* quadratic_facets)
 {
-  const auto facets = [&](std::span<const std::string> groups) {
-    return ContactFacets{quadratic_facets, tags_of(groups, boundary_names)};
+  const auto facets = [&](std::span<const std::string> slave, std::span<const std::string> master = {}) {
+    return ContactFacets{quadratic_facets, tags_of(slave, boundary_names), tags_of(master, boundary_names)};
   };
   const std::vector<problem::Region<dim>> regions = regions_of<dim>(config, region_names);
   std::vector<problem::BoundaryCondition<dim>> boundaries;
@@ -188,7 +188,8 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
   for (const ContactConfig& contact : config.contacts)
   {
     pairs.push_back(resolve<dim>(contact));
-    apply_geometry<dim>(config, contact.geometry, facets(contact.slave), pairs.back().contact);
+    apply_geometry<dim>(config, contact.geometry, facets(contact.slave, contact.master),
+                        pairs.back().contact);
   }
   return problem::Problem<dim>(region_names, boundary_names, regions, boundaries, std::move(pairs));
 }

@@ -1,5 +1,6 @@
 #include "tribound/case/surface_points.h"
 
+#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -9,27 +10,28 @@ namespace tribound::case_file
 namespace
 {
 
-template <class Function>
+template <int dim, class Function>
 problem::Field field_of(Function function, const Where& where)
 {
   problem::FieldFunction field;
-  field.values =
-      [function = std::move(function)](std::span<const double> x, int dim, std::span<double> values)
+  field.values = [function = std::move(function)](std::span<const double> x, [[maybe_unused]] int d,
+                                                  std::span<double> values)
   {
+    assert(d == dim);
     for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] = function(Point<3>(x.subspan(i * dim, 3).data()));
+      values[i] = function(Point<dim>(x.subspan(i * dim, dim).data()));
   };
   return problem::Field(std::move(field), where);
 }
 
 /// The components of a vector function.
-template <class Function>
+template <int dim, class Function>
 problem::NormalField direction_of(const Function& function, const Where& where)
 {
   std::vector<problem::Field> components;
-  components.reserve(3);
-  for (int i = 0; i < 3; ++i)
-    components.push_back(field_of([=](const Point<3>& x) { return function(x)[i]; }, where));
+  components.reserve(dim);
+  for (int i = 0; i < dim; ++i)
+    components.push_back(field_of<dim>([=](const Point<dim>& x) { return function(x)[i]; }, where));
   return problem::NormalField(std::move(components));
 }
 
@@ -41,30 +43,35 @@ std::vector<problem::Field> fields(const std::vector<std::string>& texts, const 
   return result;
 }
 
-Point<3> at(const std::vector<problem::Field>& components, const Point<3>& x)
+template <int dim>
+Point<dim> at(const std::vector<problem::Field>& components, const Point<dim>& x)
 {
-  return {components[0](x), components[1](x), components[2](x)};
+  Point<dim> result;
+  for (int i = 0; i < dim; ++i) result[i] = components[i](x);
+  return result;
 }
 
-Point<3> on_shape(const PointGeometry& geometry, const Point<3>& x)
+template <int dim>
+Point<dim> on_shape(const PointGeometry<dim>& geometry, const Point<dim>& x)
 {
   return geometry.shape ? geometry.shape->closest(x) : x;
 }
 
 }  // namespace
 
-SurfacePoints points_of(const problem::Surface& surface, const Where& where)
+template <int dim>
+SurfacePoints<dim> points_of(const problem::Surface& surface, const Where& where)
 {
   const auto vector_of = [](std::vector<problem::Field> components)
-  { return [components = std::move(components)](const Point<3>& x) { return at(components, x); }; };
-  return {.distance = [distance = problem::Field(surface.distance, where)](const Point<3>& x)
+  { return [components = std::move(components)](const Point<dim>& x) { return at<dim>(components, x); }; };
+  return {.distance = [distance = problem::Field(surface.distance, where)](const Point<dim>& x)
           { return distance(x); },
           .normal = vector_of(fields(surface.normal, where)),
           .closest = vector_of(fields(surface.closest, where))};
 }
 
-SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
-                        const Point<3>& shift)
+SurfacePoints<3> points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
+                           const Point<3>& shift)
 {
   const auto nearest = [triangles = std::move(triangles), shift](const Point<3>& x)
   { return triangles->nearest(x - shift); };
@@ -73,38 +80,68 @@ SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangl
           .closest = [nearest, shift](const Point<3>& x) -> Point<3> { return nearest(x).point + shift; }};
 }
 
-SurfacePoints points_of(const std::shared_ptr<const mesh::QuadraticSurface<3>>& shape)
+template <int dim>
+SurfacePoints<dim> points_on(const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape)
 {
-  const auto closest = [shape](const Point<3>& x)
-  { return shape->value(mesh::QuadraticSurface<3>::Nodal::point, x); };
-  return {.distance = [shape, closest](const Point<3>& x) { return (x - closest(x)).dot(shape->normal(x)); },
-          .normal = [shape](const Point<3>& x) { return shape->normal(x); },
-          .closest = closest};
+  const auto closest = [shape](const Point<dim>& x)
+  { return shape->value(mesh::QuadraticSurface<dim>::Nodal::point, x); };
+  return {
+      .distance = [shape, closest](const Point<dim>& x) { return (x - closest(x)).dot(shape->normal(x)); },
+      .normal = [shape](const Point<dim>& x) { return shape->normal(x); },
+      .closest = closest};
 }
 
-problem::Field gap_of(const PointGeometry& geometry)
+template <int dim>
+SurfacePoints<dim> points_around(const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape)
 {
-  return field_of([geometry](const Point<3>& x)
-                  { return geometry.obstacle->distance(on_shape(geometry, x)); },
-                  geometry.where);
+  return {.distance = [shape](const Point<dim>& x) { return shape->foot(x).distance; },
+          .normal = [shape](const Point<dim>& x) { return shape->foot(x).normal; },
+          .closest = [shape](const Point<dim>& x) { return shape->foot(x).point; }};
 }
 
-problem::NormalField direction_of_obstacle(const PointGeometry& geometry)
+template <int dim>
+problem::Field gap_of(const PointGeometry<dim>& geometry)
 {
-  return direction_of([geometry](const Point<3>& x) -> Point<3>
-                      { return -geometry.obstacle->normal(on_shape(geometry, x)); },
-                      geometry.where);
+  return field_of<dim>([geometry](const Point<dim>& x)
+                       { return geometry.obstacle->distance(on_shape(geometry, x)); },
+                       geometry.where);
 }
 
-problem::NormalField direction_of_shape(const PointGeometry& geometry)
+template <int dim>
+problem::NormalField direction_of_obstacle(const PointGeometry<dim>& geometry)
 {
-  return direction_of([geometry](const Point<3>& x) -> Point<3> { return geometry.shape->normal(x); },
-                      geometry.where);
+  return direction_of<dim>([geometry](const Point<dim>& x) -> Point<dim>
+                           { return -geometry.obstacle->normal(on_shape(geometry, x)); },
+                           geometry.where);
 }
 
-problem::Field distance_of_shape(const PointGeometry& geometry)
+template <int dim>
+problem::NormalField direction_of_shape(const PointGeometry<dim>& geometry)
 {
-  return field_of([geometry](const Point<3>& x) { return geometry.shape->distance(x); }, geometry.where);
+  return direction_of<dim>(
+      [geometry](const Point<dim>& x) -> Point<dim> { return geometry.shape->normal(x); }, geometry.where);
 }
+
+template <int dim>
+problem::Field distance_of_shape(const PointGeometry<dim>& geometry)
+{
+  return field_of<dim>([geometry](const Point<dim>& x) { return geometry.shape->distance(x); },
+                       geometry.where);
+}
+
+template SurfacePoints<2> points_of(const problem::Surface&, const Where&);
+template SurfacePoints<2> points_on(const std::shared_ptr<const mesh::QuadraticSurface<2>>&);
+template SurfacePoints<2> points_around(const std::shared_ptr<const mesh::QuadraticSurface<2>>&);
+template problem::Field gap_of(const PointGeometry<2>&);
+template problem::NormalField direction_of_obstacle(const PointGeometry<2>&);
+template problem::NormalField direction_of_shape(const PointGeometry<2>&);
+template problem::Field distance_of_shape(const PointGeometry<2>&);
+template SurfacePoints<3> points_of(const problem::Surface&, const Where&);
+template SurfacePoints<3> points_on(const std::shared_ptr<const mesh::QuadraticSurface<3>>&);
+template SurfacePoints<3> points_around(const std::shared_ptr<const mesh::QuadraticSurface<3>>&);
+template problem::Field gap_of(const PointGeometry<3>&);
+template problem::NormalField direction_of_obstacle(const PointGeometry<3>&);
+template problem::NormalField direction_of_shape(const PointGeometry<3>&);
+template problem::Field distance_of_shape(const PointGeometry<3>&);
 
 }  // namespace tribound::case_file

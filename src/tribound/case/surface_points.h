@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file surface_points.h
-/// Gaps and directions from surfaces of which only points are known: at least one is made of triangles.
+/// Gaps and directions from surfaces of which only points are known: at least one is made of triangles, or of
+/// second-order facets of which the nearest points are sought.
 
 #include <functional>
 #include <memory>
@@ -14,34 +15,46 @@
 namespace tribound::case_file
 {
 
-/// A surface in space: phi, grad phi, of triangles the smoothed normal with the sign of phi, and the nearest
-/// point.
+/// A surface: phi, grad phi, of triangles and facets the smoothed normal with the sign of phi, and the
+/// nearest point.
+template <int dim>
 struct SurfacePoints
 {
-  std::function<double(const Point<3>&)> distance;
-  std::function<Point<3>(const Point<3>&)> normal;
-  std::function<Point<3>(const Point<3>&)> closest;
+  std::function<double(const Point<dim>&)> distance;
+  std::function<Point<dim>(const Point<dim>&)> normal;
+  std::function<Point<dim>(const Point<dim>&)> closest;
 };
 
-[[nodiscard]] SurfacePoints points_of(const problem::Surface& surface, const Where& where);
+template <int dim>
+[[nodiscard]] SurfacePoints<dim> points_of(const problem::Surface& surface, const Where& where);
 /// Moved by `shift`; phi is `sign` times the distance.
-[[nodiscard]] SurfacePoints points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles, double sign,
-                                      const Point<3>& shift);
-/// As a shape: X in the place of the nearest point.
-[[nodiscard]] SurfacePoints points_of(const std::shared_ptr<const mesh::QuadraticSurface<3>>& shape);
+[[nodiscard]] SurfacePoints<3> points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles,
+                                         double sign, const Point<3>& shift);
+/// As the shape of the body with these facets: X in the place of the nearest point.
+template <int dim>
+[[nodiscard]] SurfacePoints<dim> points_on(const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape);
+/// For points of other bodies: by mesh::QuadraticSurface::foot().
+template <int dim>
+[[nodiscard]] SurfacePoints<dim> points_around(
+    const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape);
 
 /// What problem::ContactGeometry is for formulas. Functions without enclosures: the certificate says so.
+template <int dim>
 struct PointGeometry
 {
-  std::optional<SurfacePoints> obstacle{};
-  std::optional<SurfacePoints> shape{};
+  std::optional<SurfacePoints<dim>> obstacle{};
+  std::optional<SurfacePoints<dim>> shape{};
   Where where{};
 };
 
-[[nodiscard]] problem::Field gap_of(const PointGeometry& geometry);
-[[nodiscard]] problem::NormalField direction_of_obstacle(const PointGeometry& geometry);
-[[nodiscard]] problem::NormalField direction_of_shape(const PointGeometry& geometry);
+template <int dim>
+[[nodiscard]] problem::Field gap_of(const PointGeometry<dim>& geometry);
+template <int dim>
+[[nodiscard]] problem::NormalField direction_of_obstacle(const PointGeometry<dim>& geometry);
+template <int dim>
+[[nodiscard]] problem::NormalField direction_of_shape(const PointGeometry<dim>& geometry);
 /// The signed distance from the shape.
-[[nodiscard]] problem::Field distance_of_shape(const PointGeometry& geometry);
+template <int dim>
+[[nodiscard]] problem::Field distance_of_shape(const PointGeometry<dim>& geometry);
 
 }  // namespace tribound::case_file

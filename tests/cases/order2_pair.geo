@@ -1,0 +1,25 @@
+// The part |x| <= 0.5 of a disc of radius 1 on a curved seat of radius 1.5 that touches it in the origin: facets of second order.
+n = 12; a = Asin(0.5); b = Asin(0.6 / 1.5); H = 0.1;
+Point(1) = {-0.5, 1 - Cos(a), 0, H}; Point(2) = {0.5, 1 - Cos(a), 0, H}; Point(3) = {0, 1, 0, H};
+Point(4) = {0.5, 0.5, 0, H}; Point(5) = {-0.5, 0.5, 0, H};
+Circle(1) = {1, 3, 2};
+Line(2) = {2, 4}; Line(3) = {4, 5}; Line(4) = {5, 1};
+Transfinite Curve{1} = n + 1;
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Point(11) = {-0.6, 1.5 * (1 - Cos(b)), 0, H}; Point(12) = {0.6, 1.5 * (1 - Cos(b)), 0, H}; Point(13) = {0, 1.5, 0, H};
+Point(14) = {0.6, -0.4, 0, H}; Point(15) = {-0.6, -0.4, 0, H};
+Circle(11) = {11, 13, 12};
+Line(12) = {12, 14}; Line(13) = {14, 15}; Line(14) = {15, 11};
+Transfinite Curve{11} = n;
+Curve Loop(11) = {11, 12, 13, 14};
+Plane Surface(11) = {11};
+Physical Surface("body") = {1};
+Physical Surface("seat") = {11};
+Physical Curve("arc") = {1};
+Physical Curve("sides") = {2, 4};
+Physical Curve("top") = {3};
+Physical Curve("groove") = {11};
+Physical Curve("sides of the seat") = {12, 14};
+Physical Curve("bottom") = {13};
+Mesh.ElementOrder = 2;
