@@ -1,6 +1,7 @@
 #include "tribound/case/surface_points.h"
 
 #include <cassert>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,27 @@ Point<dim> on_shape(const PointGeometry<dim>& geometry, const Point<dim>& x)
   return geometry.shape ? geometry.shape->closest(x) : x;
 }
 
+/// The foot of x. Gap and components of a direction are asked for one after another, each at the same many
+/// points: every thread remembers some feet.
+template <int dim>
+typename mesh::QuadraticSurface<dim>::Foot foot_of(
+    const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape, const Point<dim>& x)
+{
+  struct Known
+  {
+    std::shared_ptr<const mesh::QuadraticSurface<dim>> shape{};  ///< alive, so that no other has its address
+    Point<dim> x;
+    typename mesh::QuadraticSurface<dim>::Foot foot;
+  };
+  constexpr std::size_t n_known = 1024;
+  static thread_local std::vector<Known> known(n_known);
+  std::size_t hash = 0;
+  for (const double c : x) hash = 31 * hash + std::hash<double>()(c);
+  Known& slot = known[hash % n_known];
+  if (slot.shape != shape || slot.x != x) slot = {shape, x, shape->foot(x)};
+  return slot.foot;
+}
+
 }  // namespace
 
 template <int dim>
@@ -94,9 +116,9 @@ SurfacePoints<dim> points_on(const std::shared_ptr<const mesh::QuadraticSurface<
 template <int dim>
 SurfacePoints<dim> points_around(const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape)
 {
-  return {.distance = [shape](const Point<dim>& x) { return shape->foot(x).distance; },
-          .normal = [shape](const Point<dim>& x) { return shape->foot(x).normal; },
-          .closest = [shape](const Point<dim>& x) { return shape->foot(x).point; }};
+  return {.distance = [shape](const Point<dim>& x) { return foot_of<dim>(shape, x).distance; },
+          .normal = [shape](const Point<dim>& x) { return foot_of<dim>(shape, x).normal; },
+          .closest = [shape](const Point<dim>& x) { return foot_of<dim>(shape, x).point; }};
 }
 
 template <int dim>

@@ -91,9 +91,14 @@ template <int dim>
 auto QuadraticSurface<dim>::foot(const Point<dim>& x) const -> Foot
 {
   Place best = nearest_node(x);
-  curved_tree_.traverse(
-      [&](const BoundingBox<dim>& box) { return mesh::square_distance(box, x) < best.square; },
-      [&](std::size_t f) { search(QuadraticPiece<dim>(facets_[f].nodal[0], x), f, 0, best); });
+  const auto may_be_nearer = [&](const BoundingBox<dim>& box)
+  { return mesh::square_distance(box, x) < best.square; };
+  curved_tree_.traverse(may_be_nearer,
+                        [&](std::size_t f)
+                        {
+                          if (may_be_nearer(curved_boxes_[f]))
+                            search(QuadraticPiece<dim>(facets_[f].nodal[0], x), f, 0, best);
+                        });
   const Facet& facet = facets_[best.facet];
   const Point<dim> point = facet.at(Nodal::point, best.lambda);
   const Point<dim> normal = facet.at(Nodal::normal, best.lambda).normalized();

@@ -11,6 +11,11 @@ namespace tribound::mesh
 namespace
 {
 
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// Of barycentric coordinates.
+constexpr double rounding = 16 * epsilon;
+
 /// The zero in [0, 1] of a cubic that increases there, by its Bernstein coefficients; an end if it has none
 /// inside. Newton's method between brackets.
 double zero_of_increasing(const std::array<double, 4>& b)
@@ -31,12 +36,30 @@ double zero_of_increasing(const std::array<double, 4>& b)
     (value < 0 ? lower : upper) = t;
     double next = t - value / (3 * (second[1] - second[0]));
     if (!(next > lower && next < upper)) next = (lower + upper) / 2;
-    const bool has_settled = std::abs(next - t) <= std::numeric_limits<double>::epsilon() * t;
+    const bool has_settled = std::abs(next - t) <= rounding;
     t = next;
     if (has_settled) break;
   }
   return t;
 }
+
+/// Of coefficients by their four corners: the same in every order of them.
+template <int dim>
+constexpr auto numbers = []
+{
+  std::array<std::array<std::array<std::array<int, dim>, dim>, dim>, dim> result{};
+  int next = 0;
+  for (int i = 0; i < dim; ++i)
+    for (int j = i; j < dim; ++j)
+      for (int k = j; k < dim; ++k)
+        for (int l = k; l < dim; ++l, ++next)
+        {
+          std::array<int, 4> corners{i, j, k, l};
+          do result[corners[0]][corners[1]][corners[2]][corners[3]] = next;
+          while (std::ranges::next_permutation(corners).found);
+        }
+  return result;
+}();
 
 /// Corner i.
 template <int dim>
@@ -64,6 +87,7 @@ QuadraticPiece<dim>::QuadraticPiece(const std::array<Point<dim>, n_facet_nodes<d
     const auto [i, j] = edges[e];
     control[i][j] = control[j][i] = 2 * (nodes[dim + e] - x) - (control[i][i] + control[j][j]) / 2;
   }
+  find_coefficients();
 }
 
 template <int dim>
@@ -71,7 +95,10 @@ Point<dim> QuadraticPiece<dim>::polar(const Barycentric& l, const Barycentric& m
 {
   Point<dim> sum = Point<dim>::Zero();
   for (int i = 0; i < dim; ++i)
-    for (int j = 0; j < dim; ++j) sum += l[i] * m[j] * control[i][j];
+  {
+    sum += l[i] * m[i] * control[i][i];
+    for (int j = 0; j < i; ++j) sum += (l[i] * m[j] + l[j] * m[i]) * control[i][j];
+  }
   return sum;
 }
 
@@ -84,13 +111,24 @@ auto QuadraticPiece<dim>::place(const Barycentric& l) const -> Barycentric
   return result;
 }
 
-/// Of |D|^2: the product of D with itself, made symmetric.
+/// |D|^2 is the product of D with itself, made symmetric.
+template <int dim>
+void QuadraticPiece<dim>::find_coefficients()
+{
+  for (int i = 0; i < dim; ++i)
+    for (int j = i; j < dim; ++j)
+      for (int k = j; k < dim; ++k)
+        for (int l = k; l < dim; ++l)
+          coefficients_[numbers<dim>[i][j][k][l]] =
+              (control[i][j].dot(control[k][l]) + control[i][k].dot(control[j][l]) +
+               control[i][l].dot(control[j][k])) /
+              3;
+}
+
 template <int dim>
 double QuadraticPiece<dim>::coefficient(int i, int j, int k, int l) const
 {
-  return (control[i][j].dot(control[k][l]) + control[i][k].dot(control[j][l]) +
-          control[i][l].dot(control[j][k])) /
-         3;
+  return coefficients_[numbers<dim>[i][j][k][l]];
 }
 
 template <int dim>
@@ -105,12 +143,7 @@ BoundingBox<dim> QuadraticPiece<dim>::box() const
 template <int dim>
 double QuadraticPiece<dim>::lower_bound() const
 {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < dim; ++i)
-    for (int j = i; j < dim; ++j)
-      for (int k = j; k < dim; ++k)
-        for (int l = k; l < dim; ++l) least = std::min(least, coefficient(i, j, k, l));
-  return least;
+  return std::ranges::min(coefficients_);
 }
 
 // Up to a factor the Hessian along the edges from corner 0 has the coefficients
@@ -153,8 +186,14 @@ double QuadraticPiece<dim>::minimiser_on_edge(int from, int to) const
 template <int dim>
 auto QuadraticPiece<dim>::tangents(const Barycentric& l) const -> std::array<Point<dim>, dim - 1>
 {
+  const auto along = [&](int corner)  // D(l, the corner)
+  {
+    Point<dim> sum = l[0] * control[0][corner];
+    for (int i = 1; i < dim; ++i) sum += l[i] * control[i][corner];
+    return sum;
+  };
   std::array<Point<dim>, dim - 1> result;
-  for (int a = 1; a < dim; ++a) result[a - 1] = 2 * (polar(l, unit<dim>(a)) - polar(l, unit<dim>(0)));
+  for (int a = 1; a < dim; ++a) result[a - 1] = 2 * (along(a) - along(0));
   return result;
 }
 
@@ -165,7 +204,6 @@ auto QuadraticPiece<dim>::minimiser_inside() const -> Barycentric
 {
   constexpr int most_steps = 100;
   constexpr int most_halvings = 50;
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   Barycentric l;
   l.fill(1.0 / dim);
   for (int step = 0; step < most_steps; ++step)
@@ -196,7 +234,7 @@ auto QuadraticPiece<dim>::minimiser_inside() const -> Barycentric
     Barycentric next = at(length);
     const auto is_inside = [&] { return std::ranges::all_of(next, [](double value) { return value > 0; }); };
     // The last step gains less than rounding errors tell.
-    if (-change.dot(gradient) <= epsilon * d.squaredNorm() || change.norm() <= epsilon)
+    if (-change.dot(gradient) <= epsilon * d.squaredNorm() || change.norm() <= rounding)
       return is_inside() ? next : l;
     for (int halving = 0; !(is_inside() && polar(next, next).squaredNorm() < d.squaredNorm()); ++halving)
     {
@@ -245,8 +283,10 @@ QuadraticPiece<dim> QuadraticPiece<dim>::child(const std::array<Barycentric, dim
   for (int i = 0; i < dim; ++i)
   {
     result.corners[i] = place(vertices[i]);
-    for (int j = 0; j < dim; ++j) result.control[i][j] = polar(vertices[i], vertices[j]);
+    for (int j = i; j < dim; ++j)
+      result.control[i][j] = result.control[j][i] = polar(vertices[i], vertices[j]);
   }
+  result.find_coefficients();
   return result;
 }
 

@@ -46,13 +46,19 @@ struct QuadraticPiece
   [[nodiscard]] std::array<QuadraticPiece, n_children> children() const;
 
  private:
+  static constexpr int n_coefficients = dim == 2 ? 5 : 15;
+
   QuadraticPiece() = default;
 
+  void find_coefficients();
+  /// That of |D|^2 with these corners, in any order.
   [[nodiscard]] double coefficient(int i, int j, int k, int l) const;
   [[nodiscard]] double minimiser_on_edge(int from, int to) const;
   [[nodiscard]] Barycentric minimiser_inside() const;
   [[nodiscard]] std::array<Point<dim>, dim - 1> tangents(const Barycentric& l) const;
   [[nodiscard]] QuadraticPiece child(const std::array<Barycentric, dim>& vertices) const;
+
+  std::array<double, n_coefficients> coefficients_;
 };
 
 }  // namespace tribound::mesh

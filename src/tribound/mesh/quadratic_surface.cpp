@@ -85,7 +85,6 @@ QuadraticSurface<dim>::QuadraticSurface(const QuadraticFacets& facets, std::span
 {
   std::vector<Index> nodes;
   std::vector<BoundingBox<dim>> boxes;
-  std::vector<BoundingBox<dim>> curved_boxes;
   for (std::size_t f = 0; f < facets.tags.size(); ++f)
   {
     if (std::ranges::find(tags, facets.tags[f]) == tags.end()) continue;
@@ -102,14 +101,14 @@ QuadraticSurface<dim>::QuadraticSurface(const QuadraticFacets& facets, std::span
     facet.size = diameter<dim>(vertices);
     facets_.push_back(facet);
     boxes.push_back(bounding_box<dim>(vertices));
-    curved_boxes.push_back(QuadraticPiece<dim>(facet.nodal[0], Point<dim>::Zero()).box());
+    curved_boxes_.push_back(QuadraticPiece<dim>(facet.nodal[0], Point<dim>::Zero()).box());
   }
   if (facets_.empty())
     throw InputError(where, "the boundary has no facets of second order", "a mesh of order 2");
   find_normals(nodes, where);
   find_rim(nodes);
   tree_ = BoxTree<dim>(boxes);
-  curved_tree_ = BoxTree<dim>(curved_boxes);
+  curved_tree_ = BoxTree<dim>(curved_boxes_);
 }
 
 template <int dim>

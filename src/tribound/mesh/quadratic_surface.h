@@ -99,6 +99,7 @@ class QuadraticSurface
   std::vector<Facet> facets_;
   BoxTree<dim> tree_{{}};         ///< of the straight facets
   BoxTree<dim> curved_tree_{{}};  ///< of the curved ones
+  std::vector<BoundingBox<dim>> curved_boxes_;
 };
 
 }  // namespace tribound::mesh
