@@ -17,6 +17,7 @@
 #include "tribound/problem/normal_field.h"
 #include "tribound/problem/problem.h"
 #include "tribound/problem/surface.h"
+#include "tribound/problem/water.h"
 
 // The mesh.
 #include "tribound/mesh/bisect.h"

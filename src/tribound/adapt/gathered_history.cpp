@@ -44,7 +44,7 @@ GatheredHistory<dim> gather_history(const contact::NitscheForm<dim>& form)
   std::vector<double> own;
   own.reserve(n * form.n_owned_contact_points());
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
-    for (const auto& [x, weight, normal, gap, strength, state] : form.contact_points(k))
+    for (const auto& [x, weight, normal, gap, strength, water, state] : form.contact_points(k))
     {
       own.push_back(form.segments()[k].slave.facet.tag);
       own.insert(own.end(), x.begin(), x.end());

@@ -52,6 +52,7 @@ LoadPath<dim>::LoadPath(const problem::Problem<dim>& problem, const Method& meth
       stop_(stop),
       whole_(std::move(whole))
 {
+  position_.tips.assign(problem.contacts().size(), 0.0);
   if (method.regularisation)
     throw InputError({}, "the regularised variant does not go along a load path",
                      "the plain method: no regularisation");
@@ -78,33 +79,75 @@ Method LoadPath<dim>::method_of_step() const
 
 /// Not empty: why Newton's method has not come to t.
 template <int dim>
-std::string LoadPath<dim>::try_step(Attempt attempt, const StepObserver& observer)
+std::string LoadPath<dim>::try_step(const Attempt& attempt, const StepObserver& observer)
 {
-  const double t = attempt.t;
   auto step = std::make_shared<LoadStep<dim>>();
   step->number = last() ? last()->number + 1 : 1;
-  step->t = t;
+  step->t = attempt.t;
   step->cuts = attempt.cuts;
-  step->control = std::move(attempt.control);
-  step->start = std::move(attempt.start);
+  step->control = attempt.control;
   step->reference_force = position_.reference_force;
-  const Method method = method_of_step();
-  if (!last() && (!prepared_ || prepared_->t != t)) prepare(t);
-  step->at = last()
-                 ? std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method, position_.history)
-                 : std::exchange(prepared_, nullptr);
-  const contact::NitscheForm<dim>& form = step->at->discrete.form;
-  std::span<const double> start = step->start;
-  if (start.empty() && last()) start = last()->level.u;
-  step->level = solve_and_certify<dim>(form, start, method, observer, 0, {}, friedrichs_);
-  step->level.equilibrium.reset();
-  friedrichs_ = step->level.friedrichs;
+  solve_with_crack(*step, attempt, observer);
   if (!step->level.solved()) return step->level.failure;
   if (attempt.fault)
-    if (std::string why = attempt.fault(form, step->level.u); !why.empty()) return why;
-  put_before(attempt.found_by, step->level.steps);
+    if (std::string why = attempt.fault(step->at->discrete.form, step->level.u); !why.empty()) return why;
   commit(std::move(step));
   return {};
+}
+
+template <int dim>
+void LoadPath<dim>::solve_with_crack(LoadStep<dim>& step, const Attempt& attempt,
+                                     const StepObserver& observer)
+{
+  const Method method = method_of_step();
+  std::vector<double> tips = position_.tips;
+  PathPoint point{attempt.t, attempt.start};
+  if (point.u.empty() && last()) point.u = last()->level.u;
+  for (step.passes = 1;; ++step.passes)
+  {
+    std::vector<solve::NewtonStep> found_by;
+    if (attempt.search)
+    {
+      step.level.failure = attempt.search(tips, point, found_by);
+      if (!step.level.solved()) return;
+      step.t = point.t;
+    }
+    if (!last() && step.passes == 1)
+    {
+      if (!prepared_ || prepared_->t != step.t) prepare(step.t);
+      step.at = std::exchange(prepared_, nullptr);
+    }
+    else
+      step.at = at_time(step.t, tips);
+    const contact::NitscheForm<dim>& form = step.at->discrete.form;
+    contact::check_interface_data(form);
+    step.level = solve_and_certify<dim>(form, point.u, method, observer, 0, {}, friedrichs_);
+    step.level.equilibrium.reset();
+    friedrichs_ = step.level.friedrichs;
+    if (!step.level.solved()) return;
+    put_before(found_by, step.level.steps);
+    if (attempt.search || step.passes > 1) step.start = std::move(point.u);
+    if (!crack_grows(step, tips)) return;
+    point.u = step.level.u;
+  }
+}
+
+template <int dim>
+bool LoadPath<dim>::crack_grows(LoadStep<dim>& step, std::vector<double>& tips) const
+{
+  const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  step.responses = form.advance(step.level.u);
+  step.crack_tips = contact::crack_tips<dim>(form, step.responses);
+  bool grows = false;
+  const std::vector<const problem::Contact*> contacts = form.problem().contacts();
+  for (std::size_t i = 0; i < tips.size(); ++i)
+  {
+    contact::CrackTip& tip = step.crack_tips[i];
+    const bool matters = contacts[i]->water && contacts[i]->water->follows_crack();
+    grows = grows || (matters && tip.distance > tips[i]);
+    tips[i] = tip.distance = std::max(tip.distance, tips[i]);
+  }
+  return grows;
 }
 
 template <int dim>
@@ -154,7 +197,7 @@ void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
   position_.largest_sigma = std::max(position_.largest_sigma, level.norms.sigma);
   step->largest_sigma = position_.largest_sigma;
   step->verdict = judge(level);
-  step->responses = form.advance(level.u);
+  for (std::size_t i = 0; i < position_.tips.size(); ++i) position_.tips[i] = step->crack_tips[i].distance;
 
   std::vector<problem::InterfaceState<dim>> states;
   states.reserve(step->responses.size());
@@ -179,6 +222,7 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
   position_.reference_force =
       std::max(position_.reference_force, solve::external_forces(form).scale + space.norm(contact_load));
 
+  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
   step.forces = contact::apply_stiffness<dim>(form.problem(), space, u);
   for (std::size_t i = 0; i < u.size(); ++i) step.forces[i] -= contact_load[i];
   std::vector<double> mean = step.forces;
@@ -247,10 +291,11 @@ std::string LoadPath<dim>::advance(double t, const Observer& observer, const Ste
 }
 
 template <int dim>
-typename Bordered<dim>::Form LoadPath<dim>::form_at(double t) const
+std::shared_ptr<const DiscreteAtTime<dim>> LoadPath<dim>::at_time(double t,
+                                                                  std::span<const double> tips) const
 {
-  const auto at = std::make_shared<const DiscreteAtTime<dim>>(problem_, t, grid_, method_, position_.history);
-  return {at, &at->discrete.form};
+  return std::make_shared<const DiscreteAtTime<dim>>(problem_.with_crack_tips(tips), t, grid_, method_,
+                                                     position_.history);
 }
 
 /// The step that begins with theta times the one before.
@@ -263,41 +308,52 @@ std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta
   PathPoint point{now.t + theta * (now.t - before.t), now.level.u};
   for (std::size_t i = 0; i < point.u.size(); ++i) point.u[i] += theta * (now.level.u[i] - before.u[i]);
 
-  if (!bordered_) bordered_ = std::make_shared<Bordered<dim>>(form_at(now.t), method_.solver);
-  const double committed = control.measure.value(now.at->discrete.form, now.level.u);
-  const double target = committed + control.increment;
+  if (!bordered_)
+    bordered_ = std::make_shared<Bordered<dim>>(
+        typename Bordered<dim>::Form(last()->at, &now.at->discrete.form), method_.solver);
+  const double target = control.measure.value(now.at->discrete.form, now.level.u) + control.increment;
   const BorderedOptions options{.max_steps = options_.full_steps,
                                 .tolerance = std::max(method_.newton.tolerance, 1e-10),
                                 .force = position_.reference_force,
                                 .t_before = now.t,
                                 .largest_change = control.largest_change,
                                 .difference = 1e-6 * control.largest_change};
-  Attempt attempt{.t = 0, .cuts = control.cuts, .control = control.name};
-  const auto note = [&](const solve::NewtonStep& step)
+  const auto search =
+      [&](std::span<const double> tips, PathPoint& from, std::vector<solve::NewtonStep>& steps)
   {
-    attempt.found_by.push_back(step);
-    if (observer) observer({step, {}});
+    const auto form_at = [&](double t)
+    {
+      const std::shared_ptr<const DiscreteAtTime<dim>> at = at_time(t, tips);
+      return typename Bordered<dim>::Form(at, &at->discrete.form);
+    };
+    const auto note = [&](const solve::NewtonStep& step)
+    {
+      steps.push_back(step);
+      if (observer) observer({step, {}});
+    };
+    try
+    {
+      return (*bordered_)(form_at, control.measure, target, options, from, note);
+    }
+    catch (const InputError& error)  // data that are not valid at the t of an iterate
+    {
+      require_all_failed(grid_->mesh.ranks(), error.what());
+      return std::string(error.what());
+    }
   };
-  try
-  {
-    const std::string why =
-        (*bordered_)([this](double t) { return form_at(t); }, control.measure, target, options, point, note);
-    if (!why.empty()) return why;
-  }
-  catch (const InputError& error)  // data that are not valid at the t of an iterate
-  {
-    require_all_failed(grid_->mesh.ranks(), error.what());
-    return error.what();
-  }
-  attempt.t = point.t;
-  attempt.start = std::move(point.u);
-  attempt.fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
+  const auto fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
   {
     constexpr double most = 1e-3;  // of the increment; Newton's method at t moves by its tolerance
     const bool left = std::abs(control.measure.value(form, u) - target) > most * std::abs(control.increment);
-    return left ? std::string("Newton's method leaves the path that was found for u and t") : std::string();
+    return std::string(left ? "Newton's method leaves the path that was found for u and t" : "");
   };
-  return try_step(std::move(attempt), observer);
+  return try_step({.t = point.t,
+                   .cuts = control.cuts,
+                   .control = control.name,
+                   .start = std::move(point.u),
+                   .search = search,
+                   .fault = fault},
+                  observer);
 }
 
 template <int dim>

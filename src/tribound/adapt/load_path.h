@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/path_measure.h"
 #include "tribound/base/clock.h"
+#include "tribound/contact/nitsche/crack_tip.h"
 
 namespace tribound::adapt
 {
@@ -42,6 +44,9 @@ struct LoadStep
   std::string control{"load"};  ///< what was given: "load" is t; else Control::name
   /// What Newton's method at t began with, where this is not the displacement of the step before.
   std::vector<double> start{};
+  int passes = 1;  ///< solutions until the crack did not grow any more
+  /// By number of Problem::contacts(): with the largest distance of the steps so far.
+  std::vector<contact::CrackTip> crack_tips;
   std::shared_ptr<const DiscreteAtTime<dim>> at;
   CertifiedLevel<dim> level;
   certify::Verdict verdict;
@@ -49,9 +54,10 @@ struct LoadStep
   double reference_force = 0;  ///< NewtonOptions::reference_force that it was solved with
   /// At the contact points of the form: what the step has committed.
   std::vector<problem::InterfaceResponse<dim>> responses;
-  std::vector<double> forces;  ///< a(u, phi_i) - (t, phi_i)_C: loads and reactions, by degree of freedom
-  double work = 0;             ///< of them since the step before, by the trapezoidal rule; energy
-  double seconds = 0;          ///< wall time, attempts that failed included
+  /// a(u, phi_i) - (t + p_w n, phi_i)_C: loads, reactions and the pressure of water, by degree of freedom.
+  std::vector<double> forces;
+  double work = 0;     ///< of them since the step before, by the trapezoidal rule; energy
+  double seconds = 0;  ///< wall time, attempts that failed included
 };
 
 /// What steps are allowed to do.
@@ -119,6 +125,7 @@ class LoadPath
     std::shared_ptr<const contact::ContactHistory<dim>> history;
     double reference_force = 0;  ///< largest of the committed steps
     double largest_sigma = 0;    ///< ||sigma|| of the committed steps
+    std::vector<double> tips{};  ///< of cracks, by number of Problem::contacts(); they never shrink
   };
   [[nodiscard]] Position position() const { return position_; }
   void go_back(Position position) { position_ = std::move(position); }
@@ -130,23 +137,32 @@ class LoadPath
   [[nodiscard]] const Grid<dim>& grid() const { return *grid_; }
 
  private:
-  /// A step to t.
+  /// Finds t and what Newton's method there begins with, where the crack has its tips; `point`: what the
+  /// search begins with; `steps`: those it takes. Not empty: why there is nothing to be found.
+  using Search = std::function<std::string(std::span<const double> tips, PathPoint& point,
+                                           std::vector<solve::NewtonStep>& steps)>;
+  /// A step to t, or to what `search` finds.
   struct Attempt
   {
     double t;
     int cuts = 0;
     std::string control{"load"};
-    std::vector<double> start{};                ///< LoadStep::start
-    std::vector<solve::NewtonStep> found_by{};  ///< the steps that led there
+    std::vector<double> start{};  ///< of the search
+    Search search{};
     /// Not empty: why this solution is none for the path; may be empty.
     std::function<std::string(const contact::NitscheForm<dim>&, std::span<const double> u)> fault{};
   };
-  [[nodiscard]] std::string try_step(Attempt attempt, const StepObserver& observer);
+  [[nodiscard]] std::string try_step(const Attempt& attempt, const StepObserver& observer);
+  /// Solves and certifies the step with the crack as far as it has come, and again until it does not grow.
+  void solve_with_crack(LoadStep<dim>& step, const Attempt& attempt, const StepObserver& observer);
+  /// Whether a crack that carries pressure has grown beyond `tips`, which then follow.
+  [[nodiscard]] bool crack_grows(LoadStep<dim>& step, std::vector<double>& tips) const;
   [[nodiscard]] std::string try_control(const Control<dim>& control, double theta,
                                         const StepObserver& observer);
   /// Its failure, or that of a matrix.
   [[nodiscard]] std::string guarded(const std::function<std::string()>& step) const;
-  [[nodiscard]] typename Bordered<dim>::Form form_at(double t) const;
+  [[nodiscard]] std::shared_ptr<const DiscreteAtTime<dim>> at_time(double t,
+                                                                   std::span<const double> tips) const;
   [[nodiscard]] Method method_of_step() const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   void commit(std::shared_ptr<LoadStep<dim>> step);

@@ -172,8 +172,20 @@ std::string EndoLaw::words() const
                      tensile_strength(), Endo::cohesion());
 }
 
+namespace
+{
+
+/// p_w n.
 template <int dim>
-Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
+Point<dim> water_pressure(const LawPoint<dim>& point)
+{
+  return point.water * point.normal;
+}
+
+// Of the effective traction, without water.
+template <int dim>
+Response<dim> respond_effectively(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
+                                  double delta)
 {
   return std::visit(
       [&]<Law L>(const L& l) -> Response<dim>
@@ -195,7 +207,8 @@ Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const P
 }
 
 template <int dim>
-Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
+Tensor<dim> tangent_effectively(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
+                                double delta)
 {
   return std::visit(
       [&]<Law L>(const L& l) -> Tensor<dim>
@@ -215,7 +228,8 @@ Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Poi
 }
 
 template <int dim>
-InterfaceResponse<dim> advance(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P)
+InterfaceResponse<dim> advance_effectively(const ContactLaw& law, const LawPoint<dim>& point,
+                                           const Point<dim>& P)
 {
   return std::visit(
       [&]<Law L>(const L& l) -> InterfaceResponse<dim>
@@ -233,6 +247,32 @@ InterfaceResponse<dim> advance(const ContactLaw& law, const LawPoint<dim>& point
           return problem::respond<dim>(Joint{.coefficient = l.cone().coefficient}, point, P);
       },
       law);
+}
+
+}  // namespace
+
+template <int dim>
+Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
+{
+  const Point<dim> pressure = water_pressure(point);
+  Response<dim> response = respond_effectively<dim>(law, point, P + pressure, delta);
+  response.traction -= pressure;
+  return response;
+}
+
+template <int dim>
+Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
+{
+  return tangent_effectively<dim>(law, point, P + water_pressure(point), delta);
+}
+
+template <int dim>
+InterfaceResponse<dim> advance(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P)
+{
+  const Point<dim> pressure = water_pressure(point);
+  InterfaceResponse<dim> response = advance_effectively<dim>(law, point, P + pressure);
+  response.traction -= pressure;
+  return response;
 }
 
 template <int dim>

@@ -199,6 +199,11 @@ inline constexpr std::array law_names = {Frictionless::name, Tresca::name,   Cou
                                          JointLaw::name,     MixedLaw::name, EndoLaw::name};
 static_assert(law_names.size() == std::variant_size_v<ContactLaw>);
 
+/// What follows is that of a joint with water in it: with T_e, the effective traction by which the law
+/// answers without water,
+///     T(P) = T_e(P + p_w n) - p_w n,   DT(P) = DT_e(P + p_w n).
+/// Limits, states, what is stored and dissipated are those of the effective traction.
+
 /// T(P) with limit and status; T_delta with the regularised projections of method section 7 for delta > 0.
 template <int dim>
 [[nodiscard]] Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,

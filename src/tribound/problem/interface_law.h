@@ -43,6 +43,7 @@ struct LawPoint
   double strength = 0;  ///< of FrictionCone at the point, stress
   double gamma = 0;     ///< of method section 2; needed by laws with a bond and where something slipped
   InterfaceState<dim> state{};  ///< at the last committed step
+  double water = 0;             ///< p_w, stress: the law holds of the effective traction T + p_w n
 };
 
 /// The answer to P = sigma n - gamma (u^n - g) n - gamma_t u^t, gamma_t = tangential_weight() gamma.

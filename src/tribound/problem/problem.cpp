@@ -7,30 +7,13 @@
 #include <string_view>
 #include <utility>
 
-#include "tribound/problem/formula.h"
+#include "tribound/problem/nonnegative.h"
 
 namespace tribound::problem
 {
 
 namespace
 {
-
-/// The value at x, which must not be negative.
-template <int dim>
-double nonnegative_at(const Field& field, const Point<dim>& x)
-{
-  constexpr double rounding = 1e-12;  // of a point on a facet, relative to its coordinates
-  const double value = field(x);
-  if (value >= 0) return value;
-  const double radius = rounding * x.template lpNorm<Eigen::Infinity>();
-  const double upper = field.is_enclosed() ? field.around({x.data(), dim}, radius).upper : value + radius;
-  if (upper < 0)
-    throw InputError(field.where(),
-                     fmt::format("is negative, {:.9g}, at the point ({:.9g})", value,
-                                 fmt::join(x.data(), x.data() + dim, ", ")),
-                     nonnegative_hint);
-  return 0;
-}
 
 /// The entry of each region: the one with its name, else the one without a name.
 template <int dim>
@@ -100,6 +83,8 @@ std::vector<PairSide> sides_of(std::span<const std::string> names,
     for (const std::string& name : pair.master) take(name, {k, false});
     if (cone(pair.contact.law).is_tied && !(pair.contact.gap && pair.contact.gap->is_zero()))
       throw InputError(pair.where, "a tied contact has no gap", "give the gap 0");
+    if (cone(pair.contact.law).is_tied && pair.contact.water)
+      throw InputError(pair.where, "a tied contact has no water in it", "an interface instead");
   }
   return sides;
 }
@@ -244,6 +229,23 @@ bool Problem<dim>::body_force_is_zero(int region) const
 
 template <int dim>
 template <class Self, class Visit>
+void Problem<dim>::for_each_contact(Self& problem, const Visit& visit)
+{
+  for (auto& boundary : problem.boundaries_)
+    if (boundary.contact) visit(*boundary.contact);
+  for (auto& pair : problem.pairs_) visit(pair.contact);
+}
+
+template <int dim>
+std::vector<const Contact*> Problem<dim>::contacts() const
+{
+  std::vector<const Contact*> result;
+  for_each_contact(*this, [&result](const Contact& contact) { result.push_back(&contact); });
+  return result;
+}
+
+template <int dim>
+template <class Self, class Visit>
 void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
 {
   const auto of_contact = [&](auto& contact)
@@ -263,9 +265,8 @@ void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
       if (component) visit(*component);
     for (auto& component : boundary.traction) visit(component);
     if (boundary.pressure) visit(*boundary.pressure);
-    if (boundary.contact) of_contact(*boundary.contact);
   }
-  for (auto& pair : problem.pairs_) of_contact(pair.contact);
+  for_each_contact(problem, of_contact);
 }
 
 template <int dim>
@@ -273,6 +274,25 @@ Problem<dim> Problem<dim>::at(double t) const
 {
   Problem result = *this;
   for_each_datum(result, [t](Field& datum) { datum = datum.at(t); });
+  for_each_contact(result,
+                   [t](Contact& contact)
+                   {
+                     if (contact.water) contact.water = contact.water->at(t);
+                   });
+  return result;
+}
+
+template <int dim>
+Problem<dim> Problem<dim>::with_crack_tips(std::span<const double> tips) const
+{
+  Problem result = *this;
+  std::size_t i = 0;
+  for_each_contact(result,
+                   [&](Contact& contact)
+                   {
+                     const double tip = tips[i++];
+                     if (contact.water) contact.water = contact.water->with_crack_tip(tip);
+                   });
   return result;
 }
 
@@ -281,6 +301,8 @@ bool Problem<dim>::uses_time() const
 {
   bool found = false;
   for_each_datum(*this, [&found](const Field& datum) { found = found || datum.uses_time(); });
+  for_each_contact(*this, [&found](const Contact& contact)
+                   { found = found || (contact.water && contact.water->uses_time()); });
   return found;
 }
 

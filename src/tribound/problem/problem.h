@@ -17,6 +17,7 @@
 #include "tribound/problem/field.h"
 #include "tribound/problem/material.h"
 #include "tribound/problem/normal_field.h"
+#include "tribound/problem/water.h"
 
 namespace tribound::problem
 {
@@ -45,6 +46,8 @@ struct Contact
   std::optional<Field> broken{};
   /// The signed distance from the true surface of the body; absent: the facets are that.
   std::optional<Field> true_surface{};
+  std::optional<Water> water{};    ///< in the joint; absent: none
+  std::optional<BaseLine> base{};  ///< along which the figures of a hydraulic structure are taken
 
   explicit Contact(ContactLaw l, std::optional<Field> g = Field(0.0)) : law(std::move(l)), gap(std::move(g))
   {
@@ -115,6 +118,13 @@ template <int dim>
 template <int dim>
 [[nodiscard]] double strength_at(const ContactLaw& law, const Point<dim>& x);
 
+/// p_w >= 0, the pressure of the water at x; 0 without water. Throws InputError as Water does.
+template <int dim>
+[[nodiscard]] double water_at(const Contact& contact, const Point<dim>& x)
+{
+  return contact.water ? (*contact.water)(x) : 0.0;
+}
+
 /// The problem on a mesh whose regions and boundaries carry the given names. Regions and boundaries are
 /// referred to by their position in these lists, so that refinement, which inherits tags, leaves the problem
 /// valid.
@@ -139,6 +149,8 @@ class Problem
 
   /// The same with all data at the load factor t.
   [[nodiscard]] Problem at(double t) const;
+  /// The same with the tip of the crack in contact i of contacts() at the distance tips[i] from its heel.
+  [[nodiscard]] Problem with_crack_tips(std::span<const double> tips) const;
   /// Whether any datum names t.
   [[nodiscard]] bool uses_time() const;
 
@@ -162,6 +174,8 @@ class Problem
   [[nodiscard]] std::span<const BoundaryCondition<dim>> boundaries() const { return boundaries_; }
   /// The contact of boundary number `tag` with an obstacle or, as a slave, with its master; null for others.
   [[nodiscard]] const Contact* contact(int tag) const;
+  /// All of them: with obstacles in the order of the boundaries, then those of the pairs.
+  [[nodiscard]] std::vector<const Contact*> contacts() const;
   /// The pair whose slave the boundary is, and that whose master it is, or null.
   [[nodiscard]] const ContactPair<dim>* pair_of_slave(int tag) const;
   [[nodiscard]] const ContactPair<dim>* pair_of_master(int tag) const;
@@ -174,9 +188,12 @@ class Problem
   [[nodiscard]] bool has_contact() const;
 
  private:
-  /// visit(datum) for every number, formula or function of the problem.
+  /// visit(datum) for every number, formula or function of the problem but those of the water.
   template <class Self, class Visit>
   static void for_each_datum(Self& problem, const Visit& visit);
+  /// visit(contact) in the order of contacts().
+  template <class Self, class Visit>
+  static void for_each_contact(Self& problem, const Visit& visit);
 
   std::vector<Region<dim>> regions_;
   std::vector<BoundaryCondition<dim>> boundaries_;

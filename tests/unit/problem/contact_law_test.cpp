@@ -85,6 +85,54 @@ TEST(ContactLaw, TangentIsTheDerivativeAndTheTractionObeysTheLaw)
       }
 }
 
+/// Terzaghi: the law holds of T + p_w n. On an open joint without cohesion water alone acts, against n.
+template <int dim>
+void expect_effective(const ContactLaw& law, std::mt19937& dice)
+{
+  std::uniform_real_distribution<double> between(0, 1);
+  problem::LawPoint<dim> dry{.normal = random_vector<dim>(dice).normalized(), .gamma = 10};
+  if (problem::cone(law).strength != nullptr) dry.strength = 0.4;
+  dry.state = problem::fresh_state<dim>(law);
+  problem::LawPoint<dim> wet = dry;
+  wet.water = between(dice);
+  const Point<dim> pressure = wet.water * wet.normal;
+  const Point<dim> P = random_vector<dim>(dice);
+  const Point<dim> shifted = P + pressure;
+  const auto response = problem::respond<dim>(law, wet, P);
+  const auto effective = problem::respond<dim>(law, dry, shifted);
+  EXPECT_LE((response.traction + pressure - effective.traction).norm(), 1e-14);
+  EXPECT_EQ(response.limit, effective.limit);
+  EXPECT_EQ(response.status, effective.status);
+  EXPECT_EQ(problem::tangent<dim>(law, wet, P), problem::tangent<dim>(law, dry, shifted));
+  const auto committed = problem::advance<dim>(law, wet, P);
+  const auto committed_dry = problem::advance<dim>(law, dry, shifted);
+  EXPECT_LE((committed.traction + pressure - committed_dry.traction).norm(), 1e-14);
+  EXPECT_EQ(committed.state.damage, committed_dry.state.damage);
+  EXPECT_EQ(committed.state.slip, committed_dry.state.slip);
+  EXPECT_EQ(committed.stored, committed_dry.stored);
+  EXPECT_EQ(committed.dissipated, committed_dry.dissipated);
+  if (dry.strength == 0 && !problem::has_memory(law) && !problem::cone(law).is_tied &&
+      shifted.dot(wet.normal) > 0)
+  {
+    EXPECT_LE((response.traction + pressure).norm(), 1e-14);
+  }
+}
+
+TEST(ContactLaw, HoldsOfTheEffectiveTraction)
+{
+  std::mt19937 dice(3);
+  std::vector<ContactLaw> all = laws();
+  all.insert(all.end(), {problem::JointLaw({.tension = {0.5, 0.3}, .cohesion = 0.2, .coefficient = 0.5}, 0.4),
+                         problem::MixedLaw({.tension = {0.5, 0.3}, .shear_ratio = 0.8, .coefficient = 0.5}),
+                         problem::EndoLaw({5, 4, 0.8, 0.3, 0.12, 0.003}), problem::Tied()});
+  for (const ContactLaw& law : all)
+    for (int trial = 0; trial < 200; ++trial)
+    {
+      expect_effective<2>(law, dice);
+      expect_effective<3>(law, dice);
+    }
+}
+
 TEST(ContactLaw, KindsAreNamedOnceAndMadeFromTheirKeys)
 {
   std::set<std::string_view> names;

@@ -295,6 +295,12 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       {"rounding", "double precision; rounding errors are not enclosed, the identities show their size"}};
 
   for (const std::string& outside : outside_of_pairs(form.problem())) result.not_covered.push_back(outside);
+  if (std::ranges::any_of(form.problem().contacts(), [](const problem::Contact* contact)
+                          { return contact->water && contact->water->follows_crack(); }))
+    result.not_covered.emplace_back(
+        "which crack the water fills: its tip, found from the computed openings, is part of the data, and "
+        "stays "
+        "where it was when the crack closes");
   if (rule == ContactRule::reference && form.problem().has_contact())
     result.not_covered.emplace_back(
         "contact and friction conditions on facets where the contact law has a kink: there the plain rule is "

@@ -96,7 +96,8 @@ void ContactTerms<dim>::resolve_normal(int k, std::vector<Part>& parts) const
       const auto pieces = halves(whole.data.part);
       for (std::size_t j = 0; j < pieces.size(); ++j)
       {
-        Part half{{pieces[j], whole.data.gap, whole.data.strength}, on_half(whole.fields, j), {}};
+        Part half{
+            {pieces[j], whole.data.gap, whole.data.strength, whole.data.water}, on_half(whole.fields, j), {}};
         half.integrals = integrate(k, half.fields, pieces[j]);
         if (j == 0)
           parts[i] = half;

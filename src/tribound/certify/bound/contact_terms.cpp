@@ -168,10 +168,11 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
       dis += theta_[q * n_ + i] * fields.dis[i];
     }
     const problem::LawPoint<dim> point = form_.law_point(k, points[q], places[q], n);
-    augmented[q] = p + tangential_weight * point.gamma * point.state.slip;
+    closings[q] += point.water;
+    augmented[q] = p + point.water * n + tangential_weight * point.gamma * point.state.slip;
     projected[q] = dis;
     strengths[q] = point.strength;
-    round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing)));
+    round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing) + point.water));
 
     const Point<dim> difference = problem::respond<dim>(law, point, p).traction - dis;
     const double normal = difference.dot(n);
@@ -264,7 +265,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   const Fields on_k = fields(k, u, t);
   std::vector<Part> parts;
   if (form_.data().contact_parts(k).empty())
-    parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0}, on_k, {}});
+    parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0, 0}, on_k, {}});
   for (const contact::ContactDatumPart<dim>& data : form_.data().contact_parts(k))
     parts.push_back({data, changed(on_k, coefficients_on(data.part)), {}});
   for (Part& part : parts) part.integrals = integrate(k, part.fields, part.data.part);
@@ -274,18 +275,21 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   return result;
 }
 
-/// Where the contact is open whatever the gap is between the points, the gap does not matter. P^n is a
-/// polynomial up to gamma delta and the deviation of N, with which it was seen at the points, too.
+/// Where the contact is open whatever gap and water are between the points, the gap does not matter. P^n +
+/// p_w is a polynomial up to gamma delta, the remainder of p_w and the deviation of N, with which it was seen
+/// at the points, too.
 template <int dim>
 bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment, const Part& part) const
 {
   return part.integrals.kinks.lowest >
-         (1 + kinks_.amplification()) * (segment.gamma * part.data.gap + part.integrals.deviation);
+         (1 + kinks_.amplification()) *
+             (segment.gamma * part.data.gap + part.data.water + part.integrals.deviation);
 }
 
-/// T is Lipschitz continuous in g and s: [.]_- and the projections on balls do not expand, and neither does
-/// [x]_a in a. Gap and threshold being polynomials up to their remainders, norms on the part K are those of
-/// the rule and at most 3 |K|^{1/2} times what the remainders change.
+/// T is Lipschitz continuous in g, s and p_w: [.]_- and the projections on balls do not expand, neither does
+/// [x]_a in a, and [P^n + p_w]_- - p_w changes by p_w at most, where it is open, too. These data being
+/// polynomials up to their remainders, norms on the part K are those of the rule and at most 3 |K|^{1/2}
+/// times what the remainders change.
 template <int dim>
 void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment, const Part& part,
                                  ContactSquares& squares) const
@@ -295,8 +299,9 @@ void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment, co
   const double missed = misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(data.part));
   const bool open = is_open(segment, part);
   const Missed& of_normal = open ? integrals.missed_open : integrals.missed;
-  const double pressure = open ? 0 : segment.gamma * data.gap;
-  const double limit = cone(segment.contact->law).closed_limit(data.strength, -pressure);
+  const double closing = open ? 0 : segment.gamma * data.gap;
+  const double pressure = closing + data.water;
+  const double limit = cone(segment.contact->law).closed_limit(data.strength, open ? 0 : -pressure);
   squares.cnt += std::pow(
       std::sqrt(scale * integrals.normal) + std::sqrt(scale * of_normal.normal) + missed * pressure, 2);
   squares.frc += std::pow(

@@ -37,8 +37,8 @@ constexpr double tie = 1e-9;
 template <int k>
 constexpr double factorial = k == 3 ? 6 : k;
 
-template <int k, int dim>
-double measure_of(const DatumPart<k, dim>& part, const SimplexMap<k, dim>& map)
+template <int k, int dim, int n>
+double measure_of(const DatumPart<k, n>& part, const SimplexMap<k, dim>& map)
 {
   return map.measure * fem::fraction<k>(part.part);
 }
@@ -77,44 +77,44 @@ std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k,
 
 }  // namespace
 
-template <int dim>
-Point<dim> Datum<dim>::operator()(const Point<dim>& x) const
+template <int dim, int n>
+Point<n> Datum<dim, n>::operator()(const Point<dim>& x) const
 {
-  Point<dim> f = Point<dim>::Zero();
+  Point<n> f = Point<n>::Zero();
   for (const auto& [value, direction] : terms) f += (*value)(x)*direction;
   return f;
 }
 
-template <int dim>
-int Datum<dim>::degree() const
+template <int dim, int n>
+int Datum<dim, n>::degree() const
 {
   int largest = 0;
   for (const Term& term : terms) largest = std::max(largest, term.value->degree());
   return largest;
 }
 
-template <int dim>
-bool Datum<dim>::is_enclosed() const
+template <int dim, int n>
+bool Datum<dim, n>::is_enclosed() const
 {
   return std::ranges::all_of(terms, [](const Term& term) { return term.value->is_enclosed(); });
 }
 
-template <int k, int dim>
-DatumMoments<k, dim>::DatumMoments(int p, int projected)
+template <int k, int dim, int n>
+DatumMoments<k, dim, n>::DatumMoments(int p, int projected)
     : p_(p),
       n_projected_(fem::polynomial_dimension(k, projected)),
       rule_(fem::quadrature<k>(fem::data_quadrature_degree(p))),
-      n_(fem::polynomial_dimension(k, p + 1)),
-      theta_(static_cast<std::size_t>(n_) * rule_.size())
+      n_theta_(fem::polynomial_dimension(k, p + 1)),
+      theta_(static_cast<std::size_t>(n_theta_) * rule_.size())
 {
   for (int q = 0; q < rule_.size(); ++q)
     fem::orthonormal_values<k>(p + 1, rule_.points[q],
-                               std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
+                               std::span(theta_).subspan(static_cast<std::size_t>(q) * n_theta_, n_theta_));
 }
 
-template <int k, int dim>
-auto DatumMoments<k, dim>::cut_at_switches(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
-                                           int max_parts) const -> Parts
+template <int k, int dim, int n>
+auto DatumMoments<k, dim, n>::cut_at_switches(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
+                                              int max_parts) const -> Parts
 {
   std::vector<fem::Part<k>> parts{ordered_simplex(map)};
   for (const auto& term : datum.terms)
@@ -146,9 +146,9 @@ auto DatumMoments<k, dim>::cut_at_switches(const Datum<dim>& datum, const Simple
 }
 
 /// Remainders of the part.
-template <int k, int dim>
-void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
-                                   DatumPart<k, dim>& part) const
+template <int k, int dim, int n>
+void DatumMoments<k, dim, n>::enclose(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
+                                      DatumPart<k, n>& part) const
 {
   // One less than the degree of the rule: moments against affine weights are integrated as well.
   const int order = std::min(fem::data_quadrature_degree(p_), problem::Formula::max_order);
@@ -168,7 +168,7 @@ void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, 
     value->enclose(vertices, dim, taylor);
     const double remainder = problem::distance_from_polynomials(taylor, p_ + 3);
     const double mean_remainder = problem::distance_from_polynomials(taylor, order);
-    for (int d = 0; d < dim; ++d)
+    for (int d = 0; d < n; ++d)
     {
       if (direction[d] == 0) continue;
       part.remainder[d] += remainder * std::abs(direction[d]);
@@ -178,17 +178,17 @@ void DatumMoments<k, dim>::enclose(const Datum<dim>& datum, const SimplexMap<k, 
 }
 
 /// Throws for a term that has no bound on a part.
-template <int k, int dim>
-void DatumMoments<k, dim>::require_bounds(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
-                                          const Parts& parts) const
+template <int k, int dim, int n>
+void DatumMoments<k, dim, n>::require_bounds(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
+                                             const Parts& parts) const
 {
-  const auto is_bounded = [](const DatumPart<k, dim>& part) { return part.remainder.allFinite(); };
+  const auto is_bounded = [](const DatumPart<k, n>& part) { return part.remainder.allFinite(); };
   const auto found = std::ranges::find_if_not(parts, is_bounded);
   if (found == parts.end()) return;
   const Point<dim> x = map(fem::point_in<k>(found->part, Point<k>::Constant(1.0 / (k + 1))));
   for (const auto& term : datum.terms)
   {
-    DatumPart<k, dim> part = *found;
+    DatumPart<k, n> part = *found;
     enclose({{term}}, map, part);
     if (!is_bounded(part))
       throw InputError(
@@ -201,21 +201,21 @@ void DatumMoments<k, dim>::require_bounds(const Datum<dim>& datum, const Simplex
 }
 
 /// Halves the parts that leave out most.
-template <int k, int dim>
-void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
-                                  const DatumWeights& weights, double allowed, int max_parts,
-                                  Parts& parts) const
+template <int k, int dim, int n>
+void DatumMoments<k, dim, n>::refine(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
+                                     const DatumWeights& weights, double allowed, int max_parts,
+                                     Parts& parts) const
 {
-  const auto costs = [&](const DatumPart<k, dim>& part)
+  const auto costs = [&](const DatumPart<k, n>& part)
   {
     const double measure = measure_of(part, map);
     return std::pair(weights.remainder * 2 * part.remainder.norm() * std::sqrt(measure),
                      weights.mean > 0 ? weights.mean * 2 * part.mean_remainder.norm() * measure : 0.0);
   };
   // Smaller parts of the simplex, where roots start or poles lie, are nothing but rounding.
-  const auto is_small = [](const DatumPart<k, dim>& part)
+  const auto is_small = [](const DatumPart<k, n>& part)
   { return fem::fraction<k>(part.part) < std::pow(smallest_edge, k); };
-  const auto is_unbounded = [](const DatumPart<k, dim>& part) { return !part.remainder.allFinite(); };
+  const auto is_unbounded = [](const DatumPart<k, n>& part) { return !part.remainder.allFinite(); };
   while (static_cast<int>(parts.size()) < (std::ranges::any_of(parts, is_unbounded) ? most_parts : max_parts))
   {
     double squares = 0;
@@ -230,7 +230,7 @@ void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, d
     }
     if (std::sqrt(squares) + means <= allowed || largest == 0) return;
     Parts finer;
-    for (DatumPart<k, dim>& part : parts)
+    for (DatumPart<k, n>& part : parts)
     {
       const auto [remainder, mean] = costs(part);
       if (is_small(part) || std::max(remainder, mean) < (1 - tie) * largest / 4)
@@ -239,35 +239,35 @@ void DatumMoments<k, dim>::refine(const Datum<dim>& datum, const SimplexMap<k, d
         continue;
       }
       for (const fem::Part<k>& half : halves<k, dim>(part.part, map))
-        enclose(datum, map, finer.emplace_back(DatumPart<k, dim>{half, {}, {}, {}}));
+        enclose(datum, map, finer.emplace_back(DatumPart<k, n>{half, {}, {}, {}}));
     }
     parts = std::move(finer);
   }
 }
 
-template <int k, int dim>
-std::vector<Point<dim>> DatumMoments<k, dim>::moments(const Parts& parts) const
+template <int k, int dim, int n>
+std::vector<Point<n>> DatumMoments<k, dim, n>::moments(const Parts& parts) const
 {
-  std::vector<Point<dim>> result(n_, Point<dim>::Zero());
-  std::vector<double> at_point(n_);
+  std::vector<Point<n>> result(n_theta_, Point<n>::Zero());
+  std::vector<double> at_point(n_theta_);
   for (const auto& part : parts)
     for (int q = 0; q < rule_.size(); ++q)
     {
       std::span<const double> theta = at_point;
       if (parts.size() == 1)
-        theta = std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_);
+        theta = std::span(theta_).subspan(static_cast<std::size_t>(q) * n_theta_, n_theta_);
       else
         fem::orthonormal_values<k>(p_ + 1, fem::point_in<k>(part.part, rule_.points[q]), at_point);
-      const Point<dim> weighted = fem::fraction<k>(part.part) * rule_.weights[q] * part.values[q];
-      for (int j = 0; j < n_; ++j) result[j] += theta[j] * weighted;
+      const Point<n> weighted = fem::fraction<k>(part.part) * rule_.weights[q] * part.values[q];
+      for (int j = 0; j < n_theta_; ++j) result[j] += theta[j] * weighted;
     }
   return result;
 }
 
 /// ||f - Pi f|| by the rules on the parts, and (sum_K (2 delta |K|^{1/2})^2)^{1/2} for what they miss.
-template <int k, int dim>
-double DatumMoments<k, dim>::oscillation(const Parts& parts, std::span<const Point<dim>> moments,
-                                         double measure) const
+template <int k, int dim, int n>
+double DatumMoments<k, dim, n>::oscillation(const Parts& parts, std::span<const Point<n>> moments,
+                                            double measure) const
 {
   double squares = 0;  // on the reference simplex
   double missed = 0;
@@ -276,9 +276,9 @@ double DatumMoments<k, dim>::oscillation(const Parts& parts, std::span<const Poi
     missed += 4 * part.remainder.squaredNorm() * measure * fem::fraction<k>(part.part);
     for (int q = 0; q < rule_.size(); ++q)
     {
-      Point<dim> difference = part.values[q];
+      Point<n> difference = part.values[q];
       if (parts.size() == 1)
-        for (int j = 0; j < n_projected_; ++j) difference -= theta_[q * n_ + j] * moments[j];
+        for (int j = 0; j < n_projected_; ++j) difference -= theta_[q * n_theta_ + j] * moments[j];
       squares += fem::fraction<k>(part.part) * rule_.weights[q] * difference.squaredNorm();
     }
   }
@@ -294,15 +294,15 @@ double DatumMoments<k, dim>::oscillation(const Parts& parts, std::span<const Poi
   return std::sqrt(factorial<k> * measure * squares) + std::sqrt(missed);
 }
 
-template <int k, int dim>
-DatumOnSimplex<k, dim> DatumMoments<k, dim>::operator()(const Datum<dim>& datum,
-                                                        const SimplexMap<k, dim>& map,
-                                                        const DatumWeights& weights, double allowed,
-                                                        int max_parts) const
+template <int k, int dim, int n>
+DatumOnSimplex<k, n> DatumMoments<k, dim, n>::operator()(const Datum<dim, n>& datum,
+                                                         const SimplexMap<k, dim>& map,
+                                                         const DatumWeights& weights, double allowed,
+                                                         int max_parts) const
 {
-  DatumOnSimplex<k, dim> result;
+  DatumOnSimplex<k, n> result;
   Parts& parts = result.parts;
-  std::vector<Point<dim>> on_whole;  // first of all: where a formula is undefined, it shows there
+  std::vector<Point<n>> on_whole;  // first of all: where a formula is undefined, it shows there
   for (const Point<k>& s : rule_.points) on_whole.push_back(datum(map(s)));
   parts = cut_at_switches(datum, map, max_parts);
   for (auto& part : parts) enclose(datum, map, part);
@@ -314,28 +314,30 @@ DatumOnSimplex<k, dim> DatumMoments<k, dim>::operator()(const Datum<dim>& datum,
     for (auto& part : parts)
       for (const Point<k>& s : rule_.points)
         part.values.push_back(datum(map(fem::point_in<k>(part.part, s))));
-  Point<dim> missed = Point<dim>::Zero();
+  Point<n> missed = Point<n>::Zero();
   for (const auto& part : parts) missed += 2 * measure_of(part, map) * part.mean_remainder;
   result.mean = missed.norm();
-  const std::vector<Point<dim>> moments = this->moments(parts);
+  const std::vector<Point<n>> moments = this->moments(parts);
   result.oscillation = oscillation(parts, moments, map.measure);
   if (parts.size() > 1) result.moments = moments;
   return result;
 }
 
-template <int k, int dim>
-void DatumMoments<k, dim>::evaluate(std::span<const Point<dim>> moments, std::span<Point<dim>> values) const
+template <int k, int dim, int n>
+void DatumMoments<k, dim, n>::evaluate(std::span<const Point<n>> moments, std::span<Point<n>> values) const
 {
   for (int q = 0; q < rule_.size(); ++q)
   {
     values[q].setZero();
-    for (int j = 0; j < n_; ++j) values[q] += theta_[q * n_ + j] * moments[j];
+    for (int j = 0; j < n_theta_; ++j) values[q] += theta_[q * n_theta_ + j] * moments[j];
   }
 }
 
 template struct Datum<2>;
+template struct Datum<2, 3>;
 template struct Datum<3>;
 template class DatumMoments<1, 2>;
+template class DatumMoments<1, 2, 3>;
 template class DatumMoments<2, 2>;
 template class DatumMoments<2, 3>;
 template class DatumMoments<3, 3>;

@@ -22,18 +22,18 @@
 namespace tribound::contact
 {
 
-/// f(x) = sum_j value_j(x) direction_j.
-template <int dim>
+/// f(x) = sum_j value_j(x) direction_j, with n components.
+template <int dim, int n = dim>
 struct Datum
 {
   struct Term
   {
     const problem::Field* value;
-    Point<dim> direction;
+    Point<n> direction;
   };
   std::vector<Term> terms;
 
-  [[nodiscard]] Point<dim> operator()(const Point<dim>& x) const;
+  [[nodiscard]] Point<n> operator()(const Point<dim>& x) const;
   /// The largest degree of a term; not_polynomial if one is none.
   [[nodiscard]] int degree() const;
   /// Whether all terms are.
@@ -41,23 +41,23 @@ struct Datum
 };
 
 /// A part of the simplex on which one rule integrates the datum.
-template <int k, int dim>
+template <int k, int n>
 struct DatumPart
 {
   fem::Part<k> part;
-  Point<dim> remainder;  ///< per component: the largest distance of f from P^{p+2}, an upper bound; 0 where
-                         ///< nobody knows
-  Point<dim> mean_remainder;       ///< the same from P^{2p+4}
-  std::vector<Point<dim>> values;  ///< f at the points of the rule on the part
+  Point<n> remainder;  ///< per component: the largest distance of f from P^{p+2}, an upper bound; 0 where
+                       ///< nobody knows
+  Point<n> mean_remainder;       ///< the same from P^{2p+4}
+  std::vector<Point<n>> values;  ///< f at the points of the rule on the part
 };
 
-template <int k, int dim>
+template <int k, int n>
 struct DatumOnSimplex
 {
-  std::vector<DatumPart<k, dim>> parts;
+  std::vector<DatumPart<k, n>> parts;
   /// (f, theta_j) / |T| on P^{p+1}, theta orthonormal on the reference simplex; empty where the rule on the
   /// whole simplex gives them.
-  std::vector<Point<dim>> moments;
+  std::vector<Point<n>> moments;
   double oscillation = 0;  ///< >= ||f - Pi f||, Pi the projection of the moments on the smaller space
   double mean = 0;         ///< >= |integral of f - its moment|
 };
@@ -70,7 +70,7 @@ struct DatumWeights
 };
 
 /// Takes moments of data for the degree p of a method, with the rule exact to data_quadrature_degree(p).
-template <int k, int dim>
+template <int k, int dim, int n = dim>
 class DatumMoments
 {
  public:
@@ -81,33 +81,33 @@ class DatumMoments
   /// is left out costs at most `allowed`, but with no more than some `max_parts` parts, unless a bound of
   /// the formula is not seen yet. Throws InputError
   /// where a formula is not finite, and near where the enclosures find no bound of it.
-  [[nodiscard]] DatumOnSimplex<k, dim> operator()(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
-                                                  const DatumWeights& weights, double allowed,
-                                                  int max_parts) const;
+  [[nodiscard]] DatumOnSimplex<k, n> operator()(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
+                                                const DatumWeights& weights, double allowed,
+                                                int max_parts) const;
 
   /// The polynomial with the given moments at the points of the rule.
-  void evaluate(std::span<const Point<dim>> moments, std::span<Point<dim>> values) const;
+  void evaluate(std::span<const Point<n>> moments, std::span<Point<n>> values) const;
 
   [[nodiscard]] const fem::Quadrature<k>& rule() const { return rule_; }
 
  private:
-  using Parts = std::vector<DatumPart<k, dim>>;
+  using Parts = std::vector<DatumPart<k, n>>;
 
-  [[nodiscard]] Parts cut_at_switches(const Datum<dim>& datum, const SimplexMap<k, dim>& map,
+  [[nodiscard]] Parts cut_at_switches(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
                                       int max_parts) const;
-  void require_bounds(const Datum<dim>& datum, const SimplexMap<k, dim>& map, const Parts& parts) const;
-  void enclose(const Datum<dim>& datum, const SimplexMap<k, dim>& map, DatumPart<k, dim>& part) const;
-  void refine(const Datum<dim>& datum, const SimplexMap<k, dim>& map, const DatumWeights& weights,
+  void require_bounds(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map, const Parts& parts) const;
+  void enclose(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map, DatumPart<k, n>& part) const;
+  void refine(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map, const DatumWeights& weights,
               double allowed, int max_parts, Parts& parts) const;
-  [[nodiscard]] std::vector<Point<dim>> moments(const Parts& parts) const;
-  [[nodiscard]] double oscillation(const Parts& parts, std::span<const Point<dim>> moments,
+  [[nodiscard]] std::vector<Point<n>> moments(const Parts& parts) const;
+  [[nodiscard]] double oscillation(const Parts& parts, std::span<const Point<n>> moments,
                                    double measure) const;
 
   int p_;
   int n_projected_;
   fem::Quadrature<k> rule_;
-  int n_;                      ///< dim P^{p+1}
-  std::vector<double> theta_;  ///< at the points of the rule, [q * n + j]
+  int n_theta_;                ///< dim P^{p+1}
+  std::vector<double> theta_;  ///< at the points of the rule, [q * n_theta + j]
 };
 
 }  // namespace tribound::contact

@@ -21,13 +21,13 @@ constexpr double fewest_parts = 64;
 constexpr double most_parts = 4096;
 
 /// An upper bound of |f| on a cell or facet; 0 where there is none.
-template <int k, int dim>
-double largest_value(const Datum<dim>& datum, const SimplexMap<k, dim>& map)
+template <int k, int dim, int n>
+double largest_value(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map)
 {
   std::array<double, (k + 1) * dim> vertices;
   for (int i = 0; i <= k; ++i)
     std::ranges::copy(map(fem::reference_simplex<k>()[i]), vertices.begin() + i * dim);
-  Point<dim> size = Point<dim>::Zero();
+  Point<n> size = Point<n>::Zero();
   for (const auto& [value, direction] : datum.terms)
   {
     std::array<problem::Enclosure, 1> range;
@@ -62,6 +62,22 @@ double effect_of_interference(const problem::Problem<dim>& problem, const mesh::
   return stiffest * interference / size * std::sqrt(volume);
 }
 
+/// Of the pressure of water, as of a traction: size^{1/2} ||p_w||.
+template <int dim>
+double effect_of_water(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
+                       double size)
+{
+  double squares = 0;
+  for (const ContactSegment<dim>& segment : segments)
+  {
+    if (!segment.contact->water || !is_owned(mesh, segment)) continue;
+    const Datum<dim, 1> pressure{{{&segment.contact->water->pressure(), Point<1>(1.0)}}};
+    const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
+    squares += segment.measure * std::pow(largest_value(pressure, map), 2);
+  }
+  return std::sqrt(size * mesh.ranks().sum(squares));
+}
+
 }  // namespace
 
 template <int dim>
@@ -72,6 +88,7 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
       degree_(degree),
       cell_moments_(degree, degree - 1),
       facet_moments_(degree, degree),
+      contact_moments_(degree, degree),
       size_(mesh::box_around(mesh).diagonal())
 {
   count_formulas(segments);
@@ -80,9 +97,10 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
   if (effort_.formulas > 0)
     allowed = accuracy.absolute
                   ? *accuracy.absolute
-                  : accuracy.share * (largest_effect() + effect_of_interference<dim>(problem, mesh, segments,
-                                                                                     facet_rule().points,
-                                                                                     size_, all.body));
+                  : accuracy.share * (largest_effect() +
+                                      effect_of_interference<dim>(problem, mesh, segments,
+                                                                  facet_rule().points, size_, all.body) +
+                                      effect_of_water<dim>(mesh, segments, size_));
   const double of_each = static_cast<double>(cell_rule().size()) *
                          fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
@@ -142,20 +160,21 @@ Datum<dim> DiscreteData<dim>::traction_datum(const mesh::BoundaryFacet& facet) c
 }
 
 template <int dim>
-Datum<dim> DiscreteData<dim>::contact_datum(const ContactSegment<dim>& segment) const
+Datum<dim, 3> DiscreteData<dim>::contact_datum(const ContactSegment<dim>& segment) const
 {
-  Datum<dim> datum;
+  Datum<dim, 3> datum;
   const problem::Contact& contact = *segment.contact;
-  if (contact.gap) datum.terms.push_back({&*contact.gap, segment.gamma * Point<dim>::Unit(0)});
+  if (contact.gap) datum.terms.push_back({&*contact.gap, segment.gamma * Point<3>::Unit(0)});
   if (const problem::Field* strength = cone(contact.law).strength)
-    datum.terms.push_back({strength, Point<dim>::Unit(1)});
+    datum.terms.push_back({strength, Point<3>::Unit(1)});
+  if (contact.water) datum.terms.push_back({&contact.water->pressure(), Point<3>::Unit(2)});
   return datum;
 }
 
 template <int dim>
 void DiscreteData<dim>::count_formulas(Segments segments)
 {
-  const auto count = [&](const Datum<dim>& datum, bool is_load)
+  const auto count = [&](const auto& datum, bool is_load)
   {
     if (datum.degree() <= degree_ + 2) return;
     ++effort_.formulas;
@@ -168,7 +187,7 @@ void DiscreteData<dim>::count_formulas(Segments segments)
   for (const ContactSegment<dim>& segment : segments)
   {
     if (!is_owned(mesh_, segment)) continue;
-    const Datum<dim> datum = contact_datum(segment);
+    const Datum<dim, 3> datum = contact_datum(segment);
     count(datum, false);
     if (segment.varying_normal == nullptr) continue;
     const bool counted = datum.degree() > degree_ + 2;
@@ -216,9 +235,9 @@ double DiscreteData<dim>::largest_effect() const
 }
 
 template <int dim>
-template <int k>
-void DiscreteData<dim>::keep(Represented& represented, std::size_t index, bool is_owned,
-                             DatumOnSimplex<k, dim>&& found)
+template <int k, int n>
+void DiscreteData<dim>::keep(Represented<n>& represented, std::size_t index, bool is_owned,
+                             DatumOnSimplex<k, n>&& found)
 {
   if (!represented.remainders.empty()) represented.remainders[index] = {found.oscillation, found.mean};
   if (found.moments.empty()) return;
@@ -280,10 +299,10 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                [&](std::size_t k)
                {
                  const ContactSegment<dim>& segment = segments[k];
-                 const Datum<dim> datum = contact_datum(segment);
+                 const Datum<dim, 3> datum = contact_datum(segment);
                  if (datum.terms.empty()) return;
                  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
-                 DatumOnSimplex<dim - 1, dim> found = facet_moments_(
+                 DatumOnSimplex<dim - 1, 3> found = contact_moments_(
                      datum, map, {std::sqrt(segment.h), 0}, density * std::sqrt(map.measure), max_parts_);
                  for (auto& moment : found.moments) moment[0] /= segment.gamma;
                  for (auto& part : found.parts) part.remainder[0] /= segment.gamma;
@@ -292,7 +311,7 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                  {
                    std::vector<ContactDatumPart<dim>> parts;
                    for (const auto& part : found.parts)
-                     parts.push_back({part.part, part.remainder[0], part.remainder[1]});
+                     parts.push_back({part.part, part.remainder[0], part.remainder[1], part.remainder[2]});
 #pragma omp critical(tribound_discrete_data)
                    contact_parts_.emplace(k, std::move(parts));
                  }
@@ -300,18 +319,19 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                });
 }
 
-/// Throws where the strength is negative at a point of a rule.
+/// Throws where the strength or the pressure of the water is negative at a point of a rule.
 template <int dim>
 void DiscreteData<dim>::check_signs(const ContactSegment<dim>& segment,
-                                    const DatumOnSimplex<dim - 1, dim>& found) const
+                                    const DatumOnSimplex<dim - 1, 3>& found) const
 {
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
   for (const auto& part : found.parts)
     for (int q = 0; q < facet_rule().size(); ++q)
     {
-      if (part.values[q][1] >= 0) continue;
+      if (part.values[q][1] >= 0 && part.values[q][2] >= 0) continue;
       const Point<dim> x = map(fem::point_in<dim - 1>(part.part, facet_rule().points[q]));
       (void)problem::strength_at<dim>(segment.contact->law, x);
+      (void)problem::water_at<dim>(*segment.contact, x);
     }
 }
 
@@ -343,11 +363,11 @@ void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values
 
 template <int dim>
 void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t k, std::span<double> gap,
-                                std::span<double> strength) const
+                                std::span<double> strength, std::span<double> water) const
 {
   const auto found = contact_.moments.find(k);
-  std::vector<Point<dim>> values(found == contact_.moments.end() ? 0 : facet_rule().size());
-  if (!values.empty()) facet_moments_.evaluate(found->second, values);
+  std::vector<Point<3>> values(found == contact_.moments.end() ? 0 : facet_rule().size());
+  if (!values.empty()) contact_moments_.evaluate(found->second, values);
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
   for (int q = 0; q < facet_rule().size(); ++q)
   {
@@ -357,6 +377,8 @@ void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t 
     gap[q] = is_polynomial && segment.contact->gap ? values[q][0] : segment.gap(s, x, segment.normal_at(x));
     strength[q] = is_polynomial ? std::max(values[q][1], 0.0)  // in place of a jump it overshoots
                                 : problem::strength_at<dim>(segment.contact->law, x);
+    // Where it overshoots it is negative: its moments are those of a load and stay what they are.
+    water[q] = is_polynomial ? values[q][2] : problem::water_at<dim>(*segment.contact, x);
   }
 }
 

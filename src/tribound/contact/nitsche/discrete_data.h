@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file discrete_data.h
-/// The data of a problem as the discrete problem on a mesh sees them: loads, gaps and thresholds at the
-/// points of the reference rules, the same for form, residual, patches and estimators, with bounds of what
-/// that leaves out.
+/// The data of a problem as the discrete problem on a mesh sees them: loads, gaps, thresholds and water
+/// pressures at the points of the reference rules, the same for form, residual, patches and estimators, with
+/// bounds of what that leaves out.
 
 #include <cstdint>
 #include <optional>
@@ -26,14 +26,15 @@ struct LoadRemainder
   double mean = 0;  ///< >= |integral of f - what the rule makes of it|, also times affine weights of size 1
 };
 
-/// A part of a contact segment on which a rule integrates gap and threshold, up to the remainders: upper
-/// bounds of their distances from P^{p+2}.
+/// A part of a contact segment on which a rule integrates gap, threshold and the pressure of water, up to the
+/// remainders: upper bounds of their distances from P^{p+2}.
 template <int dim>
 struct ContactDatumPart
 {
   fem::Part<dim - 1> part;
   double gap;       ///< length
   double strength;  ///< stress
+  double water;     ///< stress
 };
 
 /// What the data that are no polynomials may leave out of the bound, stress times length^(dim/2).
@@ -64,8 +65,8 @@ class DiscreteData
 {
  public:
   /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count with the
-  /// stress gamma g. Throws InputError for a negative gap or threshold and for data that are not finite,
-  /// naming the place. Without segments loads alone are known.
+  /// stress gamma g. Throws InputError for a negative threshold or water pressure and for data that are not
+  /// finite, naming the place. Without segments loads alone are known.
   DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
                std::span<const ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
@@ -84,9 +85,9 @@ class DiscreteData
   void body_force(Index cell, std::span<Point<dim>> values) const;
   /// g_N on a boundary facet; fixed components are 0.
   void traction(std::size_t facet, std::span<Point<dim>> values) const;
-  /// g and the strength s >= 0 of the law (0 where it has none) on segment k.
+  /// g, the strength s >= 0 of the law (0 where it has none) and p_w (0 without water) on segment k.
   void contact(const ContactSegment<dim>& segment, std::size_t k, std::span<double> gap,
-               std::span<double> strength) const;
+               std::span<double> strength, std::span<double> water) const;
 
   [[nodiscard]] LoadRemainder body_remainder(Index cell) const
   {
@@ -96,7 +97,8 @@ class DiscreteData
   {
     return traction_.remainders.empty() ? LoadRemainder{} : traction_.remainders[facet];
   }
-  /// In the coordinates of the segment; empty where gap and threshold are integrated exactly on all of it.
+  /// In the coordinates of the segment; empty where gap, threshold and water are integrated exactly on all of
+  /// it.
   [[nodiscard]] std::span<const ContactDatumPart<dim>> contact_parts(std::size_t segment) const;
   /// What data that are no polynomials may add to the bound on a contact segment, over the root of its
   /// measure.
@@ -104,17 +106,18 @@ class DiscreteData
   [[nodiscard]] const DataEffort& effort() const { return effort_; }
 
  private:
-  /// Data on cells or on facets.
+  /// Data of n components on cells or on facets.
+  template <int n>
   struct Represented
   {
-    std::vector<LoadRemainder> remainders;                             ///< empty: all 0
-    std::unordered_map<std::size_t, std::vector<Point<dim>>> moments;  ///< where a formula is subdivided
+    std::vector<LoadRemainder> remainders;                           ///< empty: all 0
+    std::unordered_map<std::size_t, std::vector<Point<n>>> moments;  ///< where a formula is subdivided
   };
 
   [[nodiscard]] Datum<dim> body_datum(Index cell) const;
   [[nodiscard]] Datum<dim> traction_datum(const mesh::BoundaryFacet& facet) const;
-  /// g in direction 0, as the stress gamma g, where it is given, and s in direction 1.
-  [[nodiscard]] Datum<dim> contact_datum(const ContactSegment<dim>& segment) const;
+  /// g in direction 0, as the stress gamma g, where it is given, s in direction 1, and p_w in direction 2.
+  [[nodiscard]] Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment) const;
 
   /// Of the body, its boundary and the contact boundary.
   struct Measures
@@ -133,21 +136,22 @@ class DiscreteData
   void represent_body_forces(double density);
   void represent_tractions(double density);
   void represent_contact(Segments segments, double density);
-  void check_signs(const ContactSegment<dim>& segment, const DatumOnSimplex<dim - 1, dim>& found) const;
-  template <int k>
-  void keep(Represented& represented, std::size_t index, bool is_owned, DatumOnSimplex<k, dim>&& found);
+  void check_signs(const ContactSegment<dim>& segment, const DatumOnSimplex<dim - 1, 3>& found) const;
+  template <int k, int n>
+  void keep(Represented<n>& represented, std::size_t index, bool is_owned, DatumOnSimplex<k, n>&& found);
 
   const problem::Problem<dim>& problem_;
   const mesh::Mesh<dim>& mesh_;
   int degree_;
   DatumMoments<dim, dim> cell_moments_;
   DatumMoments<dim - 1, dim> facet_moments_;
+  DatumMoments<dim - 1, dim, 3> contact_moments_;
   double size_;        ///< of the bounding box
   int max_parts_ = 0;  ///< of a cell or facet
   double contact_density_ = 0;
-  Represented body_;
-  Represented traction_;
-  Represented contact_;
+  Represented<dim> body_;
+  Represented<dim> traction_;
+  Represented<3> contact_;
   std::unordered_map<std::size_t, std::vector<ContactDatumPart<dim>>> contact_parts_;
   DataEffort effort_;
 };

@@ -69,20 +69,20 @@ void check_law(const NitscheForm<dim>& form, std::size_t k)
     fail("the shear ratio is too small for gamma0", fmt::format("a gamma0 of {:.4g} or more", least));
 }
 
-/// T is Lipschitz continuous in gap and threshold with the constant 1 where nothing softens: the bound takes
-/// what rules miss of them by that.
+/// T is Lipschitz continuous in gap, threshold and water pressure with the constant 1 where nothing softens:
+/// the bound takes what rules miss of them by that.
 template <int dim>
 void check_data(const NitscheForm<dim>& form, std::size_t k)
 {
   const ContactSegment<dim>& segment = form.segments()[k];
   if (problem::softening_slope(segment.contact->law) == 0) return;
   for (const ContactDatumPart<dim>& part : form.data().contact_parts(k))
-    if (part.gap > 0 || part.strength > 0)
+    if (part.gap > 0 || part.strength > 0 || part.water > 0)
       throw InputError(
           {},
-          fmt::format("{} softens, and its gap or threshold is no polynomial of degree {}",
+          fmt::format("{} softens, and its gap, threshold or water pressure is no polynomial of degree {}",
                       place(form, segment, form.contact_points(k)[0].x), form.space().degree() + 2),
-          "numbers, or polynomials");
+          "numbers, or polynomials, also in pieces: max(0, ...)");
 }
 
 }  // namespace
@@ -106,15 +106,41 @@ std::shared_ptr<const ContactHistory<dim>> history_at_first(const NitscheForm<di
                                                      form.space().degree() + 2);
 }
 
+namespace
+{
+
+/// Where nothing lies opposite nobody has said what the water does.
 template <int dim>
-void check_interfaces(const NitscheForm<dim>& form)
+void check_coverage(const NitscheForm<dim>& form)
+{
+  constexpr double rounding = 1e-8;
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const auto pairs = form.problem().pairs();
+  std::vector<double> measures(2 * pairs.size(), 0.0);  // what is covered, and all, of each slave
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+    if (const int pair = form.segments()[k].pair; pair >= 0) measures[2 * pair] += form.segments()[k].measure;
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
+    if (const auto* pair = form.problem().pair_of_slave(facet.tag))
+      measures[2 * (pair - pairs.data()) + 1] += simplex_map(mesh, facet).measure;
+  mesh.ranks().sum(std::span(measures));
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (pairs[i].contact.water && measures[2 * i] < (1 - rounding) * measures[2 * i + 1])
+      throw InputError(
+          pairs[i].where,
+          fmt::format("there is water in it, and the master lies opposite {:.4g} % of the slave only",
+                      100 * measures[2 * i] / measures[2 * i + 1]),
+          "a slave of which all lies opposite the master");
+}
+
+/// Of own segments: constants and gaps, and whether gamma exceeds the slope.
+template <int dim>
+void check_laws(const NitscheForm<dim>& form)
 {
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
     if (!problem::cone(form.segments()[k].contact->law).is_bonded) continue;
     check_law(form, k);
     check_gap(form, k);
-    check_data(form, k);
   }
   const SofteningMargin margin = softening_margin(form);
   if (margin.ratio < 1) return;
@@ -129,10 +155,32 @@ void check_interfaces(const NitscheForm<dim>& form)
                   segment.h / margin.ratio, segment.h, form.gamma0() * margin.ratio));
 }
 
+}  // namespace
+
+template <int dim>
+void check_interface_data(const NitscheForm<dim>& form)
+{
+  form.space().mesh().ranks().together(
+      [&]
+      {
+        for (std::size_t k = 0; k < form.n_owned_segments(); ++k) check_data(form, k);
+      });
+}
+
+template <int dim>
+void check_interfaces(const NitscheForm<dim>& form)
+{
+  check_coverage(form);
+  form.space().mesh().ranks().together([&] { check_laws(form); });
+  check_interface_data(form);
+}
+
 template SofteningMargin softening_margin(const NitscheForm<2>&);
 template SofteningMargin softening_margin(const NitscheForm<3>&);
 template std::shared_ptr<const ContactHistory<2>> history_at_first(const NitscheForm<2>&);
 template std::shared_ptr<const ContactHistory<3>> history_at_first(const NitscheForm<3>&);
+template void check_interface_data(const NitscheForm<2>&);
+template void check_interface_data(const NitscheForm<3>&);
 template void check_interfaces(const NitscheForm<2>&);
 template void check_interfaces(const NitscheForm<3>&);
 

@@ -26,10 +26,16 @@ template <int dim>
 [[nodiscard]] std::shared_ptr<const ContactHistory<dim>> history_at_first(const NitscheForm<dim>& form);
 
 /// Throws InputError, naming the place: where the constants of a law do not go together (problem::fault);
-/// where slope >= gamma, with the facet size that would do; where there is a gap under a bond; where gap or
-/// threshold of a law that softens are no polynomials; where gamma_t is not gamma and the direction of
-/// contact varies, or gamma_0 is too small for it.
+/// where slope >= gamma, with the facet size that would do; where there is a gap under a bond; where gamma_t
+/// is not gamma and the direction of contact varies, or gamma_0 is too small for it; and for a pair with
+/// water of which the slave is not covered. What check_interface_data() throws, too. All ranks together.
 template <int dim>
 void check_interfaces(const NitscheForm<dim>& form);
+
+/// Of every load step, as data follow t: throws InputError where gap, threshold or water pressure of a law
+/// that softens are no polynomials on pieces, of which T is not Lipschitz continuous with the constant 1. All
+/// ranks together.
+template <int dim>
+void check_interface_data(const NitscheForm<dim>& form);
 
 }  // namespace tribound::contact

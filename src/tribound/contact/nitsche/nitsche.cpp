@@ -55,17 +55,18 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
   points.reserve(segments_.size() * facet_rule().size());
   std::vector<double> gap(facet_rule().size());
   std::vector<double> strength(facet_rule().size());
+  std::vector<double> water(facet_rule().size());
   for (std::size_t k = 0; k < segments_.size(); ++k)
   {
     const ContactSegment<dim>& segment = segments_[k];
     const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
-    data_.contact(segment, k, gap, strength);
+    data_.contact(segment, k, gap, strength, water);
     const problem::InterfaceState<dim> fresh = problem::fresh_state<dim>(segment.contact->law);
     for (int q = 0; q < facet_rule().size(); ++q)
     {
       const Point<dim> x = map(facet_rule().points[q]);
-      points.push_back(
-          {x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap[q], strength[q], fresh});
+      points.push_back({x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap[q], strength[q],
+                        water[q], fresh});
     }
   }
   return points;
@@ -97,7 +98,8 @@ problem::LawPoint<dim> NitscheForm<dim>::law_point(std::size_t k, const Point<di
 {
   const problem::ContactLaw& law = segments_[k].contact->law;
   problem::LawPoint<dim> point{n, problem::strength_at<dim>(law, x), segments_[k].gamma,
-                               history_ ? history_->at(law, k, s) : problem::fresh_state<dim>(law)};
+                               history_ ? history_->at(law, k, s) : problem::fresh_state<dim>(law),
+                               problem::water_at<dim>(*segments_[k].contact, x)};
   point.state.slip -= point.state.slip.dot(n) * n;
   return point;
 }
@@ -130,13 +132,19 @@ Point<dim> NitscheForm<dim>::respond(std::size_t k, int q, const Point<dim>& aug
 }
 
 template <int dim>
+bool NitscheForm<dim>::starts_open(std::size_t k, int q) const
+{
+  return has_bonds_ && !cone(segments_[k].contact->law).is_tied && contact_points(k)[q].state.damage >= 1;
+}
+
+template <int dim>
 Tensor<dim> NitscheForm<dim>::traction_derivative(Linearisation kind, std::size_t k, int q,
                                                   const Point<dim>& augmented, double delta) const
 {
   const problem::ContactLaw& law = segments_[k].contact->law;
   if (kind == Linearisation::newton) return problem::tangent<dim>(law, law_point(k, q), augmented, delta);
-  const auto& [x, weight, n, gap, strength, state] = contact_points(k)[q];
-  if (has_bonds_ && !cone(law).is_tied && state.damage >= 1) return Tensor<dim>::Zero();
+  if (starts_open(k, q)) return Tensor<dim>::Zero();
+  const Point<dim>& n = contact_points(k)[q].normal;
   return cone(law).resists_sliding() ? Tensor<dim>::Identity() : Tensor<dim>(n * n.transpose());
 }
 
@@ -148,6 +156,15 @@ std::vector<Value> NitscheForm<dim>::at_contact_points(const Evaluate& evaluate)
   const std::size_t n = n_segment_points();
   parallel_for(segments_.size(), [&](std::size_t k) { evaluate(k, std::span(result).subspan(k * n, n)); });
   return result;
+}
+
+template <int dim>
+std::vector<Point<dim>> NitscheForm<dim>::water_pressure() const
+{
+  std::vector<Point<dim>> pressure;
+  pressure.reserve(points_.size());
+  for (const ContactPoint<dim>& point : points_) pressure.push_back(point.water * point.normal);
+  return pressure;
 }
 
 template <int dim>
@@ -169,7 +186,10 @@ std::vector<Point<dim>> NitscheForm<dim>::linearised_traction(Linearisation kind
   {
     const Columns at_w = augmented_traction(w, k);
     for (int q = 0; q < n_segment_points(); ++q)
-      t[q] = traction_derivative(kind, k, q, at_w.col(q), delta) * at_w.col(q);
+      if (const ContactPoint<dim>& point = contact_points(k)[q]; starts_open(k, q))
+        t[q] = -point.water * point.normal;
+      else
+        t[q] = traction_derivative(kind, k, q, at_w.col(q), delta) * at_w.col(q);
   };
   const auto newton = [&](std::size_t k, std::span<Point<dim>> t)
   {
@@ -238,7 +258,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
         fem::value_at<dim>(space_->cell_nodes(segment.slave.facet.cell), u, table.slave->values_at(q));
     const problem::InterfaceResponse<dim> committed = problem::advance<dim>(segment.contact->law, point, p);
     states.push_back({x, n, -traction.dot(n), traction, limit, status, gap - jump.dot(n),
-                      jump - jump.dot(n) * n, displacement, committed.opening, committed.state});
+                      jump - jump.dot(n) * n, displacement, committed.opening, point.water, committed.state});
   }
   return states;
 }
@@ -252,7 +272,7 @@ ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form, std::spa
   for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
   {
     if (tag >= 0 && form.segments()[i / form.n_segment_points()].slave.facet.tag != tag) continue;
-    const auto& [x, weight, n, gap, strength, state] = form.contact_points()[i];
+    const auto& [x, weight, n, gap, strength, water, state] = form.contact_points()[i];
     const Point<dim> t_t = t[i] - t[i].dot(n) * n;
     sum.force += weight * t[i];
     sum.normal += weight * t[i].dot(n);

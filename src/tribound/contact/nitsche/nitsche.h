@@ -36,6 +36,7 @@ struct ContactState
   Point<dim> slip;                          ///< [u]^t
   Point<dim> displacement;                  ///< u of the slave
   double opening = 0;                       ///< delta^n of the law's resolvent
+  double water = 0;                         ///< p_w: the effective traction is T + p_w n
   problem::InterfaceState<dim> state = {};  ///< what a step that ends here commits
 };
 
@@ -48,6 +49,7 @@ struct ContactPoint
   Point<dim> normal;                   ///< N
   double gap;                          ///< g
   double strength;                     ///< s of the law, 0 where it has none
+  double water;                        ///< p_w in the joint, stress
   problem::InterfaceState<dim> state;  ///< after the last committed step
 };
 
@@ -55,7 +57,7 @@ struct ContactPoint
 enum class Linearisation
 {
   /// The first step from scratch: T_lin(w) = P^n(w) n + P^t(w), without P^t where nothing resists sliding;
-  /// where some points are bonded, 0 on broken ones.
+  /// where some points are bonded, -p_w n on broken ones.
   closed_sticking,
   newton  ///< T_lin(w) = T(u) + DT(u)[w - u]
 };
@@ -122,6 +124,8 @@ class NitscheForm
   /// {sigma(u)} - gamma [u] there, P(u) without the gap.
   [[nodiscard]] Columns traction_without_gap(std::span<const double> u, std::size_t k) const;
 
+  /// p_w n at the contact points: T + p_w n is the effective traction.
+  [[nodiscard]] std::vector<Point<dim>> water_pressure() const;
   /// T(u) at the contact points.
   [[nodiscard]] std::vector<Point<dim>> traction(std::span<const double> u, double delta = 0) const;
   /// T_lin(w) at the contact points, linearised at u.
@@ -153,7 +157,7 @@ class NitscheForm
   [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, int q) const
   {
     const ContactPoint<dim>& point = contact_points(k)[q];
-    return {point.normal, point.strength, segments_[k].gamma, point.state};
+    return {point.normal, point.strength, segments_[k].gamma, point.state, point.water};
   }
   /// What evaluates functions of the space at the nodes of segment k.
   [[nodiscard]] SegmentValues<dim> at_nodes(std::size_t k) const
@@ -164,6 +168,8 @@ class NitscheForm
   [[nodiscard]] Columns augmented_traction(std::span<const double> u, std::size_t k) const;
   /// T from P = `augmented` at a contact point of segment k.
   [[nodiscard]] Point<dim> respond(std::size_t k, int q, const Point<dim>& augmented, double delta) const;
+  /// Whether the first step from scratch takes the point for open: broken, while others are bonded.
+  [[nodiscard]] bool starts_open(std::size_t k, int q) const;
   /// M with DT(u)[w] = M ({sigma(w)} - gamma [w]), from P(u) at point q of segment k.
   [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, int q,
                                                 const Point<dim>& augmented, double delta) const;

@@ -130,7 +130,7 @@ auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::
                                        const fem::Quadrature<dim - 1>& rule) const -> FrictionWork
 {
   FrictionWork result{Eigen::VectorXd::Zero(motions.cols())};
-  const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0};
+  const ContactDatumPart<dim> whole{fem::reference_simplex<dim - 1>(), 0, 0, 0};
   for (const AssemblySegment& entry : assembly_.segments)
   {
     const ContactSegment<dim>& segment = form_.segments()[entry.number];
@@ -145,7 +145,7 @@ auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::
       return v - v.dot(n) * n;
     };
     const std::span<const ContactDatumPart<dim>> parts = form_.data().contact_parts(entry.number);
-    for (const auto& [part, gap, strength] : parts.empty() ? std::span(&whole, 1) : parts)
+    for (const auto& [part, gap, strength, water] : parts.empty() ? std::span(&whole, 1) : parts)
     {
       const double measure = segment.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
@@ -191,6 +191,15 @@ double AssemblyCheck<dim>::missed_work(const Eigen::VectorXd& motion) const
     for (std::size_t k = 0; k < body.facets.size(); ++k)
       if (const double mean = data.traction_remainder(body.numbers[k]).mean; mean > 0)
         missed += mean * largest(mesh::facet_vertices(mesh_.cell(body.facets[k].cell), body.facets[k].local));
+  }
+  for (const AssemblySegment& entry : assembly_.segments)
+  {
+    const ContactSegment<dim>& segment = form_.segments()[entry.number];
+    const MotionJump<dim> jump(mesh_, assembly_, entry, segment);
+    for (const ContactDatumPart<dim>& part : data.contact_parts(entry.number))
+      for (const Point<dim - 1>& s : part.part)
+        missed += 2 * part.water * segment.measure * fem::fraction<dim - 1>(part.part) *
+                  (jump(s) * motion(jump.coefficients())).norm();
   }
   return std::sqrt(dim) * missed;  // by components
 }

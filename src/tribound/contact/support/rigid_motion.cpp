@@ -15,6 +15,11 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
 {
   const fem::LagrangeSpace<dim>& space = form.space();
   assert(!space.mesh().partition());
+  // What contact holds is the effective traction: water pushes like a load.
+  std::vector<double> pushed(load.begin(), load.end());
+  std::vector<Point<dim>> water = form.water_pressure();
+  for (Point<dim>& t : water) t = -t;
+  form.add_contact_load(water, pushed);
   constexpr double relative_round_off = 1e-11;
   const std::vector<Assembly<dim>> assemblies = find_assemblies<dim>(space, form.segments());
   const std::vector<Point<dim>> points = space.node_points();
@@ -28,7 +33,7 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
     for (int b = 0; b < static_cast<int>(assembly.bodies.size()); ++b)
       for (const Index i : assembly.bodies[b].nodes)
       {
-        const Point<dim> force(load.data() + static_cast<std::size_t>(dim) * i);
+        const Point<dim> force(pushed.data() + static_cast<std::size_t>(dim) * i);
         work(assembly.coefficients(b)) += assembly.modes.at(points[i]).transpose() * force;
         terms += force.norm();
       }

@@ -1,0 +1,245 @@
+/// @file water_test.cpp
+/// Water in the joint under a dam: statics, the numbers of an independent program, the crack that carries
+/// pressure, and the bound above the dual norm.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "support/dam.h"
+#include "support/meshes.h"
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/truth/true_error.h"
+#include "tribound/io/record/hydraulic_figures.h"
+#include "tribound/mesh/gmsh.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+using nlohmann::json;
+using Step = adapt::LoadStep<2>;
+
+json reference()
+{
+  std::ifstream in(std::string(VERIFICATION_DATA) + "/cohesive.json");
+  return json::parse(in)["dam"];
+}
+
+mesh::Mesh<2> dam_mesh()
+{
+  return std::get<mesh::Mesh<2>>(
+      mesh::read_mesh(mesh::MeshFile{std::string(VERIFICATION_DATA) + "/dam_12.msh"}));
+}
+
+void follow(const ProblemData<2>& data, const std::vector<double>& levels,
+            const std::function<void(const Step&)>& check, int degree = 2)
+{
+  mesh::Mesh<2> mesh = dam_mesh();
+  const problem::Problem<2> problem = data.on(mesh);
+  const adapt::Method method = dam_method(degree);
+  adapt::LoadPath<2> path(problem, method, {}, std::move(mesh));
+  for (const double level : levels) ASSERT_EQ(path.advance(level, check), "");
+}
+
+io::HydraulicFigures figures_of(const Step& step)
+{
+  const auto boundaries = step.at->problem.boundaries();
+  for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
+    if (boundaries[tag].contact) return io::hydraulic_figures<2>(step, static_cast<int>(tag)).value();
+  throw std::logic_error("no contact");
+}
+
+double damage(const Step& step)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < step.responses.size(); ++i)
+    sum += step.at->discrete.form.contact_points()[i].weight * step.responses[i].state.damage;
+  return sum;
+}
+
+TEST(Water, DamOfAnIndependentProgram)
+{
+  const json steps = reference()["joint"];
+  std::vector<double> levels;
+  for (const json& step : steps) levels.push_back(step["ell"]);
+  std::size_t i = 0;
+  follow(dam(uplift()), levels,
+         [&](const Step& step)
+         {
+           SCOPED_TRACE(step.t);
+           const json& expected = steps[i++];
+           const auto near = [&](double value, const char* key, double tolerance)
+           {
+             const double e = expected[key];
+             EXPECT_NEAR(value, e, tolerance * std::max(1.0, std::abs(e))) << key;
+           };
+           EXPECT_EQ(step.cuts, 0);
+           EXPECT_EQ(step.passes, 1);
+           EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+           const io::HydraulicFigures figures = figures_of(step);
+           near(figures.effective_normal, "eff_N", 1e-10);
+           near(figures.uplift, "U", 1e-12);
+           near(figures.resultant_x.value(), "x_res_eff", 1e-9);
+           near(figures.resultant_x_total.value(), "x_res", 1e-9);
+           near(figures.cmod.value(), "cmod", 1e-9);
+           near(figures.crack_tip.value(), "tip", 1e-8);
+           near(step.level.norms.energy, "energy", 1e-9);
+           near(damage(step), "Dint", 1e-8);
+         });
+  EXPECT_EQ(i, steps.size());
+}
+
+/// At 80 m, by statics: the total resultant is in the kernel, the effective one is not.
+TEST(Water, FactorsOfSafety)
+{
+  follow(dam(uplift()), {0, 80},
+         [](const Step& step)
+         {
+           const io::HydraulicFigures figures = figures_of(step);
+           if (step.t == 0)
+           {
+             EXPECT_NEAR(figures.resultant_x.value(), 20.12820512820513, 1e-9);
+             EXPECT_TRUE(figures.in_kernel.value());
+             EXPECT_FALSE(figures.sliding_safety);
+             EXPECT_FALSE(figures.overturning);
+             return;
+           }
+           const double shear = weight_of_water * 80 * 80 / 2;
+           const double normal = 61.2144 - weight_of_water * 80 * 60 / 2;
+           EXPECT_NEAR(figures.sliding_safety.value(), tan_30 * normal / shear, 1e-10);
+           EXPECT_NEAR(figures.sliding_safety.value(), 0.69282, 5e-6);
+           EXPECT_NEAR(figures.sff_intact.value(), 2.03074, 5e-6);
+           EXPECT_LT(figures.sff_now.value(), figures.sff_intact.value());
+           EXPECT_GT(figures.sff_now.value(), figures.sliding_safety.value());
+           EXPECT_NEAR(figures.overturning.value(), 1.37206, 5e-6);
+           EXPECT_NEAR(figures.resultant_x_total.value(), 33.80341880341, 1e-8);
+           EXPECT_NEAR(figures.resultant_x.value(), 42.430555555, 1e-7);
+           EXPECT_FALSE(figures.in_kernel.value());
+         });
+}
+
+/// Without efficiency a drain changes nothing; with it there is less uplift.
+TEST(Water, DrainsTakeUplift)
+{
+  double linear = 0;
+  follow(dam(uplift()), {0, 40}, [&](const Step& step) { linear = figures_of(step).uplift; });
+  problem::Seepage drained = uplift();
+  drained.drain = {.at = 8, .efficiency = 0};
+  follow(dam(drained), {0, 40},
+         [&](const Step& step) { EXPECT_NEAR(figures_of(step).uplift, step.t == 0 ? 0 : linear, 1e-12); });
+  drained.drain->efficiency = 0.6;
+  const double head = weight_of_water * 40;
+  const double at_drain = 0.4 * head * 52 / 60;
+  follow(dam(drained), {0, 40},
+         [&](const Step& step)
+         {
+           if (step.t == 0) return;
+           EXPECT_NEAR(figures_of(step).uplift, (head + at_drain) / 2 * 8 + at_drain / 2 * 52, 1e-12);
+           EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+         });
+}
+
+/// The crack carries full pressure up to its tip, which the step itself moves; the uplift is exact whatever
+/// the tip is. The independent program took the kink of the pressure as points see it.
+TEST(Water, CracksCarryPressure)
+{
+  const json expected = reference()["crack_at_80"];
+  double before = 0;
+  follow(dam(uplift(true)), {0, 40, 70, 80, 40},
+         [&](const Step& step)
+         {
+           const io::HydraulicFigures figures = figures_of(step);
+           const double tip = figures.crack_tip.value();
+           EXPECT_GE(tip, before);
+           EXPECT_EQ(step.passes > 1, tip > before) << step.t;
+           before = tip;
+           const double head = weight_of_water * step.t;
+           EXPECT_NEAR(figures.uplift, head * (tip + (60 - tip) / 2), 1e-11);
+           EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+           if (step.t < 80) return;
+           EXPECT_NEAR(tip, expected["tip"], 1e-8);
+           EXPECT_NEAR(damage(step), expected["Dint"], 2e-2);
+           EXPECT_NEAR(step.level.norms.energy, expected["energy"], 1e-4);
+         });
+  EXPECT_GT(before, 4);
+}
+
+/// Friction alone: the level at which the dam slides is that of statics.
+TEST(Water, TheDamSlidesAtTheLevelOfStatics)
+{
+  const problem::ContactLaw law = problem::JointLaw({.coefficient = tan_30});
+  const double limit = 69.31280745296064;
+  follow(dam(uplift(), law), {0, 40, 60, limit - 1e-3}, [](const Step&) {});
+  mesh::Mesh<2> mesh = dam_mesh();
+  const problem::Problem<2> problem = dam(uplift(), law).on(mesh);
+  const adapt::Method method = dam_method();
+  adapt::LoadPath<2> path(problem, method, {}, std::move(mesh));
+  for (const double level : {0.0, 40.0, 60.0}) ASSERT_EQ(path.advance(level), "");
+  EXPECT_NE(path.advance(limit + 1e-2), "");
+  EXPECT_LE(path.last()->t, limit + 1e-8);
+}
+
+/// The bound of the first iterates of a step and of its solution is above the dual norm of their residuals.
+void expect_above_dual_norm(const Step& step, std::span<const double> before, double& least)
+{
+  const contact::NitscheForm<2>& form = step.at->discrete.form;
+  const int degree = form.space().degree();
+  certify::DualNorm<2> dual_norm(form, {.refinements = 2, .degree = degree + 2});
+  const certify::Estimator<2> estimator(form, certify::ContactRule::resolved);
+  const auto check = [&](std::span<const double> u, std::span<const Point<2>> traction)
+  {
+    const certify::Stress<2> stress = certify::equilibrate<2>(form, u, traction);
+    EXPECT_LE(certify::check_identities<2>(form, traction, stress).largest(degree), 1e-9);
+    const double bound = estimator(u, stress).total_sharp;
+    const double below = dual_norm(u);
+    EXPECT_GE(bound, below);
+    least = std::min(least, bound / below);
+  };
+  const solve::NewtonOptions options{.max_steps = 2, .damping = false};
+  (void)solve::solve<2>(form, before, options, {},
+                        [&](const solve::NewtonIterate<2>& iterate)
+                        {
+                          check(iterate.u(), iterate.traction);
+                          return false;
+                        });
+  check(step.level.u, step.level.traction);
+}
+
+/// With the tip of a crack, a drain and the surface of the water inside facets.
+TEST(Water, BoundIsAboveTheDualNorm)
+{
+  problem::Seepage seepage = uplift(true);
+  seepage.drain = {.at = 12.3, .efficiency = 0.5};
+  for (const problem::ContactLaw& law :
+       {dam_joint(), problem::ContactLaw(problem::JointLaw({.coefficient = 0.9})),
+        problem::ContactLaw(
+            problem::MixedLaw({.tension = {0.3, 1e-4}, .shear_ratio = 1.5, .coefficient = tan_30}))})
+  {
+    SCOPED_TRACE(problem::words(law));
+    double least = HUGE_VAL;
+    std::vector<double> before;
+    follow(dam(seepage, law), {0, 37, 67},
+           [&](const Step& step)
+           {
+             SCOPED_TRACE(step.t);
+             expect_above_dual_norm(step, before, least);
+             before = step.level.u;
+           });
+    fmt::print("{}: {:.3f}\n", problem::words(law), least);
+  }
+}
+
+}  // namespace
+}  // namespace tribound::test
