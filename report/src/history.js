@@ -44,6 +44,7 @@ function charts(run) {
   const t = steps.map((step) => step.t);
   const of = (name, value) => ({ name, values: steps.map(value) });
   const sum = (key) => (step) => Object.values(step.interfaces).reduce((total, part) => total + part[key], 0);
+  const hydraulic = (key) => (step) => Object.values(step.interfaces).reduce((total, part) => total + (part[key] ?? 0), 0);
   const size = run.d === 2 ? "L" : "L\u00b2";
   const force = run.d === 2 ? "S L" : "S L\u00b2";
   const energy = run.d === 2 ? "S L\u00b2" : "S L\u00b3";
@@ -54,6 +55,10 @@ function charts(run) {
       .filter(({ kind }) => kind === "reaction").slice(0, colours.length).map(({ name }) => of(name, (step) => reaction(step, name))) },
     { title: "Interface", name: "interface", yLabel: `${run.d === 2 ? "length" : "area"} [${size}]`, lines: [
       of("open", sum("opened")), of("slipping", sum("slipping")), of("broken", sum("broken")), of("breaking", sum("process"))] },
+    { title: "Base under water", name: "uplift", yLabel: `force [${force}]`, lines: [
+      of("effective pressure", (step) => -hydraulic("effective_normal")(step)), of("uplift", hydraulic("uplift"))] },
+    { title: "Crack mouth", name: "crack_mouth", yLabel: "displacement [L]", lines: [
+      of("opening", hydraulic("cmod")), of("sliding", hydraulic("csd"))] },
     { title: "Energies", name: "energies", yLabel: `energy [${energy}]`, lines: [
       of("work", (step) => step.work), of("in the bodies", (step) => step.energy / 2), of("dissipated", (step) => step.dissipated),
       of("by friction", (step) => step.dissipated_friction), of("in the interface", (step) => step.stored)] },

@@ -109,8 +109,10 @@ std::string columns(bool has_memory)
                : "boundary,facet,x,y,z,nx,ny,nz,pressure,traction_x,traction_y,traction_z,limit,status,gap,"
                  "slip_x,slip_y,slip_z,weight,level,pair";
   if (has_memory)
-    names += dim == 2 ? ",damage,opening,plastic_slip_x,plastic_slip_y"
-                      : ",damage,opening,plastic_slip_x,plastic_slip_y,plastic_slip_z";
+    names += dim == 2 ? ",damage,opening,plastic_slip_x,plastic_slip_y,water_pressure,effective_traction_x,"
+                        "effective_traction_y"
+                      : ",damage,opening,plastic_slip_x,plastic_slip_y,plastic_slip_z,water_pressure,"
+                        "effective_traction_x,effective_traction_y,effective_traction_z";
   return names;
 }
 
@@ -156,6 +158,8 @@ struct Rows
       table.add(state.state.damage);
       table.add(state.opening);
       add_point<dim>(table, state.state.slip);
+      table.add(state.water);
+      add_point<dim>(table, state.traction + state.water * state.normal);
     }
     table.end_row();
   }

@@ -50,6 +50,12 @@ void add_memory(VtuGrid& grid, const std::vector<contact::ContactState<dim>>& no
   grid.point_data.push_back(node_array<double>("plastic_slip", 3, nodes,
                                                [](const auto& put, const Node& node)
                                                { put_vector<dim>(put, node.state.slip); }));
+  grid.point_data.push_back(node_array<double>("water_pressure", 1, nodes,
+                                               [](const auto& put, const Node& node) { put(node.water); }));
+  grid.point_data.push_back(
+      node_array<double>("effective_traction", 3, nodes,
+                         [](const auto& put, const Node& node)
+                         { put_vector<dim>(put, node.traction + node.water * node.normal); }));
 }
 
 }  // namespace

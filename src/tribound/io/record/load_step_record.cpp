@@ -61,8 +61,17 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
     InterfaceFigures& figures = result.emplace_back();
     figures.boundary = boundaries[tag].name;
     for (std::size_t i = 0; i < sums.size(); ++i) figures.*sums[i] = values[tag * sums.size() + i];
+    figures.hydraulic = hydraulic_figures<dim>(step, static_cast<int>(tag));
   }
   return result;
+}
+
+void add(std::optional<HydraulicFigures>& all, const std::optional<HydraulicFigures>& part)
+{
+  if (!part) return;
+  all = all ? HydraulicFigures{.effective_normal = all->effective_normal + part->effective_normal,
+                               .uplift = all->uplift + part->uplift}
+            : *part;
 }
 
 }  // namespace
@@ -74,6 +83,7 @@ LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStep
   LoadStepRecord record{.t = step.t,
                         .control = step.control,
                         .cuts = step.cuts,
+                        .passes = step.passes,
                         .largest_sigma = step.largest_sigma,
                         .interfaces = interface_figures(step)};
   if (before != nullptr)
@@ -83,7 +93,10 @@ LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStep
     record.work = before->work;
   }
   for (const InterfaceFigures& figures : record.interfaces)
+  {
     for (const auto sum : sums) record.all.*sum += figures.*sum;
+    add(record.all.hydraulic, figures.hydraulic);
+  }
   record.dissipated += record.all.dissipated;
   record.rubbed += record.all.rubbed;
   record.work += step.work;

@@ -3,12 +3,14 @@
 /// @file load_step_record.h
 /// What is written of a load step beside what is written of a level, as plain data.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tribound/adapt/load_path.h"
+#include "tribound/io/record/hydraulic_figures.h"
 
 namespace tribound::io
 {
@@ -27,6 +29,7 @@ struct InterfaceFigures
   double dissipated = 0;   ///< by this step
   double rubbed = 0;       ///< the part of it that friction takes
   double stored = 0;
+  std::optional<HydraulicFigures> hydraulic{};  ///< with Contact::base only
 };
 
 /// Of a load step and, added up, of the steps up to it.
@@ -35,9 +38,11 @@ struct LoadStepRecord
   double t = 0;
   std::string control{"load"};  ///< adapt::LoadStep::control
   int cuts = 0;                 ///< how often its size was halved
+  int passes = 1;               ///< adapt::LoadStep::passes
   double largest_sigma = 0;     ///< of ||sigma(u_h)|| over the path so far
   std::vector<InterfaceFigures> interfaces{};
-  InterfaceFigures all{};  ///< their sum
+  /// Their sum. Of several hydraulic ones forces alone add up.
+  InterfaceFigures all{};
   // From the first step on:
   double dissipated = 0;
   double rubbed = 0;

@@ -131,13 +131,32 @@ Json times_json(const RunRecord& run)
   return object;
 }
 
+void add(Json& object, const HydraulicFigures& figures)
+{
+  object["effective_normal"] = figures.effective_normal;
+  object["uplift"] = figures.uplift;
+  object["resultant_x"] = number_or_null(figures.resultant_x);
+  object["resultant_x_total"] = number_or_null(figures.resultant_x_total);
+  object["in_kernel"] = figures.in_kernel ? Json(*figures.in_kernel) : Json(nullptr);
+  object["sliding_safety"] = number_or_null(figures.sliding_safety);
+  object["sff_intact"] = number_or_null(figures.sff_intact);
+  object["sff_now"] = number_or_null(figures.sff_now);
+  object["overturning"] = number_or_null(figures.overturning);
+  object["crack_tip"] = number_or_null(figures.crack_tip);
+  object["crack_farthest"] = number_or_null(figures.crack_farthest);
+  object["cmod"] = number_or_null(figures.cmod);
+  object["csd"] = number_or_null(figures.csd);
+}
+
 Json json(const InterfaceFigures& figures)
 {
-  return {{"measure", figures.measure},       {"opened", figures.opened},
-          {"slipping", figures.slipping},     {"broken", figures.broken},
-          {"process", figures.process},       {"damage", figures.damage},
-          {"dissipated", figures.dissipated}, {"dissipated_friction", figures.rubbed},
-          {"stored", figures.stored}};
+  Json object{{"measure", figures.measure},       {"opened", figures.opened},
+              {"slipping", figures.slipping},     {"broken", figures.broken},
+              {"process", figures.process},       {"damage", figures.damage},
+              {"dissipated", figures.dissipated}, {"dissipated_friction", figures.rubbed},
+              {"stored", figures.stored}};
+  if (figures.hydraulic) add(object, *figures.hydraulic);
+  return object;
 }
 
 void add_load_step(Json& object, const LevelRecord& level)
@@ -146,6 +165,7 @@ void add_load_step(Json& object, const LevelRecord& level)
   object["t"] = step.t;
   object["control"] = step.control;
   object["cuts"] = step.cuts;
+  object["passes"] = step.passes;
   object["relative_path"] = number_or_null(bound_along_path(level));
   object["largest_sigma"] = step.largest_sigma;
   object["dissipated"] = step.dissipated;

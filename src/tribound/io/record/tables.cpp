@@ -82,19 +82,43 @@ const char* name_of_level(std::span<const LevelRecord> levels)
   return std::ranges::any_of(levels, is_load_step) ? "load_step" : "level";
 }
 
+/// Empty where the step has no hydraulic interface.
+TableRow hydraulic_columns(const std::optional<HydraulicFigures>& figures)
+{
+  const HydraulicFigures& f = figures.value_or(HydraulicFigures());
+  const auto known = [&](double value) { return figures ? std::optional(value) : std::nullopt; };
+  return {{"effective_normal", known(f.effective_normal)},
+          {"uplift", known(f.uplift)},
+          {"resultant_x", f.resultant_x},
+          {"resultant_x_total", f.resultant_x_total},
+          {"in_kernel", f.in_kernel ? std::optional(*f.in_kernel ? 1.0 : 0.0) : std::nullopt},
+          {"sliding_safety", f.sliding_safety},
+          {"sff_intact", f.sff_intact},
+          {"sff_now", f.sff_now},
+          {"overturning", f.overturning}};
+}
+
 TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
 {
   const LoadStepRecord& step = level.load_step.value_or(LoadStepRecord());
-  TableRow row = {
-      {"step", level.level}, {"t", step.t}, {"control", step.control}, {"cuts", step.cuts}, {"passes", 1}};
+  TableRow row = {{"step", level.level},
+                  {"t", step.t},
+                  {"control", step.control},
+                  {"cuts", step.cuts},
+                  {"passes", step.passes}};
   TableRow of_level = convergence_row(level, kind);
   row.insert(row.end(), std::make_move_iterator(of_level.begin() + 1),
              std::make_move_iterator(of_level.end()));
-  append(row, {{"relative_path", bound_along_path(level)},
-               {"opened", step.all.opened},
+  append(row, {{"relative_path", bound_along_path(level)}});
+  append(row, hydraulic_columns(step.all.hydraulic));
+  const HydraulicFigures& hydraulic = step.all.hydraulic.value_or(HydraulicFigures());
+  append(row, {{"opened", step.all.opened},
                {"broken", step.all.broken},
                {"process", step.all.process},
                {"slipping", step.all.slipping},
+               {"crack_tip", hydraulic.crack_tip},
+               {"cmod", hydraulic.cmod},
+               {"csd", hydraulic.csd},
                {"damage", step.all.damage},
                {"dissipated", step.dissipated},
                {"dissipated_friction", step.rubbed},
