@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 
+#include "tribound/case/water_reader.h"
+
 namespace tribound::case_file
 {
 
@@ -106,7 +108,7 @@ std::size_t choose_law(const TableReader& table)
 
 std::vector<std::string_view> interface_keys(std::initializer_list<std::string_view> others)
 {
-  std::vector<std::string_view> keys = {"law", "broken"};
+  std::vector<std::string_view> keys = {"law", "broken", "water", "heel", "toe"};
   for (const KeyGroup& law : laws)
     for (const std::string_view key : law.keys)
       if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
@@ -120,6 +122,7 @@ problem::Contact read_interface(const TableReader& table, std::optional<problem:
   if (const std::string fault = problem::fault(contact.law); !fault.empty())
     throw InputError(table.find("law")->where, fault, "other constants of the law");
   table.read("broken", contact.broken, to_field);
+  read_water(table, contact);
   return contact;
 }
 

@@ -52,6 +52,8 @@ void check_dimension(const problem::Contact& contact)
 {
   if (contact.gap) (void)in_dimension<dim>(*contact.gap);
   if (const problem::Field* strength = cone(contact.law).strength) (void)in_dimension<dim>(*strength);
+  if (contact.water) (void)in_dimension<dim>(contact.water->pressure());
+  if (contact.base) check_length<dim>(contact.base->heel.size(), contact.base->where);
 }
 
 template <int dim>
