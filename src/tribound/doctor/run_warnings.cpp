@@ -60,6 +60,7 @@ void add_data(const SolvedFigures& solved, std::vector<Finding>& warnings)
 
 void add_resolution(const ContactOutcome& outcome, std::vector<Finding>& warnings)
 {
+  if (outcome.closed == 0 && outcome.carries) return;  // a bond in tension
   if (outcome.closed == 0)
     warnings.push_back(warning("no_contact", "nothing touches there: the boundary might as well be free", 0,
                                outcome.boundary));

@@ -42,6 +42,7 @@ FacetOutcome<dim> add_facet(std::span<const contact::ContactPoint<dim>> points, 
     facet.pressure += share * std::max(0.0, state.pressure);  // a bond may be in tension
     facet.closed = facet.closed && state.pressure > 0;
     if (state.pressure > 0) outcome.closed += measure * share;
+    outcome.carries = outcome.carries || !state.traction.isZero(0);
     if (state.pressure > 0 && state.status == problem::ContactStatus::slip)
       outcome.slipping += measure * share;
     if (state.pressure > facet.largest_pressure)

@@ -22,6 +22,7 @@ struct ContactOutcome
   long closed_facets = 0;  ///< with pressure at every quadrature point
   double closed = 0;       ///< measure at which there is pressure
   double slipping = 0;     ///< part of it that slips
+  bool carries = false;    ///< anything, a bond in tension included
   bool has_friction = false;
   std::optional<double> coefficient;  ///< Coulomb's
   double force = 0;                   ///< integral of the pressure
