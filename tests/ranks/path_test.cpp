@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/bonded_path.h"
+#include "tribound/io/record/hydraulic_figures.h"
 #include "tribound/mesh/share_out.h"
 
 namespace tribound::test
@@ -35,6 +36,13 @@ std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, i
     numbers.insert(numbers.end(), {sums.damage, sums.slipped, sums.dissipated, sums.stored,
                                    step.level.norms.energy, step.level.norms.sigma,
                                    step.level.estimate.total_sharp, contact.normal, contact.tangential});
+    for (const contact::CrackTip& tip : step.crack_tips)
+      numbers.insert(numbers.end(), {tip.distance, tip.farthest, static_cast<double>(step.passes)});
+    const auto boundaries = form.problem().boundaries();
+    for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
+      if (const auto figures = io::hydraulic_figures<dim>(step, static_cast<int>(tag)))
+        numbers.insert(numbers.end(), {figures->effective_normal, figures->uplift, figures->cmod.value(),
+                                       figures->csd.value(), figures->overturning.value_or(0)});
     EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
   };
   for (const double t : path_of_t) EXPECT_EQ(path.advance(t, add), "");
@@ -42,12 +50,12 @@ std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, i
 }
 
 template <int dim>
-void expect_same(const problem::ContactLaw& law, int degree, bool pairs)
+void expect_same(const problem::ContactLaw& law, int degree, bool pairs, bool water = false)
 {
   SCOPED_TRACE(problem::words(law));
   const Ranks ranks = Ranks::world();
   const mesh::MeshData<dim> data = peeled_mesh<dim>(pairs);
-  const ProblemData<dim> problem = peeled<dim>(law, pairs);
+  const ProblemData<dim> problem = water ? peeled_under_water<dim>(law, pairs) : peeled<dim>(law, pairs);
   const auto whole = ranks.is_first() ? std::make_shared<const mesh::Mesh<dim>>(data) : nullptr;
   const std::vector<double> alone = follow<dim>(mesh::Mesh<dim>(data), problem, degree);
   const std::vector<double> together =
@@ -62,6 +70,14 @@ TEST(LoadPath, IsTheSameOnAllRanks)
     for (const bool pairs : {false, true}) expect_same<2>(law, 2, pairs);
   expect_same<3>(bonded_laws()[1], 1, true);
   expect_same<3>(bonded_laws()[3], 1, false);
+}
+
+/// The tip of a crack, which all ranks find together, and what follows from it.
+TEST(LoadPath, CracksUnderWaterAreTheSameOnAllRanks)
+{
+  for (const bool pairs : {false, true}) expect_same<2>(bonded_laws()[1], 2, pairs, true);
+  expect_same<3>(bonded_laws()[0], 1, false, true);
+  expect_same<3>(bonded_laws()[3], 1, true, true);
 }
 
 }  // namespace

@@ -81,6 +81,29 @@ template <int dim>
   return data;
 }
 
+/// The same with water from the end that is peeled off: t is its level, with a drain, and full in the crack,
+/// part of which is there from the beginning.
+template <int dim>
+[[nodiscard]] ProblemData<dim> peeled_under_water(problem::ContactLaw law, bool pairs)
+{
+  ProblemData<dim> data = peeled<dim>(std::move(law), pairs);
+  problem::Contact& contact = pairs ? data.pairs[0].contact : *data.boundaries.back().contact;
+  const auto place = [](double x)
+  {
+    std::vector<double> point(dim, 0.0);
+    point[0] = x;
+    return point;
+  };
+  contact.broken = formula("x > 0.95");
+  contact.base.emplace(problem::BaseLine{place(2), place(0)});
+  contact.water.emplace(problem::Seepage{.head = formula("t"),
+                                         .weight = 0.02,
+                                         .line = *contact.base,
+                                         .crack = true,
+                                         .drain = problem::Drain{.at = 1.1, .efficiency = 0.4}});
+  return data;
+}
+
 /// The mesh of peeled().
 template <int dim>
 [[nodiscard]] mesh::MeshData<dim> peeled_mesh(bool pairs)

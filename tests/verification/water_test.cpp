@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "support/bonded_path.h"
 #include "support/dam.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/checks.h"
@@ -189,6 +190,148 @@ TEST(Water, TheDamSlidesAtTheLevelOfStatics)
   for (const double level : {0.0, 40.0, 60.0}) ASSERT_EQ(path.advance(level), "");
   EXPECT_NE(path.advance(limit + 1e-2), "");
   EXPECT_LE(path.last()->t, limit + 1e-8);
+}
+
+/// Water that presses a block off an obstacle does the work that the block stores.
+TEST(Water, WorkOfThePressure)
+{
+  ProblemData<2> data{
+      .boundaries = {clamped<2>("top"), obstacle<2>("bottom", problem::JointLaw({.coefficient = 0.3}))}};
+  data.boundaries.back().contact->water.emplace(formula("0.1*t*(1+x)"));
+  mesh::Mesh<2> mesh(block<2>({4, 2}));
+  const problem::Problem<2> problem = data.on(mesh);
+  const adapt::Method method = dam_method();
+  adapt::LoadPath<2> path(problem, method, {}, std::move(mesh));
+  double work = 0;
+  const auto check = [&](const Step& step)
+  {
+    work += step.work;
+    for (std::size_t i = 0; i < step.responses.size(); ++i)
+    {
+      const contact::ContactPoint<2>& point = step.at->discrete.form.contact_points()[i];
+      EXPECT_EQ(step.responses[i].status, problem::ContactStatus::open);
+      EXPECT_LE((step.responses[i].traction + point.water * point.normal).norm(), 1e-14);
+    }
+  };
+  for (const double t : {0.5, 1.0}) EXPECT_EQ(path.advance(t, check), "");
+  EXPECT_GT(work, 1e-3);
+  EXPECT_NEAR(work, path.last()->level.norms.energy / 2, 1e-12);
+}
+
+/// A block of 2 x 1 x 1 on a floor, water of the depth t < 1 before its left side and below it: forces,
+/// resultants and overturning are those of statics, whatever the mesh; the drain cuts facets.
+TEST(Water, BlockUnderUpliftIn3D)
+{
+  constexpr double water = 0.1;
+  constexpr double depth = 0.7;
+  problem::Seepage seepage{.head = formula("t"), .weight = water, .line = {{0, 0.5, 0}, {2, 0.5, 0}}};
+  seepage.drain = {.at = 0.37, .efficiency = 0.5};
+  ProblemData<3> data{.boundaries = {pressed<3>("left", formula("0.1*max(0, t-z)")),
+                                     obstacle<3>("back", problem::JointLaw({.coefficient = 0.9}))},
+                      .body_force = {problem::Field(0.0), problem::Field(0.0), problem::Field(-0.2)}};
+  data.boundaries.back().contact->water.emplace(seepage);
+  data.boundaries.back().contact->base = seepage.line;
+  mesh::Mesh<3> mesh(block<3>({4, 2}, {3, 2, 2}));
+  const problem::Problem<3> problem = data.on(mesh);
+  const adapt::Method method = dam_method(1);
+  adapt::LoadPath<3> path(problem, method, {}, std::move(mesh));
+  const auto boundaries = problem.boundaries();
+  int tag = 0;
+  while (!boundaries[tag].contact) ++tag;
+  const auto check = [&](const adapt::LoadStep<3>& step)
+  {
+    if (step.t == 0) return;
+    EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+    const io::HydraulicFigures figures = io::hydraulic_figures<3>(step, tag).value();
+    const double heel = water * depth;
+    const double at_drain = 0.5 * heel * (2 - 0.37) / 2;
+    const double first = (heel + at_drain) / 2 * 0.37;
+    const double second = at_drain / 2 * (2 - 0.37);
+    EXPECT_NEAR(figures.uplift, first + second, 1e-12);
+    EXPECT_NEAR(figures.effective_normal, -0.4 + first + second, 1e-10);
+    const double thrust = water * depth * depth / 2;
+    EXPECT_NEAR(figures.sliding_safety.value(), 0.9 * (0.4 - first - second) / thrust, 1e-8);
+    // About the toe: trapezoid before the drain, triangle behind.
+    const double uplift = heel * 0.37 * (2 - 0.37 / 2) - (heel - at_drain) / 2 * 0.37 * (2 - 0.37 * 2 / 3) +
+                          second * (2 - 0.37) * 2 / 3;
+    EXPECT_NEAR(figures.overturning.value(), 0.4 / (thrust * depth / 3 + uplift), 1e-9);
+    EXPECT_NEAR(figures.resultant_x.value(), 2 - (0.4 - thrust * depth / 3 - uplift) / (0.4 - first - second),
+                1e-8);
+  };
+  for (const double t : {0.0, depth}) ASSERT_EQ(path.advance(t, check), "");
+}
+
+/// Of points that are open and broken where `cracked` says: 1 in the middle of the block (0, 2) x ...
+template <int dim, class Cracked>
+contact::CrackTip tip_where(const Cracked& cracked)
+{
+  const mesh::Mesh<dim> mesh(block<dim>({8, 2}, {4, 2, 2}));
+  ProblemData<dim> data{.boundaries = {clamped<dim>("top"), obstacle<dim>("bottom")}};
+  problem::BaseLine line{std::vector<double>(dim, 0.0), std::vector<double>(dim, 0.0)};
+  line.toe[0] = 2;
+  data.boundaries.back().contact->base = line;
+  const problem::Problem<dim> problem = data.on(mesh);
+  const fem::LagrangeSpace<dim> space(mesh, 1);
+  const contact::NitscheForm<dim> form(problem, space, 10);
+  std::vector<problem::InterfaceResponse<dim>> responses;
+  for (const contact::ContactPoint<dim>& point : form.contact_points())
+  {
+    problem::InterfaceResponse<dim>& response = responses.emplace_back();
+    response.state.damage = cracked(point.x[0]) ? 1 : 0.9;
+    response.opening = 1e-3;
+  }
+  return contact::crack_tips<dim>(form, responses).at(0);
+}
+
+template <int dim>
+void expect_connected_with_the_heel()
+{
+  const auto tip = [](const auto& cracked) { return tip_where<dim>(cracked); };
+  EXPECT_NEAR(tip([](double x) { return x < 1; }).distance, 1, 1e-14);
+  const contact::CrackTip with_island = tip([](double x) { return x < 1 || x > 1.5; });
+  EXPECT_NEAR(with_island.distance, 1, 1e-14);
+  EXPECT_NEAR(with_island.farthest, 1, 1e-14);
+  EXPECT_EQ(tip([](double x) { return x > 0.5; }).distance, 0);
+  EXPECT_EQ(tip([](double) { return false; }).distance, 0);
+  EXPECT_NEAR(tip([](double) { return true; }).distance, 2, 1e-14);
+}
+
+TEST(CrackTip, IsConnectedWithTheHeel)
+{
+  expect_connected_with_the_heel<2>();
+  expect_connected_with_the_heel<3>();
+}
+
+/// The cracks of the paths on which the bound and several ranks are tested do carry pressure.
+template <int dim>
+void expect_crack(bool pairs)
+{
+  mesh::Mesh<dim> mesh(peeled_mesh<dim>(pairs));
+  const problem::Problem<dim> problem = peeled_under_water<dim>(bonded_laws()[0], pairs).on(mesh);
+  adapt::Method method{.degree = 1};
+  method.stopping.criterion = adapt::Stopping::last_bounded;
+  adapt::LoadPath<dim> path(problem, method, {}, std::move(mesh));
+  double tip = 0;
+  int passes = 1;
+  const auto check = [&](const adapt::LoadStep<dim>& step)
+  {
+    EXPECT_GE(step.crack_tips.at(0).distance, tip);
+    tip = step.crack_tips.at(0).distance;
+    passes = std::max(passes, step.passes);
+  };
+  for (const double t : path_of_t) ASSERT_EQ(path.advance(t, check), "");
+  EXPECT_GT(tip, 0);
+  EXPECT_LE(tip, 2);
+  EXPECT_GT(passes, 1);
+}
+
+TEST(CrackTip, MovesInASolution)
+{
+  for (const bool pairs : {false, true})
+  {
+    expect_crack<2>(pairs);
+    expect_crack<3>(pairs);
+  }
 }
 
 /// The bound of the first iterates of a step and of its solution is above the dual norm of their residuals.
