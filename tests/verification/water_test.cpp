@@ -16,6 +16,7 @@
 
 #include "support/bonded_path.h"
 #include "support/dam.h"
+#include "support/input_error.h"
 #include "support/meshes.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
@@ -382,6 +383,35 @@ TEST(Water, BoundIsAboveTheDualNorm)
            });
     fmt::print("{}: {:.3f}\n", problem::words(law), least);
   }
+}
+
+/// What a rule misses of a pressure that is no polynomial is in the bound; laws that soften, for which it
+/// would not be, refuse it, at the step where it becomes one.
+TEST(Water, PressuresThatAreNoPolynomials)
+{
+  const auto data = [](problem::ContactLaw law)
+  {
+    ProblemData<2> result = dam(uplift(), std::move(law));
+    result.boundaries.back().contact->water.emplace(formula("0.002*t*exp(-abs(x-13.7)/5)"));
+    return result;
+  };
+  double least = HUGE_VAL;
+  std::vector<double> before;
+  follow(data(problem::JointLaw({.coefficient = 0.9})), {0, 60},
+         [&](const Step& step)
+         {
+           expect_above_dual_norm(step, before, least);
+           before = step.level.u;
+         });
+  mesh::Mesh<2> mesh = dam_mesh();
+  const problem::Problem<2> problem = data(dam_joint()).on(mesh);
+  const adapt::Method method = dam_method();
+  adapt::LoadPath<2> path(problem, method, {}, std::move(mesh));
+  EXPECT_EQ(path.advance(0), "");
+  const std::string message = message_of([&] { return path.advance(10); });
+  EXPECT_NE(message.find("softens, and its gap, threshold or water pressure is no polynomial of degree 4"),
+            std::string::npos)
+      << message;
 }
 
 }  // namespace

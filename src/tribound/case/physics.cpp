@@ -223,12 +223,13 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
   if (boundary.contact)
     for (const std::string_view key : {"displacement", "traction", "pressure"})
       if (table.has(key))
-        fail(key,
-             fmt::format("stands beside {} on the same boundary",
-                         table.has("contact") ? "contact" : "interface"),
-             "a part of the boundary is either in contact or has displacement, traction and pressure; "
-             "split the group in the mesh; a pressure in the joint itself, such as uplift, is the water of an "
-             "interface");
+        fail(
+            key,
+            fmt::format("stands beside {} on the same boundary",
+                        table.has("contact") ? "contact" : "interface"),
+            "a part of the boundary is either in contact or has displacement, traction and pressure; "
+            "split the group in the mesh; a pressure in the joint itself, such as uplift, is the water of an "
+            "interface");
   if (boundary.displacement.empty()) return;
 
   const auto is_fixed = [](const std::optional<problem::Field>& component) { return component.has_value(); };
