@@ -117,6 +117,12 @@ void PathReport<dim>::write_fields()
 }
 
 template <int dim>
+void PathReport<dim>::note(const adapt::PathEnd& end)
+{
+  record_.path = end;
+}
+
+template <int dim>
 void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
 {
   io::LevelRecord& record = record_.passes.emplace_back(record_.levels.at(pass.worst.number - 1));
@@ -128,7 +134,6 @@ void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
         if (pass.number > 0) io::move_series(fields_directory(), output_.directory);
       });
   before_.reset();
-  record_.path = pass.end;
   record_.status = pass.verdict.status;
   record_.reason = pass.verdict.reason;
   write_record();

@@ -35,6 +35,8 @@ class PathReport
   void begin(int pass, const adapt::Grid<dim>& grid);
   /// Throws WriteError.
   void add(const adapt::LoadStep<dim>& step);
+  /// What came of the path of the pass in work.
+  void note(const adapt::PathEnd& end);
   void complete(const adapt::PassView<dim>& pass);
   /// The pass in work leads nowhere: the one before is what holds.
   void give_up();

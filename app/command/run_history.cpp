@@ -27,6 +27,7 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
       .newton = [&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
       .begins = [&](int pass, const adapt::Grid<dim>& grid) { report.begin(pass, grid); },
       .step = [&](const adapt::LoadStep<dim>& step) { report.add(step); },
+      .path_end = [&](const adapt::PathEnd& end) { report.note(end); },
       .complete = [&](const adapt::PassView<dim>& pass) { report.complete(pass); },
       .given_up = [&] { report.give_up(); }};
   try

@@ -161,6 +161,7 @@ void verify_step(const adapt::LoadStep<dim>& step, std::span<const double> start
     VerifiedIterate& iterate = result.iterates[i];
     iterate.load_step = step.number;
     iterate.t = step.t;
+    iterate.path_sigma = step.largest_sigma;
     iterate.identities *= std::min(1.0, (iterate.norms.sigma + iterate.bound) / step.largest_sigma);
   }
 }

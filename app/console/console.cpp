@@ -210,11 +210,15 @@ std::string path_text(const adapt::PathEnd& path)
 {
   std::string text;
   if (path.peak)
-    text += line("peak", fmt::format("t = {:.9g} at load step {}; halving its steps changed it by {:.2g}",
-                                     path.peak->t, path.peak->number, path.peak->change));
+    text += line("peak",
+                 fmt::format("t = {:.9g} at load step {}{}", path.peak->t, path.peak->number,
+                             path.peak->change
+                                 ? fmt::format("; halving its steps changed it by {:.2g}", *path.peak->change)
+                                 : std::string(", as its steps have it: halved ones could not be followed")));
   if (!path.dropped.empty())
-    text += line("left out", fmt::format("t = {}: from there on damage was given, not t",
-                                         fmt::join(path.dropped, ", ")));
+    text += line("left out",
+                 fmt::format("t = {}: from there on damage was given, not t", fmt::join(path.dropped, ", ")));
+  for (const std::string& note : path.notes) text += line("path", note);
   return text;
 }
 

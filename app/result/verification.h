@@ -3,6 +3,7 @@
 /// @file verification.h
 /// What `tribound verify` reports: the bound beside what it bounds. Plain data in, text out.
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,10 +30,13 @@ struct VerifiedIterate
   double identities = 0;       ///< the largest defect, relative to the stress, or to the largest of a path
   int load_step = 0;           ///< from 1, or 0: there are none
   double t = 0;                ///< of the load step
+  double path_sigma = 0;       ///< the largest ||sigma|| of the path up to it: what rounding is relative to
 
   [[nodiscard]] std::optional<double> effectivity() const
   {
-    return tribound::certify::effectivity(bound, dual_norm, norms);
+    contact::StressNorms size = norms;
+    size.sigma = std::max(size.sigma, path_sigma);
+    return tribound::certify::effectivity(bound, dual_norm, size);
   }
   /// Whether an identity is violated and not by rounding alone, so that `bound` need not be one.
   [[nodiscard]] std::string refusal() const;

@@ -189,7 +189,7 @@ TEST(PathProgram, PeakOfHalvedSteps)
   EXPECT_EQ(followed.end.peak->number, highest - followed.t.begin() + 1);
   EXPECT_GE(followed.end.peak->t, *highest);
   EXPECT_NEAR(followed.end.peak->t, exact, 0.002 * exact);
-  EXPECT_LE(std::abs(followed.end.peak->change), 1e-3 * exact);
+  EXPECT_LE(std::abs(followed.end.peak->change.value()), 1e-3 * exact);
 }
 
 TEST(PathProgram, WhatCannotBeFollowedIsSaid)

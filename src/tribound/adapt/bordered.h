@@ -26,11 +26,12 @@ struct PathPoint
 struct BorderedOptions
 {
   int max_steps = 20;
-  double tolerance = 1e-10;   ///< of the residual, over `force`, and of C(u), over its value
-  double force = 1;           ///< the largest force of the path so far
-  double t_before = 0;        ///< where the load step begins
-  double largest_change = 0;  ///< of t, from there
-  double difference = 1e-6;   ///< of t, for derivatives by t
+  double tolerance = 1e-10;      ///< of the residual, over `force`
+  double measure_tolerance = 0;  ///< of C(u)
+  double force = 1;              ///< the largest force of the path so far
+  double t_before = 0;           ///< where the load step begins
+  double largest_change = 0;     ///< of t, from there
+  double difference = 1e-6;      ///< of t, for derivatives by t
 };
 
 /// Finds u and t with a(u, v) - (T(u; t), v)_C = L(t; v) for all v and C(u) = target, by full Newton steps

@@ -312,12 +312,14 @@ std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta
     bordered_ = std::make_shared<Bordered<dim>>(
         typename Bordered<dim>::Form(last()->at, &now.at->discrete.form), method_.solver);
   const double target = control.measure.value(now.at->discrete.form, now.level.u) + control.increment;
-  const BorderedOptions options{.max_steps = options_.full_steps,
-                                .tolerance = std::max(method_.newton.tolerance, 1e-10),
-                                .force = position_.reference_force,
-                                .t_before = now.t,
-                                .largest_change = control.largest_change,
-                                .difference = 1e-6 * control.largest_change};
+  const BorderedOptions options{
+      .max_steps = options_.full_steps,
+      .tolerance = method_.newton.tolerance,
+      .measure_tolerance = std::max(1e-10 * std::abs(target), 1e-7 * std::abs(control.increment)),
+      .force = position_.reference_force,
+      .t_before = now.t,
+      .largest_change = control.largest_change,
+      .difference = 1e-6 * control.largest_change};
   const auto search =
       [&](std::span<const double> tips, PathPoint& from, std::vector<solve::NewtonStep>& steps)
   {
@@ -331,15 +333,7 @@ std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta
       steps.push_back(step);
       if (observer) observer({step, {}});
     };
-    try
-    {
-      return (*bordered_)(form_at, control.measure, target, options, from, note);
-    }
-    catch (const InputError& error)  // data that are not valid at the t of an iterate
-    {
-      require_all_failed(grid_->mesh.ranks(), error.what());
-      return std::string(error.what());
-    }
+    return (*bordered_)(form_at, control.measure, target, options, from, note);
   };
   const auto fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
   {
@@ -347,20 +341,29 @@ std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta
     const bool left = std::abs(control.measure.value(form, u) - target) > most * std::abs(control.increment);
     return std::string(left ? "Newton's method leaves the path that was found for u and t" : "");
   };
-  return try_step({.t = point.t,
-                   .cuts = control.cuts,
-                   .control = control.name,
-                   .start = std::move(point.u),
-                   .search = search,
-                   .fault = fault},
-                  observer);
+  try
+  {
+    return try_step({.t = point.t,
+                     .cuts = control.cuts,
+                     .control = control.name,
+                     .start = std::move(point.u),
+                     .search = search,
+                     .fault = fault},
+                    observer);
+  }
+  catch (const InputError& error)  // data that are not valid at the t of an iterate
+  {
+    require_all_failed(grid_->mesh.ranks(), error.what());
+    return error.what();
+  }
 }
 
 template <int dim>
 std::string LoadPath<dim>::follow(const Control<dim>& control, const Observer& observer,
                                   const StepObserver& step_observer)
 {
-  assert(last() && !position_.before_last.u.empty());
+  assert(last() && last()->number > 1);
+  if (std::string why = interruption(); !why.empty()) return why;
   begin_ = Clock::now();
   const double usual = control.last_increment != 0 ? control.increment / control.last_increment : 1;
   std::vector<double> thetas = {usual, 2 * usual, 0.5 * usual};

@@ -53,36 +53,58 @@ void add_mean_opening(const contact::NitscheForm<dim>& form, int tag, double fac
 }  // namespace
 
 template <int dim>
+int gauged_boundary(const problem::Problem<dim>& problem, const Gauge& gauge)
+{
+  std::vector<std::string> names;
+  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries()) names.push_back(boundary.name);
+  const int tag = problem::group_number(gauge.boundary, names, gauge.where, "boundary");
+  if (gauge.component.value_or(0) >= dim)
+    throw InputError(gauge.where, "names the third component of two", "one of " + gauge.boundary + ".x, .y");
+  if (!gauge.component && problem.contact(tag) == nullptr)
+    throw InputError(gauge.where, fmt::format("\"{}\" touches nothing that could open", gauge.boundary),
+                     "a boundary with contact, or a component: " + gauge.boundary + ".x");
+  return tag;
+}
+
+template <int dim>
 std::vector<double> functional(const contact::NitscheForm<dim>& form, std::span<const Gauge> gauges)
 {
   const fem::LagrangeSpace<dim>& space = form.space();
   std::vector<double> c(space.n_dofs(), 0.0);
   for (const Gauge& gauge : gauges)
   {
-    const int tag =
-        problem::group_number(gauge.boundary, space.mesh().boundary_names(), gauge.where, "boundary");
-    if (gauge.component.value_or(0) >= dim)
-      throw InputError(gauge.where, "names the third component of two",
-                       "one of " + gauge.boundary + ".x, .y");
+    const int tag = gauged_boundary(form.problem(), gauge);
     if (gauge.component)
       add_mean<dim>(space, tag, gauge.factor * Point<dim>::Unit(*gauge.component), c);
-    else if (form.problem().contact(tag) != nullptr)
-      add_mean_opening(form, tag, gauge.factor, c);
     else
-      throw InputError(gauge.where, fmt::format("\"{}\" touches nothing that could open", gauge.boundary),
-                       "a boundary with contact, or a component: " + gauge.boundary + ".x");
+      add_mean_opening(form, tag, gauge.factor, c);
   }
   return c;
+}
+
+bool has_bond(const problem::ContactLaw& law)
+{
+  return problem::has_memory(law) && problem::cone(law).is_bonded;
+}
+
+template <int dim>
+double bonded_measure(const contact::NitscheForm<dim>& form)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
+    if (has_bond(form.segments()[i / form.n_segment_points()].contact->law))
+      sum += form.contact_points()[i].weight;
+  return form.space().mesh().ranks().sum(sum);
 }
 
 template <int dim>
 double PathMeasure<dim>::value(const contact::NitscheForm<dim>& form, std::span<const double> u) const
 {
-  if (!functional_.empty()) return form.space().dot(functional_, u);
+  if (functional_) return form.space().dot(*functional_, u);
   const std::vector<problem::InterfaceResponse<dim>> responses = form.advance(u);
   double sum = 0;
   for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
-    if (problem::has_memory(form.segments()[i / form.n_segment_points()].contact->law))
+    if (has_bond(form.segments()[i / form.n_segment_points()].contact->law))
       sum += form.contact_points()[i].weight * responses[i].state.damage;
   return form.space().mesh().ranks().sum(sum);
 }
@@ -91,13 +113,13 @@ template <int dim>
 double PathMeasure<dim>::derivative(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                     std::span<const double> d) const
 {
-  if (!functional_.empty()) return form.space().dot(functional_, d);
+  if (functional_) return form.space().dot(*functional_, d);
   const std::vector<problem::InterfaceResponse<dim>> responses = form.advance(u);
   const std::size_t n = form.n_segment_points();
   double sum = 0;
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
-    if (!problem::has_memory(form.segments()[k].contact->law)) continue;
+    if (!has_bond(form.segments()[k].contact->law)) continue;
     const auto change = form.traction_without_gap(d, k);
     for (std::size_t q = 0; q < n; ++q)
       sum += form.contact_points(k)[q].weight *
@@ -106,8 +128,12 @@ double PathMeasure<dim>::derivative(const contact::NitscheForm<dim>& form, std::
   return form.space().mesh().ranks().sum(sum);
 }
 
+template int gauged_boundary(const problem::Problem<2>&, const Gauge&);
+template int gauged_boundary(const problem::Problem<3>&, const Gauge&);
 template std::vector<double> functional(const contact::NitscheForm<2>&, std::span<const Gauge>);
 template std::vector<double> functional(const contact::NitscheForm<3>&, std::span<const Gauge>);
+template double bonded_measure(const contact::NitscheForm<2>&);
+template double bonded_measure(const contact::NitscheForm<3>&);
 template class PathMeasure<2>;
 template class PathMeasure<3>;
 

@@ -32,11 +32,23 @@ struct Watch
   std::vector<Gauge> gauges;
 };
 
-/// c with c.u = the sum of the gauges, complete for own degrees of freedom. Throws InputError where there is
-/// no such boundary or component, and where a boundary that is to open touches nothing. All ranks together.
+/// The number of its boundary. Throws InputError where there is no such boundary or component, and where a
+/// boundary that is to open touches nothing.
+template <int dim>
+[[nodiscard]] int gauged_boundary(const problem::Problem<dim>& problem, const Gauge& gauge);
+
+/// c with c.u = the sum of the gauges, complete for own degrees of freedom. Throws as gauged_boundary(). All
+/// ranks together.
 template <int dim>
 [[nodiscard]] std::vector<double> functional(const contact::NitscheForm<dim>& form,
                                              std::span<const Gauge> gauges);
+
+/// Whether the law has a bond that can be damaged.
+[[nodiscard]] bool has_bond(const problem::ContactLaw& law);
+
+/// Length or area of all interfaces with a bond. All ranks together.
+template <int dim>
+[[nodiscard]] double bonded_measure(const contact::NitscheForm<dim>& form);
 
 /// C(u), either c.u or the integral of the damage D over all interfaces with a bond (length in 2D, area).
 template <int dim>
@@ -45,7 +57,7 @@ class PathMeasure
  public:
   /// The integral of D.
   PathMeasure() = default;
-  /// c.u; c is not empty.
+  /// c.u.
   explicit PathMeasure(std::vector<double> c) : functional_(std::move(c)) {}
 
   /// With the damage that u leads to from the history of the form. All ranks together, as derivative().
@@ -55,7 +67,7 @@ class PathMeasure
                                   std::span<const double> d) const;
 
  private:
-  std::vector<double> functional_;
+  std::optional<std::vector<double>> functional_;  ///< absent: the damage
 };
 
 }  // namespace tribound::adapt

@@ -16,17 +16,6 @@ constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
 constexpr double growth = 1.4;           ///< of a step after one that was easy
 constexpr int few_steps = 12;            ///< of Newton's method: it was
 
-/// Length or area of all interfaces with a bond.
-template <int dim>
-double bonded_measure(const contact::NitscheForm<dim>& form)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
-    if (problem::has_memory(form.segments()[i / form.n_segment_points()].contact->law))
-      sum += form.contact_points()[i].weight;
-  return form.space().mesh().ranks().sum(sum);
-}
-
 /// C at the last step of a path.
 template <int dim>
 double value_at(const LoadPath<dim>& path, const PathMeasure<dim>& measure)
@@ -65,6 +54,8 @@ class Follower
     by_load();
     if (!end_.failure.empty() || program_.following == Following::load) return end_;
     const bool under_control = program_.following != Following::automatic || failed_;
+    const double last = path_.last()->t;
+    direction_ = failed_.value_or(last) - (failed_ ? last : path_.position().before_last.t) < 0 ? -1 : 1;
     if (under_control) end_.failure = go(main_stage());
     if (end_.failure.empty() && program_.then) end_.failure = go(stage_of(*program_.then, false));
     return end_;
@@ -82,6 +73,7 @@ class Follower
   }
   [[nodiscard]] std::string go(const Stage<dim>& stage);
   [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
+  void committed(const Stage<dim>& stage, const Position& position, double size);
   [[nodiscard]] Control<dim> control(const Stage<dim>& stage, double increment) const
   {
     return {.name = stage.name,
@@ -107,7 +99,7 @@ class Follower
   double largest_change_ = 0;       ///< of t, between neighbours in the list
   std::optional<double> failed_{};  ///< the value of t that ended Following::automatic
   PathEnd end_{};
-  double direction_ = 1;  ///< of t, in the list
+  double direction_ = 1;  ///< of t, when t was given for the last time
   /// Before the last two steps of a stage.
   std::vector<Position> positions_{};
 };
@@ -127,7 +119,6 @@ void Follower<dim>::by_load()
   }
   if (!end_.failure.empty() && is_automatic && path_.interruption().empty())
     end_.failure += "; to go on by damage takes two load steps before: smaller history.steps";
-  if (program_.targets.size() > 1 && program_.targets.back() < program_.targets.front()) direction_ = -1;
 }
 
 template <int dim>
@@ -162,6 +153,10 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
   double last_increment = 0;
   int cuts = 0;
   positions_.clear();
+  if (const double now = value_at(path_, stage.measure);
+      (stage.until - now) * stage.step < 0 && !stage.to_damage)
+    return fmt::format("the stage by {} is to go on until {:.6g}, and begins at {:.6g}", stage.name,
+                       stage.until, now);
   for (int n = 0; n < program_.max_steps;)
   {
     const double now = value_at(path_, stage.measure);
@@ -178,22 +173,35 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
       ++n;
       cuts = 0;
       last_increment = control.increment;
-      positions_.push_back(position);
-      if (positions_.size() > 2) positions_.erase(positions_.begin());
-      if (!end_.peak && direction_ * (path_.last()->t - position.last->t) < 0) look_for_peak(stage, size);
+      committed(stage, position, control.increment);
       const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= few_steps;
       if (was_easy && std::abs(size) < std::abs(stage.step))
         size = std::abs(growth * size) < std::abs(stage.step) ? growth * size : stage.step;
     }
-    else if (!path_.interruption().empty() || std::abs(size) / 2 < smallest * std::abs(stage.step))
+    else if (!path_.interruption().empty() ||
+             std::abs(control.increment) / 2 < smallest * std::abs(stage.step))
       return failure;
     else
     {
-      size /= 2;
+      size = control.increment / 2;
       ++cuts;
     }
   }
+  end_.notes.push_back(fmt::format("the stage by {} ended after {} steps, history.stop.steps, at t = {:.9g}",
+                                   stage.name, program_.max_steps, path_.last()->t));
   return {};
+}
+
+/// After a step from `position`.
+template <int dim>
+void Follower<dim>::committed(const Stage<dim>& stage, const Position& position, double size)
+{
+  constexpr double rounding = 1e-9;
+  positions_.push_back(position);
+  if (positions_.size() > 2) positions_.erase(positions_.begin());
+  const double t = position.last->t;
+  const double fall = direction_ * (t - path_.last()->t);
+  if (!end_.peak && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
 }
 
 /// Notes the peak that the last step has left behind.
@@ -203,7 +211,7 @@ void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
   constexpr double accuracy = 1e-3;
   constexpr int max_halvings = 8;
   const LoadStep<dim>& highest = *positions_.back().last;
-  end_.peak = Peak{.t = highest.t, .number = highest.number, .change = 0, .step = size};
+  end_.peak = Peak{.t = highest.t, .number = highest.number, .change = {}, .step = size};
   Peak& peak = *end_.peak;
   const double end = value_at(path_, stage.measure);
   std::optional<Summit> summit = Summit{highest.t, 0, positions_.front()};
@@ -214,7 +222,7 @@ void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
     peak.change = summit->t - peak.t;
     peak.t = summit->t;
     peak.step /= 2;
-    if (std::max(std::abs(peak.change), summit->fall) <= accuracy * std::abs(peak.t)) return;
+    if (std::max(std::abs(*peak.change), summit->fall) <= accuracy * std::abs(peak.t)) return;
   }
 }
 

@@ -50,17 +50,19 @@ struct PathProgram
 struct Peak
 {
   double t = 0;
-  int number = 0;     ///< of the step with that t, before it was looked at more closely
-  double change = 0;  ///< of t when the steps around it were halved for the last time
-  double step = 0;    ///< their increment then
+  int number = 0;  ///< of the step with that t, before it was looked at more closely
+  /// Of t when the steps around it were halved for the last time; absent where they could not be followed.
+  std::optional<double> change{};
+  double step = 0;  ///< their increment then
 };
 
 /// What came of a program.
 struct PathEnd
 {
-  std::string failure{};          ///< not empty: why it was not followed to its end
-  std::vector<double> dropped{};  ///< values of t that were left out for Following::automatic
-  std::optional<Peak> peak{};     ///< where there was one
+  std::string failure{};             ///< not empty: why it was not followed to its end
+  std::vector<double> dropped{};     ///< values of t that were left out for Following::automatic
+  std::optional<Peak> peak{};        ///< where there was one
+  std::vector<std::string> notes{};  ///< stages that ended before what they were to reach
 };
 
 /// Follows the program. Steps that fail are halved, down to 1/1024. At a peak the steps around it are tried

@@ -36,9 +36,7 @@ class Pass
 
   [[nodiscard]] bool holds() const { return certify::is_bound(verdict_.status); }
   [[nodiscard]] const certify::Verdict& verdict() const { return verdict_; }
-  [[nodiscard]] PassView<dim> view() const { return {number_, *worst_, verdict_, end}; }
-
-  PathEnd end{};
+  [[nodiscard]] PassView<dim> view() const { return {number_, *worst_, verdict_}; }
 
   /// With the largest bound of every cell over all steps, for those who mark by it.
   [[nodiscard]] CertifiedLevel<dim> to_mark() const
@@ -58,23 +56,26 @@ class Pass
 
 /// Goes through the program, and adds its steps to the pass.
 template <int dim>
-void go_through(const PathProgram& program, LoadPath<dim>& path, const ReplayObserver<dim>& observer,
-                Pass<dim>& pass)
+PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const ReplayObserver<dim>& observer,
+                   Pass<dim>& pass)
 {
   const auto committed = [&](const LoadStep<dim>& step)
   {
     pass.add(path.last());
     if (observer.step) observer.step(step);
   };
+  PathEnd end;
   try
   {
-    pass.end = follow<dim>(path, program, committed, observer.newton);
+    end = follow<dim>(path, program, committed, observer.newton);
   }
   catch (const std::bad_alloc&)
   {
     require_all_failed(path.grid().mesh.ranks(), "out of memory");
-    pass.end.failure = "out of memory";
+    end.failure = "out of memory";
   }
+  if (observer.path_end) observer.path_end(end);
+  return end;
 }
 
 /// The path on the next mesh, or why there is none.
@@ -109,8 +110,7 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram&
   {
     if (observer.begins) observer.begins(number, path->grid());
     Pass<dim> pass(number);
-    go_through(program, *path, observer, pass);
-    const std::string& why = pass.end.failure;
+    const std::string why = go_through(program, *path, observer, pass).failure;
     if (!why.empty() || !pass.holds())
     {
       if (number == 0)

@@ -24,7 +24,6 @@ struct PassView
   /// The step with the largest bound, over the path's largest ||sigma|| as all of them are.
   const LoadStep<dim>& worst;
   const certify::Verdict& verdict;  ///< the worst of its steps
-  const PathEnd& end;
 };
 
 /// What replay() tells; functions that are empty are not called.
@@ -34,6 +33,7 @@ struct ReplayObserver
   StepObserver newton{};
   std::function<void(int pass, const Grid<dim>&)> begins{};  ///< before anything is solved on the mesh
   std::function<void(const LoadStep<dim>&)> step{};
+  std::function<void(const PathEnd&)> path_end{};  ///< of a pass, whatever came of it
   std::function<void(const PassView<dim>&)> complete{};
   std::function<void()> given_up{};  ///< of a pass after the first: the one before is what holds
 };

@@ -158,6 +158,11 @@ bool remembers(const std::optional<problem::Contact>& contact)
   return contact && problem::has_memory(contact->law);
 }
 
+bool can_be_damaged(const std::optional<problem::Contact>& contact)
+{
+  return contact && adapt::has_bond(contact->law);
+}
+
 bool is_endo(const std::optional<problem::Contact>& contact)
 {
   return contact && std::holds_alternative<problem::EndoLaw>(contact->law);
@@ -180,7 +185,7 @@ void check_control(const TableReader& table, const Config& config)
   {
     if (const Node* node = table.find(key)) throw InputError(node->where, problem, hint);
   };
-  if (by_damage && !any_contact(config, remembers))
+  if (by_damage && !any_contact(config, can_be_damaged))
     refuse("control", "goes by damage, and no interface can be damaged",
            "an interface with a bond, or \"load\"");
   if (by_damage && any_contact(config, is_endo))
@@ -189,8 +194,9 @@ void check_control(const TableReader& table, const Config& config)
   if (!by_damage) refuse("damage_step", "goes with control by damage", "control = \"auto\" or \"damage\"");
   if (program.following != adapt::Following::load)
   {
-    if (program.targets.size() < 2)
-      refuse("steps", "is too short: beyond it the path is extrapolated from two steps", "one more value");
+    if (std::ranges::adjacent_find(program.targets, std::ranges::not_equal_to()) == program.targets.end())
+      refuse("steps", "is too short: beyond it the path is extrapolated from two steps",
+             "one more value of t");
     return;
   }
   constexpr auto hint = "control = \"auto\", \"damage\" or { displacement = ..., step = ... }";

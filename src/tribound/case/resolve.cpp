@@ -157,6 +157,19 @@ void check_all_mentioned(const Config& config, std::span<const std::string> grou
                     dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
 }
 
+/// Throws where what is watched or given is none of the problem.
+template <int dim>
+void check_gauges(const HistoryConfig& history, const problem::Problem<dim>& problem)
+{
+  const auto check = [&](const std::vector<adapt::Gauge>& gauges)
+  {
+    for (const adapt::Gauge& gauge : gauges) (void)adapt::gauged_boundary<dim>(problem, gauge);
+  };
+  check(history.program.displacement.gauges);
+  if (history.program.then) check(history.program.then->gauges);
+  for (const adapt::Watch& watch : history.watch) check(watch.gauges);
+}
+
 /// The positions of those names that there are.
 std::vector<int> tags_of(std::span<const std::string> groups, std::span<const std::string> boundary_names)
 {
@@ -193,7 +206,9 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
     apply_geometry<dim>(config, contact.geometry, facets(contact.slave, contact.master),
                         pairs.back().contact);
   }
-  return problem::Problem<dim>(region_names, boundary_names, regions, boundaries, std::move(pairs));
+  problem::Problem<dim> problem(region_names, boundary_names, regions, boundaries, std::move(pairs));
+  if (config.history) check_gauges<dim>(*config.history, problem);
+  return problem;
 }
 
 io::CaseFacts case_facts(const Config& config, int dimension)

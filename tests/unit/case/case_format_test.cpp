@@ -53,6 +53,9 @@ std::vector<std::string> companions(const Row& row)
   if (row.name() == "obstacle.o.translate") return {"obstacle.o.distance=\"y\""};
   if (row.key == "side") return {row.table + ".surface=a.stl"};
   if (row.name() == "shape.o.translate") return {"shape.o.circle={centre=[0,0],radius=1}"};
+  if (row.key == "damage_step")
+    return {"boundary.top.interface={law=\"joint\",tensile_strength=1,fracture_energy=1}",
+            "history.steps=[0,1]", "history.control=\"damage\""};
   if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
   return {};
 }

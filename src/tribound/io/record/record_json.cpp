@@ -285,11 +285,11 @@ Json balance_json(const certify::Balance& balance)
 
 Json path_json(const adapt::PathEnd& path)
 {
-  Json object{{"dropped", path.dropped}, {"peak", nullptr}};
+  Json object{{"dropped", path.dropped}, {"notes", path.notes}, {"peak", nullptr}};
   if (path.peak)
     object["peak"] = {{"t", path.peak->t},
                       {"step", path.peak->number},
-                      {"change", path.peak->change},
+                      {"change", number_or_null(path.peak->change)},
                       {"increment", path.peak->step}};
   return object;
 }
