@@ -241,7 +241,7 @@ the_same_as_one("multigrid", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.m
 load_steps_the_same_as_one("peeled", f"{EXAMPLES}/17_double_cantilever/case.toml", "--set", "adapt.max_levels=1", "--set", "history.steps=[0.2, 0.5, 0.8]")
 load_steps_the_same_as_one("sheared", f"{EXAMPLES}/18_shear_cycle/case.toml", "--set", "adapt.max_levels=1")
 load_steps_the_same_as_one("dam_to_failure", f"{EXAMPLES}/20_dam_to_failure/case.toml", "--set", "adapt.max_levels=0", "--set", "history.damage_step=6", "--set",
-                           "newton.tolerance=1e-12", "--set", "boundary.base.interface.water.crack=true")
+                           "newton.tolerance=1e-12", "--set", "boundary.base.interface.water.crack=true", "--set", "history.steps=[0, 40, 70, 80]")
 the_same_as_one("blocks", f"{EXAMPLES}/07_three_blocks/case.toml")
 the_same_as_one("joint", f"{CASES}/joint.toml", "--set", "adapt.max_levels=4")
 the_same_as_one("rock3d", f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "adapt.max_levels=1", "--set", "solver.method=direct")
