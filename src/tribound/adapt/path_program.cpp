@@ -167,7 +167,7 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
     control.cuts = cuts;
     if (n == 0) control.failed = failed_;
     const Position position = path_.position();
-    const std::string failure = path_.follow(control, observer_, newton_);
+    std::string failure = path_.follow(control, observer_, newton_);
     if (failure.empty())
     {
       ++n;
