@@ -92,9 +92,9 @@ void Bordered<dim>::move(const State& now, const State& then, const PathMeasure<
   std::vector<double> d_rate;
   solve(rate, d_rate);
 
-  const double of_rate =
-      measure.derivative(form, point.u, d_rate) + (then.measure - now.measure) / options.difference;
-  const double dt = (target - now.measure - measure.derivative(form, point.u, d)) / of_rate;
+  const auto [along_d, along_rate] = measure.derivatives(form, point.u, {d, d_rate});
+  const double dt =
+      (target - now.measure - along_d) / (along_rate + (then.measure - now.measure) / options.difference);
   for (std::size_t i = 0; i < d.size(); ++i) point.u[i] += d[i] + dt * d_rate[i];
   point.t += dt;
   step.method = equilibrium_->method();

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file bordered.h
-/// Newton's method for u and the load factor t together (method section 12.6).
+/// Newton's method for u and the load factor t together (method section 12.7).
 
 #include <functional>
 #include <memory>

@@ -135,6 +135,7 @@ class LoadPath
   /// The last committed step; null before the first.
   [[nodiscard]] const std::shared_ptr<const LoadStep<dim>>& last() const { return position_.last; }
   [[nodiscard]] const Grid<dim>& grid() const { return *grid_; }
+  [[nodiscard]] const PathOptions& options() const { return options_; }
 
  private:
   /// Finds t and what Newton's method there begins with, where the crack has its tips; `point`: what the

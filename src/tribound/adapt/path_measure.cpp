@@ -50,6 +50,17 @@ void add_mean_opening(const contact::NitscheForm<dim>& form, int tag, double fac
   form.add_contact_load(t, c);
 }
 
+/// The integral over all interfaces with a bond of what value(i) is at contact point i.
+template <int dim, class Value>
+double sum_over_bonds(const contact::NitscheForm<dim>& form, const Value& value)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
+    if (problem::cone(form.segments()[i / form.n_segment_points()].contact->law).is_bonded)
+      sum += form.contact_points()[i].weight * value(i);
+  return form.space().mesh().ranks().sum(sum);
+}
+
 }  // namespace
 
 template <int dim>
@@ -82,19 +93,10 @@ std::vector<double> functional(const contact::NitscheForm<dim>& form, std::span<
   return c;
 }
 
-bool has_bond(const problem::ContactLaw& law)
-{
-  return problem::has_memory(law) && problem::cone(law).is_bonded;
-}
-
 template <int dim>
 double bonded_measure(const contact::NitscheForm<dim>& form)
 {
-  double sum = 0;
-  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
-    if (has_bond(form.segments()[i / form.n_segment_points()].contact->law))
-      sum += form.contact_points()[i].weight;
-  return form.space().mesh().ranks().sum(sum);
+  return sum_over_bonds(form, [](std::size_t) { return 1.0; });
 }
 
 template <int dim>
@@ -102,30 +104,31 @@ double PathMeasure<dim>::value(const contact::NitscheForm<dim>& form, std::span<
 {
   if (functional_) return form.space().dot(*functional_, u);
   const std::vector<problem::InterfaceResponse<dim>> responses = form.advance(u);
-  double sum = 0;
-  for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
-    if (has_bond(form.segments()[i / form.n_segment_points()].contact->law))
-      sum += form.contact_points()[i].weight * responses[i].state.damage;
-  return form.space().mesh().ranks().sum(sum);
+  return sum_over_bonds(form, [&](std::size_t i) { return responses[i].state.damage; });
 }
 
 template <int dim>
-double PathMeasure<dim>::derivative(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                    std::span<const double> d) const
+std::array<double, 2> PathMeasure<dim>::derivatives(const contact::NitscheForm<dim>& form,
+                                                    std::span<const double> u,
+                                                    const std::array<std::span<const double>, 2>& d) const
 {
-  if (functional_) return form.space().dot(*functional_, d);
+  if (functional_) return {form.space().dot(*functional_, d[0]), form.space().dot(*functional_, d[1])};
   const std::vector<problem::InterfaceResponse<dim>> responses = form.advance(u);
   const std::size_t n = form.n_segment_points();
-  double sum = 0;
+  std::array<double, 2> sums{};
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
-    if (!has_bond(form.segments()[k].contact->law)) continue;
-    const auto change = form.traction_without_gap(d, k);
-    for (std::size_t q = 0; q < n; ++q)
-      sum += form.contact_points(k)[q].weight *
-             responses[k * n + q].damage_gradient.dot(change.col(static_cast<Eigen::Index>(q)));
+    if (!problem::cone(form.segments()[k].contact->law).is_bonded) continue;
+    for (std::size_t j = 0; j < d.size(); ++j)
+    {
+      const auto change = form.traction_without_gap(d[j], k);
+      for (std::size_t q = 0; q < n; ++q)
+        sums[j] += form.contact_points(k)[q].weight *
+                   responses[k * n + q].damage_gradient.dot(change.col(static_cast<Eigen::Index>(q)));
+    }
   }
-  return form.space().mesh().ranks().sum(sum);
+  form.space().mesh().ranks().sum(std::span(sums));
+  return sums;
 }
 
 template int gauged_boundary(const problem::Problem<2>&, const Gauge&);

@@ -2,8 +2,9 @@
 
 /// @file path_measure.h
 /// Quantities C(u) that grow along a load path, by which it is followed where the load factor is not known
-/// beforehand (method section 12.6).
+/// beforehand (method section 12.7).
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,9 +44,6 @@ template <int dim>
 [[nodiscard]] std::vector<double> functional(const contact::NitscheForm<dim>& form,
                                              std::span<const Gauge> gauges);
 
-/// Whether the law has a bond that can be damaged.
-[[nodiscard]] bool has_bond(const problem::ContactLaw& law);
-
 /// Length or area of all interfaces with a bond. All ranks together.
 template <int dim>
 [[nodiscard]] double bonded_measure(const contact::NitscheForm<dim>& form);
@@ -60,11 +58,12 @@ class PathMeasure
   /// c.u.
   explicit PathMeasure(std::vector<double> c) : functional_(std::move(c)) {}
 
-  /// With the damage that u leads to from the history of the form. All ranks together, as derivative().
+  /// With the damage that u leads to from the history of the form. All ranks together, as derivatives().
   [[nodiscard]] double value(const contact::NitscheForm<dim>& form, std::span<const double> u) const;
-  /// C'(u)[d], d with the values of ghosts.
-  [[nodiscard]] double derivative(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                  std::span<const double> d) const;
+  /// C'(u)[d] for two d, with the values of ghosts.
+  [[nodiscard]] std::array<double, 2> derivatives(const contact::NitscheForm<dim>& form,
+                                                  std::span<const double> u,
+                                                  const std::array<std::span<const double>, 2>& d) const;
 
  private:
   std::optional<std::vector<double>> functional_;  ///< absent: the damage

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tribound::adapt
@@ -13,8 +14,6 @@ namespace
 {
 
 constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
-constexpr double growth = 1.4;           ///< of a step after one that was easy
-constexpr int few_steps = 12;            ///< of Newton's method: it was
 
 /// C at the last step of a path.
 template <int dim>
@@ -30,8 +29,9 @@ struct Stage
   const char* name;
   PathMeasure<dim> measure;
   double step;
-  double until;            ///< value of the measure
-  bool to_damage = false;  ///< whether PathProgram::enough_damage and t_min end it
+  double until;  ///< value of the measure
+  /// Integral of D at which the main stage ends; t_min ends it, too. Absent of PathProgram::then.
+  std::optional<double> enough_damage{};
 };
 
 template <int dim>
@@ -57,7 +57,7 @@ class Follower
     const double last = path_.last()->t;
     direction_ = failed_.value_or(last) - (failed_ ? last : path_.position().before_last.t) < 0 ? -1 : 1;
     if (under_control) end_.failure = go(main_stage());
-    if (end_.failure.empty() && program_.then) end_.failure = go(stage_of(*program_.then, false));
+    if (end_.failure.empty() && program_.then) end_.failure = go(stage_of(*program_.then));
     return end_;
   }
 
@@ -66,10 +66,9 @@ class Follower
 
   void by_load();
   [[nodiscard]] Stage<dim> main_stage() const;
-  [[nodiscard]] Stage<dim> stage_of(const DisplacementStage& stage, bool to_damage) const
+  [[nodiscard]] Stage<dim> stage_of(const DisplacementStage& stage) const
   {
-    return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until,
-            to_damage};
+    return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until};
   }
   [[nodiscard]] std::string go(const Stage<dim>& stage);
   [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
@@ -124,10 +123,12 @@ void Follower<dim>::by_load()
 template <int dim>
 Stage<dim> Follower<dim>::main_stage() const
 {
-  if (program_.following == Following::displacement) return stage_of(program_.displacement, true);
   const double measure = bonded_measure(form());
-  return {"damage", PathMeasure<dim>(), program_.damage_step.value_or(measure / 50),
-          program_.enough_damage * measure, true};
+  const double enough = program_.enough_damage * measure;
+  Stage<dim> stage{"damage", PathMeasure<dim>(), program_.damage_step.value_or(measure / 50), enough};
+  if (program_.following == Following::displacement) stage = stage_of(program_.displacement);
+  stage.enough_damage = measure > 0 ? enough : std::numeric_limits<double>::infinity();
+  return stage;
 }
 
 /// Whether the measure, which is `now`, has come as far as it should, or damage and t have.
@@ -137,12 +138,10 @@ bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
   constexpr double margin = 1e-9;
   const double left = (stage.until - now) * (stage.step < 0 ? -1 : 1);
   if (left <= margin * std::abs(stage.step)) return true;
-  if (!stage.to_damage) return false;
+  if (!stage.enough_damage) return false;
   const bool has_fallen =
       program_.t_min && end_.peak && direction_ * (path_.last()->t - *program_.t_min) <= 0;
-  const double measure = bonded_measure(form());
-  return has_fallen ||
-         (measure > 0 && value_at(path_, PathMeasure<dim>()) >= program_.enough_damage * measure);
+  return has_fallen || value_at(path_, PathMeasure<dim>()) >= *stage.enough_damage;
 }
 
 /// Not empty: why it was not gone through.
@@ -154,7 +153,7 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
   int cuts = 0;
   positions_.clear();
   if (const double now = value_at(path_, stage.measure);
-      (stage.until - now) * stage.step < 0 && !stage.to_damage)
+      (stage.until - now) * stage.step < 0 && !stage.enough_damage)
     return fmt::format("the stage by {} is to go on until {:.6g}, and begins at {:.6g}", stage.name,
                        stage.until, now);
   for (int n = 0; n < program_.max_steps;)
@@ -174,9 +173,12 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
       cuts = 0;
       last_increment = control.increment;
       committed(stage, position, control.increment);
-      const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= few_steps;
+      const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= path_.options().few_steps;
       if (was_easy && std::abs(size) < std::abs(stage.step))
-        size = std::abs(growth * size) < std::abs(stage.step) ? growth * size : stage.step;
+      {
+        const double larger = path_.options().growth * size;
+        size = std::abs(larger) < std::abs(stage.step) ? larger : stage.step;
+      }
     }
     else if (!path_.interruption().empty() ||
              std::abs(control.increment) / 2 < smallest * std::abs(stage.step))

@@ -2,7 +2,7 @@
 
 /// @file path_program.h
 /// What a load path goes through: values of t, and beyond them what damage or displacements lead to (method
-/// section 12.6).
+/// section 12.7).
 
 #include <limits>
 #include <optional>

@@ -160,7 +160,7 @@ bool remembers(const std::optional<problem::Contact>& contact)
 
 bool can_be_damaged(const std::optional<problem::Contact>& contact)
 {
-  return contact && adapt::has_bond(contact->law);
+  return contact && problem::cone(contact->law).is_bonded;
 }
 
 bool is_endo(const std::optional<problem::Contact>& contact)

@@ -44,7 +44,7 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
-    const bool is_bonded = adapt::has_bond(segment.contact->law);
+    const bool is_bonded = problem::cone(segment.contact->law).is_bonded;
     const auto points = form.contact_points(k);
     for (std::size_t q = 0; q < points.size(); ++q)
       add_point(of_boundary[segment.slave.facet.tag], step.responses[k * points.size() + q], points[q].weight,
@@ -54,13 +54,6 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
   for (const InterfaceFigures& figures : of_boundary)
     for (const auto sum : sums) values.push_back(figures.*sum);
   form.space().mesh().ranks().sum(std::span(values));
-  const auto n_bases = std::count_if(boundaries.begin(), boundaries.end(),
-                                     [&](const auto& boundary)
-                                     {
-                                       const problem::Contact* contact = form.problem().contact(
-                                           static_cast<int>(&boundary - boundaries.data()));
-                                       return contact != nullptr && contact->base;
-                                     });
   std::vector<InterfaceFigures> result;
   for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
   {
@@ -69,9 +62,11 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
     figures.boundary = boundaries[tag].name;
     for (std::size_t i = 0; i < sums.size(); ++i) figures.*sums[i] = values[tag * sums.size() + i];
     figures.hydraulic = hydraulic_figures<dim>(step, static_cast<int>(tag));
-    if (figures.hydraulic && n_bases > 1)
-      figures.hydraulic->overturning.reset();  // its loads are those of all
   }
+  const auto has_base = [](const InterfaceFigures& figures) { return figures.hydraulic.has_value(); };
+  if (std::ranges::count_if(result, has_base) > 1)  // the loads are those of all
+    for (InterfaceFigures& figures : result)
+      if (figures.hydraulic) figures.hydraulic->overturning.reset();
   return result;
 }
 
