@@ -16,8 +16,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
   # GCC forgets in a precompiled header which headers are the system's, and warns inside the standard library.
   target_compile_options(tribound_flags INTERFACE -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict -Wno-array-bounds)
 endif()
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(tribound_flags INTERFACE -Wno-subobject-linkage) # as files are compiled together, see tests/CMakeLists.txt
+endif()
 if(TRIBOUND_SANITIZE)
-  target_compile_options(tribound_flags INTERFACE -fsanitize=${TRIBOUND_SANITIZE} -fno-omit-frame-pointer)
+  # Without what a crash tells as well (null pointers), what the processor allows and what looks at every access of every
+  # object: half the time of the compiler.
+  target_compile_options(
+    tribound_flags INTERFACE -fsanitize=${TRIBOUND_SANITIZE} -fno-sanitize=null,alignment,vptr,object-size -fno-sanitize-recover=all
+                             -fno-omit-frame-pointer)
   target_link_options(tribound_flags INTERFACE -fsanitize=${TRIBOUND_SANITIZE})
 endif()
 

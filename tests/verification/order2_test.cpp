@@ -19,7 +19,7 @@
 #include "verification/arched_block.h"
 #include "verification/sound_effectivity.h"
 
-namespace tribound::test
+namespace tribound::test::order2_cases
 {
 
 namespace
@@ -190,4 +190,4 @@ TEST(Order2, TheCertificateKnowsWhatIsStraightened)
 
 }  // namespace
 
-}  // namespace tribound::test
+}  // namespace tribound::test::order2_cases

@@ -9,12 +9,12 @@ namespace tribound::algebra::detail
 namespace
 {
 
-constexpr const char* making = "making multigrid levels";
-constexpr const char* key = "tribound_galerkin_change";
+constexpr const char* making_levels = "making multigrid levels";
+constexpr const char* galerkin_key = "tribound_galerkin_change";
 
 MatHandle share(Mat a)
 {
-  check(PetscObjectReference(reinterpret_cast<PetscObject>(a)), making);
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(a)), making_levels);
   return MatHandle(a);
 }
 
@@ -32,11 +32,11 @@ std::unique_ptr<Change> split(Mat coarse, Mat interpolation, Mat changing)
   auto change =
       std::make_unique<Change>(Change{share(interpolation), share(changing), MatHandle(), MatHandle()});
   Mat mat = nullptr;
-  check(MatPtAP(changing, interpolation, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &mat), making);
+  check(MatPtAP(changing, interpolation, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &mat), making_levels);
   change->coarse.reset(mat);
-  check(MatDuplicate(coarse, MAT_COPY_VALUES, &mat), making);
+  check(MatDuplicate(coarse, MAT_COPY_VALUES, &mat), making_levels);
   change->rest.reset(mat);
-  check(MatAXPY(mat, -1.0, change->coarse.get(), SUBSET_NONZERO_PATTERN), making);
+  check(MatAXPY(mat, -1.0, change->coarse.get(), SUBSET_NONZERO_PATTERN), making_levels);
   return change;
 }
 
@@ -44,7 +44,7 @@ std::unique_ptr<Change> split(Mat coarse, Mat interpolation, Mat changing)
 PetscErrorCode add_change(Mat coarse)
 {
   PetscFunctionBegin;
-  const Change* change = find_attached<Change>(coarse, key);
+  const Change* change = find_attached<Change>(coarse, galerkin_key);
   Mat of_change = change->coarse.get();
   PetscCall(MatPtAP(change->changing.get(), change->interpolation.get(), MAT_REUSE_MATRIX, PETSC_DEFAULT,
                     &of_change));
@@ -57,13 +57,14 @@ PetscErrorCode add_change(Mat coarse)
 
 Mat renew_by_change(Mat coarse, Mat interpolation, Mat changing)
 {
-  if (const Change* change = find_attached<Change>(coarse, key))
+  if (const Change* change = find_attached<Change>(coarse, galerkin_key))
   {
     assert(change->interpolation.get() == interpolation && change->changing.get() == changing);
     return change->coarse.get();
   }
-  const Change& change = attach(coarse, key, split(coarse, interpolation, changing));
-  check(MatSetOperation(coarse, MATOP_PRODUCTNUMERIC, reinterpret_cast<void (*)()>(add_change)), making);
+  const Change& change = attach(coarse, galerkin_key, split(coarse, interpolation, changing));
+  check(MatSetOperation(coarse, MATOP_PRODUCTNUMERIC, reinterpret_cast<void (*)()>(add_change)),
+        making_levels);
   return change.coarse.get();
 }
 

@@ -19,7 +19,7 @@ namespace
 constexpr auto hint = "key=0.1:0.8:8 (first, last, how many), key=[1, 2] or key=value";
 constexpr int max_runs = 100'000;
 
-std::string trimmed(std::string_view text)
+std::string without_blanks(std::string_view text)
 {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return {};
@@ -69,7 +69,7 @@ std::vector<std::string> range(std::span<const std::string> parts, const Where& 
 
 std::vector<std::string> values_of(const std::string& text, const Where& where)
 {
-  if (const auto parts = parts_of_range(trimmed(text)); !parts.empty()) return range(parts, where);
+  if (const auto parts = parts_of_range(without_blanks(text)); !parts.empty()) return range(parts, where);
   if (text.find_first_not_of(' ') == std::string::npos) throw InputError(where, "there is no value", hint);
   if (text[text.find_first_not_of(' ')] != '[') return {text};
   try
@@ -117,7 +117,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text, const std
   bool was_quoted = false;
   const auto end_cell = [&]
   {
-    lines.back().push_back(was_quoted ? cell : trimmed(cell));
+    lines.back().push_back(was_quoted ? cell : without_blanks(cell));
     cell.clear();
     was_quoted = false;
   };
@@ -126,7 +126,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text, const std
     const char c = text[i];
     if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
       cell += text[i++];
-    else if (c == '"' && (quoted || trimmed(cell).empty()))
+    else if (c == '"' && (quoted || without_blanks(cell).empty()))
     {
       if (!quoted && was_quoted) fail(i, "a quote follows a cell that has ended");
       if (!quoted) opened = i;
@@ -161,7 +161,7 @@ SweepTable sweep_grid(std::span<const std::string> assignments)
   {
     const Where where{.file = assignment};
     const auto [key, value] = split_assignment(assignment, where, hint);
-    table.keys.push_back(trimmed(key));
+    table.keys.push_back(without_blanks(key));
     const std::vector<std::string> values = values_of(value, where);
     if (table.rows.size() * values.size() > max_runs)
       throw InputError(where, fmt::format("makes more than {} runs", max_runs), "take fewer values");

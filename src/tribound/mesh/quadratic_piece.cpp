@@ -14,7 +14,7 @@ namespace
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Of barycentric coordinates.
-constexpr double rounding = 16 * epsilon;
+constexpr double end_of_steps = 16 * epsilon;
 
 /// The zero in [0, 1] of a cubic that increases there, by its Bernstein coefficients; an end if it has none
 /// inside. Newton's method between brackets.
@@ -36,7 +36,7 @@ double zero_of_increasing(const std::array<double, 4>& b)
     (value < 0 ? lower : upper) = t;
     double next = t - value / (3 * (second[1] - second[0]));
     if (!(next > lower && next < upper)) next = (lower + upper) / 2;
-    const bool has_settled = std::abs(next - t) <= rounding;
+    const bool has_settled = std::abs(next - t) <= end_of_steps;
     t = next;
     if (has_settled) break;
   }
@@ -234,7 +234,7 @@ auto QuadraticPiece<dim>::minimiser_inside() const -> Barycentric
     Barycentric next = at(length);
     const auto is_inside = [&] { return std::ranges::all_of(next, [](double value) { return value > 0; }); };
     // The last step gains less than rounding errors tell.
-    if (-change.dot(gradient) <= epsilon * d.squaredNorm() || change.norm() <= rounding)
+    if (-change.dot(gradient) <= epsilon * d.squaredNorm() || change.norm() <= end_of_steps)
       return is_inside() ? next : l;
     for (int halving = 0; !(is_inside() && polar(next, next).squaredNorm() < d.squaredNorm()); ++halving)
     {

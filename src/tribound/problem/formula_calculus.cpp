@@ -37,7 +37,7 @@ std::string product(const std::string& a, const std::string& b)
   return "(" + a + "*" + b + ")";
 }
 
-std::string negative(const std::string& a)
+std::string minus(const std::string& a)
 {
   return a.empty() ? a : "(-" + a + ")";
 }
@@ -146,12 +146,12 @@ std::string binary_derivative(Op op, const Term& a, const Term& b, const std::st
     case Op::add:
       return sum(da, db);
     case Op::subtract:
-      return sum(da, negative(db));
+      return sum(da, minus(db));
     case Op::multiply:
       return sum(product(da, b.value), product(a.value, db));
     case Op::divide:
     {
-      const std::string top = sum(product(da, b.value), negative(product(a.value, db)));
+      const std::string top = sum(product(da, b.value), minus(product(a.value, db)));
       return top.empty() ? top : fmt::format("({}/{}^2)", top, b.value);
     }
     case Op::power:
@@ -164,7 +164,7 @@ std::string binary_derivative(Op op, const Term& a, const Term& b, const std::st
                                                     b.value, or_zero(da), or_zero(db));
     case Op::atan2:
     {
-      const std::string top = sum(product(da, b.value), negative(product(a.value, db)));
+      const std::string top = sum(product(da, b.value), minus(product(a.value, db)));
       return top.empty() ? top : fmt::format("({}/({}^2+{}^2))", top, a.value, b.value);
     }
     default:  // comparisons
@@ -246,7 +246,7 @@ class Calculus
     std::string outer;
     if (node.op == Op::negate)
     {
-      result.value = negative(a.value);
+      result.value = minus(a.value);
       outer = "(-1)";
     }
     else if (node.op == Op::integer_power)

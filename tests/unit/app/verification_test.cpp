@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace tribound
+namespace tribound::verification_cases
 {
 namespace
 {
@@ -102,4 +102,4 @@ TEST(Verification, Json)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::verification_cases

@@ -12,7 +12,7 @@
 #include "tribound/case/config.h"
 #include "tribound/case/resolve.h"
 
-namespace tribound
+namespace tribound::geometry_cases
 {
 namespace
 {
@@ -237,4 +237,4 @@ TEST(Geometry, SurfacesAreReadFromFiles)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::geometry_cases

@@ -11,7 +11,7 @@
 #include "tribound/case/config.h"
 #include "tribound/case/resolve.h"
 
-namespace tribound
+namespace tribound::history_cases
 {
 namespace
 {
@@ -224,4 +224,4 @@ TEST(Interface, Mistakes)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::history_cases

@@ -6,7 +6,7 @@
 
 #include "tribound/case/config.h"
 
-namespace tribound
+namespace tribound::override_cases
 {
 namespace
 {
@@ -145,4 +145,4 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"mesh.box={lower=[0,0],upper=[1,1],cells=[1,1]}", "mesh.box: ", "one of them"}));
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::override_cases

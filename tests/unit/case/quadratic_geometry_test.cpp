@@ -16,7 +16,7 @@
 #include "tribound/case/resolve.h"
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::quadratic_geometry_cases
 {
 namespace
 {
@@ -327,4 +327,4 @@ TEST(QuadraticGeometry, MistakesAreNamed)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::quadratic_geometry_cases

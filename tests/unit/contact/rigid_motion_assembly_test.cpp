@@ -12,7 +12,7 @@
 #include "tribound/contact/support/support.h"
 #include "unit/contact/rigid_motion_testing.h"
 
-namespace tribound::test
+namespace tribound::test::rigid_motion_assembly_cases
 {
 
 namespace
@@ -229,4 +229,4 @@ TEST(RigidMotionOfAssemblies, In3D)
 
 }  // namespace
 
-}  // namespace tribound::test
+}  // namespace tribound::test::rigid_motion_assembly_cases

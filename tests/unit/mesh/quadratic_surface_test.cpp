@@ -10,7 +10,7 @@
 #include "tribound/mesh/refine.h"
 #include "unit/mesh/mesh_testing.h"
 
-namespace tribound
+namespace tribound::quadratic_surface_cases
 {
 
 namespace
@@ -281,4 +281,4 @@ TEST(QuadraticFacets, JointsAreCutOpenWithTheirNodes)
 
 }  // namespace
 
-}  // namespace tribound
+}  // namespace tribound::quadratic_surface_cases

@@ -9,7 +9,7 @@
 #include "tribound/problem/field.h"
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::formula_enclosure_cases
 {
 namespace
 {
@@ -239,4 +239,4 @@ TEST(ExpressionEnclosure, BatchNamesThePointWhereItIsNotFinite)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::formula_enclosure_cases

@@ -17,7 +17,7 @@
 
 #include "random_formula.h"
 
-namespace tribound
+namespace tribound::formula_cases
 {
 namespace
 {
@@ -279,4 +279,4 @@ TEST(Formula, EvaluatesDeepStacks)
 }
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::formula_cases

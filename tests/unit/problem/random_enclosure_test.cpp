@@ -10,7 +10,7 @@
 #include "random_formula.h"
 #include "tribound/problem/formula.h"
 
-namespace tribound
+namespace tribound::random_enclosure_cases
 {
 namespace
 {
@@ -240,4 +240,4 @@ INSTANTIATE_TEST_SUITE_P(Simplices, Enclosures,
                          });
 
 }  // namespace
-}  // namespace tribound
+}  // namespace tribound::random_enclosure_cases

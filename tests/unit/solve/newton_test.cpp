@@ -17,7 +17,7 @@
 #include "support/meshes.h"
 #include "tribound/base/error.h"
 
-namespace tribound::test
+namespace tribound::test::newton_cases
 {
 
 namespace
@@ -268,4 +268,4 @@ TEST(Newton, ConvergedMeansThatTheTractionIsThatOfTheSolution)
 
 }  // namespace
 
-}  // namespace tribound::test
+}  // namespace tribound::test::newton_cases

@@ -177,7 +177,7 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
 
 /// Rounding in the factors of A - theta M, of the order of eps a_ii on the diagonal, changes the smallest
 /// eigenvalue by this part of it, if its vector is spread over the body; times 100, to be sure.
-double rounding(const Pencil& pencil, double lambda)
+double rounding_of(const Pencil& pencil, double lambda)
 {
   double trace = 0;
   double volume = 0;
@@ -198,7 +198,7 @@ double proved_theta(Pencil pencil, int dim)
   algebra::Triplets mass{pencil.a.rows, pencil.a.cols, pencil.m};
   const double lambda = smallest_eigenvalue(shifted, {pencil.n, 1, std::move(mass)}, dim);
   std::vector<double> values(pencil.m.size());
-  for (double shortfall = std::max(1e-6, rounding(pencil, lambda)); shortfall < 1; shortfall *= 10)
+  for (double shortfall = std::max(1e-6, rounding_of(pencil, lambda)); shortfall < 1; shortfall *= 10)
   {
     const double theta = (1 - shortfall) * lambda;
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = pencil.a.values[k] - theta * pencil.m[k];

@@ -24,7 +24,7 @@ constexpr double rounding = 1e-13;
 
 /// As many parts as a formula may need before a bound of it is seen. That is a matter of the formula and the
 /// simplex, not of how much effort all simplices together are worth.
-constexpr int most_parts = 1 << 15;
+constexpr int most_unbounded_parts = 1 << 15;
 
 /// Of a part, relative to the simplex.
 constexpr double smallest_edge = 1e-4;
@@ -216,7 +216,8 @@ void DatumMoments<k, dim, n>::refine(const Datum<dim, n>& datum, const SimplexMa
   const auto is_small = [](const DatumPart<k, n>& part)
   { return fem::fraction<k>(part.part) < std::pow(smallest_edge, k); };
   const auto is_unbounded = [](const DatumPart<k, n>& part) { return !part.remainder.allFinite(); };
-  while (static_cast<int>(parts.size()) < (std::ranges::any_of(parts, is_unbounded) ? most_parts : max_parts))
+  while (static_cast<int>(parts.size()) <
+         (std::ranges::any_of(parts, is_unbounded) ? most_unbounded_parts : max_parts))
   {
     double squares = 0;
     double means = 0;

@@ -18,7 +18,7 @@ namespace
 /// each: some seconds of one core.
 constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
-constexpr double most_parts = 4096;
+constexpr double most_parts_of_facet = 4096;
 
 /// An upper bound of |f| on a cell or facet; 0 where there is none.
 template <int k, int dim, int n>
@@ -104,7 +104,7 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
   const double of_each = static_cast<double>(cell_rule().size()) *
                          fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
-  max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts));
+  max_parts_ = static_cast<int>(std::clamp(all_values / of_each, fewest_parts, most_parts_of_facet));
   mesh.ranks().together(
       [&]
       {

@@ -16,9 +16,9 @@ namespace
 {
 
 constexpr double facing = 0.1;  ///< least cosine of an angle between e and n_F, e and -n_G, n_F and -n_G
-constexpr double negligible = 1e-14;    ///< of the slave facet
-constexpr double overlapping = 1e-9;    ///< of the slave facet: more than rounding
-constexpr double same_distance = 1e-9;  ///< of the diameter of the slave facet
+constexpr double smallest_part = 1e-14;  ///< of the slave facet
+constexpr double overlapping = 1e-9;     ///< of the slave facet: more than rounding
+constexpr double same_distance = 1e-9;   ///< of the diameter of the slave facet
 
 /// l is affine on the plane of the slave facet: from its values where the corners of the master lie.
 template <int dim>
@@ -117,7 +117,7 @@ void SlaveFacet<dim>::add(const FacetShape<dim>& master)
   }
   set_distance<dim>(found, distances);
   clip_to_slave<dim>(found.polygon);
-  if (fraction<dim>(found.polygon) <= negligible) return;
+  if (fraction<dim>(found.polygon) <= smallest_part) return;
   order_corners(found.polygon);
   found.nearness = found.distance_at(centroid<dim>(found.polygon));
   if (found.nearness <= reach_) candidates_.push_back(std::move(found));
@@ -138,7 +138,7 @@ void SlaveFacet<dim>::append_pairs(std::vector<FacetPair<dim>>& pairs)
       for_each_simplex<dim>(polygon,
                             [&](const auto& on_slave, const auto& on_master)
                             {
-                              if (fem::fraction<dim - 1>(on_slave) > negligible)
+                              if (fem::fraction<dim - 1>(on_slave) > smallest_part)
                                 pairs.push_back({{slave_.number, on_slave}, {candidate.master, on_master}});
                             });
     }

@@ -16,7 +16,7 @@ namespace
 {
 
 /// Parts of a motion smaller than this, relative to the whole, are round-off.
-constexpr double negligible = 1e-6;
+constexpr double round_off = 1e-6;
 
 /// "(0.5, 0)" with four digits; components that are small against `scale` are 0.
 template <int dim>
@@ -24,7 +24,7 @@ std::string in_words(const Point<dim>& x, double scale)
 {
   std::string text = "(";
   for (int i = 0; i < dim; ++i)
-    text += fmt::format("{}{:.4g}", i > 0 ? ", " : "", std::abs(x[i]) > negligible * scale ? x[i] : 0.0);
+    text += fmt::format("{}{:.4g}", i > 0 ? ", " : "", std::abs(x[i]) > round_off * scale ? x[i] : 0.0);
   return text + ")";
 }
 
@@ -33,7 +33,7 @@ template <int dim>
 std::string direction(const Point<dim>& unit)
 {
   for (int i = 0; i < dim; ++i)
-    if ((unit.cwiseAbs() - Point<dim>::Unit(i)).norm() <= negligible)
+    if ((unit.cwiseAbs() - Point<dim>::Unit(i)).norm() <= round_off)
       return std::string(unit[i] < 0 ? "-" : "") + "xyz"[i];
   return in_words<dim>(unit, 1);
 }
@@ -54,7 +54,7 @@ std::vector<Eigen::Index> eliminate(Eigen::MatrixXd& a, Eigen::Index first, Eige
   {
     Eigen::Index i = 0;
     Eigen::Index j = 0;
-    if (a.block(row, begin, a.rows() - row, end - begin).cwiseAbs().maxCoeff(&i, &j) <= negligible) break;
+    if (a.block(row, begin, a.rows() - row, end - begin).cwiseAbs().maxCoeff(&i, &j) <= round_off) break;
     a.row(row).swap(a.row(row + i));
     a.row(row) /= a(row, begin + j);
     for (Eigen::Index other = 0; other < a.rows(); ++other)
@@ -84,7 +84,7 @@ std::string RigidModes<dim>::describe(const Coefficients& motion) const
 {
   const Point<dim> t = motion.template head<dim>();
   const auto w = motion.template tail<n_modes - dim>();
-  if (w.norm() <= negligible * t.norm())
+  if (w.norm() <= round_off * t.norm())
     return fmt::format("translation along {}", direction<dim>(t.normalized()));
 
   const double scale = std::max(size, centre.norm());
@@ -95,7 +95,7 @@ std::string RigidModes<dim>::describe(const Coefficients& motion) const
     const Point<3> foot = centre + size / w.squaredNorm() * mesh::cross(w, t);
     const std::string axis = fmt::format("about the axis through {} along {}", in_words<3>(foot, scale),
                                          in_words<3>(w.normalized(), 1));
-    const bool advances = std::abs(t.dot(w)) > negligible * (t.squaredNorm() + w.squaredNorm());
+    const bool advances = std::abs(t.dot(w)) > round_off * (t.squaredNorm() + w.squaredNorm());
     return (advances ? "screw motion " : "rotation ") + axis;
   }
 }

@@ -13,7 +13,7 @@ namespace
 {
 
 /// What is known of fixing a component of a boundary against a motion z.
-struct Candidate
+struct Fixing
 {
   double into = 0;   ///< integral of (z_c n_c)^2
   double along = 0;  ///< integral of z_c^2
@@ -23,7 +23,7 @@ struct Candidate
 
 /// Whether `a` is the better choice. A component tangential to its boundary stops a motion as well, but
 /// ranks below every normal one.
-bool better(const Candidate& a, const Candidate& b)
+bool better(const Fixing& a, const Fixing& b)
 {
   constexpr double tie = 1e-9;
   if (a.loaded != b.loaded) return !a.loaded;
@@ -142,7 +142,7 @@ template <int dim>
 std::optional<Remedy> Support<dim>::remedy(const Eigen::VectorXd& motion) const
 {
   constexpr double negligible = 1e-12;
-  std::map<std::pair<int, int>, Candidate> candidates;  // by boundary and component
+  std::map<std::pair<int, int>, Fixing> candidates;  // by boundary and component
   for (int b = 0; b < static_cast<int>(assembly_.bodies.size()); ++b)
     for (const mesh::BoundaryFacet& facet : assembly_.bodies[b].facets)
     {
@@ -155,7 +155,7 @@ std::optional<Remedy> Support<dim>::remedy(const Eigen::VectorXd& motion) const
         for (int c = 0; c < dim; ++c)
         {
           if (condition.fixes(c)) continue;
-          Candidate& candidate = candidates[{facet.tag, c}];
+          Fixing& candidate = candidates[{facet.tag, c}];
           candidate.along += geometry.measure * z[c] * z[c];
           candidate.into += geometry.measure * z[c] * z[c] * geometry.normal[c] * geometry.normal[c];
           candidate.measure += geometry.measure;
@@ -164,7 +164,7 @@ std::optional<Remedy> Support<dim>::remedy(const Eigen::VectorXd& motion) const
       }
     }
   std::optional<Remedy> best;
-  Candidate score;
+  Fixing score;
   for (const auto& [key, candidate] : candidates)
   {
     if (candidate.along <= negligible * motion.squaredNorm() * candidate.measure) continue;
