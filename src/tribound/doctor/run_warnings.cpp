@@ -25,6 +25,10 @@ constexpr double large_penetration = 0.02;
 constexpr double large_coefficient = 1;
 /// Fewer closed facets do not resolve a contact zone.
 constexpr long few_closed_facets = 4;
+/// The slope of a law over gamma; at 1 the law has no unique answer, and Newton's method fails before.
+constexpr double large_softening = 0.5;
+/// Rows of facets across a process zone.
+constexpr double few_rows = 3;
 
 /// With what was compared with a limit.
 Finding warning(const char* code, std::string text, double value, const std::string& boundary = {},
@@ -129,6 +133,28 @@ void add_friction(const ContactOutcome& outcome, std::vector<Finding>& warnings)
                 outcome.slipping / outcome.closed, outcome.boundary));
 }
 
+void add_damage(const ContactOutcome& outcome, std::vector<Finding>& warnings)
+{
+  const Softening& softening = outcome.damage.softening;
+  if (softening.ratio() > large_softening)
+    warnings.push_back(warning(
+        "steep_softening",
+        fmt::format("the law softens with the slope {:.4g}, and gamma is {:.4g} on a facet of size {:.4g}: "
+                    "Newton's method may fail; take facets of less than {:.4g} there, or a nitsche.gamma0 of "
+                    "{:.2g} times as much",
+                    softening.slope, softening.gamma, softening.h,
+                    large_softening * softening.h / softening.ratio(), softening.ratio() / large_softening),
+        softening.ratio(), outcome.boundary, softening.where));
+  if (outcome.damage.process_zone.value_or(few_rows) < few_rows)
+    warnings.push_back(warning(
+        "process_zone",
+        fmt::format("between what is broken and what is whole lie {:.2g} rows of facets, where the law "
+                    "softens: too few for the stresses there and for how far the crack goes; five or "
+                    "more resolve them",
+                    *outcome.damage.process_zone),
+        *outcome.damage.process_zone, outcome.boundary));
+}
+
 }  // namespace
 
 std::vector<Finding> run_warnings(const SolvedFigures& solved, std::span<const ContactOutcome> outcomes)
@@ -141,6 +167,7 @@ std::vector<Finding> run_warnings(const SolvedFigures& solved, std::span<const C
     add_pressure(outcome, warnings);
     add_penetration(outcome, solved.max_displacement, warnings);
     add_friction(outcome, warnings);
+    add_damage(outcome, warnings);
   }
   return warnings;
 }

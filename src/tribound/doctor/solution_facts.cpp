@@ -178,7 +178,11 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
   std::vector<ContactOutcome> result;
   result.reserve(outcomes.size());
   for (auto& [tag, outcome] : outcomes)
-    if (!cone(form.problem().contact(tag)->law).is_tied) result.push_back(std::move(outcome));
+  {
+    if (cone(form.problem().contact(tag)->law).is_tied) continue;
+    outcome.damage = damage_facts(form, u, tag);
+    result.push_back(std::move(outcome));
+  }
   return result;
 }
 

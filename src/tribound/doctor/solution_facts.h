@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file solution_facts.h
-/// What a computed contact looks like: penetration, zigzags and peaks of the pressure, sliding.
+/// What a computed contact looks like: penetration, zigzags and peaks of the pressure, sliding, damage.
 
 #include <optional>
 #include <span>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/damage_facts.h"
 #include "tribound/doctor/place.h"
 
 namespace tribound::doctor
@@ -42,6 +43,8 @@ struct ContactOutcome
   double kink = 0;           ///< degrees: the largest kink() where there is pressure on either side
   double kink_pressure = 0;  ///< the largest on facets that meet at a kink
   Place kink_at;             ///< where it is
+
+  DamageFacts damage{};
 
   /// Over what is closed; 0 where nothing is.
   [[nodiscard]] double mean_pressure() const { return closed > 0 ? force / closed : 0; }

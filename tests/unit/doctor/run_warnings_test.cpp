@@ -135,5 +135,23 @@ TEST(RunWarnings, Friction)
   EXPECT_THAT(codes(sound, outcome), IsEmpty());
 }
 
+TEST(RunWarnings, Damage)
+{
+  doctor::ContactOutcome outcome = closed_contact();
+  outcome.damage.softening = {.slope = 5, .gamma = 10, .h = 0.5, .where = {1, 0}};
+  outcome.damage.process_zone = 3;
+  EXPECT_THAT(codes(sound, outcome), IsEmpty());
+  outcome.damage.softening.gamma = 8;
+  outcome.damage.process_zone = 2.5;
+  const auto warnings = doctor::run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].code, "steep_softening");
+  EXPECT_DOUBLE_EQ(warnings[0].numbers[0].second, 0.625);
+  EXPECT_EQ(doctor::location(warnings[0]), "boundary \"base\" at (1, 0)");
+  EXPECT_THAT(warnings[0].text, HasSubstr("facets of less than 0.4 there, or a nitsche.gamma0 of 1.2 times"));
+  EXPECT_EQ(warnings[1].code, "process_zone");
+  EXPECT_DOUBLE_EQ(warnings[1].numbers[0].second, 2.5);
+}
+
 }  // namespace
 }  // namespace tribound

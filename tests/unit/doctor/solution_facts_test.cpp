@@ -70,6 +70,58 @@ TEST(SolutionFacts, OpenContact)
   EXPECT_TRUE(found.penetration_at.empty());
 }
 
+/// Softens from an opening of 0 on, is broken from 1 on, and does not slip.
+const problem::Contact bond(problem::JointLaw({.tension = {.strength = 1, .fracture_energy = 0.5},
+                                               .stick = true}));
+
+/// u^n = -slope x: with gamma = 4 the resolvent opens where 4 slope x > 1 and breaks where it reaches 4.
+doctor::DamageFacts damage_of_opening(double slope)
+{
+  return outcome(bond,
+                 [&](const Point<2>& x) -> Point<2> {
+                   return {0, slope * x[0]};
+                 })
+      .damage;
+}
+
+TEST(SolutionFacts, ProcessZone)
+{
+  EXPECT_FALSE(damage_of_opening(0.4).process_zone);  // nothing is broken
+  const std::optional<double> wide = damage_of_opening(0.75).process_zone;
+  ASSERT_TRUE(wide);
+  EXPECT_NEAR(*wide, 4, 0.5);  // from x = 1/3 to 4/3: four facets of 1/4, as the points tell
+  const std::optional<double> narrow = damage_of_opening(3).process_zone;
+  ASSERT_TRUE(narrow);
+  EXPECT_NEAR(*narrow, 1, 0.3);
+}
+
+TEST(SolutionFacts, ProcessZoneIn3D)
+{
+  const DiscreteProblem<3> c = on_obstacle<3>(block<3>({8, 2, 4}), obstacle<3>("bottom", bond));
+  const auto outcomes = doctor::contact_outcomes<3>(c.form, interpolate<3>(c.space,
+                                                                           [](const Point<3>& x) -> Point<3> {
+                                                                             return {0, 0.8 * x[0], 0};
+                                                                           }));
+  ASSERT_THAT(outcomes, SizeIs(1));
+  ASSERT_TRUE(outcomes[0].damage.process_zone);
+  const double softens_from = 0.25 * std::sqrt(2) / 0.8;  // gamma = 1/h, h the diameter of a facet
+  EXPECT_NEAR(*outcomes[0].damage.process_zone, (1 / 0.8 - softens_from) / 0.25, 0.3);
+}
+
+TEST(SolutionFacts, SofteningMargin)
+{
+  const doctor::Softening found = damage_of_opening(0).softening;
+  EXPECT_DOUBLE_EQ(found.slope, 1);
+  EXPECT_DOUBLE_EQ(found.gamma, 4);
+  EXPECT_DOUBLE_EQ(found.h, 0.25);
+  EXPECT_EQ(outcome(problem::Contact(Frictionless()),
+                    [](const Point<2>&) -> Point<2> {
+                      return {0, 0};
+                    })
+                .damage.softening.ratio(),
+            0);
+}
+
 TEST(SolutionFacts, SlidingAndSticking)
 {
   const problem::Contact coulomb(Coulomb(0.5));

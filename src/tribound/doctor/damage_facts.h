@@ -1,0 +1,41 @@
+#pragma once
+
+/// @file damage_facts.h
+/// Whether the facets resolve an interface that softens and breaks (method section 12.1).
+
+#include <optional>
+#include <span>
+
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/doctor/place.h"
+
+namespace tribound::doctor
+{
+
+/// Where gamma comes nearest to the slope with which the law of a boundary softens.
+struct Softening
+{
+  double slope = 0;  ///< 0: nothing softens
+  double gamma = 0;
+  double h = 0;  ///< of the facet
+  Place where;
+
+  [[nodiscard]] double ratio() const { return slope > 0 ? slope / gamma : 0; }
+};
+
+struct DamageFacts
+{
+  Softening softening;
+  /// Rows of facets between what is broken (D = 1 all over a facet) and what is whole: with A the measure of
+  /// the points where 0 < D < 1, a the mean measure of facets that have such points and f the number of
+  /// vertices (2D) or edges (3D) between facets that are broken and others, A / (a f (dim - 1)); in 3D two
+  /// triangles make a row. Empty unless there are both broken facets and points with 0 < D < 1.
+  std::optional<double> process_zone;
+};
+
+/// Of the boundary `tag` under the displacement `u`.
+template <int dim>
+[[nodiscard]] DamageFacts damage_facts(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                       int tag);
+
+}  // namespace tribound::doctor
