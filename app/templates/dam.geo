@@ -1,12 +1,17 @@
-// Section of a gravity dam: upright at the water (x = 0), sloping on the other side. Metres.
+// Section of a concrete gravity dam on a block of rock, metres. The two share no point: along y = 0 each has a boundary of its own.
 
-height = 30;
-crest = 4;
-base = 24;
-h = 3;         // mesh size; adaptation goes on from there
+height = 50;      // m, of the dam
+crest = 5;        // m
+slope = 0.8;      // of the downstream face, horizontal : vertical
+base = crest + slope*height;
+width = 100;      // m, of rock on either side of the dam
+depth = 100;      // m, of rock
+h = 10;           // mesh sizes: the run refines where it must
+h_rock = 8;       // near the dam
+h_far = 40;
 
-Point(1) = {0, 0, 0, h};
-Point(2) = {base, 0, 0, h};
+Point(1) = {0, 0, 0, h};                        // heel
+Point(2) = {base, 0, 0, h};                     // toe
 Point(3) = {crest, height, 0, h};
 Point(4) = {0, height, 0, h};
 Line(1) = {1, 2};
@@ -16,8 +21,29 @@ Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
 
+Point(11) = {-width, -depth, 0, h_far};
+Point(12) = {base + width, -depth, 0, h_far};
+Point(13) = {base + width, 0, 0, h_far};
+Point(14) = {base, 0, 0, h_rock};
+Point(15) = {0, 0, 0, h_rock};
+Point(16) = {-width, 0, 0, h_far};
+Line(11) = {11, 12};
+Line(12) = {12, 13};
+Line(13) = {13, 14};
+Line(14) = {14, 15};
+Line(15) = {15, 16};
+Line(16) = {16, 11};
+Curve Loop(11) = {11, 12, 13, 14, 15, 16};
+Plane Surface(11) = {11};
+
 Physical Surface("concrete") = {1};
+Physical Surface("rock") = {11};
 Physical Curve("base") = {1};
 Physical Curve("downstream") = {2};
 Physical Curve("crest") = {3};
 Physical Curve("upstream") = {4};
+Physical Curve("foundation") = {14};
+Physical Curve("reservoir") = {15};
+Physical Curve("valley") = {13};
+Physical Curve("far") = {12, 16};
+Physical Curve("deep") = {11};
