@@ -4,7 +4,8 @@
 #include <array>
 #include <map>
 #include <utility>
-#include <vector>
+
+#include "tribound/contact/nitsche/interface_check.h"
 
 namespace tribound::doctor
 {
@@ -23,7 +24,8 @@ struct FacetDamage
 using DamageByFacet = std::map<std::pair<Index, int>, FacetDamage>;  // by cell and number in it
 
 template <int dim>
-DamageByFacet damage_by_facet(const contact::NitscheForm<dim>& form, std::span<const double> u, int tag)
+DamageByFacet damage_by_facet(const contact::NitscheForm<dim>& form,
+                              std::span<const SegmentStates<dim>> states, int tag)
 {
   DamageByFacet facets;
   for (std::size_t k = 0; k < form.segments().size(); ++k)
@@ -31,11 +33,10 @@ DamageByFacet damage_by_facet(const contact::NitscheForm<dim>& form, std::span<c
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (segment.slave.facet.tag != tag) continue;
     FacetDamage& facet = facets[{segment.slave.facet.cell, segment.slave.facet.local}];
-    const std::vector<contact::ContactState<dim>> states = form.contact_states(u, k);
     const auto points = form.contact_points(k);
-    for (std::size_t q = 0; q < states.size(); ++q)
+    for (std::size_t q = 0; q < points.size(); ++q)
     {
-      const double damage = states[q].state.damage;
+      const double damage = states[k][q].state.damage;
       facet.measure += points[q].weight;
       if (damage > 0 && damage < 1) facet.softened += points[q].weight;
       facet.is_broken = facet.is_broken && damage >= 1;
@@ -85,24 +86,22 @@ std::optional<double> process_zone(const mesh::Mesh<dim>& mesh, const DamageByFa
 }  // namespace
 
 template <int dim>
-DamageFacts damage_facts(const contact::NitscheForm<dim>& form, std::span<const double> u, int tag)
+DamageFacts damage_facts(const contact::NitscheForm<dim>& form, std::span<const SegmentStates<dim>> states,
+                         int tag)
 {
   DamageFacts facts;
-  const problem::Contact* contact = form.problem().contact(tag);
-  const double slope = contact ? problem::softening_slope(contact->law) : 0;
-  if (slope == 0) return facts;
-  for (std::size_t k = 0; k < form.segments().size(); ++k)
-  {
-    const contact::ContactSegment<dim>& segment = form.segments()[k];
-    if (segment.slave.facet.tag != tag) continue;
-    if (facts.softening.slope > 0 && segment.gamma >= facts.softening.gamma) continue;
-    facts.softening = {slope, segment.gamma, segment.h, place<dim>(form.contact_points(k)[0].x)};
-  }
-  facts.process_zone = process_zone(form.space().mesh(), damage_by_facet(form, u, tag));
+  const contact::SofteningMargin margin = contact::softening_margin(form, tag);
+  if (margin.ratio == 0) return facts;
+  const contact::ContactSegment<dim>& segment = form.segments()[margin.segment];
+  facts.softening = {.slope = problem::softening_slope(segment.contact->law),
+                     .gamma = segment.gamma,
+                     .h = segment.h,
+                     .where = place<dim>(form.contact_points(margin.segment)[0].x)};
+  facts.process_zone = process_zone(form.space().mesh(), damage_by_facet(form, states, tag));
   return facts;
 }
 
-template DamageFacts damage_facts(const contact::NitscheForm<2>&, std::span<const double>, int);
-template DamageFacts damage_facts(const contact::NitscheForm<3>&, std::span<const double>, int);
+template DamageFacts damage_facts(const contact::NitscheForm<2>&, std::span<const SegmentStates<2>>, int);
+template DamageFacts damage_facts(const contact::NitscheForm<3>&, std::span<const SegmentStates<3>>, int);
 
 }  // namespace tribound::doctor

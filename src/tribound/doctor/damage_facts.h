@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/doctor/place.h"
@@ -33,9 +34,13 @@ struct DamageFacts
   std::optional<double> process_zone;
 };
 
-/// Of the boundary `tag` under the displacement `u`.
+/// The states at the points of a segment.
 template <int dim>
-[[nodiscard]] DamageFacts damage_facts(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                       int tag);
+using SegmentStates = std::vector<contact::ContactState<dim>>;
+
+/// Of the boundary `tag`, with the states on every segment of the form.
+template <int dim>
+[[nodiscard]] DamageFacts damage_facts(const contact::NitscheForm<dim>& form,
+                                       std::span<const SegmentStates<dim>> states, int tag);
 
 }  // namespace tribound::doctor

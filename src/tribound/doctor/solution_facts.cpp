@@ -160,6 +160,8 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
   std::map<int, ContactOutcome> outcomes;  // by boundary
   std::vector<FacetOutcome<dim>> facets;
   facets.reserve(form.segments().size());
+  std::vector<SegmentStates<dim>> states;
+  states.reserve(form.segments().size());
   for (int k = 0; k < static_cast<int>(form.segments().size()); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
@@ -169,8 +171,8 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
     const problem::FrictionCone friction = cone(segment.contact->law);
     outcome.has_friction = friction.resists_sliding() && !friction.is_bonded;
     if (friction.coefficient > 0) outcome.coefficient = friction.coefficient;
-    facets.push_back(
-        add_facet<dim>(form.contact_points(k), segment.measure, form.contact_states(u, k), outcome));
+    states.push_back(form.contact_states(u, k));
+    facets.push_back(add_facet<dim>(form.contact_points(k), segment.measure, states.back(), outcome));
   }
   const std::vector<std::array<int, 2>> pairs = contact_neighbours(form);
   add_zigzag<dim>(form, facets, pairs, outcomes);
@@ -180,7 +182,7 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
   for (auto& [tag, outcome] : outcomes)
   {
     if (cone(form.problem().contact(tag)->law).is_tied) continue;
-    outcome.damage = damage_facts(form, u, tag);
+    outcome.damage = damage_facts<dim>(form, states, tag);
     result.push_back(std::move(outcome));
   }
   return result;

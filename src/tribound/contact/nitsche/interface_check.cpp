@@ -14,11 +14,12 @@ namespace tribound::contact
 {
 
 template <int dim>
-SofteningMargin softening_margin(const NitscheForm<dim>& form)
+SofteningMargin softening_margin(const NitscheForm<dim>& form, std::optional<int> tag)
 {
   SofteningMargin margin;
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
+    if (tag && form.segments()[k].slave.facet.tag != *tag) continue;
     const double slope = problem::softening_slope(form.segments()[k].contact->law);
     if (slope > margin.ratio * form.segments()[k].gamma) margin = {slope / form.segments()[k].gamma, k};
   }
@@ -175,8 +176,8 @@ void check_interfaces(const NitscheForm<dim>& form)
   check_interface_data(form);
 }
 
-template SofteningMargin softening_margin(const NitscheForm<2>&);
-template SofteningMargin softening_margin(const NitscheForm<3>&);
+template SofteningMargin softening_margin(const NitscheForm<2>&, std::optional<int>);
+template SofteningMargin softening_margin(const NitscheForm<3>&, std::optional<int>);
 template std::shared_ptr<const ContactHistory<2>> history_at_first(const NitscheForm<2>&);
 template std::shared_ptr<const ContactHistory<3>> history_at_first(const NitscheForm<3>&);
 template void check_interface_data(const NitscheForm<2>&);

@@ -4,6 +4,7 @@
 /// What interfaces with a bond ask of mesh and data (method section 12.1).
 
 #include <memory>
+#include <optional>
 
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -17,8 +18,9 @@ struct SofteningMargin
   std::size_t segment = 0;  ///< number of the segment, on this process
 };
 
+/// Over the segments of this process, those of the boundary `tag` alone where it is given.
 template <int dim>
-[[nodiscard]] SofteningMargin softening_margin(const NitscheForm<dim>& form);
+[[nodiscard]] SofteningMargin softening_margin(const NitscheForm<dim>& form, std::optional<int> tag = {});
 
 /// What the contact points remember before the first step: fresh, but for bonds where Contact::broken is not
 /// 0. Null where there are none. All ranks together.
