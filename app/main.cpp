@@ -55,7 +55,7 @@ struct Arguments
   bool json = false;               ///< of check
   std::string start = "block";     ///< of init: the case to start from
   std::string directory;           ///< of init
-  std::string restart;             ///< of run: the directory of results of another one
+  std::string restart;             ///< of run: the results of another one, or a checkpoint there
 };
 
 /// The text of a file that the user names.
@@ -206,9 +206,11 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
     command->group(case_commands);
     add_case_arguments(*command, arguments)->required(command != run);
   }
-  run->add_option("--restart", arguments.restart,
-                  "Go on with a run from the checkpoint in its directory of results, in place of a case")
-      ->type_name("DIRECTORY");
+  run->add_option(
+         "--restart", arguments.restart,
+         "Go on with a run from the checkpoint in its directory of results, or another one there, in place "
+         "of a case")
+      ->type_name("PLACE");
   CLI::App* sweep = app.add_subcommand("sweep", "Solve a case with other values of some of its keys");
   sweep->group(case_commands);
   describe_sweep(*sweep, arguments);

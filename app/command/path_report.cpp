@@ -10,6 +10,7 @@
 #include "app/program_facts.h"
 #include "app/shared_file.h"
 #include "tribound/io/fields/vtu.h"
+#include "tribound/io/state/path_checkpoint.h"
 
 namespace tribound::app
 {
@@ -20,14 +21,20 @@ namespace
 /// Seconds of work that a program which is killed may lose.
 constexpr double most_lost = 1.0;
 
-constexpr const char* unfinished = "unfinished_pass";
+/// Whether a checkpoint is that of a pass after the first that was not complete.
+bool is_of_unfinished_pass(const std::filesystem::path& file)
+{
+  const std::filesystem::path directory = file.parent_path();
+  return directory.filename() == unfinished_pass ||
+         (file.filename() == io::checkpoint_name && std::filesystem::exists(directory / unfinished_pass));
+}
 
 }  // namespace
 
 template <int dim>
 PathReport<dim>::PathReport(const case_file::Config& config, const problem::Problem<dim>& problem,
                             const adapt::Grid<dim>& first, std::vector<bool> slides, Clock::time_point begin,
-                            Printed printed)
+                            Printed printed, const Restart* restart)
     : output_(config.output),
       method_(config.method),
       ranks_(first.mesh.ranks()),
@@ -39,24 +46,35 @@ PathReport<dim>::PathReport(const case_file::Config& config, const problem::Prob
       watch_(config.history->watch),
       in_work_(0, page_template_)
 {
-  ranks_.on_first([&] { directory_ = take_directory(config, false); });
+  ranks_.on_first([&] { directory_ = take_directory(config, restart != nullptr); });
   record_ = first_record(config, problem, first.space, fem::dirichlet<dim>(problem, first.space), begin);
+  if (restart)
+  {
+    record_.earlier = restart->facts.earlier;
+    is_resumed_ = true;
+    is_apart_ = ranks_.on_first([&] { return is_of_unfinished_pass(restart->file); });
+  }
   if (printed_ == Printed::everything) print_header(record_.facts, record_.mesh);
 }
 
 template <int dim>
 std::filesystem::path PathReport<dim>::fields_directory() const
 {
-  return in_work_.number == 0 ? output_.directory : output_.directory / unfinished;
+  return is_apart_ ? output_.directory / unfinished_pass : output_.directory;
 }
 
 template <int dim>
 void PathReport<dim>::begin(int pass, const adapt::Grid<dim>& grid)
 {
-  if (pass > 0) before_.emplace(record_, std::move(in_work_));
+  if (!std::exchange(is_resumed_, false) && pass > 0)
+  {
+    before_.emplace(record_, std::move(in_work_));
+    io::drop_steps(record_.earlier);
+    is_apart_ = true;
+    ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
+  }
   record_.levels.clear();
   in_work_ = Pass(pass, page_template_);
-  if (pass > 0) ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
   if (printed_ == Printed::everything)
     print_pass(pass, grid.mesh.n_global_cells(), grid.space.n_global_dofs());
 }
@@ -66,9 +84,8 @@ io::LevelRecord PathReport<dim>::record_of(const adapt::LoadStep<dim>& step,
                                            const adapt::LevelView<dim>& view) const
 {
   io::LevelRecord record = io::level_record<dim>(view, moment_about_, slides_);
-  const std::vector<io::LevelRecord>& steps = record_.levels;
-  record.load_step =
-      io::load_step_record<dim>(step, steps.empty() ? nullptr : &*steps.back().load_step, watch_);
+  const std::optional<io::LoadStepRecord> before = io::last_load_step(record_);
+  record.load_step = io::load_step_record<dim>(step, before ? &*before : nullptr, watch_);
   return record;
 }
 
@@ -99,7 +116,7 @@ void PathReport<dim>::add(const adapt::LoadStep<dim>& step)
   const double cpu_now = cpu_seconds();
   times.level_cpu = cpu_now - std::exchange(cpu_before_, cpu_now);
   if (printed_ == Printed::everything) print_level(record_.levels.back());
-  if (in_work_.number > 0 || !ranks_.first_says(seconds_since(written_) > most_lost)) return;
+  if (is_apart_ || !ranks_.first_says(seconds_since(written_) > most_lost)) return;
   write_record();
 }
 
@@ -117,6 +134,22 @@ void PathReport<dim>::write_fields()
 }
 
 template <int dim>
+void PathReport<dim>::write_checkpoint(const adapt::ReplayState<dim>& state)
+{
+  const KeptLevel<dim>& last = *in_work_.last;
+  io::CheckpointFacts facts{.dimension = dim,
+                            .degree = method_.degree,
+                            .case_text = record_.effective.text,
+                            .earlier = io::as_earlier(record_, in_work_.number, state.worst_step)};
+  const io::CheckpointFields fields = io::to_checkpoint(state, facts);
+  const auto write = [&](const std::filesystem::path& file)
+  { io::write_checkpoint<dim>(file, facts, last.discrete->space, fields); };
+  write(output_.directory / io::checkpoint_name);
+  if (output_.checkpoints == case_file::Checkpoints::all)
+    write(fields_directory() / io::checkpoint_name_of(last.number));
+}
+
+template <int dim>
 void PathReport<dim>::note(const adapt::PathEnd& end)
 {
   record_.path = end;
@@ -125,14 +158,13 @@ void PathReport<dim>::note(const adapt::PathEnd& end)
 template <int dim>
 void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
 {
-  io::LevelRecord& record = record_.passes.emplace_back(record_.levels.at(pass.worst.number - 1));
-  record.level = pass.number;
-  record.load_step_number = pass.worst.number;
+  io::complete_pass(record_, pass.number, pass.worst);
   ranks_.on_first(
       [&]
       {
-        if (pass.number > 0) io::move_series(fields_directory(), output_.directory);
+        if (is_apart_) io::move_series(fields_directory(), output_.directory);
       });
+  is_apart_ = false;
   before_.reset();
   record_.status = pass.verdict.status;
   record_.reason = pass.verdict.reason;
@@ -140,10 +172,16 @@ void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
 }
 
 template <int dim>
-void PathReport<dim>::give_up()
+bool PathReport<dim>::give_up()
 {
+  if (!is_apart_) return false;
   ranks_.on_first([&] { io::remove_series_directory(fields_directory()); });
-  std::tie(record_, in_work_) = *std::exchange(before_, std::nullopt);
+  is_apart_ = false;
+  if (before_)
+    std::tie(record_, in_work_) = *std::exchange(before_, std::nullopt);
+  else
+    directory_holds_ = true;
+  return true;
 }
 
 template <int dim>
@@ -156,7 +194,8 @@ void PathReport<dim>::write_record()
 template <int dim>
 void PathReport<dim>::write_what_holds()
 {
-  if (before_) give_up();
+  give_up();
+  if (directory_holds_) return;
   write_record();
   ranks_.together(
       [&]
@@ -182,6 +221,7 @@ ExitCode PathReport<dim>::close(const certify::Verdict& verdict)
 template <int dim>
 void PathReport<dim>::fail(const std::string& reason)
 {
+  if (!record_.earlier.steps.empty() && record_.levels.empty()) return;  // what the run before has left holds
   record_.status = certify::RunStatus::failed;
   record_.reason = reason;
   write_what_holds();

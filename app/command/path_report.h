@@ -14,9 +14,13 @@
 #include "app/command/run.h"
 #include "app/page/report_page.h"
 #include "tribound/adapt/replay.h"
+#include "tribound/io/state/checkpoint.h"
 
 namespace tribound::app
 {
+
+/// In the directory of results: the files of a pass in work, after the first.
+inline constexpr const char* unfinished_pass = "unfinished_pass";
 
 /// Keeps the record of a run over a history and writes its files: during the first pass step by step, so that
 /// what there is holds should the program be killed, later passes in the place of the one before once they
@@ -27,19 +31,22 @@ class PathReport
 {
  public:
   /// `slides`: doctor::slides_as_a_whole(); the run began at `begin`. Removes what an earlier run has left in
-  /// the directory. Throws InputError where nothing can be written.
+  /// the directory, unless this one goes on with it. Throws InputError where nothing can
+  /// be written.
   PathReport(const case_file::Config& config, const problem::Problem<dim>& problem,
              const adapt::Grid<dim>& first, std::vector<bool> slides, Clock::time_point begin,
-             Printed printed);
+             Printed printed, const Restart* restart = nullptr);
 
   void begin(int pass, const adapt::Grid<dim>& grid);
   /// Throws WriteError.
   void add(const adapt::LoadStep<dim>& step);
+  /// What a run needs to go on from there. Throws WriteError.
+  void write_checkpoint(const adapt::ReplayState<dim>& state);
   /// What came of the path of the pass in work.
   void note(const adapt::PathEnd& end);
   void complete(const adapt::PassView<dim>& pass);
-  /// The pass in work leads nowhere: the one before is what holds.
-  void give_up();
+  /// The pass in work leads nowhere: the one before is what holds, where it is there.
+  bool give_up();
   /// The last word. Throws WriteError.
   [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
   /// The files of the steps so far, where the run ends by an exception.
@@ -79,6 +86,9 @@ class PathReport
   const std::vector<adapt::Watch>& watch_;
   Pass in_work_;
   std::optional<std::pair<io::RunRecord, Pass>> before_;  ///< the last complete one, while another is in work
+  bool is_resumed_ = false;                               ///< until the first pass begins
+  bool is_apart_ = false;         ///< whether the pass in work is written apart until it is complete
+  bool directory_holds_ = false;  ///< what the run before this one has left there
   Clock::time_point written_ = Clock::now();
   double cpu_before_ = cpu_seconds();
 };

@@ -66,7 +66,7 @@ std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
                                                 std::shared_ptr<const mesh::Mesh<dim>> whole)
 {
   contact::DataAccuracy accuracy;
-  if (restart) accuracy.absolute = restart->start.accuracy;
+  if (restart) accuracy.absolute = restart->facts.start.accuracy;
   auto first =
       std::make_unique<adapt::Discretisation<dim>>(std::move(mesh), problem, config.method, accuracy);
   if (first->mesh.ranks().any(stop))
@@ -76,7 +76,7 @@ std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
                                                 std::move(first), &stop, std::move(whole));
   std::vector<double> u = fem::from_cell_values<dim>(first->space, restart->cells, restart->values);
   return std::make_unique<adapt::Levels<dim>>(problem, config.method, config.adapt.tolerance,
-                                              std::move(first), restart->start, std::move(u), &stop,
+                                              std::move(first), restart->facts.start, std::move(u), &stop,
                                               std::move(whole));
 }
 
@@ -92,12 +92,12 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   const std::vector<bool> slides = slides_as_a_whole<dim>(problem, mesh, whole.get());
   if (config.history)
     return run_history<dim>(config, problem, std::move(mesh), slides, stop, progress, std::move(whole),
-                            begin);
+                            restart, begin);
   const std::unique_ptr<adapt::Levels<dim>> levels =
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
   RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
                         progress.quiet() ? Printed::verdict : Printed::everything,
-                        restart ? &restart->earlier : nullptr);
+                        restart ? &restart->facts.earlier : nullptr);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)
@@ -108,7 +108,7 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
                        },
                        [&](const adapt::Levels<dim>& next)
                        {
-                         if (!config.output.checkpoint) return;
+                         if (config.output.checkpoints == case_file::Checkpoints::none) return;
                          try
                          {
                            report.write_checkpoint(next);

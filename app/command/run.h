@@ -3,6 +3,7 @@
 /// @file run.h
 /// The commands of the program on one case.
 
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -10,7 +11,7 @@
 #include "tribound/adapt/levels.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/config.h"
-#include "tribound/io/record/report.h"
+#include "tribound/io/state/checkpoint.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::app
@@ -30,10 +31,11 @@ enum class ExitCode
 /// A run that goes on where another one was.
 struct Restart
 {
-  adapt::LevelStart start;
+  io::CheckpointFacts facts;
   std::vector<Index> cells;    ///< of the mesh, in the order of their values
-  std::vector<double> values;  ///< of the solution at the nodes of the cells
-  io::EarlierLevels earlier;
+  std::vector<double> values;  ///< as io::CheckpointCells has them
+  std::vector<double> points;
+  std::filesystem::path file;
 };
 
 /// Runs the adaptive algorithm on the case and writes the results, level by level; on several ranks all call

@@ -1,10 +1,13 @@
 #include "app/command/run_history.h"
 
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "app/command/path_report.h"
 #include "tribound/adapt/replay.h"
 #include "tribound/base/rank_failure.h"
+#include "tribound/io/state/path_checkpoint.h"
 
 namespace tribound::app
 {
@@ -13,7 +16,7 @@ template <int dim>
 ExitCode run_history(const case_file::Config& config, const problem::Problem<dim>& problem,
                      mesh::Mesh<dim> mesh, std::vector<bool> slides, const std::atomic<bool>& stop,
                      const Progress& progress, std::shared_ptr<const mesh::Mesh<dim>> whole,
-                     Clock::time_point begin)
+                     const std::optional<Restart>& restart, Clock::time_point begin)
 {
   const adapt::PathOptions options{.tolerance = config.adapt.tolerance};
   auto path = std::make_unique<adapt::LoadPath<dim>>(problem, config.method, options, std::move(mesh), &stop,
@@ -21,18 +24,27 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
   path->prepare(config.history->program.targets.front());
   const Ranks ranks = path->grid().mesh.ranks();
   PathReport<dim> report(config, problem, path->grid(), std::move(slides), begin,
-                         progress.quiet() ? Printed::verdict : Printed::everything);
+                         progress.quiet() ? Printed::verdict : Printed::everything,
+                         restart ? &*restart : nullptr);
+  std::optional<adapt::ReplayState<dim>> from;
+  if (restart)
+    from = io::from_checkpoint<dim>(restart->facts, path->grid().space, restart->cells, restart->values,
+                                    restart->points);
+  const bool leaves_states = config.output.checkpoints != case_file::Checkpoints::none;
   const adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
   const adapt::ReplayObserver<dim> observer{
       .newton = [&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
       .begins = [&](int pass, const adapt::Grid<dim>& grid) { report.begin(pass, grid); },
       .step = [&](const adapt::LoadStep<dim>& step) { report.add(step); },
+      .state = leaves_states ? [&](const adapt::ReplayState<dim>& state) { report.write_checkpoint(state); }
+                             : std::function<void(const adapt::ReplayState<dim>&)>(),
       .path_end = [&](const adapt::PathEnd& end) { report.note(end); },
       .complete = [&](const adapt::PassView<dim>& pass) { report.complete(pass); },
-      .given_up = [&] { report.give_up(); }};
+      .given_up = [&] { return report.give_up(); }};
   try
   {
-    return report.close(adapt::replay<dim>(std::move(path), config.history->program, strategy, observer));
+    return report.close(adapt::replay<dim>(std::move(path), config.history->program, strategy, observer,
+                                           from ? &*from : nullptr));
   }
   catch (const SolveError& error)
   {
@@ -50,9 +62,11 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
 
 template ExitCode run_history(const case_file::Config&, const problem::Problem<2>&, mesh::Mesh<2>,
                               std::vector<bool>, const std::atomic<bool>&, const Progress&,
-                              std::shared_ptr<const mesh::Mesh<2>>, Clock::time_point);
+                              std::shared_ptr<const mesh::Mesh<2>>, const std::optional<Restart>&,
+                              Clock::time_point);
 template ExitCode run_history(const case_file::Config&, const problem::Problem<3>&, mesh::Mesh<3>,
                               std::vector<bool>, const std::atomic<bool>&, const Progress&,
-                              std::shared_ptr<const mesh::Mesh<3>>, Clock::time_point);
+                              std::shared_ptr<const mesh::Mesh<3>>, const std::optional<Restart>&,
+                              Clock::time_point);
 
 }  // namespace tribound::app

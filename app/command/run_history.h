@@ -18,6 +18,7 @@ template <int dim>
 [[nodiscard]] ExitCode run_history(const case_file::Config& config, const problem::Problem<dim>& problem,
                                    mesh::Mesh<dim> mesh, std::vector<bool> slides,
                                    const std::atomic<bool>& stop, const Progress& progress,
-                                   std::shared_ptr<const mesh::Mesh<dim>> whole, Clock::time_point begin);
+                                   std::shared_ptr<const mesh::Mesh<dim>> whole,
+                                   const std::optional<Restart>& restart, Clock::time_point begin);
 
 }  // namespace tribound::app

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "app/command/interrupt.h"
+#include "app/command/path_report.h"
 #include "app/console/console.h"
 #include "tribound/algebra/blas.h"
 #include "tribound/algebra/petsc.h"
@@ -73,7 +74,7 @@ struct BoxSource
 /// The mesh of a run that begins, and that of one that goes on.
 template <int dim>
 ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::optional<mesh::AnyMesh> whole,
-                  const std::optional<io::CheckpointFacts>& checkpoint, const std::string& directory,
+                  const std::optional<io::CheckpointFacts>& checkpoint, const std::filesystem::path& file,
                   const Progress& progress)
 {
   using Whole = mesh::Mesh<dim>;
@@ -96,19 +97,26 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
                                        checkpoint->earlier.first_cells),
                            "restart with the mesh that the run began with");
       });
-  io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(directory, *checkpoint, ranks);
-  const int n_values = dim * fem::LagrangeBasis<dim>(checkpoint->degree).n_nodes();
-  mesh::Balanced<dim> balanced =
-      mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, n_values);
-  return run(
-      config, std::move(balanced.mesh), progress, std::move(first),
-      Restart{checkpoint->start, std::move(balanced.cells), std::move(balanced.values), checkpoint->earlier});
+  io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(file, *checkpoint, ranks);
+  mesh::Balanced<dim> balanced = mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values,
+                                                    io::n_values_of_cell(*checkpoint));
+  return run(config, std::move(balanced.mesh), progress, std::move(first),
+             Restart{*checkpoint, std::move(balanced.cells), std::move(balanced.values),
+                     std::move(read.points), file});
+}
+
+/// What is to be gone on with: a directory of results with its checkpoint, or one of several there.
+std::filesystem::path checkpoint_file(const std::filesystem::path& restart)
+{
+  return std::filesystem::is_directory(restart) ? restart / io::checkpoint_name : restart;
 }
 
 /// The case of a checkpoint, whose results go on in the directory.
 case_file::Config restarted_config(const RunRequest& request, const io::CheckpointFacts& checkpoint)
 {
-  const std::filesystem::path directory = request.restart;
+  const std::filesystem::path file = checkpoint_file(request.restart);
+  std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
+  if (directory.filename() == unfinished_pass) directory /= "..";
   // Before the others: paths of the effective case lead from there.
   std::vector<std::string> overrides = {fmt::format("output.directory='{}'", directory.string())};
   overrides.insert(overrides.end(), request.overrides.begin(), request.overrides.end());
@@ -119,6 +127,12 @@ case_file::Config restarted_config(const RunRequest& request, const io::Checkpoi
                      fmt::format("degree is {}, but that of the checkpoint is {}", config.method.degree,
                                  checkpoint.degree),
                      "a run goes on with its degree");
+  if (config.history.has_value() == checkpoint.path.empty())
+    throw InputError({.file = config.file},
+                     checkpoint.path.empty()
+                         ? "goes over load steps, but the run of the checkpoint did not"
+                         : "has no load steps, but the run of the checkpoint goes over some",
+                     "a run goes on with [history], or without");
   return config;
 }
 
@@ -126,7 +140,8 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
 {
   const Progress progress(request.quiet || !ranks.is_first());
   std::optional<io::CheckpointFacts> checkpoint;
-  if (!request.restart.empty()) checkpoint = io::read_checkpoint_facts(request.restart, ranks);
+  if (!request.restart.empty())
+    checkpoint = io::read_checkpoint_facts(checkpoint_file(request.restart), ranks);
   const case_file::Config config = ranks.together(
       [&]
       {
@@ -146,7 +161,8 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   const auto run_in = is_plane ? run_part<2> : run_part<3>;
-  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, request.restart, progress);
+  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, checkpoint_file(request.restart),
+                progress);
 }
 
 /// One for each of several processes, where the environment does not say how many.

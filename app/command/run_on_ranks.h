@@ -23,11 +23,11 @@ namespace tribound::app
 /// Tells it on stderr.
 int report(ExitCode code, const std::string& message);
 
-/// What is to be run: a case file, or what a checkpoint in a directory of results says.
+/// What is to be run: a case file, or what a checkpoint says.
 struct RunRequest
 {
   std::string case_file;
-  std::string restart;  ///< the directory; empty: the case file
+  std::string restart;  ///< a directory of results, or a checkpoint in one; empty: the case file
   std::vector<std::string> overrides;
   bool quiet = false;
 };

@@ -223,8 +223,9 @@ void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next)
   rethrow(finish_writing());  // the files of the level before come first
   const fem::LagrangeSpace<dim>& space = next.discrete().space;
   io::write_checkpoint<dim>(
-      output_.directory, {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_)},
-      space, next.start_displacement());
+      output_.directory / io::checkpoint_name,
+      {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_), {}}, space,
+      {.functions = {next.start_displacement()}});
 }
 
 template <int dim>

@@ -88,7 +88,7 @@ io::Json tables_json(const io::RunRecord& run, const std::string& contact)
   io::Json tables{{"convergence.csv", table(io::convergence_csv(run))},
                   {"newton.csv", table(io::newton_csv(run))},
                   {"contact.csv", table(contact)}};
-  if (io::has_history(run)) tables["history.csv"] = table(io::history_csv(run.levels));
+  if (io::has_history(run)) tables["history.csv"] = table(io::history_csv(run));
   return tables;
 }
 

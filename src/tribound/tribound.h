@@ -96,6 +96,7 @@
 #include "tribound/adapt/rate.h"
 #include "tribound/adapt/regularisation.h"
 #include "tribound/adapt/replay.h"
+#include "tribound/adapt/saved_path.h"
 
 // The results.
 #include "tribound/io/fields/contact_line.h"
@@ -107,3 +108,4 @@
 #include "tribound/io/record/solution_figures.h"
 #include "tribound/io/record/tables.h"
 #include "tribound/io/state/checkpoint.h"
+#include "tribound/io/state/path_checkpoint.h"

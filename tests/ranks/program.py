@@ -97,33 +97,81 @@ def the_same_as_one(name, *arguments):
         expect(f"{name} {n}", lines[0] == lines[1], "contact.csv", len(lines[0]), len(lines[1]))
 
 
+def load_steps(name, n):
+    with open(out(name, n) / "history.csv", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def damage(name, n):
+    with open(out(name, n) / "contact.csv", encoding="utf-8") as file:
+        return sum(float(row["weight"]) * float(row["damage"]) for row in csv.DictReader(file))
+
+
+def expect_same_steps(name, n, also=()):
+    rows, alone = load_steps(name, n), load_steps(name, 1)
+    expect(f"{name} {n}", len(rows) == len(alone) > 1, len(rows), len(alone))
+    for found, expected in zip(rows, alone):
+        scale = max(abs(float(expected["work"])), abs(float(expected["total_sharp"])), float(expected["energy"]))
+        for key, value in expected.items():
+            # Points at which neither side presses, or friction is just used up, are told apart by rounding.
+            if key.startswith("t_") or key in ("opened", "slipping", "newton_steps", *also) or value == found[key]:
+                continue
+            expect(f"{name} {n} step {expected['step']} {key}",
+                   key not in COUNTS and abs(float(value) - float(found[key])) <= 1e-7 * scale + 1e-9, value, found[key])
+    expect(f"{name} {n}", abs(damage(name, n) - damage(name, 1)) <= 1e-8 * damage(name, 1), damage(name, n), damage(name, 1))
+    expect(f"{name} {n}", not (out(name, n) / "unfinished_pass").exists(), "unfinished_pass")
+
+
 def load_steps_the_same_as_one(name, *arguments):
-    def steps(n):
-        return list(csv.DictReader((out(name, n) / "history.csv").open()))
-
-    def damage(n):
-        rows = csv.DictReader((out(name, n) / "contact.csv").open())
-        return sum(float(row["weight"]) * float(row["damage"]) for row in rows)
-
     for n in (1, 2, 3):
         code = run_case(name, n, *arguments)
         expect(f"{name} {n}", code.returncode in (0, 3), code.returncode, code.stderr)
-        expect(f"{name} {n}", len(steps(n)) == len(steps(1)) > 1, len(steps(n)))
-        for row, alone in zip(steps(n), steps(1)):
-            scale = max(abs(float(alone["work"])), abs(float(alone["total_sharp"])), float(alone["energy"]))
-            for key, value in alone.items():
-                # Points at which neither side presses, or friction is just used up, are told apart by rounding.
-                if key.startswith("t_") or key in ("opened", "slipping", "newton_steps") or value == row[key]:
-                    continue
-                expect(f"{name} {n} step {alone['step']} {key}", key not in COUNTS and abs(float(value) - float(row[key])) <= 1e-7 * scale + 1e-9,
-                       value, row[key])
-        number = int(steps(n)[-1]["step"])
+        expect_same_steps(name, n)
+        number = int(load_steps(name, n)[-1]["step"])
         pieces = [out(name, n) / f"step_{number:03}" / f"part_{rank:04}.vtu" for rank in range(n)] if n > 1 else []
         files = [out(name, n) / file for file in ("step_001.pvtu" if n > 1 else "step_001.vtu", f"contact_{number:03}.vtu", "series.pvd")]
         for file in pieces + files:
             expect(f"{name} {n}", file.is_file(), file)
-        expect(f"{name} {n}", not (out(name, n) / "unfinished_pass").exists(), "unfinished_pass")
-        expect(f"{name} {n}", abs(damage(n) - damage(1)) <= 1e-8 * damage(1), damage(n), damage(1))
+
+
+def load_steps_go_on(name, step, *arguments):
+    """From a load step of a run by two that has ended, and of one that was killed, by one to three."""
+    case = [*arguments, "--set", "output.checkpoint='all'"]
+    for n in (1, 2):
+        code = run_case(name, n, *case)
+        expect(f"{name} {n}", code.returncode in (0, 3), code.returncode, code.stderr)
+    whole = json.loads((out(name, 1) / "certificate.json").read_text())
+    for n in (1, 2, 3):
+        shutil.copytree(out(name, 2), out(name, n + 10))
+        result = run(n, PROGRAM, "run", "-q", "--restart", str(out(name, n + 10) / f"checkpoint_{step:03}.h5"))
+        expect(f"{name} on {n}", result.returncode in (0, 3), result.returncode, result.stderr)
+        expect_same_steps(name, n + 10)
+        expect(f"{name} on {n}", len(table(name, n + 10)) == len(table(name, 1)), len(table(name, n + 10)))
+        certificate = json.loads((out(name, n + 10) / "certificate.json").read_text())
+        for key in ("status", "reason", "path", "contact", "bodies", "balance", "not_covered"):
+            expect(f"{name} on {n} {key}", alike(whole.get(key), certificate.get(key)), whole.get(key), certificate.get(key))
+        for key in ("levels", "steps"):
+            expect(f"{name} on {n}", len(whole[key]) == len(certificate[key]), key)
+
+
+def killed_load_steps_go_on(name, *arguments):
+    """In the middle of a pass after the first: the one before is there until it is complete."""
+    case = [*arguments, "--set", "output.checkpoint='all'"]
+    run_case(name, 1, *case)
+    out(name, 2).mkdir(parents=True, exist_ok=True)
+    process = subprocess.Popen(command(2, PROGRAM, "run", "-q", *case, "--set", f"output.directory='{out(name, 2)}'"), env=ENVIRONMENT,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    end = time.monotonic() + TIME_LIMIT
+    while not (out(name, 2) / "unfinished_pass" / "checkpoint_002.h5").exists() and time.monotonic() < end and process.poll() is None:
+        time.sleep(0.002)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    expect(f"{name} before", (out(name, 2) / "unfinished_pass").exists() and len(json.loads((out(name, 2) / "certificate.json").read_text())["levels"]) > 0)
+    for n in (1, 3):
+        shutil.copytree(out(name, 2), out(name, n + 10))
+        result = run(n, PROGRAM, "run", "-q", "--restart", str(out(name, n + 10)))
+        expect(f"{name} on {n}", result.returncode in (0, 3), result.returncode, result.stderr)
+        expect_same_steps(name, n + 10)
 
 
 def bad_input_is_told_once():
@@ -248,6 +296,15 @@ the_same_as_one("rock3d", f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "ad
 the_same_as_one("triangles", f"{CASES}/on_triangles.toml")
 the_same_as_one("order2", f"{CASES}/order2.toml")
 the_same_as_one("order2_pair", f"{CASES}/order2_pair.toml")
+DAM_TO_FAILURE = [f"{EXAMPLES}/20_dam_to_failure/case.toml", "--set", "history.damage_step=6", "--set", "newton.tolerance=1e-12"]
+load_steps_go_on("past_the_peak", 7, *DAM_TO_FAILURE, "--set", "adapt.max_levels=0", "--set", "boundary.base.interface.water.crack=true", "--set",
+                 "history.steps=[0, 40, 70, 80]")
+load_steps_go_on("second_pass", 3, f"{EXAMPLES}/18_shear_cycle/case.toml", "--set", "adapt.max_levels=1", "--set", "newton.tolerance=1e-12")
+load_steps_go_on("joint_of_two", 2, f"{EXAMPLES}/22_contraction_joint/case.toml")
+load_steps_go_on("rock3d_in_steps", 2, f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "degree=1", "--set", "adapt.max_levels=0", "--set",
+                 "solver.method=direct", "--set", "history.steps=[30, 45, 50]", "--set", "newton.tolerance=1e-12", "--set",
+                 "boundary.upstream.pressure='1000*9.81*1e-6*max(0, t - y)'", "--set", "boundary.reservoir.pressure='1000*9.81*1e-6*t'")
+killed_load_steps_go_on("killed_steps", *DAM_TO_FAILURE, "--set", "adapt.max_levels=1")
 bad_input_is_told_once()
 commands_for_one_process()
 interrupted()

@@ -65,8 +65,8 @@ Replayed replayed(const problem::ContactLaw& law, const adapt::AdaptOptions& opt
         stop = ++steps >= steps_before_stop;
       },
       .complete = [&](const adapt::PassView<dim>& pass)
-      { result.passes.back().worst = pass.worst.level.estimate.total_sharp; },
-      .given_up = [&] { ++result.given_up; }};
+      { result.passes.back().worst = pass.bound.total_sharp; },
+      .given_up = [&] { return ++result.given_up > 0; }};
   result.verdict = adapt::replay<dim>(
       std::make_unique<adapt::LoadPath<dim>>(
           problem, method, adapt::PathOptions{.tolerance = options.tolerance}, std::move(mesh), &stop),

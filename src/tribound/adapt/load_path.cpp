@@ -29,6 +29,17 @@ void put_before(std::span<const solve::NewtonStep> first, std::vector<CertifiedS
   steps = std::move(all);
 }
 
+/// LoadStep::forces; `contact_load`: (t, phi_i)_C.
+template <int dim>
+std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                              std::vector<double> contact_load)
+{
+  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
+  std::vector<double> forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
+  for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= contact_load[i];
+  return forces;
+}
+
 }  // namespace
 
 template <int dim>
@@ -192,23 +203,29 @@ certify::Verdict LoadPath<dim>::judge(const CertifiedLevel<dim>& level) const
 template <int dim>
 void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
 {
-  const contact::NitscheForm<dim>& form = step->at->discrete.form;
   const CertifiedLevel<dim>& level = step->level;
   position_.largest_sigma = std::max(position_.largest_sigma, level.norms.sigma);
   step->largest_sigma = position_.largest_sigma;
   step->verdict = judge(level);
   for (std::size_t i = 0; i < position_.tips.size(); ++i) position_.tips[i] = step->crack_tips[i].distance;
 
-  std::vector<problem::InterfaceState<dim>> states;
-  states.reserve(step->responses.size());
-  for (const auto& response : step->responses) states.push_back(response.state);
-  position_.history = std::make_shared<const contact::ContactHistory<dim>>(
-      std::move(states), form.facet_rule(), method_.degree + 2);
+  position_.history = history_after(*step);
   account(*step);
   step->seconds = seconds_since(begin_);
   begin_ = Clock::now();
   if (last()) position_.before_last = {last()->t, last()->level.u};
   position_.last = std::move(step);
+}
+
+template <int dim>
+std::shared_ptr<const contact::ContactHistory<dim>> LoadPath<dim>::history_after(
+    const LoadStep<dim>& step) const
+{
+  std::vector<problem::InterfaceState<dim>> states;
+  states.reserve(step.responses.size());
+  for (const auto& response : step.responses) states.push_back(response.state);
+  return std::make_shared<const contact::ContactHistory<dim>>(
+      std::move(states), step.at->discrete.form.facet_rule(), method_.degree + 2);
 }
 
 template <int dim>
@@ -222,9 +239,7 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
   position_.reference_force =
       std::max(position_.reference_force, solve::external_forces(form).scale + space.norm(contact_load));
 
-  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
-  step.forces = contact::apply_stiffness<dim>(form.problem(), space, u);
-  for (std::size_t i = 0; i < u.size(); ++i) step.forces[i] -= contact_load[i];
+  step.forces = forces_on(form, u, std::move(contact_load));
   std::vector<double> mean = step.forces;
   std::vector<double> moved = u;
   if (last())
@@ -234,6 +249,74 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
       moved[i] -= last()->level.u[i];
     }
   step.work = space.dot(mean, moved) / 2;
+}
+
+template <int dim>
+SavedPath<dim> LoadPath<dim>::save(std::span<const Position> positions)
+{
+  SavedPath<dim> saved;
+  for (const Position& position : positions)
+  {
+    const LoadStep<dim>& step = *position.last;
+    saved.steps.push_back({.number = step.number,
+                           .t = step.t,
+                           .control = step.control,
+                           .reference_force = position.reference_force,
+                           .largest_sigma = position.largest_sigma,
+                           .tips = position.tips,
+                           .u = step.level.u,
+                           .history = gather_history(step.at->discrete.form)});
+  }
+  saved.before = positions.back().before_last;
+  return saved;
+}
+
+template <int dim>
+auto LoadPath<dim>::recall(const SavedStep<dim>& saved, PathPoint before) const -> Position
+{
+  auto at = std::make_shared<DiscreteAtTime<dim>>(problem_.with_crack_tips(saved.tips), saved.t, grid_,
+                                                  method_, nullptr);
+  contact::NitscheForm<dim>& form = at->discrete.form;
+  if (!saved.history.states.empty())
+  {
+    std::shared_ptr<const contact::ContactHistory<dim>> history = history_on(form, saved.history);
+    if (grid_->mesh.ranks().any(history == nullptr))
+      throw InputError({}, "the contact points of the checkpoint are not those of the mesh",
+                       "go on with pairs, degree and boundaries as they were");
+    form.set_history(std::move(history));
+  }
+  auto step = std::make_shared<LoadStep<dim>>();
+  step->number = saved.number;
+  step->t = saved.t;
+  step->control = saved.control;
+  step->largest_sigma = saved.largest_sigma;
+  step->level.u = saved.u;
+  step->responses = form.advance(saved.u);
+  std::vector<double> contact_load(form.space().n_dofs(), 0.0);
+  form.add_contact_load(form.traction(saved.u), contact_load);
+  step->forces = forces_on(form, saved.u, std::move(contact_load));
+  step->at = std::move(at);
+  std::shared_ptr<const contact::ContactHistory<dim>> after = history_after(*step);
+  return {std::move(step),       std::move(before),   std::move(after),
+          saved.reference_force, saved.largest_sigma, saved.tips};
+}
+
+template <int dim>
+auto LoadPath<dim>::recall(const SavedPath<dim>& saved,
+                           const std::optional<certify::FriedrichsConstant>& friedrichs)
+    -> std::vector<Position>
+{
+  std::vector<Position> positions;
+  for (std::size_t i = 0; i < saved.steps.size(); ++i)
+  {
+    const bool is_oldest = i + 1 == saved.steps.size();
+    positions.push_back(recall(
+        saved.steps[i], is_oldest ? saved.before : PathPoint{saved.steps[i + 1].t, saved.steps[i + 1].u}));
+  }
+  position_ = positions.front();
+  prepared_.reset();
+  friedrichs_ = friedrichs;
+  return positions;
 }
 
 template <int dim>
@@ -259,12 +342,13 @@ std::string LoadPath<dim>::guarded(const std::function<std::string()>& step) con
 
 template <int dim>
 std::string LoadPath<dim>::advance(double t, const Observer& observer, const StepObserver& step_observer,
-                                   bool may_cut)
+                                   bool may_cut, LoadProgress& progress)
 {
   if (std::string why = interruption(); !why.empty()) return why;
-  const double whole = last() ? t - last()->t : 0;  // the first step of all is not cut
-  double size = whole;
-  int cuts = 0;
+  double& whole = progress.whole;
+  double& size = progress.size;
+  int& cuts = progress.cuts;
+  if (whole == 0 && last()) whole = size = t - last()->t;  // the first step of all is not cut
   begin_ = Clock::now();
   for (;;)
   {
@@ -273,11 +357,12 @@ std::string LoadPath<dim>::advance(double t, const Observer& observer, const Ste
     const std::string failure = guarded([&] { return try_step({.t = to, .cuts = cuts}, step_observer); });
     if (failure.empty())
     {
-      if (observer) observer(*last());
-      if (arrives) return {};
       cuts = 0;
       if (static_cast<int>(last()->level.steps.size()) <= options_.few_steps) size *= options_.growth;
       if (std::abs(size) > std::abs(whole)) size = whole;
+      if (arrives) progress = {};
+      if (observer) observer(*last());
+      if (arrives) return {};
     }
     else if (!may_cut || std::abs(size) / 2 <= options_.smallest * std::abs(whole))
       return fmt::format("load step {} at t = {:.9g}: {}", last() ? last()->number + 1 : 1, to, failure);

@@ -15,6 +15,7 @@
 #include "tribound/adapt/bordered.h"
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/path_measure.h"
+#include "tribound/adapt/saved_path.h"
 #include "tribound/base/clock.h"
 #include "tribound/contact/nitsche/crack_tip.h"
 
@@ -70,6 +71,14 @@ struct PathOptions
   int full_steps = 20;      ///< Method::full_steps
 };
 
+/// Where a path is between two values of t that are given.
+struct LoadProgress
+{
+  double whole = 0;  ///< from where it began to the value; 0: it has not begun
+  double size = 0;   ///< of the next step
+  int cuts = 0;      ///< of that step
+};
+
 /// A step along which not t but C(u) is given.
 template <int dim>
 struct Control
@@ -107,9 +116,16 @@ class LoadPath
   using Observer = std::function<void(const LoadStep<dim>&)>;
 
   /// Steps up to t, in one or, where Newton's method fails and they may be cut, more steps; `observer` sees
-  /// each that is committed. Not empty: why it ended before; the last committed step stays.
+  /// each that is committed, when `progress` says how to go on from there. Not empty: why it ended before;
+  /// the last committed step stays.
+  [[nodiscard]] std::string advance(double t, const Observer& observer, const StepObserver& step,
+                                    bool may_cut, LoadProgress& progress);
   [[nodiscard]] std::string advance(double t, const Observer& observer = {}, const StepObserver& step = {},
-                                    bool may_cut = true);
+                                    bool may_cut = true)
+  {
+    LoadProgress progress;
+    return advance(t, observer, step, may_cut, progress);
+  }
 
   /// One step under control, after two steps at least: u and t are found together from several extrapolations
   /// of these (Bordered), then t stays and Newton's method of all other steps has the last word, so that its
@@ -129,6 +145,13 @@ class LoadPath
   };
   [[nodiscard]] Position position() const { return position_; }
   void go_back(Position position) { position_ = std::move(position); }
+  /// Positions one after the other, the newest first, to be recalled by another run. All ranks together.
+  [[nodiscard]] static SavedPath<dim> save(std::span<const Position> positions);
+  /// Goes to the newest position that another run on this mesh has saved, and returns all of them. What the
+  /// traction is there follows from u, and is not t^k of the last iterate. Throws InputError where the
+  /// contact points of the mesh are others.
+  std::vector<Position> recall(const SavedPath<dim>& saved,
+                               const std::optional<certify::FriedrichsConstant>& friedrichs);
   /// Not empty: it is to end here.
   [[nodiscard]] std::string interruption() const;
 
@@ -136,6 +159,8 @@ class LoadPath
   [[nodiscard]] const std::shared_ptr<const LoadStep<dim>>& last() const { return position_.last; }
   [[nodiscard]] const Grid<dim>& grid() const { return *grid_; }
   [[nodiscard]] const PathOptions& options() const { return options_; }
+  /// C_F, where it is known.
+  [[nodiscard]] const std::optional<certify::FriedrichsConstant>& friedrichs() const { return friedrichs_; }
 
  private:
   /// Finds t and what Newton's method there begins with, where the crack has its tips; `point`: what the
@@ -169,6 +194,10 @@ class LoadPath
   void commit(std::shared_ptr<LoadStep<dim>> step);
   /// Loads, reactions and what they do.
   void account(LoadStep<dim>& step);
+  /// What the steps after it remember.
+  [[nodiscard]] std::shared_ptr<const contact::ContactHistory<dim>> history_after(
+      const LoadStep<dim>& step) const;
+  [[nodiscard]] Position recall(const SavedStep<dim>& saved, PathPoint before) const;
   /// What only a whole mesh tells, at the first step.
   void check(const DiscreteAtTime<dim>& at);
 

@@ -42,8 +42,8 @@ class Follower
   using Position = typename LoadPath<dim>::Position;
 
   Follower(LoadPath<dim>& path, const PathProgram& program, const Observer& observer,
-           const StepObserver& newton)
-      : path_(path), program_(program), observer_(observer), newton_(newton)
+           const StepObserver& newton, PathProgress<dim>& progress)
+      : path_(path), program_(program), observer_(observer), newton_(newton), progress_(progress)
   {
     for (std::size_t i = 1; i < program.targets.size(); ++i)
       largest_change_ = std::max(largest_change_, std::abs(program.targets[i] - program.targets[i - 1]));
@@ -51,20 +51,40 @@ class Follower
 
   PathEnd run()
   {
-    by_load();
-    if (!end_.failure.empty() || program_.following == Following::load) return end_;
-    const bool under_control = program_.following != Following::automatic || failed_;
-    const double last = path_.last()->t;
-    direction_ = failed_.value_or(last) - (failed_ ? last : path_.position().before_last.t) < 0 ? -1 : 1;
-    if (under_control) end_.failure = go(main_stage());
-    if (end_.failure.empty() && program_.then) end_.failure = go(stage_of(*program_.then));
-    return end_;
+    PathEnd& end = progress_.end;
+    if (progress_.stage == PathStage::load)
+    {
+      by_load();
+      if (!end.failure.empty() || program_.following == Following::load) return end;
+      const std::optional<double>& failed = progress_.failed;
+      const double last = path_.last()->t;
+      progress_.direction =
+          failed.value_or(last) - (failed ? last : path_.position().before_last.t) < 0 ? -1 : 1;
+      const bool under_control = program_.following != Following::automatic || failed;
+      begin(under_control ? PathStage::main : PathStage::then);
+    }
+    if (progress_.stage == PathStage::main)
+    {
+      end.failure = go(main_stage());
+      if (!end.failure.empty()) return end;
+      begin(PathStage::then);
+    }
+    if (program_.then) end.failure = go(stage_of(*program_.then));
+    return end;
   }
 
  private:
   [[nodiscard]] const contact::NitscheForm<dim>& form() const { return path_.last()->at->discrete.form; }
 
   void by_load();
+  void begin(PathStage stage)
+  {
+    progress_.stage = stage;
+    progress_.steps = progress_.cuts = 0;
+    progress_.size.reset();
+    progress_.last_increment = 0;
+    progress_.positions.clear();
+  }
   [[nodiscard]] Stage<dim> main_stage() const;
   [[nodiscard]] Stage<dim> stage_of(const DisplacementStage& stage) const
   {
@@ -95,29 +115,32 @@ class Follower
   const PathProgram& program_;
   const Observer& observer_;
   const StepObserver& newton_;
-  double largest_change_ = 0;       ///< of t, between neighbours in the list
-  std::optional<double> failed_{};  ///< the value of t that ended Following::automatic
-  PathEnd end_{};
-  double direction_ = 1;  ///< of t, when t was given for the last time
-  /// Before the last two steps of a stage.
-  std::vector<Position> positions_{};
+  double largest_change_ = 0;  ///< of t, between neighbours in the list
+  PathProgress<dim>& progress_;
 };
 
 template <int dim>
 void Follower<dim>::by_load()
 {
   const bool is_automatic = program_.following == Following::automatic;
-  for (std::size_t i = 0; i < program_.targets.size() && end_.failure.empty() && !failed_; ++i)
+  PathEnd& end = progress_.end;
+  std::size_t& i = progress_.target;
+  while (i < program_.targets.size() && end.failure.empty() && !progress_.failed)
   {
     const double t = program_.targets[i];
-    end_.failure = path_.advance(t, observer_, newton_, !is_automatic);
-    if (end_.failure.empty() || !is_automatic || i < 2 || !path_.interruption().empty()) continue;
-    failed_ = t;
-    end_.failure.clear();
-    end_.dropped.assign(program_.targets.begin() + static_cast<std::ptrdiff_t>(i), program_.targets.end());
+    const auto committed = [&](const LoadStep<dim>& step)
+    {
+      if (step.t == t) ++i;
+      if (observer_) observer_(step);
+    };
+    end.failure = path_.advance(t, committed, newton_, !is_automatic, progress_.load);
+    if (end.failure.empty() || !is_automatic || i < 2 || !path_.interruption().empty()) continue;
+    progress_.failed = t;
+    end.failure.clear();
+    end.dropped.assign(program_.targets.begin() + static_cast<std::ptrdiff_t>(i), program_.targets.end());
   }
-  if (!end_.failure.empty() && is_automatic && path_.interruption().empty())
-    end_.failure += "; to go on by damage takes two load steps before: smaller history.steps";
+  if (!end.failure.empty() && is_automatic && path_.interruption().empty())
+    end.failure += "; to go on by damage takes two load steps before: smaller history.steps";
 }
 
 template <int dim>
@@ -140,7 +163,7 @@ bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
   if (left <= margin * std::abs(stage.step)) return true;
   if (!stage.enough_damage) return false;
   const bool has_fallen =
-      program_.t_min && end_.peak && direction_ * (path_.last()->t - *program_.t_min) <= 0;
+      program_.t_min && progress_.end.peak && progress_.direction * (path_.last()->t - *program_.t_min) <= 0;
   return has_fallen || value_at(path_, PathMeasure<dim>()) >= *stage.enough_damage;
 }
 
@@ -148,37 +171,36 @@ bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
 template <int dim>
 std::string Follower<dim>::go(const Stage<dim>& stage)
 {
-  double size = stage.step;
-  double last_increment = 0;
-  int cuts = 0;
-  positions_.clear();
+  if (!progress_.size) progress_.size = stage.step;
+  double& size = *progress_.size;
   if (const double now = value_at(path_, stage.measure);
-      (stage.until - now) * stage.step < 0 && !stage.enough_damage)
+      progress_.steps == 0 && (stage.until - now) * stage.step < 0 && !stage.enough_damage)
     return fmt::format("the stage by {} is to go on until {:.6g}, and begins at {:.6g}", stage.name,
                        stage.until, now);
-  for (int n = 0; n < program_.max_steps;)
+  while (progress_.steps < program_.max_steps)
   {
     const double now = value_at(path_, stage.measure);
     if (is_over(stage, now)) return {};
     Control<dim> control = this->control(stage, size);
     if (std::abs(size) > std::abs(stage.until - now)) control.increment = stage.until - now;
-    control.last_increment = last_increment;
-    control.cuts = cuts;
-    if (n == 0) control.failed = failed_;
+    control.last_increment = progress_.last_increment;
+    control.cuts = progress_.cuts;
+    if (progress_.steps == 0) control.failed = progress_.failed;
     const Position position = path_.position();
-    std::string failure = path_.follow(control, observer_, newton_);
+    std::string failure = path_.follow(control, {}, newton_);
     if (failure.empty())
     {
-      ++n;
-      cuts = 0;
-      last_increment = control.increment;
-      committed(stage, position, control.increment);
+      ++progress_.steps;
+      progress_.cuts = 0;
+      progress_.last_increment = control.increment;
       const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= path_.options().few_steps;
       if (was_easy && std::abs(size) < std::abs(stage.step))
       {
         const double larger = path_.options().growth * size;
         size = std::abs(larger) < std::abs(stage.step) ? larger : stage.step;
       }
+      committed(stage, position, control.increment);
+      if (observer_) observer_(*path_.last());
     }
     else if (!path_.interruption().empty() ||
              std::abs(control.increment) / 2 < smallest * std::abs(stage.step))
@@ -186,11 +208,12 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
     else
     {
       size = control.increment / 2;
-      ++cuts;
+      ++progress_.cuts;
     }
   }
-  end_.notes.push_back(fmt::format("the stage by {} ended after {} steps, history.stop.steps, at t = {:.9g}",
-                                   stage.name, program_.max_steps, path_.last()->t));
+  progress_.end.notes.push_back(
+      fmt::format("the stage by {} ended after {} steps, history.stop.steps, at t = {:.9g}", stage.name,
+                  program_.max_steps, path_.last()->t));
   return {};
 }
 
@@ -199,11 +222,13 @@ template <int dim>
 void Follower<dim>::committed(const Stage<dim>& stage, const Position& position, double size)
 {
   constexpr double rounding = 1e-9;
-  positions_.push_back(position);
-  if (positions_.size() > 2) positions_.erase(positions_.begin());
+  std::vector<Position>& positions = progress_.positions;
+  positions.push_back(position);
+  if (positions.size() > 2) positions.erase(positions.begin());
   const double t = position.last->t;
-  const double fall = direction_ * (t - path_.last()->t);
-  if (!end_.peak && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
+  const double fall = progress_.direction * (t - path_.last()->t);
+  if (!progress_.end.peak && fall > rounding * std::max(std::abs(t), largest_change_))
+    look_for_peak(stage, size);
 }
 
 /// Notes the peak that the last step has left behind.
@@ -212,11 +237,11 @@ void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
 {
   constexpr double accuracy = 1e-3;
   constexpr int max_halvings = 8;
-  const LoadStep<dim>& highest = *positions_.back().last;
-  end_.peak = Peak{.t = highest.t, .number = highest.number, .change = {}, .step = size};
-  Peak& peak = *end_.peak;
+  const LoadStep<dim>& highest = *progress_.positions.back().last;
+  progress_.end.peak = Peak{.t = highest.t, .number = highest.number, .change = {}, .step = size};
+  Peak& peak = *progress_.end.peak;
   const double end = value_at(path_, stage.measure);
-  std::optional<Summit> summit = Summit{highest.t, 0, positions_.front()};
+  std::optional<Summit> summit = Summit{highest.t, 0, progress_.positions.front()};
   for (int i = 0; i < max_halvings; ++i)
   {
     summit = summit_with(stage, peak.step / 2, end, summit->from);
@@ -243,7 +268,7 @@ auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end
     const Position before = beside.position();
     if (!beside.follow(control, {}, newton_).empty()) return std::nullopt;
     control.last_increment = size;
-    summit.fall = direction_ * (summit.t - beside.last()->t);
+    summit.fall = progress_.direction * (summit.t - beside.last()->t);
     if (summit.fall > 0) return summit;
     summit = {beside.last()->t, 0, before};
   }
@@ -254,12 +279,15 @@ auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end
 
 template <int dim>
 PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
-               const typename LoadPath<dim>::Observer& observer, const StepObserver& newton)
+               const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,
+               PathProgress<dim>& progress)
 {
-  return Follower<dim>(path, program, observer, newton).run();
+  return Follower<dim>(path, program, observer, newton, progress).run();
 }
 
-template PathEnd follow(LoadPath<2>&, const PathProgram&, const LoadPath<2>::Observer&, const StepObserver&);
-template PathEnd follow(LoadPath<3>&, const PathProgram&, const LoadPath<3>::Observer&, const StepObserver&);
+template PathEnd follow(LoadPath<2>&, const PathProgram&, const LoadPath<2>::Observer&, const StepObserver&,
+                        PathProgress<2>&);
+template PathEnd follow(LoadPath<3>&, const PathProgram&, const LoadPath<3>::Observer&, const StepObserver&,
+                        PathProgress<3>&);
 
 }  // namespace tribound::adapt

@@ -65,11 +65,45 @@ struct PathEnd
   std::vector<std::string> notes{};  ///< stages that ended before what they were to reach
 };
 
+/// What a program is at.
+enum class PathStage
+{
+  load,  ///< the values of t
+  main,  ///< what Following names
+  then   ///< PathProgram::then
+};
+
+/// Where a program is, for one that goes on from there.
+template <int dim>
+struct PathProgress
+{
+  std::size_t target = 0;          ///< the next value of t
+  LoadProgress load{};             ///< on the way there
+  std::optional<double> failed{};  ///< the value of t that ended Following::automatic
+  double direction = 1;            ///< of t, when t was given for the last time
+  PathStage stage = PathStage::load;
+  int steps = 0;                 ///< of the stage by control, as all that follows
+  std::optional<double> size{};  ///< of the next increment; absent at its beginning
+  double last_increment = 0;
+  int cuts = 0;
+  std::vector<typename LoadPath<dim>::Position> positions{};  ///< before its last two steps
+  PathEnd end{};                                              ///< what has come of the program so far
+};
+
 /// Follows the program. Steps that fail are halved, down to 1/1024. At a peak the steps around it are tried
 /// again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
-/// `observer` sees the committed steps of the path. Throws as LoadPath does, and as functional().
+/// `observer` sees the committed steps of the path, when `progress` is that after the step: with a path at
+/// its last step then it goes on with the next one. Throws as LoadPath does, and as functional().
 template <int dim>
 [[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
-                             const typename LoadPath<dim>::Observer& observer, const StepObserver& newton);
+                             const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,
+                             PathProgress<dim>& progress);
+template <int dim>
+[[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
+                             const typename LoadPath<dim>::Observer& observer, const StepObserver& newton)
+{
+  PathProgress<dim> progress;
+  return follow(path, program, observer, newton, progress);
+}
 
 }  // namespace tribound::adapt

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 #include <vector>
@@ -20,38 +21,54 @@ template <int dim>
 class Pass
 {
  public:
-  explicit Pass(int number) : number_(number) {}
+  explicit Pass(int number) { state_.pass = number; }
+  /// One that goes on.
+  explicit Pass(const ReplayState<dim>& from) : state_(from) {}
 
-  void add(std::shared_ptr<const LoadStep<dim>> step)
+  void add(const LoadStep<dim>& step)
   {
-    const std::vector<certify::BoundComponents>& cells = step->level.estimate.cells;
-    if (cells_.empty()) cells_.resize(cells.size());
+    const std::vector<certify::BoundComponents>& cells = step.level.estimate.cells;
+    if (state_.cells.empty()) state_.cells.resize(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i)
-      if (cells[i].total_sharp() > cells_[i].total_sharp()) cells_[i] = cells[i];
-    if (!worst_ || step->level.estimate.total_sharp > worst_->level.estimate.total_sharp) worst_ = step;
-    if (step->verdict.status > verdict_.status)
-      verdict_ = {step->verdict.status,
-                  fmt::format("load step {} at t = {:.9g}: {}", step->number, step->t, step->verdict.reason)};
+      if (cells[i].total_sharp() > state_.cells[i].total_sharp()) state_.cells[i] = cells[i];
+    if (state_.worst_step == 0 || step.level.estimate.total_sharp > state_.worst.total_sharp)
+    {
+      state_.worst = step.level.estimate.bound();
+      state_.worst_step = step.number;
+    }
+    if (step.verdict.status > state_.verdict.status)
+      state_.verdict = {step.verdict.status, fmt::format("load step {} at t = {:.9g}: {}", step.number,
+                                                         step.t, step.verdict.reason)};
   }
 
-  [[nodiscard]] bool holds() const { return certify::is_bound(verdict_.status); }
-  [[nodiscard]] const certify::Verdict& verdict() const { return verdict_; }
-  [[nodiscard]] PassView<dim> view() const { return {number_, *worst_, verdict_}; }
+  [[nodiscard]] bool holds() const { return certify::is_bound(state_.verdict.status); }
+  [[nodiscard]] const certify::Verdict& verdict() const { return state_.verdict; }
+  [[nodiscard]] PassView<dim> view() const
+  {
+    return {state_.pass, state_.worst_step, state_.worst, state_.verdict};
+  }
+  [[nodiscard]] PathProgress<dim>& progress() { return state_.progress; }
 
   /// With the largest bound of every cell over all steps, for those who mark by it.
   [[nodiscard]] CertifiedLevel<dim> to_mark() const
   {
     CertifiedLevel<dim> level;
-    level.estimate = {worst_->level.estimate.bound(), cells_};
+    level.estimate = {state_.worst, state_.cells};
     return level;
   }
-  [[nodiscard]] const std::shared_ptr<const LoadStep<dim>>& worst() const { return worst_; }
+  /// With the path as it is now.
+  [[nodiscard]] const ReplayState<dim>& state(const LoadPath<dim>& path)
+  {
+    std::vector<typename LoadPath<dim>::Position> positions = state_.progress.positions;
+    positions.push_back(path.position());
+    std::ranges::reverse(positions);
+    state_.path = LoadPath<dim>::save(positions);
+    state_.friedrichs = path.friedrichs();
+    return state_;
+  }
 
  private:
-  int number_;
-  std::vector<certify::BoundComponents> cells_;
-  std::shared_ptr<const LoadStep<dim>> worst_;
-  certify::Verdict verdict_{certify::RunStatus::certified, {}};
+  ReplayState<dim> state_;
 };
 
 /// Goes through the program, and adds its steps to the pass.
@@ -61,13 +78,14 @@ PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const Replay
 {
   const auto committed = [&](const LoadStep<dim>& step)
   {
-    pass.add(path.last());
+    pass.add(step);
     if (observer.step) observer.step(step);
+    if (observer.state) observer.state(pass.state(path));
   };
   PathEnd end;
   try
   {
-    end = follow<dim>(path, program, committed, observer.newton);
+    end = follow<dim>(path, program, committed, observer.newton, pass.progress());
   }
   catch (const std::bad_alloc&)
   {
@@ -78,14 +96,26 @@ PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const Replay
   return end;
 }
 
+/// The pass that another run was in, and its path.
+template <int dim>
+Pass<dim> resumed(LoadPath<dim>& path, const ReplayState<dim>& from)
+{
+  Pass<dim> pass(from);
+  std::vector<typename LoadPath<dim>::Position>& positions = pass.progress().positions;
+  positions = path.recall(from.path, from.friedrichs);
+  std::ranges::reverse(positions);
+  positions.pop_back();
+  return pass;
+}
+
 /// The path on the next mesh, or why there is none.
 template <int dim>
-std::string refine(std::unique_ptr<LoadPath<dim>>& path, const Pass<dim>& pass, const LevelView<dim>& view,
+std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& view,
                    const Strategy<dim>& strategy)
 {
   const fem::LagrangeSpace<dim>& space = path->grid().space;
   const std::vector<Index> marked = strategy.mark(view);
-  const Finer<dim> finer = finer_mesh<dim>(space, pass.worst()->level.u, marked);
+  const Finer<dim> finer = finer_mesh<dim>(space, path->last()->level.u, marked);
   NextMesh next{.cells = finer.n_cells, .ranks = space.mesh().ranks()};
   if (strategy.limit)
     if (std::string why = strategy.limit(next); !why.empty()) return why;
@@ -102,32 +132,34 @@ std::string refine(std::unique_ptr<LoadPath<dim>>& path, const Pass<dim>& pass, 
 
 template <int dim>
 certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram& program,
-                        const Strategy<dim>& strategy, const ReplayObserver<dim>& observer)
+                        const Strategy<dim>& strategy, const ReplayObserver<dim>& observer,
+                        const ReplayState<dim>* from)
 {
   std::unique_ptr<LoadPath<dim>> path = std::move(first);
-  certify::Verdict verdict{certify::RunStatus::failed, {}};
-  for (int number = 0;; ++number)
+  certify::Verdict verdict{certify::RunStatus::budget, {}};
+  const int first_pass = from ? from->pass : 0;
+  for (int number = first_pass;; ++number)
   {
     if (observer.begins) observer.begins(number, path->grid());
-    Pass<dim> pass(number);
+    Pass<dim> pass = from && number == first_pass ? resumed<dim>(*path, *from) : Pass<dim>(number);
     const std::string why = go_through(program, *path, observer, pass).failure;
     if (!why.empty() || !pass.holds())
     {
-      if (number == 0)
+      if (number == 0 || (observer.given_up && !observer.given_up()))
         return why.empty() ? pass.verdict() : certify::Verdict{certify::RunStatus::failed, why};
-      if (observer.given_up) observer.given_up();
-      verdict.reason += fmt::format("; this is pass {}, pass {} failed: {}", number - 1, number,
-                                    why.empty() ? pass.verdict().reason : why);
+      verdict.reason +=
+          fmt::format("{}this is pass {}, pass {} failed: {}", verdict.reason.empty() ? "" : "; ", number - 1,
+                      number, why.empty() ? pass.verdict().reason : why);
       return verdict;
     }
     verdict = pass.verdict();
     if (observer.complete) observer.complete(pass.view());
     if (verdict.status == certify::RunStatus::certified) return verdict;
-    const std::shared_ptr<const Discretisation<dim>> discrete(pass.worst()->at, &pass.worst()->at->discrete);
+    const std::shared_ptr<const Discretisation<dim>> discrete(path->last()->at, &path->last()->at->discrete);
     const CertifiedLevel<dim> to_mark = pass.to_mark();
     const LevelView<dim> view{number, *discrete, to_mark, verdict, 0, discrete};
     std::string end = strategy.stop ? strategy.stop(view) : std::string();
-    if (end.empty()) end = refine(path, pass, view, strategy);
+    if (end.empty()) end = refine(path, view, strategy);
     if (end.empty()) continue;
     verdict.reason += "; " + end;
     return verdict;
@@ -135,8 +167,8 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram&
 }
 
 template certify::Verdict replay(std::unique_ptr<LoadPath<2>>, const PathProgram&, const Strategy<2>&,
-                                 const ReplayObserver<2>&);
+                                 const ReplayObserver<2>&, const ReplayState<2>*);
 template certify::Verdict replay(std::unique_ptr<LoadPath<3>>, const PathProgram&, const Strategy<3>&,
-                                 const ReplayObserver<3>&);
+                                 const ReplayObserver<3>&, const ReplayState<3>*);
 
 }  // namespace tribound::adapt

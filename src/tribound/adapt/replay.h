@@ -21,9 +21,25 @@ template <int dim>
 struct PassView
 {
   int number;  ///< from 0, on the given mesh
-  /// The step with the largest bound, over the path's largest ||sigma|| as all of them are.
-  const LoadStep<dim>& worst;
+  /// The number of the step with the largest bound, over the path's largest ||sigma|| as all of them are.
+  int worst;
+  const certify::Bound& bound;      ///< its
   const certify::Verdict& verdict;  ///< the worst of its steps
+};
+
+/// Where a run over a path is after a load step.
+template <int dim>
+struct ReplayState
+{
+  int pass = 0;
+  PathProgress<dim> progress;  ///< without its positions
+  SavedPath<dim> path;         ///< the last step, and before it the positions of `progress`
+  std::optional<certify::FriedrichsConstant> friedrichs;
+  // Of the steps of the pass so far.
+  std::vector<certify::BoundComponents> cells;  ///< of own cells, from the step with the largest bound there
+  certify::Bound worst;                         ///< the largest
+  int worst_step = 0;                           ///< its number
+  certify::Verdict verdict{certify::RunStatus::certified, {}};
 };
 
 /// What replay() tells; functions that are empty are not called.
@@ -33,9 +49,11 @@ struct ReplayObserver
   StepObserver newton{};
   std::function<void(int pass, const Grid<dim>&)> begins{};  ///< before anything is solved on the mesh
   std::function<void(const LoadStep<dim>&)> step{};
-  std::function<void(const PathEnd&)> path_end{};  ///< of a pass, whatever came of it
+  std::function<void(const ReplayState<dim>&)> state{};  ///< after each step; costs copies
+  std::function<void(const PathEnd&)> path_end{};        ///< of a pass, whatever came of it
   std::function<void(const PassView<dim>&)> complete{};
-  std::function<void()> given_up{};  ///< of a pass after the first: the one before is what holds
+  /// Of a pass after the first; false where the one before does not hold any more, as after a restart.
+  std::function<bool()> given_up{};
 };
 
 /// Follows the program on the mesh that `first` begins with, and again, with its own steps, on finer
@@ -43,9 +61,11 @@ struct ReplayObserver
 /// are marked by the largest of their bounds over the steps, by strategy.mark, within strategy.stop and
 /// strategy.limit; the rest of `strategy` is not used. A pass that cannot be followed to its end leaves the
 /// one before as the last; the first one leaves the steps that it has come to, and the verdict says where it
-/// ended. Throws as LoadPath does.
+/// ended. Throws as LoadPath does. With `from` it goes on after the load step where another run was, and
+/// `first` is a path on its mesh.
 template <int dim>
 [[nodiscard]] certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram& program,
-                                      const Strategy<dim>& strategy, const ReplayObserver<dim>& observer);
+                                      const Strategy<dim>& strategy, const ReplayObserver<dim>& observer,
+                                      const ReplayState<dim>* from = nullptr);
 
 }  // namespace tribound::adapt

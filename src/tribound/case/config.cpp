@@ -181,6 +181,14 @@ StudyConfig read_study(const Node& node, int degree)
   return study;
 }
 
+Checkpoints to_checkpoints(const Node& node)
+{
+  if (const auto* text = std::get_if<std::string>(&node.value); text && *text == "all")
+    return Checkpoints::all;
+  if (!std::holds_alternative<bool>(node.value)) fail_type(node, "true, false or \"all\"", "true");
+  return to_bool(node) ? Checkpoints::last : Checkpoints::none;
+}
+
 OutputConfig read_output(const Node& node, OutputConfig output)
 {
   const TableReader table(node,
@@ -192,7 +200,7 @@ OutputConfig read_output(const Node& node, OutputConfig output)
   table.read("levels", output.levels, one_of<FieldLevels>({"last", "all"}));
   table.read("report", output.report, to_bool);
   table.read("mesh", output.mesh, to_bool);
-  table.read("checkpoint", output.checkpoint, to_bool);
+  table.read("checkpoint", output.checkpoints, to_checkpoints);
   if (const Node* point = table.find("moment_about"))
   {
     output.moment_about_where = point->where;

@@ -85,14 +85,22 @@ enum class FieldLevels
   all    ///< each as soon as it is complete
 };
 
+/// After what a run leaves a checkpoint.
+enum class Checkpoints
+{
+  none,
+  last,  ///< each refinement, or each load step in the place of the one before
+  all    ///< each load step in a file of its own
+};
+
 struct OutputConfig
 {
   std::filesystem::path directory;  ///< relative to the working directory; default_directory() of the case
   bool vtu = true;
   FieldLevels levels = FieldLevels::last;
-  bool report = true;                ///< the page report.html
-  bool mesh = true;                  ///< the last mesh, adapted.msh
-  bool checkpoint = false;           ///< whether each level can be restarted from
+  bool report = true;  ///< the page report.html
+  bool mesh = true;    ///< the last mesh, adapted.msh
+  Checkpoints checkpoints = Checkpoints::none;
   std::vector<double> moment_about;  ///< point of the moments in the balance; empty: centroid of the body
   Where moment_about_where;
 };

@@ -216,14 +216,17 @@ void read_load_steps(const TableReader& root, Config& config)
 
 void check_load_steps(const TableReader& root, Config& config)
 {
-  if (!config.history) return;
+  if (!config.history)
+  {
+    if (config.output.checkpoints == Checkpoints::all)
+      throw InputError({.file = config.file, .key = "output.checkpoint"},
+                       "is \"all\", one for each load step, and there are none", "true");
+    return;
+  }
   if (config.method.regularisation)
     throw InputError(root.find("regularisation")->where,
                      root.has("history") ? "stands beside [history]" : "stands beside an interface",
                      "drop it: load steps go by the plain method");
-  if (config.output.checkpoint)
-    throw InputError({.file = config.file, .key = "output.checkpoint"},
-                     "is for adaptive runs, and this is one over load steps", "drop it");
   if (!config.history->refines) config.adapt.max_levels = 0;
   if (const Node* history = root.find("history")) check_control(TableReader(*history, history_keys), config);
 }

@@ -83,12 +83,13 @@ std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<co
 {
   const int n = coarse.basis().n_nodes();
   const std::vector<Point<dim>> reference = coarse.basis().node_points();
+  const mesh::Partition<dim>* partition = coarse.mesh().partition();
   std::vector<Point<dim>> in_parent(n);
   std::vector<double> values;
   values.reserve(cells.size() * n * dim);
   for (std::size_t c = 0; c < cells.size(); ++c)
   {
-    if (cells[c].name == coarse.mesh().partition()->names[parent[c]])  // the same cell
+    if (partition && cells[c].name == partition->names[parent[c]])  // the same cell
     {
       append_values<dim>(coarse, parent[c], u, values);
       continue;

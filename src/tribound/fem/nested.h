@@ -29,9 +29,9 @@ template <int dim>
                                                      std::span<const double> u, std::span<const Index> parent,
                                                      const LagrangeSpace<dim>& fine);
 
-/// The values of u at the nodes of cells nested in own cells of a mesh that is shared out, cell by cell,
-/// [(cell n_nodes + i) dim + component], the nodes as the basis of the space has them; cells[c] lies in cell
-/// parent[c]. They go where the cells go.
+/// The values of u at the nodes of cells nested in own cells of a mesh, cell by cell,
+/// [(cell n_nodes + i) dim + component], the nodes as the basis of the space has them on the vertices of the
+/// record; cells[c] lies in cell parent[c]. They go where the cells go.
 template <int dim>
 [[nodiscard]] std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<const double> u,
                                                 std::span<const mesh::CellRecord<dim>> cells,

@@ -339,8 +339,8 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
        { return choice(row, static_cast<int>(c.output.levels)); }},
       {"output.report", [=](const case_file::Config& c, const Row&) { return truth(c.output.report); }},
       {"output.mesh", [=](const case_file::Config& c, const Row&) { return truth(c.output.mesh); }},
-      {"output.checkpoint",
-       [=](const case_file::Config& c, const Row&) { return truth(c.output.checkpoint); }},
+      {"output.checkpoint", [=](const case_file::Config& c, const Row&)
+       { return truth(c.output.checkpoints != case_file::Checkpoints::none); }},
       {"output.moment_about", [](const case_file::Config& c, const Row&)
        { return c.output.moment_about.empty() ? "centroid of the body" : "given"; }},
   };

@@ -119,8 +119,9 @@ TEST(History, BadSteps)
   EXPECT_THAT(of("steps = [1]\n[regularisation]"), HasSubstr("regularisation: stands beside [history]"));
   EXPECT_THAT(message("boundary.b.interface = { law = 'joint' }\n[regularisation]\n"),
               HasSubstr("regularisation: stands beside an interface"));
-  EXPECT_THAT(of("steps = [1]\n[output]\ncheckpoint = true"),
-              HasSubstr("output.checkpoint: is for adaptive"));
+  EXPECT_THAT(message("[output]\ncheckpoint = 'all'\n"), HasSubstr("output.checkpoint: is \"all\""));
+  EXPECT_THAT(of("steps = [1]\n[output]\ncheckpoint = 'some'"),
+              HasSubstr("output.checkpoint: must be true, false or \"all\""));
 }
 
 TEST(History, LoadsFollowTheLoadFactor)

@@ -113,8 +113,8 @@ void write_series(const std::filesystem::path& directory, int first, int last,
                   std::string_view stem = "level");
 
 /// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu,
-/// the same of steps, and contact_NNN.vtu, N a digit, at least three of NNN, and series.pvd. Other files
-/// stay. Throws InputError when one cannot be removed.
+/// the same of steps, contact_NNN.vtu and checkpoint_NNN.h5, N a digit, at least three of NNN, and
+/// series.pvd. Other files stay. Throws InputError when one cannot be removed.
 void remove_series(const std::filesystem::path& directory);
 
 /// A directory for a series that is not complete, without what an earlier run left there. Throws WriteError

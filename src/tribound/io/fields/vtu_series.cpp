@@ -28,7 +28,8 @@ bool is_series_file(std::string_view name)
 {
   return name == "series.pvd" || is_numbered(name, "contact_", 3, ".vtu") ||
          is_numbered(name, "level_", 3, ".vtu") || is_numbered(name, "level_", 3, ".pvtu") ||
-         is_numbered(name, "step_", 3, ".vtu") || is_numbered(name, "step_", 3, ".pvtu");
+         is_numbered(name, "step_", 3, ".vtu") || is_numbered(name, "step_", 3, ".pvtu") ||
+         is_numbered(name, "checkpoint_", 3, ".h5");
 }
 
 /// The files of a series in a directory, those in directories of several ranks first, and then these.

@@ -202,9 +202,10 @@ Json json(const LevelRecord& level)
   return object;
 }
 
-Json json(const std::vector<LevelRecord>& levels)
+/// Behind those of a text.
+Json with_levels(const std::string& earlier, const std::vector<LevelRecord>& levels)
 {
-  Json array = Json::array();
+  Json array = Json::parse(earlier);
   for (const LevelRecord& level : levels) array.push_back(json(level));
   return array;
 }
@@ -294,12 +295,19 @@ Json path_json(const adapt::PathEnd& path)
   return object;
 }
 
+Json level_json(const LevelRecord& level)
+{
+  return json(level);
+}
+
 Json levels_json(const RunRecord& run)
 {
-  if (has_history(run)) return json(run.passes);
-  Json levels = Json::parse(run.earlier.levels);
-  for (const LevelRecord& level : run.levels) levels.push_back(json(level));
-  return levels;
+  return with_levels(run.earlier.levels, has_history(run) ? run.passes : run.levels);
+}
+
+Json steps_json(const RunRecord& run)
+{
+  return with_levels(run.earlier.steps.empty() ? "[]" : run.earlier.steps, run.levels);
 }
 
 Json certificate(const RunRecord& run)
@@ -331,7 +339,7 @@ Json certificate(const RunRecord& run)
   object["levels"] = levels_json(run);
   if (has_history(run))
   {
-    object["steps"] = json(run.levels);
+    object["steps"] = steps_json(run);
     object["path"] = path_json(run.path);
   }
   object["times"] = times_json(run);

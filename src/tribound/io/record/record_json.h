@@ -20,8 +20,13 @@ namespace tribound::io
 /// `case` of the certificate: the effective case by the hash of its text; null where there is none.
 [[nodiscard]] Json effective_case_json(const RunRecord& run);
 
-/// `levels` of the certificate, earlier ones included.
+/// `levels` of the certificate, earlier ones included, over a history the passes; one of them; and `steps`.
 [[nodiscard]] Json levels_json(const RunRecord& run);
+[[nodiscard]] Json level_json(const LevelRecord& level);
+[[nodiscard]] Json steps_json(const RunRecord& run);
+
+/// `path` of the certificate.
+[[nodiscard]] Json path_json(const adapt::PathEnd& path);
 
 /// `balance` of the certificate.
 [[nodiscard]] Json balance_json(const certify::Balance& balance);

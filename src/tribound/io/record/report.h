@@ -4,6 +4,7 @@
 /// What a run is reported by. Plain data in, text out; what is not known is absent, never zero.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,19 @@
 namespace tribound::io
 {
 
-/// The levels before a restart, as text.
+/// The levels before a restart, as text; of a run over a history the passes that were complete, and the load
+/// steps of the pass in work.
 struct EarlierLevels
 {
-  std::string convergence;       ///< rows of convergence.csv
-  std::string newton;            ///< rows of newton.csv
+  std::string convergence{};     ///< convergence.csv
+  std::string newton{};          ///< newton.csv
   std::string levels = "[]";     ///< `levels` of certificate.json
   std::int64_t first_cells = 0;  ///< of the first mesh
+  std::string history{};         ///< history.csv
+  std::string steps{};           ///< `steps` of certificate.json; empty without a history
+  /// The worst of those steps as convergence.csv and `levels` have it when it is that of the pass.
+  std::string worst_convergence{};
+  std::string worst_level{};
 };
 
 struct RunRecord
@@ -47,11 +54,23 @@ struct RunRecord
 /// Whether it goes through load steps.
 [[nodiscard]] bool has_history(const RunRecord& run);
 
-/// All its levels as earlier ones.
+/// All its levels as earlier ones; over a history with its load steps, of which `worst_step` is the worst of
+/// pass number `pass`, which is in work.
 [[nodiscard]] EarlierLevels as_earlier(const RunRecord& run);
+[[nodiscard]] EarlierLevels as_earlier(const RunRecord& run, int pass, int worst_step);
+
+/// Over a history, when another pass begins: the complete passes alone stay.
+void drop_steps(EarlierLevels& earlier);
+
+/// Over a history: that pass is complete, and this step, which may be an earlier one, its worst.
+void complete_pass(RunRecord& run, int pass, int worst_step);
+
+/// Its last load step, of an earlier one what the steps after it add to; nothing where there is none.
+[[nodiscard]] std::optional<LoadStepRecord> last_load_step(const RunRecord& run);
 
 /// The tables with the earlier levels.
 [[nodiscard]] std::string convergence_csv(const RunRecord& run);
+[[nodiscard]] std::string history_csv(const RunRecord& run);
 [[nodiscard]] std::string newton_csv(const RunRecord& run);
 
 /// The text of certificate.json, see docs/output.md; unknown numbers are null.

@@ -1,9 +1,13 @@
 #include "tribound/io/state/checkpoint.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "tribound/base/error.h"
 #include "tribound/fem/nested.h"
@@ -18,7 +22,30 @@ namespace
 {
 
 /// Of the file; another one cannot be read.
-constexpr int format = 1;
+constexpr int format = 2;
+
+constexpr std::array<std::pair<const char*, std::string EarlierLevels::*>, 7> earlier_texts = {
+    {{"convergence", &EarlierLevels::convergence},
+     {"newton", &EarlierLevels::newton},
+     {"levels", &EarlierLevels::levels},
+     {"history", &EarlierLevels::history},
+     {"steps", &EarlierLevels::steps},
+     {"worst_convergence", &EarlierLevels::worst_convergence},
+     {"worst_level", &EarlierLevels::worst_level}}};
+
+Json earlier_json(const EarlierLevels& earlier)
+{
+  Json json{{"first_cells", earlier.first_cells}};
+  for (const auto& [name, text] : earlier_texts) json[name] = earlier.*text;
+  return json;
+}
+
+EarlierLevels earlier_of(const Json& json)
+{
+  EarlierLevels earlier{.first_cells = json.at("first_cells")};
+  for (const auto& [name, text] : earlier_texts) earlier.*text = json.at(name);
+  return earlier;
+}
 
 Json state_json(const CheckpointFacts& facts)
 {
@@ -29,11 +56,11 @@ Json state_json(const CheckpointFacts& facts)
                {"level", start.level},
                {"delta", start.delta},
                {"accuracy", start.accuracy},
-               {"first_cells", facts.earlier.first_cells},
                {"case", facts.case_text},
-               {"convergence", facts.earlier.convergence},
-               {"newton", facts.earlier.newton},
-               {"levels", facts.earlier.levels}};
+               {"earlier", earlier_json(facts.earlier)},
+               {"path", facts.path},
+               {"functions", facts.n_functions},
+               {"cell_values", facts.n_cell_values}};
   if (start.expected) json["expected"] = *start.expected;
   if (const auto& c = start.friedrichs; c && std::isfinite(c->value) && std::isfinite(c->theta))
     json["friedrichs"] = {c->value, c->theta, c->mesh_size, c->cells};
@@ -49,7 +76,10 @@ CheckpointFacts facts_of(const Json& json)
   facts.start.delta = json.at("delta");
   facts.start.accuracy = json.at("accuracy");
   facts.case_text = json.at("case");
-  facts.earlier = {json.at("convergence"), json.at("newton"), json.at("levels"), json.at("first_cells")};
+  facts.earlier = earlier_of(json.at("earlier"));
+  facts.path = json.at("path");
+  facts.n_functions = json.at("functions");
+  facts.n_cell_values = json.at("cell_values");
   if (json.contains("expected")) facts.start.expected = json.at("expected").get<double>();
   if (json.contains("friedrichs"))
   {
@@ -142,27 +172,64 @@ std::vector<mesh::CellRecord<dim>> read_cells(Hdf5File& file)
   return cells;
 }
 
+/// The numbers of own cells, one cell after the other; the records may have their vertices in another order.
+template <int dim>
+std::vector<double> values_of_cells(const fem::LagrangeSpace<dim>& space, const CheckpointFacts& facts,
+                                    const CheckpointFields& fields,
+                                    std::span<const mesh::CellRecord<dim>> cells, std::span<const Index> own)
+{
+  const std::size_t n = static_cast<std::size_t>(dim) * space.basis().n_nodes();
+  const std::size_t width = n_values_of_cell(facts);
+  std::vector<double> values(own.size() * width);
+  const auto put = [&](std::span<const double> column, std::size_t n_each, std::size_t first)
+  {
+    for (std::size_t c = 0; c < own.size(); ++c)
+      std::ranges::copy(column.subspan(c * n_each, n_each), &values[c * width + first]);
+  };
+  std::size_t first = 0;
+  for (const std::span<const double> u : fields.functions)
+  {
+    put(fem::nested_values<dim>(space, u, cells, own), n, first);
+    first += n;
+  }
+  if (facts.n_cell_values > 0) put(fields.cell_values, facts.n_cell_values, first);
+  return values;
+}
+
 }  // namespace
 
+std::string checkpoint_name_of(int step)
+{
+  return fmt::format("checkpoint_{:03}.h5", step);
+}
+
+int n_values_of_cell(const CheckpointFacts& facts)
+{
+  const int n_nodes = facts.dimension == 2 ? fem::LagrangeBasis<2>(facts.degree).n_nodes()
+                                           : fem::LagrangeBasis<3>(facts.degree).n_nodes();
+  return facts.dimension * n_nodes * facts.n_functions + facts.n_cell_values;
+}
+
 template <int dim>
-void write_checkpoint(const std::filesystem::path& directory, const CheckpointFacts& facts,
-                      const fem::LagrangeSpace<dim>& space, std::span<const double> u)
+void write_checkpoint(const std::filesystem::path& path, const CheckpointFacts& facts,
+                      const fem::LagrangeSpace<dim>& space, const CheckpointFields& fields)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   std::vector<Index> own(mesh.n_owned_cells());
   std::iota(own.begin(), own.end(), 0);
   const std::vector<mesh::CellRecord<dim>> cells =
       mesh.partition() ? mesh::records_of(mesh, own) : mesh::first_records(mesh, 0, mesh.n_cells());
-  Hdf5File file(directory / checkpoint_name, Hdf5File::Mode::write, mesh.ranks());
+  Hdf5File file(path, Hdf5File::Mode::write, mesh.ranks());
   file.write_text("state", state_json(facts).dump());
   write_cells<dim>(file, cells);
-  file.write<double>("u", fem::cell_values<dim>(space, u, own), dim * space.basis().n_nodes());
+  file.write<double>("values", values_of_cells<dim>(space, facts, fields, cells, own),
+                     n_values_of_cell(facts));
+  file.write<double>("points", fields.points, fields.point_width);
   file.commit();
 }
 
-CheckpointFacts read_checkpoint_facts(const std::filesystem::path& directory, const Ranks& ranks)
+CheckpointFacts read_checkpoint_facts(const std::filesystem::path& path, const Ranks& ranks)
 {
-  const std::filesystem::path path = directory / checkpoint_name;
   Hdf5File file(path, Hdf5File::Mode::read, ranks);
   const std::string text = file.read_text("state");
   try
@@ -181,22 +248,24 @@ CheckpointFacts read_checkpoint_facts(const std::filesystem::path& directory, co
 }
 
 template <int dim>
-CheckpointCells<dim> read_checkpoint_cells(const std::filesystem::path& directory,
-                                           const CheckpointFacts& facts, const Ranks& ranks)
+CheckpointCells<dim> read_checkpoint_cells(const std::filesystem::path& path, const CheckpointFacts& facts,
+                                           const Ranks& ranks)
 {
-  Hdf5File file(directory / checkpoint_name, Hdf5File::Mode::read, ranks);
+  Hdf5File file(path, Hdf5File::Mode::read, ranks);
   CheckpointCells<dim> result;
   result.cells = read_cells<dim>(file);
-  const int n_values = dim * fem::LagrangeBasis<dim>(facts.degree).n_nodes();
-  result.values = file.read<double>("u", n_values);
+  const int n_values = n_values_of_cell(facts);
+  result.values = file.read<double>("values", n_values);
+  if (!facts.path.empty()) result.points = ranks.gather<double>(file.read<double>("points", 2 * dim + 3));
+  ranks.copy_from_first(result.points);
   file.require(facts.dimension == dim && result.values.size() == result.cells.size() * n_values, "read");
   return result;
 }
 
 template void write_checkpoint(const std::filesystem::path&, const CheckpointFacts&,
-                               const fem::LagrangeSpace<2>&, std::span<const double>);
+                               const fem::LagrangeSpace<2>&, const CheckpointFields&);
 template void write_checkpoint(const std::filesystem::path&, const CheckpointFacts&,
-                               const fem::LagrangeSpace<3>&, std::span<const double>);
+                               const fem::LagrangeSpace<3>&, const CheckpointFields&);
 template CheckpointCells<2> read_checkpoint_cells(const std::filesystem::path&, const CheckpointFacts&,
                                                   const Ranks&);
 template CheckpointCells<3> read_checkpoint_cells(const std::filesystem::path&, const CheckpointFacts&,
