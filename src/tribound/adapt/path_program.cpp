@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "tribound/adapt/process_zone.h"
+
 namespace tribound::adapt
 {
 
@@ -14,6 +16,7 @@ namespace
 {
 
 constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
+constexpr double accuracy = 1e-3;        ///< of the t of a peak, relative
 
 /// C at the last step of a path.
 template <int dim>
@@ -32,6 +35,7 @@ struct Stage
   double until;  ///< value of the measure
   /// Integral of D at which the main stage ends; t_min ends it, too. Absent of PathProgram::then.
   std::optional<double> enough_damage{};
+  bool goes_by_damage = false;
 };
 
 template <int dim>
@@ -56,8 +60,8 @@ class Follower
     const bool under_control = program_.following != Following::automatic || failed_;
     const double last = path_.last()->t;
     direction_ = failed_.value_or(last) - (failed_ ? last : path_.position().before_last.t) < 0 ? -1 : 1;
-    if (under_control) end_.failure = go(main_stage());
-    if (end_.failure.empty() && program_.then) end_.failure = go(stage_of(*program_.then));
+    if (under_control) end_stage(go(main_stage()));
+    if (end_.failure.empty() && program_.then) end_stage(go(stage_of(*program_.then)));
     return end_;
   }
 
@@ -71,6 +75,8 @@ class Follower
     return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until};
   }
   [[nodiscard]] std::string go(const Stage<dim>& stage);
+  void end_stage(std::string failure);
+  [[nodiscard]] std::string step(const Stage<dim>& stage, const Control<dim>& control);
   [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
   void committed(const Stage<dim>& stage, const Position& position, double size);
   [[nodiscard]] Control<dim> control(const Stage<dim>& stage, double increment) const
@@ -125,7 +131,11 @@ Stage<dim> Follower<dim>::main_stage() const
 {
   const double measure = bonded_measure(form());
   const double enough = program_.enough_damage * measure;
-  Stage<dim> stage{"damage", PathMeasure<dim>(), program_.damage_step.value_or(measure / 50), enough};
+  Stage<dim> stage{.name = "damage",
+                   .measure = {},
+                   .step = program_.damage_step.value_or(measure / 50),
+                   .until = enough,
+                   .goes_by_damage = true};
   if (program_.following == Following::displacement) stage = stage_of(program_.displacement);
   stage.enough_damage = measure > 0 ? enough : std::numeric_limits<double>::infinity();
   return stage;
@@ -166,12 +176,12 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
     control.cuts = cuts;
     if (n == 0) control.failed = failed_;
     const Position position = path_.position();
-    std::string failure = path_.follow(control, observer_, newton_);
+    std::string failure = step(stage, control);
     if (failure.empty())
     {
       ++n;
       cuts = 0;
-      last_increment = control.increment;
+      last_increment = value_at(path_, stage.measure) - now;
       committed(stage, position, control.increment);
       const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= path_.options().few_steps;
       if (was_easy && std::abs(size) < std::abs(stage.step))
@@ -194,6 +204,32 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
   return {};
 }
 
+/// Not empty: why there is none.
+template <int dim>
+std::string Follower<dim>::step(const Stage<dim>& stage, const Control<dim>& control)
+{
+  std::string failure = path_.follow(control, observer_, newton_);
+  if (failure.empty() || !stage.goes_by_damage || !path_.interruption().empty()) return failure;
+  return follow_zone(path_, control, observer_, newton_) ? std::string() : failure;
+}
+
+/// Where a structure slides as a whole there may be no state of rest nearby: beyond the peak the path then
+/// ends there, and what has been followed holds. Before the peak that is a failure.
+template <int dim>
+void Follower<dim>::end_stage(std::string failure)
+{
+  const bool has_fallen =
+      end_.peak && direction_ * (end_.peak->t - path_.last()->t) > accuracy * std::abs(end_.peak->t);
+  if (failure.empty() || !has_fallen || !path_.interruption().empty())
+  {
+    end_.failure = std::move(failure);
+    return;
+  }
+  end_.notes.push_back(
+      fmt::format("the path ends beyond its peak, with {:.3g} % of the bonds open or slipping: {}",
+                  100 * moving_share(*path_.last()), failure));
+}
+
 /// After a step from `position`.
 template <int dim>
 void Follower<dim>::committed(const Stage<dim>& stage, const Position& position, double size)
@@ -203,14 +239,14 @@ void Follower<dim>::committed(const Stage<dim>& stage, const Position& position,
   if (positions_.size() > 2) positions_.erase(positions_.begin());
   const double t = position.last->t;
   const double fall = direction_ * (t - path_.last()->t);
-  if (!end_.peak && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
+  const bool is_highest = !end_.peak || direction_ * (t - end_.peak->t) > 0;
+  if (is_highest && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
 }
 
 /// Notes the peak that the last step has left behind.
 template <int dim>
 void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
 {
-  constexpr double accuracy = 1e-3;
   constexpr int max_halvings = 8;
   const LoadStep<dim>& highest = *positions_.back().last;
   end_.peak = Peak{.t = highest.t, .number = highest.number, .change = {}, .step = size};
