@@ -40,6 +40,7 @@
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "tribound/contact/nitsche/contact_history.h"
 #include "tribound/contact/nitsche/contact_moments.h"
+#include "tribound/contact/nitsche/crack_mouth.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/nitsche/nitsche.h"

@@ -22,6 +22,7 @@
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/truth/true_error.h"
+#include "tribound/contact/nitsche/crack_mouth.h"
 #include "tribound/io/record/hydraulic_figures.h"
 #include "tribound/mesh/gmsh.h"
 
@@ -63,6 +64,32 @@ io::HydraulicFigures figures_of(const Step& step)
   throw std::logic_error("no contact");
 }
 
+/// Gauges at the heel are what displacement adds to its opening, and its sliding.
+template <int dim>
+void expect_gauges_at_heel(const adapt::LoadStep<dim>& step, const std::string& base,
+                           const io::HydraulicFigures& figures)
+{
+  const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  const auto gauged = [&](adapt::Jump jump)
+  {
+    const std::array gauges = {adapt::Gauge{.boundary = base, .jump = jump, .factor = 2}};
+    return form.space().dot(adapt::functional<dim>(form, gauges), step.level.u) / 2;
+  };
+  const int tag = adapt::gauged_boundary<dim>(form.problem(), {.boundary = base});
+  const auto opening = [&](std::size_t i)
+  {
+    const std::size_t n = form.n_segment_points();
+    return form.contact_states(step.level.u, i / n)[i % n].gap - form.contact_points()[i].gap;
+  };
+  EXPECT_NEAR(gauged(adapt::Jump::mouth_opening),
+              contact::mean_at(contact::crack_mouth(form, tag), form, opening), 1e-12);
+  EXPECT_NEAR(gauged(adapt::Jump::mouth_sliding), figures.csd.value(), 1e-12);
+  if (figures.cmod.value() > 0)  // up to the discretisation
+  {
+    EXPECT_NEAR(gauged(adapt::Jump::mouth_opening) / figures.cmod.value(), 1, 0.01);
+  }
+}
+
 TEST(Water, DamOfAnIndependentProgram)
 {
   const json steps = reference()["joint"];
@@ -88,6 +115,7 @@ TEST(Water, DamOfAnIndependentProgram)
            near(figures.resultant_x.value(), "x_res_eff", 1e-9);
            near(figures.resultant_x_total.value(), "x_res", 1e-9);
            near(figures.cmod.value(), "cmod", 1e-9);
+           expect_gauges_at_heel<2>(step, "base", figures);
            near(figures.crack_tip.value(), "tip", 1e-8);
            near(step.level.norms.energy, "energy", 1e-9);
            near(integrals<2>(step).damage, "Dint", 1e-8);
@@ -240,6 +268,7 @@ TEST(Water, BlockUnderUpliftIn3D)
     const double at_drain = 0.5 * heel * (2 - 0.37) / 2;
     const double first = (heel + at_drain) / 2 * 0.37;
     const double second = at_drain / 2 * (2 - 0.37);
+    expect_gauges_at_heel<3>(step, "back", figures);
     EXPECT_NEAR(figures.uplift, first + second, 1e-12);
     EXPECT_NEAR(figures.effective_normal, -0.4 + first + second, 1e-10);
     const double thrust = water * depth * depth / 2;

@@ -83,7 +83,7 @@ struct LoadProgress
 template <int dim>
 struct Control
 {
-  std::string name;                 ///< "damage" or "displacement"
+  std::string name;                 ///< "damage", "zone" or "displacement"
   const PathMeasure<dim>& measure;  ///< C
   double increment = 0;             ///< of C(u)
   double last_increment = 0;        ///< of the step before; 0: it was none of this measure

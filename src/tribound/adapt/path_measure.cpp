@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tribound/contact/nitsche/crack_mouth.h"
 #include "tribound/fem/evaluation.h"
 
 namespace tribound::adapt
@@ -50,6 +51,24 @@ void add_mean_opening(const contact::NitscheForm<dim>& form, int tag, double fac
   form.add_contact_load(t, c);
 }
 
+/// c_i += factor times the opening -[phi_i]^n or the sliding [phi_i]^t at the mouth of the crack.
+template <int dim>
+void add_at_mouth(const contact::NitscheForm<dim>& form, int tag, Jump jump, double factor,
+                  std::span<double> c)
+{
+  const contact::CrackMouth mouth = contact::crack_mouth(form, tag);
+  const Point<dim> e(form.problem().contact(tag)->base->direction().data());
+  std::vector<Point<dim>> t(form.n_contact_points(), Point<dim>::Zero());
+  for (const std::size_t i : mouth.points)
+  {
+    const contact::ContactPoint<dim>& point = form.contact_points()[i];
+    const Point<dim> along = e - e.dot(point.normal) * point.normal;
+    t[i] =
+        factor / (mouth.n * point.weight) * (jump == Jump::mouth_opening ? Point<dim>(-point.normal) : along);
+  }
+  form.add_contact_load(t, c);
+}
+
 /// The integral over all interfaces with a bond of what value(i) is at contact point i.
 template <int dim, class Value>
 double sum_over_bonds(const contact::NitscheForm<dim>& form, const Value& value)
@@ -74,6 +93,9 @@ int gauged_boundary(const problem::Problem<dim>& problem, const Gauge& gauge)
   if (!gauge.component && problem.contact(tag) == nullptr)
     throw InputError(gauge.where, fmt::format("\"{}\" touches nothing that could open", gauge.boundary),
                      "a boundary with contact, or a component: " + gauge.boundary + ".x");
+  if (!gauge.component && gauge.jump != Jump::opening && !problem.contact(tag)->base)
+    throw InputError(gauge.where, fmt::format("the interface of \"{}\" has no heel", gauge.boundary),
+                     "heel = [0, 0] and toe = [60, 0] in its table, or " + gauge.boundary + ".opening");
   return tag;
 }
 
@@ -87,8 +109,10 @@ std::vector<double> functional(const contact::NitscheForm<dim>& form, std::span<
     const int tag = gauged_boundary(form.problem(), gauge);
     if (gauge.component)
       add_mean<dim>(space, tag, gauge.factor * Point<dim>::Unit(*gauge.component), c);
-    else
+    else if (gauge.jump == Jump::opening)
       add_mean_opening(form, tag, gauge.factor, c);
+    else
+      add_at_mouth(form, tag, gauge.jump, gauge.factor, c);
   }
   return c;
 }

@@ -16,12 +16,21 @@
 namespace tribound::adapt
 {
 
+/// What is gauged of a contact boundary.
+enum class Jump
+{
+  opening,        ///< the mean of -[u]^n, what displacement adds to the gap
+  mouth_opening,  ///< the same at contact::crack_mouth()
+  mouth_sliding   ///< [u]^t there, from heel to toe
+};
+
 /// A term of a linear functional of u: `factor` times the mean of a component over a boundary or, where there
-/// is none, the mean of the opening -[u]^n that displacement adds to the gap of a contact boundary.
+/// is none, a jump.
 struct Gauge
 {
   std::string boundary;
   std::optional<int> component{};
+  Jump jump = Jump::opening;
   double factor = 1;
   Where where{};  ///< for messages
 };
@@ -33,8 +42,8 @@ struct Watch
   std::vector<Gauge> gauges;
 };
 
-/// The number of its boundary. Throws InputError where there is no such boundary or component, and where a
-/// boundary that is to open touches nothing.
+/// The number of its boundary. Throws InputError where there is no such boundary or component, where a
+/// boundary that is to open touches nothing, and where one has no heel.
 template <int dim>
 [[nodiscard]] int gauged_boundary(const problem::Problem<dim>& problem, const Gauge& gauge);
 

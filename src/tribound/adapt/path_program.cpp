@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "tribound/adapt/process_zone.h"
+
 namespace tribound::adapt
 {
 
@@ -14,6 +16,7 @@ namespace
 {
 
 constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
+constexpr double accuracy = 1e-3;        ///< of the t of a peak, relative
 
 /// C at the last step of a path.
 template <int dim>
@@ -32,6 +35,7 @@ struct Stage
   double until;  ///< value of the measure
   /// Integral of D at which the main stage ends; t_min ends it, too. Absent of PathProgram::then.
   std::optional<double> enough_damage{};
+  bool goes_by_damage = false;
 };
 
 template <int dim>
@@ -65,11 +69,11 @@ class Follower
     }
     if (progress_.stage == PathStage::main)
     {
-      end.failure = go(main_stage());
+      end_stage(go(main_stage()));
       if (!end.failure.empty()) return end;
       begin(PathStage::then);
     }
-    if (program_.then) end.failure = go(stage_of(*program_.then));
+    if (program_.then) end_stage(go(stage_of(*program_.then)));
     return end;
   }
 
@@ -91,6 +95,8 @@ class Follower
     return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until};
   }
   [[nodiscard]] std::string go(const Stage<dim>& stage);
+  void end_stage(std::string failure);
+  [[nodiscard]] std::string step(const Stage<dim>& stage, const Control<dim>& control);
   [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
   void committed(const Stage<dim>& stage, const Position& position, double size);
   [[nodiscard]] Control<dim> control(const Stage<dim>& stage, double increment) const
@@ -148,7 +154,11 @@ Stage<dim> Follower<dim>::main_stage() const
 {
   const double measure = bonded_measure(form());
   const double enough = program_.enough_damage * measure;
-  Stage<dim> stage{"damage", PathMeasure<dim>(), program_.damage_step.value_or(measure / 50), enough};
+  Stage<dim> stage{.name = "damage",
+                   .measure = {},
+                   .step = program_.damage_step.value_or(measure / 50),
+                   .until = enough,
+                   .goes_by_damage = true};
   if (program_.following == Following::displacement) stage = stage_of(program_.displacement);
   stage.enough_damage = measure > 0 ? enough : std::numeric_limits<double>::infinity();
   return stage;
@@ -187,12 +197,12 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
     control.cuts = progress_.cuts;
     if (progress_.steps == 0) control.failed = progress_.failed;
     const Position position = path_.position();
-    std::string failure = path_.follow(control, {}, newton_);
+    std::string failure = step(stage, control);
     if (failure.empty())
     {
       ++progress_.steps;
       progress_.cuts = 0;
-      progress_.last_increment = control.increment;
+      progress_.last_increment = value_at(path_, stage.measure) - now;
       const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= path_.options().few_steps;
       if (was_easy && std::abs(size) < std::abs(stage.step))
       {
@@ -217,6 +227,33 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
   return {};
 }
 
+/// Not empty: why there is none.
+template <int dim>
+std::string Follower<dim>::step(const Stage<dim>& stage, const Control<dim>& control)
+{
+  std::string failure = path_.follow(control, {}, newton_);
+  if (failure.empty() || !stage.goes_by_damage || !path_.interruption().empty()) return failure;
+  return follow_zone(path_, control, {}, newton_) ? std::string() : failure;
+}
+
+/// Where a structure slides as a whole there may be no state of rest nearby: beyond the peak the path then
+/// ends there, and what has been followed holds. Before the peak that is a failure.
+template <int dim>
+void Follower<dim>::end_stage(std::string failure)
+{
+  PathEnd& end = progress_.end;
+  const bool has_fallen =
+      end.peak && progress_.direction * (end.peak->t - path_.last()->t) > accuracy * std::abs(end.peak->t);
+  if (failure.empty() || !has_fallen || !path_.interruption().empty())
+  {
+    end.failure = std::move(failure);
+    return;
+  }
+  end.notes.push_back(
+      fmt::format("the path ends beyond its peak, with {:.3g} % of the bonds open or slipping: {}",
+                  100 * moving_share(*path_.last()), failure));
+}
+
 /// After a step from `position`.
 template <int dim>
 void Follower<dim>::committed(const Stage<dim>& stage, const Position& position, double size)
@@ -227,15 +264,15 @@ void Follower<dim>::committed(const Stage<dim>& stage, const Position& position,
   if (positions.size() > 2) positions.erase(positions.begin());
   const double t = position.last->t;
   const double fall = progress_.direction * (t - path_.last()->t);
-  if (!progress_.end.peak && fall > rounding * std::max(std::abs(t), largest_change_))
-    look_for_peak(stage, size);
+  const std::optional<Peak>& peak = progress_.end.peak;
+  const bool is_highest = !peak || progress_.direction * (t - peak->t) > 0;
+  if (is_highest && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
 }
 
 /// Notes the peak that the last step has left behind.
 template <int dim>
 void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
 {
-  constexpr double accuracy = 1e-3;
   constexpr int max_halvings = 8;
   const LoadStep<dim>& highest = *progress_.positions.back().last;
   progress_.end.peak = Peak{.t = highest.t, .number = highest.number, .change = {}, .step = size};

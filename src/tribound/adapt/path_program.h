@@ -45,7 +45,7 @@ struct PathProgram
   std::optional<DisplacementStage> then{};  ///< after all
 };
 
-/// The largest t (where the list decreases, the smallest) before the path turns back: the level at which a
+/// The largest t (where the list decreases, the smallest) that the path turns back from: the level at which a
 /// structure fails.
 struct Peak
 {
@@ -59,10 +59,11 @@ struct Peak
 /// What came of a program.
 struct PathEnd
 {
-  std::string failure{};             ///< not empty: why it was not followed to its end
-  std::vector<double> dropped{};     ///< values of t that were left out for Following::automatic
-  std::optional<Peak> peak{};        ///< where there was one
-  std::vector<std::string> notes{};  ///< stages that ended before what they were to reach
+  std::string failure{};          ///< not empty: why it was not followed to its end
+  std::vector<double> dropped{};  ///< values of t that were left out for Following::automatic
+  std::optional<Peak> peak{};     ///< where there was one
+  /// Stages that ended before what they were to reach: beyond the peak this is no failure.
+  std::vector<std::string> notes{};
 };
 
 /// What a program is at.
@@ -90,8 +91,9 @@ struct PathProgress
   PathEnd end{};                                              ///< what has come of the program so far
 };
 
-/// Follows the program. Steps that fail are halved, down to 1/1024. At a peak the steps around it are tried
-/// again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
+/// Follows the program. A step by damage that fails is tried by its process zone (follow_zone), so that the
+/// damage may grow by more or less; steps that fail are halved, down to 1/1024. At a peak the steps around it
+/// are tried again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
 /// `observer` sees the committed steps of the path, when `progress` is that after the step: with a path at
 /// its last step then it goes on with the next one. Throws as LoadPath does, and as functional().
 template <int dim>

@@ -35,19 +35,32 @@ std::vector<double> equal_steps(const Node& node)
 }
 
 constexpr auto gauge_hint =
-    "the mean of a component over a boundary, \"crest.x\", or how far a contact boundary opens, "
-    "\"base.opening\"";
+    "the mean of a component over a boundary, \"crest.x\", how far a contact boundary opens, "
+    "\"base.opening\", or at its heel, \"base.cmod\", and slides there, \"base.csd\"";
 
-/// "crest.x", "base.opening"; names of boundaries may have dots.
+struct NamedJump
+{
+  std::string_view name;
+  adapt::Jump jump;
+};
+
+constexpr std::array<NamedJump, 4> jumps = {{{"opening", adapt::Jump::opening},
+                                             {"heel", adapt::Jump::mouth_opening},
+                                             {"cmod", adapt::Jump::mouth_opening},
+                                             {"csd", adapt::Jump::mouth_sliding}}};
+
+/// "crest.x", "base.opening", "base.cmod"; names of boundaries may have dots.
 adapt::Gauge to_gauge(const std::string& text, double factor, const Where& where)
 {
   const std::size_t dot = text.rfind('.');
   const std::string last = dot == std::string::npos ? std::string() : text.substr(dot + 1);
-  adapt::Gauge gauge{.boundary = text.substr(0, dot), .component = {}, .factor = factor, .where = where};
+  adapt::Gauge gauge{.boundary = text.substr(0, dot), .factor = factor, .where = where};
   constexpr std::string_view components = "xyz";
   if (last.size() == 1 && components.find(last[0]) != std::string_view::npos)
     gauge.component = static_cast<int>(components.find(last[0]));
-  else if (last != "opening")
+  else if (const auto* const named = std::ranges::find(jumps, last, &NamedJump::name); named != jumps.end())
+    gauge.jump = named->jump;
+  else
     throw InputError(where, fmt::format("\"{}\" is no displacement", text), gauge_hint);
   return gauge;
 }

@@ -72,9 +72,10 @@ TEST(History, Control)
   { return config_of(bond + "[history]\nsteps = [0, 1]\n" + keys).history.value(); };
   EXPECT_EQ(of("").program.following, adapt::Following::load);
   EXPECT_EQ(of("control = 'auto'").program.following, adapt::Following::automatic);
-  const case_file::HistoryConfig damage = of(
-      "control = 'damage'\ndamage_step = 0.5\nstop = { damage = 0.9, t_min = -1, steps = 7 }\n"
-      "then = { displacement = 'a.x', step = -0.1, until = -2 }\nwatch = { p = 'a.b.y' }\nrefine = 'none'");
+  const case_file::HistoryConfig damage =
+      of("control = 'damage'\ndamage_step = 0.5\nstop = { damage = 0.9, t_min = -1, steps = 7 }\n"
+         "then = { displacement = 'a.x', step = -0.1, until = -2 }\nwatch = { p = 'a.b.y', m = 'b.cmod', s = "
+         "'b.csd' }\nrefine = 'none'");
   EXPECT_EQ(damage.program.following, adapt::Following::damage);
   EXPECT_EQ(damage.program.damage_step, 0.5);
   EXPECT_EQ(damage.program.enough_damage, 0.9);
@@ -82,10 +83,12 @@ TEST(History, Control)
   EXPECT_EQ(damage.program.max_steps, 7);
   EXPECT_EQ(damage.program.then.value().until, -2);
   EXPECT_FALSE(damage.refines);
-  ASSERT_EQ(damage.watch.size(), 1U);
+  ASSERT_EQ(damage.watch.size(), 3U);
   EXPECT_EQ(damage.watch[0].name, "p");
   EXPECT_EQ(damage.watch[0].gauges.at(0).boundary, "a.b");
   EXPECT_EQ(damage.watch[0].gauges[0].component, 1);
+  EXPECT_EQ(damage.watch[1].gauges.at(0).jump, adapt::Jump::mouth_opening);
+  EXPECT_EQ(damage.watch[2].gauges.at(0).jump, adapt::Jump::mouth_sliding);
 
   const adapt::DisplacementStage mixed =
       of("control = { displacement = { 'b.opening' = 1, 'a.x' = 0.1 }, step = -1e-3 }").program.displacement;
@@ -93,6 +96,7 @@ TEST(History, Control)
   EXPECT_EQ(mixed.until, -std::numeric_limits<double>::infinity());
   ASSERT_EQ(mixed.gauges.size(), 2U);
   EXPECT_FALSE(mixed.gauges[0].component);
+  EXPECT_EQ(mixed.gauges[0].jump, adapt::Jump::opening);
   EXPECT_EQ(mixed.gauges[1].factor, 0.1);
 }
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "tribound/contact/nitsche/crack_mouth.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/bodies.h"
 
@@ -175,39 +175,6 @@ std::optional<double> overturning(const contact::NitscheForm<dim>& form, const F
   return stabilising / against;
 }
 
-/// Opening and sliding at the contact point that is nearest to the heel.
-struct Mouth
-{
-  double distance = std::numeric_limits<double>::infinity();
-  double opening = 0;
-  double sliding = 0;
-};
-
-template <int dim>
-Mouth mouth(const adapt::LoadStep<dim>& step, const Frame<dim>& frame, int tag)
-{
-  const contact::NitscheForm<dim>& form = step.at->discrete.form;
-  Mouth nearest;
-  std::size_t number = 0;
-  for_each_point(form, tag,
-                 [&](const contact::ContactPoint<dim>& point, std::size_t i)
-                 {
-                   const double distance = (point.x - frame.heel).norm();
-                   if (distance >= nearest.distance) return;
-                   nearest.distance = distance;
-                   number = i;
-                 });
-  if (std::isfinite(nearest.distance))
-  {
-    const std::size_t n = form.n_segment_points();
-    nearest.opening = step.responses[number].opening;
-    nearest.sliding = form.contact_states(step.level.u, number / n)[number % n].slip.dot(frame.e);
-  }
-  const Ranks& ranks = form.space().mesh().ranks();
-  const std::vector<Mouth> all = ranks.gather<Mouth>(std::span(&nearest, 1));
-  return ranks.on_first([&] { return *std::ranges::min_element(all, {}, &Mouth::distance); });
-}
-
 }  // namespace
 
 template <int dim>
@@ -248,9 +215,14 @@ std::optional<HydraulicFigures> hydraulic_figures(const adapt::LoadStep<dim>& st
   const contact::CrackTip& tip = step.crack_tips.at(std::ranges::find(contacts, contact) - contacts.begin());
   figures.crack_tip = tip.distance;
   figures.crack_farthest = tip.farthest;
-  const Mouth at_heel = mouth(step, frame, tag);
-  figures.cmod = at_heel.opening;
-  figures.csd = at_heel.sliding;
+  const contact::CrackMouth mouth = contact::crack_mouth(form, tag);
+  const auto sliding = [&](std::size_t i)
+  {
+    const std::size_t n = form.n_segment_points();
+    return form.contact_states(step.level.u, i / n)[i % n].slip.dot(frame.e);
+  };
+  figures.cmod = contact::mean_at(mouth, form, [&](std::size_t i) { return step.responses[i].opening; });
+  figures.csd = contact::mean_at(mouth, form, sliding);
   return figures;
 }
 

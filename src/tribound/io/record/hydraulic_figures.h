@@ -35,7 +35,7 @@ struct HydraulicFigures
   // Of one interface, not of a sum:
   std::optional<double> crack_tip{};       ///< a, the largest of the steps so far
   std::optional<double> crack_farthest{};  ///< CrackTip::farthest of this step
-  std::optional<double> cmod{};            ///< delta^n at the contact point nearest to the heel
+  std::optional<double> cmod{};            ///< delta^n at contact::crack_mouth()
   std::optional<double> csd{};             ///< slip of the slave there, positive from heel to toe
 };
 
