@@ -80,12 +80,12 @@ PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const Replay
 
 /// The path on the next mesh, or why there is none.
 template <int dim>
-std::string refine(std::unique_ptr<LoadPath<dim>>& path, const Pass<dim>& pass, const LevelView<dim>& view,
+std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& view,
                    const Strategy<dim>& strategy)
 {
   const fem::LagrangeSpace<dim>& space = path->grid().space;
   const std::vector<Index> marked = strategy.mark(view);
-  const Finer<dim> finer = finer_mesh<dim>(space, pass.worst()->level.u, marked);
+  const Finer<dim> finer = finer_mesh<dim>(space, {}, marked);
   NextMesh next{.cells = finer.n_cells, .ranks = space.mesh().ranks()};
   if (strategy.limit)
     if (std::string why = strategy.limit(next); !why.empty()) return why;
@@ -127,7 +127,7 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram&
     const CertifiedLevel<dim> to_mark = pass.to_mark();
     const LevelView<dim> view{number, *discrete, to_mark, verdict, 0, discrete};
     std::string end = strategy.stop ? strategy.stop(view) : std::string();
-    if (end.empty()) end = refine(path, pass, view, strategy);
+    if (end.empty()) end = refine(path, view, strategy);
     if (end.empty()) continue;
     verdict.reason += "; " + end;
     return verdict;
