@@ -22,6 +22,13 @@ constexpr double most_lost = 1.0;
 
 constexpr const char* unfinished = "unfinished_pass";
 
+template <int dim>
+adapt::LevelView<dim> view_of(const adapt::LoadStep<dim>& step)
+{
+  const std::shared_ptr<const adapt::Discretisation<dim>> discrete(step.at, &step.at->discrete);
+  return {step.number, *discrete, step.level, step.verdict, step.seconds, discrete};
+}
+
 }  // namespace
 
 template <int dim>
@@ -37,6 +44,7 @@ PathReport<dim>::PathReport(const case_file::Config& config, const problem::Prob
       slides_(std::move(slides)),
       free_sides_(free_sides(config, first.mesh.boundary_names())),
       watch_(config.history->watch),
+      carries_(config.history->refine == case_file::Refine::transfer),
       in_work_(0, page_template_)
 {
   ranks_.on_first([&] { directory_ = take_directory(config, false); });
@@ -84,13 +92,14 @@ template <int dim>
 void PathReport<dim>::add(const adapt::LoadStep<dim>& step)
 {
   const Clock::time_point begin = Clock::now();
-  const std::shared_ptr<const adapt::Discretisation<dim>> discrete(step.at, &step.at->discrete);
-  const adapt::LevelView<dim> view{step.number, *discrete, step.level, step.verdict, step.seconds, discrete};
+  const adapt::LevelView<dim> view = view_of(step);
   record_.levels.push_back(record_of(step, view));
   keep(view, step.t);
   update_statements(record_, view, method_.contact_rule);
-  certify::add_history(record_.statements, method_.stopping.criterion != adapt::Stopping::tolerance &&
-                                               method_.stopping.criterion != adapt::Stopping::last_bounded);
+  certify::add_history(record_.statements,
+                       method_.stopping.criterion != adapt::Stopping::tolerance &&
+                           method_.stopping.criterion != adapt::Stopping::last_bounded,
+                       carries_);
   ranks_.together([&] { update_warnings(record_, view, in_work_.shown.get()); });
   ranks_.together([&] { write_fields(); });
   io::LevelTimes& times = record_.levels.back().times;
@@ -122,16 +131,35 @@ void PathReport<dim>::note(const adapt::PathEnd& end)
   record_.path = end;
 }
 
+/// By its worst step, which has no record yet where it is solved again on the next mesh.
+template <int dim>
+void PathReport<dim>::add_mesh(const adapt::PassView<dim>& pass)
+{
+  const adapt::LoadStep<dim>& worst = pass.worst;
+  const auto number = static_cast<std::size_t>(worst.number);
+  io::LevelRecord record =
+      number <= record_.levels.size() ? record_.levels[number - 1] : record_of(worst, view_of(worst));
+  record.level = pass.number;
+  record.load_step_number = worst.number;
+  record_.passes.push_back(std::move(record));
+}
+
+template <int dim>
+void PathReport<dim>::refine(const adapt::PassView<dim>& left, const adapt::Grid<dim>& finer)
+{
+  add_mesh(left);
+  if (printed_ == Printed::everything)
+    print_mesh(left.number + 1, finer.mesh.n_global_cells(), finer.space.n_global_dofs());
+}
+
 template <int dim>
 void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
 {
-  io::LevelRecord& record = record_.passes.emplace_back(record_.levels.at(pass.worst.number - 1));
-  record.level = pass.number;
-  record.load_step_number = pass.worst.number;
+  add_mesh(pass);
   ranks_.on_first(
       [&]
       {
-        if (pass.number > 0) io::move_series(fields_directory(), output_.directory);
+        if (in_work_.number > 0) io::move_series(fields_directory(), output_.directory);
       });
   before_.reset();
   record_.status = pass.verdict.status;

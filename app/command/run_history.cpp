@@ -4,6 +4,7 @@
 
 #include "app/command/path_report.h"
 #include "tribound/adapt/replay.h"
+#include "tribound/adapt/transfer.h"
 #include "tribound/base/rank_failure.h"
 
 namespace tribound::app
@@ -29,10 +30,15 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
       .step = [&](const adapt::LoadStep<dim>& step) { report.add(step); },
       .path_end = [&](const adapt::PathEnd& end) { report.note(end); },
       .complete = [&](const adapt::PassView<dim>& pass) { report.complete(pass); },
-      .given_up = [&] { report.give_up(); }};
+      .given_up = [&] { report.give_up(); },
+      .finer = [&](const adapt::PassView<dim>& left, const adapt::Grid<dim>& grid)
+      { report.refine(left, grid); }};
+  const adapt::PathProgram& program = config.history->program;
   try
   {
-    return report.close(adapt::replay<dim>(std::move(path), config.history->program, strategy, observer));
+    return report.close(config.history->refine == case_file::Refine::transfer
+                            ? adapt::transfer<dim>(*path, program, strategy, observer)
+                            : adapt::replay<dim>(std::move(path), program, strategy, observer));
   }
   catch (const SolveError& error)
   {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -126,7 +127,7 @@ void LoadPath<dim>::solve_with_crack(LoadStep<dim>& step, const Attempt& attempt
     friedrichs_ = step.level.friedrichs;
     if (!step.level.solved()) return;
     put_before(found_by, step.level.steps);
-    if (attempt.search || step.passes > 1) step.start = std::move(point.u);
+    if (!attempt.start.empty() || step.passes > 1) step.start = std::move(point.u);
     if (!crack_grows(step, tips)) return;
     point.u = step.level.u;
   }
@@ -234,6 +235,43 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
       moved[i] -= last()->level.u[i];
     }
   step.work = space.dot(mean, moved) / 2;
+}
+
+template <int dim>
+void LoadPath<dim>::go_back(Position position, std::shared_ptr<const Grid<dim>> grid)
+{
+  if (position.last)
+  {
+    grid = position.last->at->discrete.grid;
+    if (grid != grid_) friedrichs_ = position.last->level.friedrichs;  // of a mesh that this one refines
+  }
+  position_ = std::move(position);
+  if (!grid || grid == grid_) return;
+  grid_ = std::move(grid);
+  is_well_posed_ = true;
+  bordered_.reset();
+}
+
+template <int dim>
+std::string LoadPath<dim>::repeat(const LoadStep<dim>& step, const std::vector<double>& start,
+                                  const StepObserver& newton)
+{
+  constexpr double most = 0.5;
+  begin_ =
+      Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step.seconds));
+  const auto fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
+  {
+    std::vector<double> change(u.begin(), u.end());
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
+    const double moved = contact::stress_norms(form.problem(), form.space(), change).sigma;
+    return std::string(moved > most * step.level.norms.sigma ? "the solution is on another branch" : "");
+  };
+  Attempt attempt{.t = step.t, .cuts = step.cuts, .control = step.control, .start = start};
+  if (step.control != "load") attempt.fault = fault;
+  std::string why = guarded([&] { return try_step(attempt, newton); });
+  if (why.empty() || !last()) return why;
+  attempt.start = last()->level.u;
+  return guarded([&] { return try_step(attempt, newton); });
 }
 
 template <int dim>

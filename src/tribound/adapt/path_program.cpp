@@ -27,6 +27,7 @@ template <int dim>
 struct Stage
 {
   const char* name;
+  const std::vector<Gauge>* gauges;  ///< null: it is the damage that grows
   PathMeasure<dim> measure;
   double step;
   double until;  ///< value of the measure
@@ -42,9 +43,14 @@ class Follower
   using Position = typename LoadPath<dim>::Position;
 
   Follower(LoadPath<dim>& path, const PathProgram& program, const Observer& observer,
-           const StepObserver& newton)
-      : path_(path), program_(program), observer_(observer), newton_(newton)
+           const StepObserver& newton, const StepRefiner<dim>& refine)
+      : path_(path), program_(program), newton_(newton)
   {
+    observer_ = [this, &observer, &refine](const LoadStep<dim>&)
+    {
+      if (refine) refine(positions_);
+      if (observer) observer(*path_.last());
+    };
     for (std::size_t i = 1; i < program.targets.size(); ++i)
       largest_change_ = std::max(largest_change_, std::abs(program.targets[i] - program.targets[i - 1]));
   }
@@ -68,11 +74,15 @@ class Follower
   [[nodiscard]] Stage<dim> main_stage() const;
   [[nodiscard]] Stage<dim> stage_of(const DisplacementStage& stage) const
   {
-    return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until};
+    return {"displacement", &stage.gauges, measure_of(stage.gauges), stage.step, stage.until};
   }
-  [[nodiscard]] std::string go(const Stage<dim>& stage);
+  [[nodiscard]] PathMeasure<dim> measure_of(const std::vector<Gauge>& gauges) const
+  {
+    return PathMeasure<dim>(functional<dim>(form(), gauges));
+  }
+  [[nodiscard]] std::string go(Stage<dim> stage);
   [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
-  void committed(const Stage<dim>& stage, const Position& position, double size);
+  void committed(const Stage<dim>& stage, double size);
   [[nodiscard]] Control<dim> control(const Stage<dim>& stage, double increment) const
   {
     return {.name = stage.name,
@@ -93,13 +103,13 @@ class Follower
 
   LoadPath<dim>& path_;
   const PathProgram& program_;
-  const Observer& observer_;
+  Observer observer_;
   const StepObserver& newton_;
   double largest_change_ = 0;       ///< of t, between neighbours in the list
   std::optional<double> failed_{};  ///< the value of t that ended Following::automatic
   PathEnd end_{};
   double direction_ = 1;  ///< of t, when t was given for the last time
-  /// Before the last two steps of a stage.
+  /// Before the last two steps of a stage, and before the one that is looked for.
   std::vector<Position> positions_{};
 };
 
@@ -125,7 +135,8 @@ Stage<dim> Follower<dim>::main_stage() const
 {
   const double measure = bonded_measure(form());
   const double enough = program_.enough_damage * measure;
-  Stage<dim> stage{"damage", PathMeasure<dim>(), program_.damage_step.value_or(measure / 50), enough};
+  Stage<dim> stage{"damage", nullptr, PathMeasure<dim>(), program_.damage_step.value_or(measure / 50),
+                   enough};
   if (program_.following == Following::displacement) stage = stage_of(program_.displacement);
   stage.enough_damage = measure > 0 ? enough : std::numeric_limits<double>::infinity();
   return stage;
@@ -146,7 +157,7 @@ bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
 
 /// Not empty: why it was not gone through.
 template <int dim>
-std::string Follower<dim>::go(const Stage<dim>& stage)
+std::string Follower<dim>::go(Stage<dim> stage)
 {
   double size = stage.step;
   double last_increment = 0;
@@ -165,14 +176,17 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
     control.last_increment = last_increment;
     control.cuts = cuts;
     if (n == 0) control.failed = failed_;
-    const Position position = path_.position();
+    positions_.push_back(path_.position());
+    const std::shared_ptr<const LoadStep<dim>> before = path_.last();
     std::string failure = path_.follow(control, observer_, newton_);
     if (failure.empty())
     {
       ++n;
       cuts = 0;
       last_increment = control.increment;
-      committed(stage, position, control.increment);
+      if (stage.gauges != nullptr && path_.last()->at->discrete.grid != before->at->discrete.grid)
+        stage.measure = measure_of(*stage.gauges);  // its numbers are those of degrees of freedom
+      committed(stage, control.increment);
       const bool was_easy = static_cast<int>(path_.last()->level.steps.size()) <= path_.options().few_steps;
       if (was_easy && std::abs(size) < std::abs(stage.step))
       {
@@ -185,6 +199,7 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
       return failure;
     else
     {
+      positions_.pop_back();
       size = control.increment / 2;
       ++cuts;
     }
@@ -194,14 +209,13 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
   return {};
 }
 
-/// After a step from `position`.
+/// After a step from the last of the positions.
 template <int dim>
-void Follower<dim>::committed(const Stage<dim>& stage, const Position& position, double size)
+void Follower<dim>::committed(const Stage<dim>& stage, double size)
 {
   constexpr double rounding = 1e-9;
-  positions_.push_back(position);
   if (positions_.size() > 2) positions_.erase(positions_.begin());
-  const double t = position.last->t;
+  const double t = positions_.back().last->t;
   const double fall = direction_ * (t - path_.last()->t);
   if (!end_.peak && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
 }
@@ -254,12 +268,15 @@ auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end
 
 template <int dim>
 PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
-               const typename LoadPath<dim>::Observer& observer, const StepObserver& newton)
+               const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,
+               const StepRefiner<dim>& refine)
 {
-  return Follower<dim>(path, program, observer, newton).run();
+  return Follower<dim>(path, program, observer, newton, refine).run();
 }
 
-template PathEnd follow(LoadPath<2>&, const PathProgram&, const LoadPath<2>::Observer&, const StepObserver&);
-template PathEnd follow(LoadPath<3>&, const PathProgram&, const LoadPath<3>::Observer&, const StepObserver&);
+template PathEnd follow(LoadPath<2>&, const PathProgram&, const LoadPath<2>::Observer&, const StepObserver&,
+                        const StepRefiner<2>&);
+template PathEnd follow(LoadPath<3>&, const PathProgram&, const LoadPath<3>::Observer&, const StepObserver&,
+                        const StepRefiner<3>&);
 
 }  // namespace tribound::adapt

@@ -4,6 +4,7 @@
 /// What a load path goes through: values of t, and beyond them what damage or displacements lead to (method
 /// section 12.7).
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -65,11 +66,19 @@ struct PathEnd
   std::vector<std::string> notes{};  ///< stages that ended before what they were to reach
 };
 
+/// Called after every step that is committed, and before it is observed: may solve it again on a finer mesh
+/// (LoadPath::repeat), and carries there what is given, the positions before this step and the one before it
+/// as far as the program goes back to them.
+template <int dim>
+using StepRefiner = std::function<void(std::span<typename LoadPath<dim>::Position> kept)>;
+
 /// Follows the program. Steps that fail are halved, down to 1/1024. At a peak the steps around it are tried
 /// again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
-/// `observer` sees the committed steps of the path. Throws as LoadPath does, and as functional().
+/// `observer` sees the committed steps of the path, those beside it not, nor does `refine`. Throws as
+/// LoadPath does, and as functional().
 template <int dim>
 [[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
-                             const typename LoadPath<dim>::Observer& observer, const StepObserver& newton);
+                             const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,
+                             const StepRefiner<dim>& refine = {});
 
 }  // namespace tribound::adapt

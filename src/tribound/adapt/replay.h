@@ -26,7 +26,7 @@ struct PassView
   const certify::Verdict& verdict;  ///< the worst of its steps
 };
 
-/// What replay() tells; functions that are empty are not called.
+/// What replay() and transfer() tell; functions that are empty are not called.
 template <int dim>
 struct ReplayObserver
 {
@@ -36,6 +36,9 @@ struct ReplayObserver
   std::function<void(const PathEnd&)> path_end{};  ///< of a pass, whatever came of it
   std::function<void(const PassView<dim>&)> complete{};
   std::function<void()> given_up{};  ///< of a pass after the first: the one before is what holds
+  /// Of transfer(), in the place of another pass: a step that has been solved on `left` is the worst there,
+  /// or not, and has been solved again on the finer mesh.
+  std::function<void(const PassView<dim>& left, const Grid<dim>& finer)> finer{};
 };
 
 /// Follows the program on the mesh that `first` begins with, and again, with its own steps, on finer
