@@ -29,6 +29,13 @@ bool is_of_unfinished_pass(const std::filesystem::path& file)
          (file.filename() == io::checkpoint_name && std::filesystem::exists(directory / unfinished_pass));
 }
 
+template <int dim>
+adapt::LevelView<dim> view_of(const adapt::LoadStep<dim>& step)
+{
+  const std::shared_ptr<const adapt::Discretisation<dim>> discrete(step.at, &step.at->discrete);
+  return {step.number, *discrete, step.level, step.verdict, step.seconds, discrete};
+}
+
 }  // namespace
 
 template <int dim>
@@ -44,6 +51,7 @@ PathReport<dim>::PathReport(const case_file::Config& config, const problem::Prob
       slides_(std::move(slides)),
       free_sides_(free_sides(config, first.mesh.boundary_names())),
       watch_(config.history->watch),
+      carries_(config.history->refine == case_file::Refine::transfer),
       in_work_(0, page_template_)
 {
   ranks_.on_first([&] { directory_ = take_directory(config, restart != nullptr); });
@@ -101,13 +109,14 @@ template <int dim>
 void PathReport<dim>::add(const adapt::LoadStep<dim>& step)
 {
   const Clock::time_point begin = Clock::now();
-  const std::shared_ptr<const adapt::Discretisation<dim>> discrete(step.at, &step.at->discrete);
-  const adapt::LevelView<dim> view{step.number, *discrete, step.level, step.verdict, step.seconds, discrete};
+  const adapt::LevelView<dim> view = view_of(step);
   record_.levels.push_back(record_of(step, view));
   keep(view, step.t);
   update_statements(record_, view, method_.contact_rule);
-  certify::add_history(record_.statements, method_.stopping.criterion != adapt::Stopping::tolerance &&
-                                               method_.stopping.criterion != adapt::Stopping::last_bounded);
+  certify::add_history(record_.statements,
+                       method_.stopping.criterion != adapt::Stopping::tolerance &&
+                           method_.stopping.criterion != adapt::Stopping::last_bounded,
+                       carries_);
   ranks_.together([&] { update_warnings(record_, view, in_work_.shown.get()); });
   ranks_.together([&] { write_fields(); });
   io::LevelTimes& times = record_.levels.back().times;
@@ -140,7 +149,7 @@ void PathReport<dim>::write_checkpoint(const adapt::ReplayState<dim>& state)
   io::CheckpointFacts facts{.dimension = dim,
                             .degree = method_.degree,
                             .case_text = record_.effective.text,
-                            .earlier = io::as_earlier(record_, in_work_.number, state.worst_step)};
+                            .earlier = io::as_earlier(record_, state.pass, state.worst_step)};
   const io::CheckpointFields fields = io::to_checkpoint(state, facts);
   const auto write = [&](const std::filesystem::path& file)
   { io::write_checkpoint<dim>(file, facts, last.discrete->space, fields); };
@@ -155,10 +164,28 @@ void PathReport<dim>::note(const adapt::PathEnd& end)
   record_.path = end;
 }
 
+/// By its worst step, which has no record yet where it is solved again on the next mesh.
+template <int dim>
+void PathReport<dim>::add_mesh(const adapt::PassView<dim>& pass)
+{
+  const bool is_left = pass.step && (record_.levels.empty() || record_.levels.back().level < pass.worst);
+  if (is_left) record_.levels.push_back(record_of(*pass.step, view_of(*pass.step)));
+  io::complete_pass(record_, pass.number, pass.worst);
+  if (is_left) record_.levels.pop_back();
+}
+
+template <int dim>
+void PathReport<dim>::refine(const adapt::PassView<dim>& left, const adapt::Grid<dim>& finer)
+{
+  add_mesh(left);
+  if (printed_ == Printed::everything)
+    print_mesh(left.number + 1, finer.mesh.n_global_cells(), finer.space.n_global_dofs());
+}
+
 template <int dim>
 void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
 {
-  io::complete_pass(record_, pass.number, pass.worst);
+  add_mesh(pass);
   ranks_.on_first(
       [&]
       {

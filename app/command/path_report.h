@@ -45,6 +45,8 @@ class PathReport
   /// What came of the path of the pass in work.
   void note(const adapt::PathEnd& end);
   void complete(const adapt::PassView<dim>& pass);
+  /// The path goes on on a finer mesh; `left`: what was solved on the one before.
+  void refine(const adapt::PassView<dim>& left, const adapt::Grid<dim>& finer);
   /// The pass in work leads nowhere: the one before is what holds, where it is there.
   bool give_up();
   /// The last word. Throws WriteError.
@@ -68,6 +70,7 @@ class PathReport
   [[nodiscard]] std::filesystem::path fields_directory() const;
   [[nodiscard]] io::LevelRecord record_of(const adapt::LoadStep<dim>& step,
                                           const adapt::LevelView<dim>& view) const;
+  void add_mesh(const adapt::PassView<dim>& pass);
   void keep(const adapt::LevelView<dim>& view, double t);
   void write_fields();
   void write_record();
@@ -84,6 +87,7 @@ class PathReport
   std::vector<bool> slides_;
   std::vector<std::string> free_sides_;
   const std::vector<adapt::Watch>& watch_;
+  bool carries_;  ///< whether the history goes from mesh to mesh
   Pass in_work_;
   std::optional<std::pair<io::RunRecord, Pass>> before_;  ///< the last complete one, while another is in work
   bool is_resumed_ = false;                               ///< until the first pass begins

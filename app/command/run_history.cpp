@@ -6,6 +6,7 @@
 
 #include "app/command/path_report.h"
 #include "tribound/adapt/replay.h"
+#include "tribound/adapt/transfer.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/io/state/path_checkpoint.h"
 
@@ -40,11 +41,16 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
                              : std::function<void(const adapt::ReplayState<dim>&)>(),
       .path_end = [&](const adapt::PathEnd& end) { report.note(end); },
       .complete = [&](const adapt::PassView<dim>& pass) { report.complete(pass); },
-      .given_up = [&] { return report.give_up(); }};
+      .given_up = [&] { return report.give_up(); },
+      .finer = [&](const adapt::PassView<dim>& left, const adapt::Grid<dim>& grid)
+      { report.refine(left, grid); }};
+  const adapt::PathProgram& program = config.history->program;
   try
   {
-    return report.close(adapt::replay<dim>(std::move(path), config.history->program, strategy, observer,
-                                           from ? &*from : nullptr));
+    const adapt::ReplayState<dim>* state = from ? &*from : nullptr;
+    return report.close(config.history->refine == case_file::Refine::transfer
+                            ? adapt::transfer<dim>(*path, program, strategy, observer, state)
+                            : adapt::replay<dim>(std::move(path), program, strategy, observer, state));
   }
   catch (const SolveError& error)
   {

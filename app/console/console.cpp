@@ -147,9 +147,10 @@ std::string level_text(const io::LevelRecord& level)
                           level.dofs, io::newton_steps(level), bound, level.times.level));
 }
 
-std::string pass_text(int pass, std::int64_t cells, std::int64_t dofs)
+std::string mesh_text(std::string_view caption, int number, std::int64_t cells, std::int64_t dofs)
 {
-  return line(fmt::format("pass {}", pass), fmt::format("{} cells, {} degrees of freedom", cells, dofs));
+  return line(fmt::format("{} {}", caption, number),
+              fmt::format("{} cells, {} degrees of freedom", cells, dofs));
 }
 
 std::string certificate_text(const io::RunRecord& run)
@@ -298,7 +299,12 @@ void print_level(const io::LevelRecord& level)
 
 void print_pass(int pass, std::int64_t cells, std::int64_t dofs)
 {
-  print(pass_text(pass, cells, dofs));
+  print(mesh_text("pass", pass, cells, dofs));
+}
+
+void print_mesh(int mesh, std::int64_t cells, std::int64_t dofs)
+{
+  print(mesh_text("mesh", mesh, cells, dofs));
 }
 
 void print_summary(const io::RunRecord& run, const std::string& directory)

@@ -86,6 +86,7 @@
 #include "tribound/certify/truth/true_error.h"
 
 // The adaptive loop: a level of it, where to refine, the whole.
+#include "tribound/adapt/contact_functions.h"
 #include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/levels.h"
@@ -98,6 +99,7 @@
 #include "tribound/adapt/regularisation.h"
 #include "tribound/adapt/replay.h"
 #include "tribound/adapt/saved_path.h"
+#include "tribound/adapt/transfer.h"
 
 // The results.
 #include "tribound/io/fields/contact_line.h"

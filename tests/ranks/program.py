@@ -288,6 +288,8 @@ the_same_as_one("multigrid", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.m
                 "newton.stopping=tolerance", "--set", "newton.tolerance=3e-11")
 load_steps_the_same_as_one("peeled", f"{EXAMPLES}/17_double_cantilever/case.toml", "--set", "adapt.max_levels=1", "--set", "history.steps=[0.2, 0.5, 0.8]")
 load_steps_the_same_as_one("sheared", f"{EXAMPLES}/18_shear_cycle/case.toml", "--set", "adapt.max_levels=1")
+load_steps_the_same_as_one("carried", f"{EXAMPLES}/17_double_cantilever/case.toml", "--set", "history.refine=transfer", "--set", "adapt.tolerance=0.02",
+                           "--set", "newton.tolerance=1e-12", "--set", "history.steps=[0.2, 0.5, 0.8]")
 load_steps_the_same_as_one("dam_to_failure", f"{EXAMPLES}/20_dam_to_failure/case.toml", "--set", "adapt.max_levels=0", "--set", "history.damage_step=6", "--set",
                            "newton.tolerance=1e-12", "--set", "boundary.base.interface.water.crack=true", "--set", "history.steps=[0, 40, 70, 80]")
 the_same_as_one("blocks", f"{EXAMPLES}/07_three_blocks/case.toml")

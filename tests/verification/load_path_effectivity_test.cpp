@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "support/bonded_path.h"
+#include "tribound/adapt/transfer.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -101,6 +102,35 @@ TEST(LoadPathBound, IsAboveTheDualNormIn3D)
       if (degree == 1 ? i != 0 : i == 3) expect_guaranteed<3>(laws[i], degree, i % 2 == 1, seen);
     fmt::print("3D, p = {}: {} iterates {:.3f} to {:.3f}\n", degree, seen.count, seen.least, seen.most);
   }
+}
+
+/// On meshes to which the history has been carried in the middle of the path.
+TEST(LoadPathBound, IsAboveTheDualNormAfterTransfer)
+{
+  Seen seen;
+  for (const problem::ContactLaw& law : bonded_laws())
+    for (const bool pairs : {false, true})
+    {
+      SCOPED_TRACE(fmt::format("{}, {}", problem::words(law), pairs ? "pair" : "obstacle"));
+      mesh::Mesh<2> mesh(peeled_mesh<2>(pairs));
+      const problem::Problem<2> problem = peeled<2>(law, pairs).on(mesh);
+      adapt::Method method{.degree = 2};
+      method.stopping.criterion = adapt::Stopping::last_bounded;
+      adapt::LoadPath<2> path(problem, method, {.tolerance = 1e-3}, std::move(mesh));
+      for (const double t : {path_of_t[0], path_of_t[1]}) ASSERT_EQ(path.advance(t), "");
+      std::vector<double> before;
+      const auto check = [&](const adapt::LoadStep<2>& step)
+      {
+        if (before.empty()) before = step.start;
+        expect_above_dual_norm<2>(step, before, seen);
+        before = step.level.u;
+      };
+      const certify::Verdict verdict =
+          adapt::transfer<2>(path, {.targets = {path_of_t.begin() + 2, path_of_t.end()}},
+                             adapt::make_strategy<2>({.max_levels = 2}), {.step = check});
+      EXPECT_EQ(verdict.status, certify::RunStatus::budget);
+    }
+  fmt::print("2D, carried: {} iterates {:.3f} to {:.3f}\n", seen.count, seen.least, seen.most);
 }
 
 /// Kinks of the pressure are inside facets: the drain, and the tip of the crack.

@@ -1,5 +1,6 @@
 #include "tribound/adapt/finer.h"
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,46 +15,92 @@ namespace tribound::adapt
 namespace
 {
 
+using Functions = std::vector<std::span<const double>>;
+
 template <int dim>
-Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, std::span<const double> u,
+Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functions,
                     std::span<const Index> marked)
 {
   auto finer = std::make_shared<mesh::Bisected<dim>>(mesh::bisect<dim>(from.mesh(), marked));
   return {finer->mesh.n_cells(), [finer] { return std::move(finer->mesh); },
-          [finer, &from, u](const fem::LagrangeSpace<dim>& space)
-          { return fem::nested_interpolant<dim>(from, u, finer->parent, space); }};
+          [finer, &from, functions](const fem::LagrangeSpace<dim>& space)
+          {
+            std::vector<std::vector<double>> carried;
+            for (const std::span<const double> u : functions)
+              carried.push_back(fem::nested_interpolant<dim>(from, u, finer->parent, space));
+            return carried;
+          }};
+}
+
+/// Blocks of n values, one for each cell, as rows[k] has them: those of all rows, cell by cell.
+std::vector<double> by_cells(const std::vector<std::vector<double>>& rows, std::size_t n_cells, std::size_t n)
+{
+  std::vector<double> values;
+  values.reserve(rows.size() * n_cells * n);
+  for (std::size_t c = 0; c < n_cells; ++c)
+    for (const std::vector<double>& row : rows)
+      values.insert(values.end(), row.begin() + static_cast<std::ptrdiff_t>(c * n),
+                    row.begin() + static_cast<std::ptrdiff_t>((c + 1) * n));
+  return values;
+}
+
+/// Row k of these.
+std::vector<double> row_of(std::span<const double> values, std::size_t n_rows, std::size_t n, std::size_t k)
+{
+  std::vector<double> row;
+  row.reserve(values.size() / n_rows);
+  for (std::size_t begin = k * n; begin < values.size(); begin += n_rows * n)
+  {
+    const std::span<const double> block = values.subspan(begin, n);
+    row.insert(row.end(), block.begin(), block.end());
+  }
+  return row;
 }
 
 /// The same of a mesh that is shared out: its cells take the values at their nodes with them.
 template <int dim>
-Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, std::span<const double> u,
+Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& functions,
                          std::span<const Index> marked)
 {
   auto part = std::make_shared<mesh::BisectedPart<dim>>(mesh::bisect_part<dim>(from.mesh(), marked));
   const std::int64_t n_cells = from.mesh().ranks().sum(static_cast<std::int64_t>(part->cells.size()));
   auto balanced = std::make_shared<std::optional<mesh::Balanced<dim>>>();
+  const std::size_t n_each = static_cast<std::size_t>(dim) * from.basis().n_nodes();
+  const std::size_t n_functions = functions.size();
   return {n_cells,
           [=, &from]
           {
-            const std::vector<double> values = fem::nested_values<dim>(from, u, part->cells, part->parent);
-            *balanced =
-                mesh::balance<dim>(from.mesh(), std::move(part->cells), values, dim * from.basis().n_nodes());
+            std::vector<std::vector<double>> rows;
+            for (const std::span<const double> u : functions)
+              rows.push_back(fem::nested_values<dim>(from, u, part->cells, part->parent));
+            const std::vector<double> values = by_cells(rows, part->cells.size(), n_each);
+            *balanced = mesh::balance<dim>(from.mesh(), std::move(part->cells), values,
+                                           static_cast<int>(n_functions * n_each));
             return std::move((*balanced)->mesh);
           },
-          [balanced](const fem::LagrangeSpace<dim>& space)
-          { return fem::from_cell_values<dim>(space, (*balanced)->cells, (*balanced)->values); }};
+          [=](const fem::LagrangeSpace<dim>& space)
+          {
+            std::vector<std::vector<double>> carried;
+            for (std::size_t k = 0; k < n_functions; ++k)
+              carried.push_back(fem::from_cell_values<dim>(
+                  space, (*balanced)->cells, row_of((*balanced)->values, n_functions, n_each, k)));
+            return carried;
+          }};
 }
 
 }  // namespace
 
 template <int dim>
-Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space, std::vector<std::span<const double>> functions,
                       std::span<const Index> marked)
 {
-  return space.mesh().partition() ? bisected_part<dim>(space, u, marked) : bisected<dim>(space, u, marked);
+  return space.mesh().partition() ? bisected_part<dim>(space, functions, marked)
+                                  : bisected<dim>(space, functions, marked);
 }
 
-template Finer<2> finer_mesh(const fem::LagrangeSpace<2>&, std::span<const double>, std::span<const Index>);
-template Finer<3> finer_mesh(const fem::LagrangeSpace<3>&, std::span<const double>, std::span<const Index>);
+template Finer<2> finer_mesh(const fem::LagrangeSpace<2>&, std::vector<std::span<const double>>,
+                             std::span<const Index>);
+template Finer<3> finer_mesh(const fem::LagrangeSpace<3>&, std::vector<std::span<const double>>,
+                             std::span<const Index>);
 
 }  // namespace tribound::adapt

@@ -18,16 +18,18 @@ namespace tribound::adapt
 template <int dim>
 struct Finer
 {
-  std::int64_t n_cells;                                                      ///< of all ranks
-  std::function<mesh::Mesh<dim>()> mesh;                                     ///< makes it, once
-  std::function<std::vector<double>(const fem::LagrangeSpace<dim>&)> carry;  ///< u onto a space on it
+  std::int64_t n_cells;                   ///< of all ranks
+  std::function<mesh::Mesh<dim>()> mesh;  ///< makes it, once
+  /// The functions onto a space on it.
+  std::function<std::vector<std::vector<double>>(const fem::LagrangeSpace<dim>&)> carry;
 };
 
-/// The mesh of `space` with the marked cells bisected (mesh/bisect.h), and u, a function of the space. On a
-/// mesh that is shared out all ranks call it and its members together; cells take the values at their nodes
-/// with them. Throws InputError as bisect() and balance() do.
+/// The mesh of `space` with the marked cells bisected (mesh/bisect.h), and functions of the space, such as u.
+/// On a mesh that is shared out all ranks call it and its members together; cells take the values at their
+/// nodes with them. Throws InputError as bisect() and balance() do.
 template <int dim>
-[[nodiscard]] Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+[[nodiscard]] Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space,
+                                    std::vector<std::span<const double>> functions,
                                     std::span<const Index> marked);
 
 }  // namespace tribound::adapt

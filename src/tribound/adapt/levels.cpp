@@ -259,7 +259,7 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
   const std::vector<Index> marked = mark(view());
-  const Finer<dim> finer = finer_mesh<dim>(current_->space, level_.u, marked);
+  const Finer<dim> finer = finer_mesh<dim>(current_->space, {level_.u}, marked);
   RefinementSeconds seconds{.bisect = lap()};
   NextMesh is_next{.cells = finer.n_cells, .ranks = current_->mesh.ranks()};
   if (limit)
@@ -275,7 +275,7 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
                    static_cast<double>(std::max(std::int64_t{1}, free_dofs(*current_)));
   if (limit)
     if (std::string why = limit(is_next); !why.empty()) return why;
-  start_ = finer.carry(next->space);
+  start_ = std::move(finer.carry(next->space).front());
   seconds.transfer = lap();
   refinement_ = seconds;
   expected_ = level_.estimate.global.discretisation() * std::pow(is_next.growth, -1.0 * method_.degree / dim);

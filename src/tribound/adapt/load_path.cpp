@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -148,7 +149,7 @@ void LoadPath<dim>::solve_with_crack(LoadStep<dim>& step, const Attempt& attempt
     friedrichs_ = step.level.friedrichs;
     if (!step.level.solved()) return;
     put_before(found_by, step.level.steps);
-    if (attempt.search || step.passes > 1) step.start = std::move(point.u);
+    if (!attempt.start.empty() || step.passes > 1) step.start = std::move(point.u);
     if (!crack_grows(step, tips)) return;
     point.u = step.level.u;
   }
@@ -302,9 +303,11 @@ auto LoadPath<dim>::recall(const SavedStep<dim>& saved, PathPoint before) const 
   step->control = saved.control;
   step->largest_sigma = saved.largest_sigma;
   step->level.u = saved.u;
+  step->level.traction = form.traction(saved.u);
+  step->level.friedrichs = friedrichs_;
   step->responses = form.advance(saved.u);
   std::vector<double> contact_load(form.space().n_dofs(), 0.0);
-  form.add_contact_load(form.traction(saved.u), contact_load);
+  form.add_contact_load(step->level.traction, contact_load);
   step->forces = forces_on(form, saved.u, std::move(contact_load));
   step->at = std::move(at);
   std::shared_ptr<const contact::ContactHistory<dim>> after = history_after(*step);
@@ -317,6 +320,7 @@ auto LoadPath<dim>::recall(const SavedPath<dim>& saved,
                            const std::optional<certify::FriedrichsConstant>& friedrichs)
     -> std::vector<Position>
 {
+  friedrichs_ = friedrichs;
   std::vector<Position> positions;
   for (std::size_t i = 0; i < saved.steps.size(); ++i)
   {
@@ -326,8 +330,44 @@ auto LoadPath<dim>::recall(const SavedPath<dim>& saved,
   }
   position_ = positions.front();
   prepared_.reset();
-  friedrichs_ = friedrichs;
   return positions;
+}
+
+template <int dim>
+void LoadPath<dim>::go_back(Position position, std::shared_ptr<const Grid<dim>> grid)
+{
+  if (position.last)
+  {
+    grid = position.last->at->discrete.grid;
+    if (grid != grid_) friedrichs_ = position.last->level.friedrichs;  // of a mesh that this one refines
+  }
+  position_ = std::move(position);
+  if (!grid || grid == grid_) return;
+  grid_ = std::move(grid);
+  is_well_posed_ = true;
+  bordered_.reset();
+}
+
+template <int dim>
+std::string LoadPath<dim>::repeat(const LoadStep<dim>& step, const std::vector<double>& start,
+                                  const StepObserver& newton)
+{
+  constexpr double most = 0.5;
+  begin_ =
+      Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step.seconds));
+  const auto fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
+  {
+    std::vector<double> change(u.begin(), u.end());
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
+    const double moved = contact::stress_norms(form.problem(), form.space(), change).sigma;
+    return std::string(moved > most * step.level.norms.sigma ? "the solution is on another branch" : "");
+  };
+  Attempt attempt{.t = step.t, .cuts = step.cuts, .control = step.control, .start = start};
+  if (step.control != "load") attempt.fault = fault;
+  std::string why = guarded([&] { return try_step(attempt, newton); });
+  if (why.empty() || !last()) return why;
+  attempt.start = last()->level.u;
+  return guarded([&] { return try_step(attempt, newton); });
 }
 
 template <int dim>

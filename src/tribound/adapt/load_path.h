@@ -144,7 +144,6 @@ class LoadPath
     std::vector<double> tips{};  ///< of cracks, by number of Problem::contacts(); they never shrink
   };
   [[nodiscard]] Position position() const { return position_; }
-  void go_back(Position position) { position_ = std::move(position); }
   /// Positions one after the other, the newest first, to be recalled by another run. All ranks together.
   [[nodiscard]] static SavedPath<dim> save(std::span<const Position> positions);
   /// Goes to the newest position that another run on this mesh has saved, and returns all of them. What the
@@ -152,6 +151,14 @@ class LoadPath
   /// contact points of the mesh are others.
   std::vector<Position> recall(const SavedPath<dim>& saved,
                                const std::optional<certify::FriedrichsConstant>& friedrichs);
+  /// On the mesh of its last step, or on `grid` where it has none.
+  void go_back(Position position, std::shared_ptr<const Grid<dim>> grid = nullptr);
+  /// The step that follows, which has been solved on a coarser mesh, at its t on this one from `start`, which
+  /// is its displacement, or from the step before. Not empty: why there is none; the last committed step
+  /// stays. A step under control has its t from the coarser mesh, and near a peak there may be no solution,
+  /// or one on another branch: one that differs by more than half the stress is none.
+  [[nodiscard]] std::string repeat(const LoadStep<dim>& step, const std::vector<double>& start,
+                                   const StepObserver& newton = {});
   /// Not empty: it is to end here.
   [[nodiscard]] std::string interruption() const;
 
@@ -161,6 +168,8 @@ class LoadPath
   [[nodiscard]] const PathOptions& options() const { return options_; }
   /// C_F, where it is known.
   [[nodiscard]] const std::optional<certify::FriedrichsConstant>& friedrichs() const { return friedrichs_; }
+  [[nodiscard]] const problem::Problem<dim>& problem() const { return problem_; }
+  [[nodiscard]] const Method& method() const { return method_; }
 
  private:
   /// Finds t and what Newton's method there begins with, where the crack has its tips; `point`: what the

@@ -30,12 +30,12 @@ template <int dim>
 struct Stage
 {
   const char* name;
+  const std::vector<Gauge>* gauges;  ///< null: it is the damage that grows
   PathMeasure<dim> measure;
   double step;
   double until;  ///< value of the measure
   /// Integral of D at which the main stage ends; t_min ends it, too. Absent of PathProgram::then.
   std::optional<double> enough_damage{};
-  bool goes_by_damage = false;
 };
 
 template <int dim>
@@ -46,8 +46,13 @@ class Follower
   using Position = typename LoadPath<dim>::Position;
 
   Follower(LoadPath<dim>& path, const PathProgram& program, const Observer& observer,
-           const StepObserver& newton, PathProgress<dim>& progress)
-      : path_(path), program_(program), observer_(observer), newton_(newton), progress_(progress)
+           const StepObserver& newton, PathProgress<dim>& progress, const StepRefiner<dim>& refine)
+      : path_(path),
+        program_(program),
+        observer_(observer),
+        newton_(newton),
+        refine_(refine),
+        progress_(progress)
   {
     for (std::size_t i = 1; i < program.targets.size(); ++i)
       largest_change_ = std::max(largest_change_, std::abs(program.targets[i] - program.targets[i - 1]));
@@ -92,13 +97,17 @@ class Follower
   [[nodiscard]] Stage<dim> main_stage() const;
   [[nodiscard]] Stage<dim> stage_of(const DisplacementStage& stage) const
   {
-    return {"displacement", PathMeasure<dim>(functional<dim>(form(), stage.gauges)), stage.step, stage.until};
+    return {"displacement", &stage.gauges, measure_of(stage.gauges), stage.step, stage.until};
   }
-  [[nodiscard]] std::string go(const Stage<dim>& stage);
+  [[nodiscard]] PathMeasure<dim> measure_of(const std::vector<Gauge>& gauges) const
+  {
+    return PathMeasure<dim>(functional<dim>(form(), gauges));
+  }
+  [[nodiscard]] std::string go(Stage<dim> stage);
   void end_stage(std::string failure);
   [[nodiscard]] std::string step(const Stage<dim>& stage, const Control<dim>& control);
   [[nodiscard]] bool is_over(const Stage<dim>& stage, double now) const;
-  void committed(const Stage<dim>& stage, const Position& position, double size);
+  void committed(const Stage<dim>& stage, double size);
   [[nodiscard]] Control<dim> control(const Stage<dim>& stage, double increment) const
   {
     return {.name = stage.name,
@@ -121,6 +130,7 @@ class Follower
   const PathProgram& program_;
   const Observer& observer_;
   const StepObserver& newton_;
+  const StepRefiner<dim>& refine_;
   double largest_change_ = 0;  ///< of t, between neighbours in the list
   PathProgress<dim>& progress_;
 };
@@ -137,7 +147,8 @@ void Follower<dim>::by_load()
     const auto committed = [&](const LoadStep<dim>& step)
     {
       if (step.t == t) ++i;
-      if (observer_) observer_(step);
+      if (refine_) refine_(progress_.positions);
+      if (observer_) observer_(*path_.last());
     };
     end.failure = path_.advance(t, committed, newton_, !is_automatic, progress_.load);
     if (end.failure.empty() || !is_automatic || i < 2 || !path_.interruption().empty()) continue;
@@ -155,10 +166,11 @@ Stage<dim> Follower<dim>::main_stage() const
   const double measure = bonded_measure(form());
   const double enough = program_.enough_damage * measure;
   Stage<dim> stage{.name = "damage",
+                   .gauges = nullptr,
                    .measure = {},
                    .step = program_.damage_step.value_or(measure / 50),
                    .until = enough,
-                   .goes_by_damage = true};
+                   .enough_damage = {}};
   if (program_.following == Following::displacement) stage = stage_of(program_.displacement);
   stage.enough_damage = measure > 0 ? enough : std::numeric_limits<double>::infinity();
   return stage;
@@ -179,7 +191,7 @@ bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
 
 /// Not empty: why it was not gone through.
 template <int dim>
-std::string Follower<dim>::go(const Stage<dim>& stage)
+std::string Follower<dim>::go(Stage<dim> stage)
 {
   if (!progress_.size) progress_.size = stage.step;
   double& size = *progress_.size;
@@ -196,10 +208,14 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
     control.last_increment = progress_.last_increment;
     control.cuts = progress_.cuts;
     if (progress_.steps == 0) control.failed = progress_.failed;
-    const Position position = path_.position();
+    progress_.positions.push_back(path_.position());
+    const std::shared_ptr<const LoadStep<dim>> before = path_.last();
     std::string failure = step(stage, control);
     if (failure.empty())
     {
+      if (refine_) refine_(progress_.positions);
+      if (stage.gauges != nullptr && path_.last()->at->discrete.grid != before->at->discrete.grid)
+        stage.measure = measure_of(*stage.gauges);  // its numbers are those of degrees of freedom
       ++progress_.steps;
       progress_.cuts = 0;
       progress_.last_increment = value_at(path_, stage.measure) - now;
@@ -209,7 +225,7 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
         const double larger = path_.options().growth * size;
         size = std::abs(larger) < std::abs(stage.step) ? larger : stage.step;
       }
-      committed(stage, position, control.increment);
+      committed(stage, control.increment);
       if (observer_) observer_(*path_.last());
     }
     else if (!path_.interruption().empty() ||
@@ -217,6 +233,7 @@ std::string Follower<dim>::go(const Stage<dim>& stage)
       return failure;
     else
     {
+      progress_.positions.pop_back();
       size = control.increment / 2;
       ++progress_.cuts;
     }
@@ -232,7 +249,7 @@ template <int dim>
 std::string Follower<dim>::step(const Stage<dim>& stage, const Control<dim>& control)
 {
   std::string failure = path_.follow(control, {}, newton_);
-  if (failure.empty() || !stage.goes_by_damage || !path_.interruption().empty()) return failure;
+  if (failure.empty() || stage.gauges != nullptr || !path_.interruption().empty()) return failure;
   return follow_zone(path_, control, {}, newton_) ? std::string() : failure;
 }
 
@@ -254,15 +271,14 @@ void Follower<dim>::end_stage(std::string failure)
                   100 * moving_share(*path_.last()), failure));
 }
 
-/// After a step from `position`.
+/// After a step from the last of the positions.
 template <int dim>
-void Follower<dim>::committed(const Stage<dim>& stage, const Position& position, double size)
+void Follower<dim>::committed(const Stage<dim>& stage, double size)
 {
   constexpr double rounding = 1e-9;
   std::vector<Position>& positions = progress_.positions;
-  positions.push_back(position);
   if (positions.size() > 2) positions.erase(positions.begin());
-  const double t = position.last->t;
+  const double t = positions.back().last->t;
   const double fall = progress_.direction * (t - path_.last()->t);
   const std::optional<Peak>& peak = progress_.end.peak;
   const bool is_highest = !peak || progress_.direction * (t - peak->t) > 0;
@@ -317,14 +333,14 @@ auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end
 template <int dim>
 PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
                const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,
-               PathProgress<dim>& progress)
+               PathProgress<dim>& progress, const StepRefiner<dim>& refine)
 {
-  return Follower<dim>(path, program, observer, newton, progress).run();
+  return Follower<dim>(path, program, observer, newton, progress, refine).run();
 }
 
 template PathEnd follow(LoadPath<2>&, const PathProgram&, const LoadPath<2>::Observer&, const StepObserver&,
-                        PathProgress<2>&);
+                        PathProgress<2>&, const StepRefiner<2>&);
 template PathEnd follow(LoadPath<3>&, const PathProgram&, const LoadPath<3>::Observer&, const StepObserver&,
-                        PathProgress<3>&);
+                        PathProgress<3>&, const StepRefiner<3>&);
 
 }  // namespace tribound::adapt

@@ -4,6 +4,7 @@
 /// What a load path goes through: values of t, and beyond them what damage or displacements lead to (method
 /// section 12.7).
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -87,19 +88,27 @@ struct PathProgress
   std::optional<double> size{};  ///< of the next increment; absent at its beginning
   double last_increment = 0;
   int cuts = 0;
-  std::vector<typename LoadPath<dim>::Position> positions{};  ///< before its last two steps
-  PathEnd end{};                                              ///< what has come of the program so far
+  std::vector<typename LoadPath<dim>::Position>
+      positions{};  ///< before its last two steps, and the one that is looked for
+  PathEnd end{};    ///< what has come of the program so far
 };
+
+/// Called after every step that is committed, and before it is observed: may solve it again on a finer mesh
+/// (LoadPath::repeat), and carries there what is given, the positions before this step and the one before it
+/// as far as the program goes back to them.
+template <int dim>
+using StepRefiner = std::function<void(std::span<typename LoadPath<dim>::Position> kept)>;
 
 /// Follows the program. A step by damage that fails is tried by its process zone (follow_zone), so that the
 /// damage may grow by more or less; steps that fail are halved, down to 1/1024. At a peak the steps around it
 /// are tried again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
-/// `observer` sees the committed steps of the path, when `progress` is that after the step: with a path at
-/// its last step then it goes on with the next one. Throws as LoadPath does, and as functional().
+/// `observer` sees the committed steps of the path, those beside it not, nor does `refine`, when `progress`
+/// is that after the step: with a path at its last step then it goes on with the next one. Throws as LoadPath
+/// does, and as functional().
 template <int dim>
 [[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
                              const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,
-                             PathProgress<dim>& progress);
+                             PathProgress<dim>& progress, const StepRefiner<dim>& refine = {});
 template <int dim>
 [[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
                              const typename LoadPath<dim>::Observer& observer, const StepObserver& newton)

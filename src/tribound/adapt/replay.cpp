@@ -23,7 +23,7 @@ class Pass
  public:
   explicit Pass(int number) { state_.pass = number; }
   /// One that goes on.
-  explicit Pass(const ReplayState<dim>& from) : state_(from) {}
+  Pass(const ReplayState<dim>& from, LoadPath<dim>& path) : state_(from) { state_.recall(path); }
 
   void add(const LoadStep<dim>& step)
   {
@@ -45,7 +45,7 @@ class Pass
   [[nodiscard]] const certify::Verdict& verdict() const { return state_.verdict; }
   [[nodiscard]] PassView<dim> view() const
   {
-    return {state_.pass, state_.worst_step, state_.worst, state_.verdict};
+    return {state_.pass, state_.worst_step, state_.worst, state_.verdict, nullptr};
   }
   [[nodiscard]] PathProgress<dim>& progress() { return state_.progress; }
 
@@ -59,11 +59,7 @@ class Pass
   /// With the path as it is now.
   [[nodiscard]] const ReplayState<dim>& state(const LoadPath<dim>& path)
   {
-    std::vector<typename LoadPath<dim>::Position> positions = state_.progress.positions;
-    positions.push_back(path.position());
-    std::ranges::reverse(positions);
-    state_.path = LoadPath<dim>::save(positions);
-    state_.friedrichs = path.friedrichs();
+    state_.note(path);
     return state_;
   }
 
@@ -96,18 +92,6 @@ PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const Replay
   return end;
 }
 
-/// The pass that another run was in, and its path.
-template <int dim>
-Pass<dim> resumed(LoadPath<dim>& path, const ReplayState<dim>& from)
-{
-  Pass<dim> pass(from);
-  std::vector<typename LoadPath<dim>::Position>& positions = pass.progress().positions;
-  positions = path.recall(from.path, from.friedrichs);
-  std::ranges::reverse(positions);
-  positions.pop_back();
-  return pass;
-}
-
 /// The path on the next mesh, or why there is none.
 template <int dim>
 std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& view,
@@ -115,7 +99,7 @@ std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& v
 {
   const fem::LagrangeSpace<dim>& space = path->grid().space;
   const std::vector<Index> marked = strategy.mark(view);
-  const Finer<dim> finer = finer_mesh<dim>(space, path->last()->level.u, marked);
+  const Finer<dim> finer = finer_mesh<dim>(space, {}, marked);
   NextMesh next{.cells = finer.n_cells, .ranks = space.mesh().ranks()};
   if (strategy.limit)
     if (std::string why = strategy.limit(next); !why.empty()) return why;
@@ -131,6 +115,24 @@ std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& v
 }  // namespace
 
 template <int dim>
+void ReplayState<dim>::note(const LoadPath<dim>& of)
+{
+  std::vector<typename LoadPath<dim>::Position> positions = progress.positions;
+  positions.push_back(of.position());
+  std::ranges::reverse(positions);
+  path = LoadPath<dim>::save(positions);
+  friedrichs = of.friedrichs();
+}
+
+template <int dim>
+void ReplayState<dim>::recall(LoadPath<dim>& on)
+{
+  progress.positions = on.recall(path, friedrichs);
+  std::ranges::reverse(progress.positions);
+  progress.positions.pop_back();
+}
+
+template <int dim>
 certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram& program,
                         const Strategy<dim>& strategy, const ReplayObserver<dim>& observer,
                         const ReplayState<dim>* from)
@@ -141,7 +143,7 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram&
   for (int number = first_pass;; ++number)
   {
     if (observer.begins) observer.begins(number, path->grid());
-    Pass<dim> pass = from && number == first_pass ? resumed<dim>(*path, *from) : Pass<dim>(number);
+    Pass<dim> pass = from && number == first_pass ? Pass<dim>(*from, *path) : Pass<dim>(number);
     const std::string why = go_through(program, *path, observer, pass).failure;
     if (!why.empty() || !pass.holds())
     {
@@ -166,6 +168,8 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram&
   }
 }
 
+template struct ReplayState<2>;
+template struct ReplayState<3>;
 template certify::Verdict replay(std::unique_ptr<LoadPath<2>>, const PathProgram&, const Strategy<2>&,
                                  const ReplayObserver<2>&, const ReplayState<2>*);
 template certify::Verdict replay(std::unique_ptr<LoadPath<3>>, const PathProgram&, const Strategy<3>&,

@@ -25,6 +25,7 @@ struct PassView
   int worst;
   const certify::Bound& bound;      ///< its
   const certify::Verdict& verdict;  ///< the worst of its steps
+  const LoadStep<dim>* step;        ///< that step; null where it was before a restart, or is not kept
 };
 
 /// Where a run over a path is after a load step.
@@ -40,9 +41,14 @@ struct ReplayState
   certify::Bound worst;                         ///< the largest
   int worst_step = 0;                           ///< its number
   certify::Verdict verdict{certify::RunStatus::certified, {}};
+
+  /// Notes where the path is, for a state that is told.
+  void note(const LoadPath<dim>& of);
+  /// Brings a path on the same mesh there, for a run that goes on. Throws as LoadPath::recall().
+  void recall(LoadPath<dim>& on);
 };
 
-/// What replay() tells; functions that are empty are not called.
+/// What replay() and transfer() tell; functions that are empty are not called.
 template <int dim>
 struct ReplayObserver
 {
@@ -54,6 +60,9 @@ struct ReplayObserver
   std::function<void(const PassView<dim>&)> complete{};
   /// Of a pass after the first; false where the one before does not hold any more, as after a restart.
   std::function<bool()> given_up{};
+  /// Of transfer(), in the place of another pass: a step that has been solved on `left` is the worst there,
+  /// or not, and has been solved again on the finer mesh.
+  std::function<void(const PassView<dim>& left, const Grid<dim>& finer)> finer{};
 };
 
 /// Follows the program on the mesh that `first` begins with, and again, with its own steps, on finer

@@ -12,12 +12,20 @@
 namespace tribound::case_file
 {
 
+/// Where the meshes of a path come from.
+enum class Refine
+{
+  replay,
+  transfer,
+  none
+};
+
 /// [history]: the values of t that are gone through, one after the other, and what comes after them.
 struct HistoryConfig
 {
   adapt::PathProgram program{.targets = {1.0}};
   std::vector<adapt::Watch> watch{};
-  bool refines = true;  ///< whether the path is followed again on finer meshes
+  Refine refine = Refine::replay;
   Where where{};
 };
 

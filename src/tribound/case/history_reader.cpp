@@ -141,12 +141,6 @@ std::vector<adapt::Watch> read_watch(const Node& node)
 constexpr std::array<std::string_view, 7> history_keys = {"steps", "control", "damage_step", "stop",
                                                           "then",  "watch",   "refine"};
 
-enum class Refine
-{
-  replay,
-  none
-};
-
 HistoryConfig read_history(const Node& node)
 {
   const TableReader table(node, history_keys);
@@ -160,9 +154,7 @@ HistoryConfig read_history(const Node& node)
   if (const Node* stop = table.find("stop")) read_stop(*stop, program);
   if (const Node* then = table.find("then")) program.then = to_displacement(*then, true);
   table.read("watch", history.watch, read_watch);
-  Refine refine = Refine::replay;
-  table.read("refine", refine, one_of<Refine>({"replay", "none"}));
-  history.refines = refine == Refine::replay;
+  table.read("refine", history.refine, one_of<Refine>({"replay", "transfer", "none"}));
   return history;
 }
 
@@ -240,7 +232,7 @@ void check_load_steps(const TableReader& root, Config& config)
     throw InputError(root.find("regularisation")->where,
                      root.has("history") ? "stands beside [history]" : "stands beside an interface",
                      "drop it: load steps go by the plain method");
-  if (!config.history->refines) config.adapt.max_levels = 0;
+  if (config.history->refine == Refine::none) config.adapt.max_levels = 0;
   if (const Node* history = root.find("history")) check_control(TableReader(*history, history_keys), config);
 }
 

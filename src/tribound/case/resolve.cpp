@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/adapt/transfer.h"
 #include "tribound/case/geometry_resolver.h"
 #include "tribound/case/node.h"
 
@@ -157,10 +158,12 @@ void check_all_mentioned(const Config& config, std::span<const std::string> grou
                     dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
 }
 
-/// Throws where what is watched or given is none of the problem.
+/// Throws where what is watched or given is none of the problem, or meshes cannot be refined so.
 template <int dim>
-void check_gauges(const HistoryConfig& history, const problem::Problem<dim>& problem)
+void check_history(const HistoryConfig& history, const problem::Problem<dim>& problem)
 {
+  if (history.refine == Refine::transfer)
+    adapt::check_transfer<dim>(problem, inside(history.where, "refine"));
   const auto check = [&](const std::vector<adapt::Gauge>& gauges)
   {
     for (const adapt::Gauge& gauge : gauges) (void)adapt::gauged_boundary<dim>(problem, gauge);
@@ -207,7 +210,7 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
                         pairs.back().contact);
   }
   problem::Problem<dim> problem(region_names, boundary_names, regions, boundaries, std::move(pairs));
-  if (config.history) check_gauges<dim>(*config.history, problem);
+  if (config.history) check_history<dim>(*config.history, problem);
   return problem;
 }
 

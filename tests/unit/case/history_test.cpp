@@ -82,7 +82,9 @@ TEST(History, Control)
   EXPECT_EQ(damage.program.t_min, -1);
   EXPECT_EQ(damage.program.max_steps, 7);
   EXPECT_EQ(damage.program.then.value().until, -2);
-  EXPECT_FALSE(damage.refines);
+  EXPECT_EQ(damage.refine, case_file::Refine::none);
+  EXPECT_EQ(of("").refine, case_file::Refine::replay);
+  EXPECT_EQ(of("refine = 'transfer'").refine, case_file::Refine::transfer);
   ASSERT_EQ(damage.watch.size(), 3U);
   EXPECT_EQ(damage.watch[0].name, "p");
   EXPECT_EQ(damage.watch[0].gauges.at(0).boundary, "a.b");
@@ -119,7 +121,7 @@ TEST(History, BadSteps)
   EXPECT_THAT(of("steps = ['a']"), HasSubstr("history.steps[0]: must be a number"));
   EXPECT_THAT(of("steps = { from = 0, to = 1, count = 1 }"), HasSubstr("history.steps.count"));
   EXPECT_THAT(of("steps = { from = 0, to = 1 }"), HasSubstr("history.steps.count: is missing"));
-  EXPECT_THAT(of("steps = [1]\nrefine = 'transfer'"), HasSubstr("history.refine: "));
+  EXPECT_THAT(of("steps = [1]\nrefine = 'again'"), HasSubstr("history.refine: "));
   EXPECT_THAT(of("steps = [1]\n[regularisation]"), HasSubstr("regularisation: stands beside [history]"));
   EXPECT_THAT(message("boundary.b.interface = { law = 'joint' }\n[regularisation]\n"),
               HasSubstr("regularisation: stands beside an interface"));

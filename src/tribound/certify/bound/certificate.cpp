@@ -321,7 +321,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
   return result;
 }
 
-void add_history(Statements& statements, bool left_early)
+void add_history(Statements& statements, bool left_early, bool carried)
 {
   statements.covered.emplace_back(
       "of every load step the residual of that step: equilibrium, the data at its t, and the interface law "
@@ -329,6 +329,16 @@ void add_history(Statements& statements, bool left_early)
   statements.not_covered.emplace_back(
       std::string("errors that earlier load steps have left in the history") +
       (left_early ? ", that of leaving Newton's method early among them" : ""));
+  if (carried)
+  {
+    statements.assumptions.emplace_back(
+        "history",
+        "carried to finer meshes along the path, as the polynomials of degree p + 2 on the contact facets: "
+        "in "
+        "2D the same function, in 3D these in the place of the values at the contact points");
+    statements.not_covered.emplace_back(
+        "what earlier load steps would have left had they been solved on the later, finer meshes");
+  }
   statements.not_covered.emplace_back("the size of the load steps");
   statements.not_covered.emplace_back(
       "the choice of branch: with softening or Coulomb's friction there may be several solutions, and after "

@@ -70,8 +70,9 @@ template <int dim>
                                     const std::optional<FriedrichsConstant>& friedrichs = {});
 
 /// What they say in addition where it is a load step that was solved. `left_early`: by an adaptive criterion,
-/// which leaves a linearisation error in what the step commits.
-void add_history(Statements& statements, bool left_early);
+/// which leaves a linearisation error in what the step commits. `carried`: whether the history has gone from
+/// mesh to mesh.
+void add_history(Statements& statements, bool left_early, bool carried = false);
 
 /// The largest |u_D - I u_D| at the points of the facet rule, I the interpolation at the nodes, in a fixed
 /// component on Gamma_D; length.

@@ -35,14 +35,32 @@ ContactHistory<dim>::ContactHistory(std::vector<problem::InterfaceState<dim>> st
 }
 
 template <int dim>
+ContactHistory<dim>::ContactHistory(std::vector<problem::InterfaceState<dim>> values,
+                                    const fem::Quadrature<dim - 1>& rule, int degree,
+                                    std::span<const problem::ContactLaw* const> laws)
+    : ContactHistory(std::move(values), rule, degree)
+{
+  const std::size_t n_points = rule.size();
+  assert(laws.size() * n_points == states_.size());
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    states_[i] = problem::admissible<dim>(*laws[i / n_points], states_[i]);
+}
+
+template <int dim>
 problem::InterfaceState<dim> ContactHistory<dim>::at(const problem::ContactLaw& law, std::size_t k,
                                                      const Point<dim - 1>& s) const
+{
+  return problem::admissible<dim>(law, uncut(k, s));
+}
+
+template <int dim>
+problem::InterfaceState<dim> ContactHistory<dim>::uncut(std::size_t k, const Point<dim - 1>& s) const
 {
   std::array<double, fem::polynomial_dimension(dim - 1, fem::max_degree + 2)> theta;
   fem::orthonormal_values<dim - 1>(degree_, s, std::span(theta).first(n_));
   Values values = Values::Zero();
   for (std::size_t i = 0; i < n_; ++i) values += theta[i] * coefficients_[k * n_ + i];
-  return problem::admissible<dim>(law, {values[0], values[1], values.template tail<dim>()});
+  return {values[0], values[1], values.template tail<dim>()};
 }
 
 template class ContactHistory<2>;

@@ -24,11 +24,17 @@ class ContactHistory
   /// `states`: by number of the contact points of a form with the given rule; `degree`: p + 2.
   ContactHistory(std::vector<problem::InterfaceState<dim>> states, const fem::Quadrature<dim - 1>& rule,
                  int degree);
+  /// From values of D, q and w that a law need not admit, such as those of the polynomials of another one:
+  /// they become the polynomials, and states are cut to what laws[k] admits on segment k.
+  ContactHistory(std::vector<problem::InterfaceState<dim>> values, const fem::Quadrature<dim - 1>& rule,
+                 int degree, std::span<const problem::ContactLaw* const> laws);
 
   [[nodiscard]] std::span<const problem::InterfaceState<dim>> states() const { return states_; }
   /// On segment k, at the point with coordinates s.
   [[nodiscard]] problem::InterfaceState<dim> at(const problem::ContactLaw& law, std::size_t k,
                                                 const Point<dim - 1>& s) const;
+  /// The same before it is cut: polynomials.
+  [[nodiscard]] problem::InterfaceState<dim> uncut(std::size_t k, const Point<dim - 1>& s) const;
 
  private:
   static constexpr int n_values = dim + 2;  ///< D, q, w

@@ -40,9 +40,9 @@ struct RunRecord
   certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
   EarlierLevels earlier;
-  std::vector<LevelRecord> levels;  ///< after them; of a run over a history its load steps on the last mesh
+  std::vector<LevelRecord> levels;  ///< after them; of a run over a history its load steps in the last pass
   std::vector<LevelRecord> passes;  ///< over a history: the worst step on each mesh
-  adapt::PathEnd path;              ///< over a history: what came of it on that mesh
+  adapt::PathEnd path;              ///< over a history: what came of it in that pass
   double tolerance = 0.0;           ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
   std::vector<doctor::Finding> warnings;  ///< about the last level
