@@ -10,6 +10,7 @@
 
 #include "support/snap_back_bar.h"
 #include "tribound/adapt/path_program.h"
+#include "tribound/adapt/process_zone.h"
 
 namespace tribound::test
 {
@@ -151,6 +152,38 @@ TEST(PathProgram, PeakOfHalvedSteps)
   EXPECT_GE(followed.end.peak->t, *highest);
   EXPECT_NEAR(followed.end.peak->t, exact, 0.002 * exact);
   EXPECT_LE(std::abs(followed.end.peak->change.value()), 1e-3 * exact);
+}
+
+/// The bond softens along its closed formula whether its damage is given or how far it opens.
+TEST(ProcessZone, LeadsOnInPlaceOfTheDamage)
+{
+  const Bar<2> bar(2);
+  const double M = Bar<2>::material().lambda + 2 * Bar<2>::material().mu;
+  adapt::LoadPath<2> path(bar.problem, bar.method, {}, mesh::Mesh<2>(bar.mesh));
+  for (const double t : {0.0009, 0.0017}) ASSERT_EQ(path.advance(t), "");
+  const adapt::PathMeasure<2> damage;
+  const adapt::Control<2> control{
+      .name = "damage", .measure = damage, .increment = 0.2, .last_increment = 0.2, .largest_change = 0.01};
+  EXPECT_FALSE(adapt::follow_zone(path, control, {}, {}));  // nothing has been damaged so far
+  ASSERT_EQ(path.follow(control), "");
+
+  const adapt::LoadStep<2>& last = *path.last();
+  const contact::NitscheForm<2>& form = last.at->discrete.form;
+  const std::vector<double> before = path.position().before_last.u;
+  const auto zone = adapt::zone_measure<2>(form, last.responses, before, last.level.u);
+  ASSERT_TRUE(zone);
+  EXPECT_NEAR(zone->value(form, last.level.u) - zone->value(form, before), 1, 1e-12);
+
+  ASSERT_TRUE(adapt::follow_zone(path, control, {}, {}));
+  EXPECT_EQ(path.last()->control, "zone");
+  EXPECT_EQ(adapt::moving_share(*path.last()), 1);
+  EXPECT_LT(path.last()->t, last.t);
+  for (const problem::InterfaceResponse<2>& response : path.last()->responses)
+  {
+    EXPECT_NEAR(response.state.damage, 0.2, 0.05);  // 0.1 of each step, of a length of 2
+    EXPECT_NEAR(path.last()->t, ft * (1 - response.state.damage) / M + response.state.damage * critical,
+                1e-10);
+  }
 }
 
 TEST(PathProgram, WhatCannotBeFollowedIsSaid)

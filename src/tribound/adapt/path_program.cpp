@@ -16,7 +16,7 @@ namespace
 {
 
 constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
-constexpr double accuracy = 1e-3;        ///< of the t of a peak, relative
+constexpr double peak_accuracy = 1e-3;   ///< of the t of a peak, relative
 
 /// C at the last step of a path.
 template <int dim>
@@ -259,8 +259,8 @@ template <int dim>
 void Follower<dim>::end_stage(std::string failure)
 {
   PathEnd& end = progress_.end;
-  const bool has_fallen =
-      end.peak && progress_.direction * (end.peak->t - path_.last()->t) > accuracy * std::abs(end.peak->t);
+  const bool has_fallen = end.peak && progress_.direction * (end.peak->t - path_.last()->t) >
+                                          peak_accuracy * std::abs(end.peak->t);
   if (failure.empty() || !has_fallen || !path_.interruption().empty())
   {
     end.failure = std::move(failure);
@@ -302,7 +302,7 @@ void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
     peak.change = summit->t - peak.t;
     peak.t = summit->t;
     peak.step /= 2;
-    if (std::max(std::abs(*peak.change), summit->fall) <= accuracy * std::abs(peak.t)) return;
+    if (std::max(std::abs(*peak.change), summit->fall) <= peak_accuracy * std::abs(peak.t)) return;
   }
 }
 

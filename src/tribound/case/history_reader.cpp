@@ -44,10 +44,10 @@ struct NamedJump
   adapt::Jump jump;
 };
 
-constexpr std::array<NamedJump, 4> jumps = {{{"opening", adapt::Jump::opening},
-                                             {"heel", adapt::Jump::mouth_opening},
-                                             {"cmod", adapt::Jump::mouth_opening},
-                                             {"csd", adapt::Jump::mouth_sliding}}};
+constexpr std::array<NamedJump, 4> named_jumps = {{{"opening", adapt::Jump::opening},
+                                                   {"heel", adapt::Jump::mouth_opening},
+                                                   {"cmod", adapt::Jump::mouth_opening},
+                                                   {"csd", adapt::Jump::mouth_sliding}}};
 
 /// "crest.x", "base.opening", "base.cmod"; names of boundaries may have dots.
 adapt::Gauge to_gauge(const std::string& text, double factor, const Where& where)
@@ -58,7 +58,8 @@ adapt::Gauge to_gauge(const std::string& text, double factor, const Where& where
   constexpr std::string_view components = "xyz";
   if (last.size() == 1 && components.find(last[0]) != std::string_view::npos)
     gauge.component = static_cast<int>(components.find(last[0]));
-  else if (const auto* const named = std::ranges::find(jumps, last, &NamedJump::name); named != jumps.end())
+  else if (const auto* const named = std::ranges::find(named_jumps, last, &NamedJump::name);
+           named != named_jumps.end())
     gauge.jump = named->jump;
   else
     throw InputError(where, fmt::format("\"{}\" is no displacement", text), gauge_hint);
