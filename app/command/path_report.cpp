@@ -84,7 +84,7 @@ void PathReport<dim>::begin(int pass, const adapt::Grid<dim>& grid)
   record_.levels.clear();
   in_work_ = Pass(pass, page_template_);
   if (printed_ == Printed::everything)
-    print_pass(pass, grid.mesh.n_global_cells(), grid.space.n_global_dofs());
+    print_mesh(carries_ ? "mesh" : "pass", pass, grid.mesh.n_global_cells(), grid.space.n_global_dofs());
 }
 
 template <int dim>
@@ -179,7 +179,7 @@ void PathReport<dim>::refine(const adapt::PassView<dim>& left, const adapt::Grid
 {
   add_mesh(left);
   if (printed_ == Printed::everything)
-    print_mesh(left.number + 1, finer.mesh.n_global_cells(), finer.space.n_global_dofs());
+    print_mesh("mesh", left.number + 1, finer.mesh.n_global_cells(), finer.space.n_global_dofs());
 }
 
 template <int dim>

@@ -297,14 +297,9 @@ void print_level(const io::LevelRecord& level)
   print(level_text(level));
 }
 
-void print_pass(int pass, std::int64_t cells, std::int64_t dofs)
+void print_mesh(std::string_view caption, int number, std::int64_t cells, std::int64_t dofs)
 {
-  print(mesh_text("pass", pass, cells, dofs));
-}
-
-void print_mesh(int mesh, std::int64_t cells, std::int64_t dofs)
-{
-  print(mesh_text("mesh", mesh, cells, dofs));
+  print(mesh_text(caption, number, cells, dofs));
 }
 
 void print_summary(const io::RunRecord& run, const std::string& directory)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "tribound/doctor/findings.h"
 #include "tribound/io/record/facts.h"
@@ -23,7 +24,7 @@ namespace tribound::app
                                       std::optional<double> relative_bound = {});
 /// One line on a level: its size, Newton steps, bound and time.
 [[nodiscard]] std::string level_text(const io::LevelRecord& level);
-/// A pass over all load steps that begins.
+/// A pass over all load steps that begins, or a finer mesh in the middle of one.
 [[nodiscard]] std::string mesh_text(std::string_view caption, int number, std::int64_t cells,
                                     std::int64_t dofs);
 /// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
@@ -44,9 +45,7 @@ namespace tribound::app
 
 void print_header(const io::CaseFacts& facts, const io::MeshFacts& mesh);
 void print_level(const io::LevelRecord& level);
-void print_pass(int pass, std::int64_t cells, std::int64_t dofs);
-/// A finer mesh in the middle of a path.
-void print_mesh(int mesh, std::int64_t cells, std::int64_t dofs);
+void print_mesh(std::string_view caption, int number, std::int64_t cells, std::int64_t dofs);
 void print_summary(const io::RunRecord& run, const std::string& directory);
 /// Warnings and status only.
 void print_verdict(const io::RunRecord& run, const std::string& directory);

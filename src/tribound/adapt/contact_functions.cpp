@@ -193,11 +193,15 @@ std::shared_ptr<const contact::ContactHistory<dim>> carried_history(
   states.reserve(to.n_contact_points());
   for (std::size_t i = 0; i < carried.size(); i += n)
     states.push_back({carried[i], carried[i + 1], Point<dim>(&carried[i + 2])});
-  std::vector<const problem::ContactLaw*> laws;
-  laws.reserve(to.segments().size());
-  for (const contact::ContactSegment<dim>& segment : to.segments()) laws.push_back(&segment.contact->law);
+  const auto cut = [&](std::size_t point, problem::InterfaceState<dim> state)
+  {
+    const Point<dim>& n = to.contact_points()[point].normal;
+    state = problem::admissible<dim>(to.segments()[point / to.n_segment_points()].contact->law, state);
+    state.slip -= state.slip.dot(n) * n;  // where N varies polynomials leave the tangent plane
+    return state;
+  };
   return std::make_shared<const contact::ContactHistory<dim>>(std::move(states), to.facet_rule(),
-                                                              to.space().degree() + 2, laws);
+                                                              to.space().degree() + 2, cut);
 }
 
 template <int dim>

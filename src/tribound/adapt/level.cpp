@@ -219,7 +219,8 @@ template <int dim>
 CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                       const Method& method, const StepObserver& observer, double delta,
                                       const std::optional<double>& expected,
-                                      const std::optional<certify::FriedrichsConstant>& friedrichs)
+                                      const std::optional<certify::FriedrichsConstant>& friedrichs,
+                                      std::shared_ptr<solve::Equilibrium<dim>> equilibrium)
 {
   CertifiedLevel<dim> level;
   double wall = 0;
@@ -264,12 +265,14 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   solve::NewtonResult<dim> newton;
   {
     const ScopedTimer timer(wall, cpu);
-    newton = solve_persistently<dim>(form, start, method, certify, delta,
-                                     [&](const solve::NewtonStep& step)
-                                     {
-                                       record(step);
-                                       if (observer) observer(level.steps.back());
-                                     });
+    newton = solve_persistently<dim>(
+        form, start, method, certify, delta,
+        [&](const solve::NewtonStep& step)
+        {
+          record(step);
+          if (observer) observer(level.steps.back());
+        },
+        std::move(equilibrium));
   }
   level.solve_seconds = wall - level.certify_seconds;
   level.solve_cpu = cpu - level.certify_cpu;
@@ -301,11 +304,13 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
 template CertifiedLevel<2> solve_and_certify(const contact::NitscheForm<2>&, std::span<const double>,
                                              const Method&, const StepObserver&, double,
                                              const std::optional<double>&,
-                                             const std::optional<certify::FriedrichsConstant>&);
+                                             const std::optional<certify::FriedrichsConstant>&,
+                                             std::shared_ptr<solve::Equilibrium<2>>);
 template CertifiedLevel<3> solve_and_certify(const contact::NitscheForm<3>&, std::span<const double>,
                                              const Method&, const StepObserver&, double,
                                              const std::optional<double>&,
-                                             const std::optional<certify::FriedrichsConstant>&);
+                                             const std::optional<certify::FriedrichsConstant>&,
+                                             std::shared_ptr<solve::Equilibrium<3>>);
 template std::optional<CertifiedLevel<2>> converge(const contact::NitscheForm<2>&, const CertifiedLevel<2>&,
                                                    const Method&, const StepObserver&);
 template std::optional<CertifiedLevel<3>> converge(const contact::NitscheForm<3>&, const CertifiedLevel<3>&,

@@ -140,7 +140,8 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// `expected` to be, or, if nothing is known of it, beside ||sigma(u^1)||, gets no complete bound, and
 /// Newton's method goes on.
 ///
-/// `friedrichs`: of a mesh of which this is a refinement, if it is known.
+/// `friedrichs`: of a mesh of which this is a refinement, if it is known; `equilibrium`: of the form, if
+/// there is one already.
 ///
 /// Where Newton's method fails it is started anew (solve_persistently); `steps` has the steps of all
 /// attempts.
@@ -153,7 +154,8 @@ template <int dim>
 [[nodiscard]] CertifiedLevel<dim> solve_and_certify(
     const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
     const StepObserver& observer = {}, double delta = 0, const std::optional<double>& expected = {},
-    const std::optional<certify::FriedrichsConstant>& friedrichs = {});
+    const std::optional<certify::FriedrichsConstant>& friedrichs = {},
+    std::shared_ptr<solve::Equilibrium<dim>> equilibrium = {});
 
 /// The same level with Newton's method gone on until newton.tolerance, whatever the stopping criterion, delta
 /// as it is, and with the bound of its last iterate. Nothing where it does not get there, be it that an

@@ -144,8 +144,10 @@ void LoadPath<dim>::solve_with_crack(LoadStep<dim>& step, const Attempt& attempt
       step.at = at_time(step.t, tips);
     const contact::NitscheForm<dim>& form = step.at->discrete.form;
     contact::check_interface_data(form);
-    step.level = solve_and_certify<dim>(form, point.u, method, observer, 0, {}, friedrichs_);
-    step.level.equilibrium.reset();
+    if (equilibrium_) equilibrium_->follow(form);
+    step.level = solve_and_certify<dim>(form, point.u, method, observer, 0, {}, friedrichs_,
+                                        std::exchange(equilibrium_, nullptr));
+    equilibrium_ = std::move(step.level.equilibrium);
     friedrichs_ = step.level.friedrichs;
     if (!step.level.solved()) return;
     put_before(found_by, step.level.steps);
@@ -343,9 +345,10 @@ void LoadPath<dim>::go_back(Position position, std::shared_ptr<const Grid<dim>> 
   }
   position_ = std::move(position);
   if (!grid || grid == grid_) return;
+  bordered_.reset();
+  equilibrium_.reset();
   grid_ = std::move(grid);
   is_well_posed_ = true;
-  bordered_.reset();
 }
 
 template <int dim>

@@ -221,7 +221,8 @@ class LoadPath
   Position position_;
   std::shared_ptr<Bordered<dim>> bordered_;  ///< from the first step under control on
   std::optional<certify::FriedrichsConstant> friedrichs_;
-  Clock::time_point begin_;  ///< of the step in work
+  std::shared_ptr<solve::Equilibrium<dim>> equilibrium_;  ///< with factors, which all steps share
+  Clock::time_point begin_;                               ///< of the step in work
 };
 
 }  // namespace tribound::adapt

@@ -93,9 +93,8 @@ struct PathProgress
   PathEnd end{};    ///< what has come of the program so far
 };
 
-/// Called after every step that is committed, and before it is observed: may solve it again on a finer mesh
-/// (LoadPath::repeat), and carries there what is given, the positions before this step and the one before it
-/// as far as the program goes back to them.
+/// Called after every step that is committed, before it is observed. May solve it again on a finer mesh
+/// (LoadPath::repeat); it then carries the `kept` positions there, to which the program may go back.
 template <int dim>
 using StepRefiner = std::function<void(std::span<typename LoadPath<dim>::Position> kept)>;
 

@@ -194,7 +194,8 @@ template <int dim>
 solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& form,
                                             std::span<const double> start, const Method& method,
                                             const solve::NewtonObserver<dim>& observer, double delta,
-                                            const Record& record)
+                                            const Record& record,
+                                            std::shared_ptr<solve::Equilibrium<dim>> equilibrium)
 {
   const bool may_start_anew =
       method.other_starts && method.newton.damping && !method.regularisation && form.problem().has_contact();
@@ -204,7 +205,7 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
     easier = start_from_scratch(form, method, record);
 
   solve::NewtonResult<dim> first;
-  if (easier) first.equilibrium = easier->equilibrium;
+  first.equilibrium = easier ? easier->equilibrium : std::move(equilibrium);
   const auto attempt = [&](std::span<const double> u)
   {
     if (method.newton.damping && method.full_steps > 0)
@@ -259,9 +260,11 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
 
 template solve::NewtonResult<2> solve_persistently(const contact::NitscheForm<2>&, std::span<const double>,
                                                    const Method&, const solve::NewtonObserver<2>&, double,
-                                                   const std::function<void(const solve::NewtonStep&)>&);
+                                                   const std::function<void(const solve::NewtonStep&)>&,
+                                                   std::shared_ptr<solve::Equilibrium<2>>);
 template solve::NewtonResult<3> solve_persistently(const contact::NitscheForm<3>&, std::span<const double>,
                                                    const Method&, const solve::NewtonObserver<3>&, double,
-                                                   const std::function<void(const solve::NewtonStep&)>&);
+                                                   const std::function<void(const solve::NewtonStep&)>&,
+                                                   std::shared_ptr<solve::Equilibrium<3>>);
 
 }  // namespace tribound::adapt

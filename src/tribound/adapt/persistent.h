@@ -4,6 +4,7 @@
 /// Newton's method with more than one start.
 
 #include <functional>
+#include <memory>
 #include <span>
 
 #include "tribound/adapt/method.h"
@@ -21,12 +22,14 @@ namespace tribound::adapt
 /// contact state. Where that fails, with damping and contact and without [regularisation], from other starts:
 /// from scratch, from solutions with T_delta in the place of T, which has no kinks, for smaller and smaller
 /// delta, then from those with three times and with a third of gamma. Near incompressibility Newton's method
-/// may go round in circles between contact states, and finds its way from there. The steps of these solutions
+/// may go round in circles between contact states, and finds its way from there. `equilibrium`: of the form,
+/// where there is one already. The steps of these solutions
 /// go to `record`, those of all attempts to `observer`. Should all fail, it is the first one that is told of.
 template <int dim>
 [[nodiscard]] solve::NewtonResult<dim> solve_persistently(
     const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
     const solve::NewtonObserver<dim>& observer, double delta,
-    const std::function<void(const solve::NewtonStep&)>& record);
+    const std::function<void(const solve::NewtonStep&)>& record,
+    std::shared_ptr<solve::Equilibrium<dim>> equilibrium = {});
 
 }  // namespace tribound::adapt

@@ -60,8 +60,8 @@ struct ReplayObserver
   std::function<void(const PassView<dim>&)> complete{};
   /// Of a pass after the first; false where the one before does not hold any more, as after a restart.
   std::function<bool()> given_up{};
-  /// Of transfer(), in the place of another pass: a step that has been solved on `left` is the worst there,
-  /// or not, and has been solved again on the finer mesh.
+  /// Of transfer(), in the place of another pass: the last step solved on `left` has been solved again on the
+  /// finer mesh, on which the path goes on.
   std::function<void(const PassView<dim>& left, const Grid<dim>& finer)> finer{};
 };
 

@@ -58,17 +58,14 @@ constexpr const char* not_positive = "the stiffness matrix is not positive defin
 
 Condensation::Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
                            std::span<const double> b, Sharing sharing)
-    : sharing_(std::move(sharing)),
-      block_size_(dim),
-      layer_(std::move(layer)),
-      trace_(std::move(trace)),
-      b_(b.begin(), b.end())
+    : sharing_(std::move(sharing)), block_size_(dim), layer_(std::move(layer)), trace_(std::move(trace))
 {
   if (sharing_) ranks_ = sharing_->ranks;
   find_places(static_cast<Index>(b.size()));
   couple(k);
   factorise(SparseMatrix(dim, std::move(k), sharing_), dim);
   condense();
+  set_load(b);
 }
 
 /// Ranks have their own unknowns in ascending order, and one rank after the other.
@@ -152,21 +149,13 @@ std::vector<double> Condensation::solve_rest(std::span<const double> b) const
   return x;
 }
 
-/// With C_LL = L L^T and V = C_GL L^{-T}: S = C_GG - V V^T, W^T = V L^{-1}, and with the forces c of the rest
-/// on layer and trace u_0 = C_LL^{-1} c_L, g = c_G - W^T c_L.
+/// With C_LL = L L^T and V = C_GL L^{-T}: S = C_GG - V V^T, W^T = V L^{-1}. L stays where MUMPS has left C.
 void Condensation::condense()
 {
-  const std::vector<double> of_rest = solve_rest(b_);
-  std::vector<double> c(all_kept_.size(), 0.0);
-  for (const Entry& entry : coupling_) c[entry.column] -= entry.value * of_rest[entry.row];
-  ranks_.sum(std::span(c));
-  const std::vector<double> b = on_layer_and_trace(b_);
-  for (std::size_t i = 0; i < c.size(); ++i) c[i] += b[i];
-
   const auto n_layer = static_cast<PetscBLASInt>(n_layer_);
   const auto n_trace = static_cast<PetscBLASInt>(n_trace_);
   const PetscBLASInt n = n_layer + n_trace;
-  layer_load_ = by_first(
+  ranks_.on_first(
       [&]
       {
         const SchurComplement schur(factors_.get());
@@ -187,9 +176,30 @@ void Condensation::condense()
         BLAStrsm_("R", "L", "N", "N", &n_trace, &n_layer, &one, l, &n, w_.data(), &n_trace);
         for (std::size_t j = 0; j < n_trace_; ++j)
           for (std::size_t i = 0; i < j; ++i) s_[j * n_trace_ + i] = s_[i * n_trace_ + j];
+      });
+}
+
+/// With the forces c of the rest on layer and trace u_0 = C_LL^{-1} c_L, g = c_G - W^T c_L.
+void Condensation::set_load(std::span<const double> b)
+{
+  b_.assign(b.begin(), b.end());
+  const std::vector<double> of_rest = solve_rest(b_);
+  std::vector<double> c(all_kept_.size(), 0.0);
+  for (const Entry& entry : coupling_) c[entry.column] -= entry.value * of_rest[entry.row];
+  ranks_.sum(std::span(c));
+  const std::vector<double> kept = on_layer_and_trace(b_);
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] += kept[i];
+
+  const auto n_layer = static_cast<PetscBLASInt>(n_layer_);
+  layer_load_ = by_first(
+      [&]
+      {
+        const SchurComplement schur(factors_.get());
+        const auto n = static_cast<PetscBLASInt>(n_layer_ + n_trace_);
         std::vector<double> u(c.begin(), c.begin() + n_layer);
         const PetscBLASInt columns = 1;
-        LAPACKpotrs_("L", &n_layer, &columns, l, &n, u.data(), &n_layer, &info);
+        PetscBLASInt info = 0;
+        LAPACKpotrs_("L", &n_layer, &columns, schur.entries(), &n, u.data(), &n_layer, &info);
         return u;
       });
   load_ = by_first(

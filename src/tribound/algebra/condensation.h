@@ -47,6 +47,8 @@ class Condensation
   /// u everywhere but at ghosts: a solve with the sparse factors.
   [[nodiscard]] std::vector<double> expand(std::span<const double> x) const;
 
+  /// Another b.
+  void set_load(std::span<const double> b);
   /// g.
   [[nodiscard]] std::span<const double> load() const { return load_; }
   /// S x.

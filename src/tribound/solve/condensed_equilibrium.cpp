@@ -64,13 +64,21 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   /// `diagonal`: of the stiffness, at own unknowns.
   CondensedEquilibrium(const contact::NitscheForm<dim>& form, algebra::SparseRows stiffness,
                        std::span<const double> diagonal, const ExternalForces& forces, CondensedDofs dofs)
-      : form_(form),
+      : form_(&form),
         condensed_(dim, std::move(stiffness), std::move(dofs.layer), std::move(dofs.trace), forces.load,
                    form.space().numbers()),
         diagonal_(condensed_.on_layer_and_trace(diagonal)),
         contact_(form.contact_pattern()),
         force_scale_(forces.scale)
   {
+  }
+
+  void follow(const contact::NitscheForm<dim>& form) override
+  {
+    form_ = &form;
+    const ExternalForces forces = external_forces(form);
+    condensed_.set_load(forces.load);
+    force_scale_ = forces.scale;
   }
 
   std::vector<double> unknowns(std::span<const double> u) const override { return condensed_.on_trace(u); }
@@ -84,8 +92,8 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   {
     std::vector<double> u = condensed_.expand(x);
     for (std::size_t i = 0; i < u.size(); ++i)
-      if (form_.constraints().fixed[i]) u[i] = form_.constraints().values[i];
-    form_.space().update(std::span(u));
+      if (form_->constraints().fixed[i]) u[i] = form_->constraints().values[i];
+    form_->space().update(std::span(u));
     return u;
   }
 
@@ -97,8 +105,8 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   std::vector<double> residual(std::span<const double> internal_forces,
                                std::span<const Point<dim>> traction) const override
   {
-    std::vector<double> contact(form_.space().n_dofs(), 0.0);
-    form_.add_contact_load(traction, contact);
+    std::vector<double> contact(form_->space().n_dofs(), 0.0);
+    form_->add_contact_load(traction, contact);
     std::vector<double> r = condensed_.on_trace(contact);
     for (std::size_t i = 0; i < r.size(); ++i) r[i] += condensed_.load()[i] - internal_forces[i];
     return r;
@@ -121,7 +129,7 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   double force_scale() const override { return force_scale_; }
 
  private:
-  const contact::NitscheForm<dim>& form_;
+  const contact::NitscheForm<dim>* form_;
   algebra::Condensation condensed_;
   std::vector<double> diagonal_;  ///< of the stiffness, on layer and trace
   algebra::Triplets contact_;

@@ -24,12 +24,17 @@ template <int dim>
 
 /// Find unknowns x with K x = load + contact forces of the tractions that the displacement of x has. What the
 /// unknowns are is up to the implementation: all of u, or those on the contact boundary. Keeps factors of its
-/// matrices for the next solve, and a reference to the form.
+/// matrices for the next solve, and a reference to the form, which is not used when it follows another.
 template <int dim>
 class Equilibrium
 {
  public:
   virtual ~Equilibrium() = default;
+
+  /// From now on it is that of this form, on the same space with the same stiffness, the same fixed degrees
+  /// of freedom and the same contact pattern: loads, prescribed values and what contact remembers may differ.
+  /// Factors stay. All ranks together.
+  virtual void follow(const contact::NitscheForm<dim>& form) = 0;
 
   /// The unknowns of a displacement whose fixed degrees of freedom have their values.
   [[nodiscard]] virtual std::vector<double> unknowns(std::span<const double> u) const = 0;

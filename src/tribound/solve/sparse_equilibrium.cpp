@@ -17,7 +17,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
  public:
   SparseEquilibrium(const contact::NitscheForm<dim>& form, ExternalForces forces,
                     const algebra::SolverOptions& options)
-      : form_(form),
+      : form_(&form),
         stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints()),
                    form.space().numbers()),
         contact_(form.space().n_dofs(), dim, form.contact_pattern(), form.space().numbers()),
@@ -27,6 +27,12 @@ class SparseEquilibrium final : public Equilibrium<dim>
         linear_solver_(options, form.space())
   {
     linear_solver_.set_changing_part(contact_);
+  }
+
+  void follow(const contact::NitscheForm<dim>& form) override
+  {
+    form_ = &form;
+    forces_ = external_forces(form);
   }
 
   std::vector<double> unknowns(std::span<const double> u) const override { return {u.begin(), u.end()}; }
@@ -45,13 +51,13 @@ class SparseEquilibrium final : public Equilibrium<dim>
   {
     std::vector<double> r = forces_.load;
     for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal_forces[i];
-    form_.add_contact_load(traction, r);
+    form_->add_contact_load(traction, r);
     for (std::size_t i = 0; i < r.size(); ++i)
-      if (form_.constraints().fixed[i]) r[i] = 0;
+      if (form_->constraints().fixed[i]) r[i] = 0;
     return r;
   }
 
-  double norm(std::span<const double> x) const override { return form_.space().norm(x); }
+  double norm(std::span<const double> x) const override { return form_->space().norm(x); }
   double round_off(std::span<const double> x) const override { return norm(solve::round_off(diagonal_, x)); }
 
   algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r, double tolerance,
@@ -61,14 +67,14 @@ class SparseEquilibrium final : public Equilibrium<dim>
     tangent_.assign_sum(stiffness_, contact_);
     const algebra::LinearSolve result = linear_solver_.solve(tangent_, r, tolerance, d);
     for (std::size_t i = 0; i < d.size(); ++i)  // multigrid moves fixed ones as far as the tolerance lets it
-      if (form_.constraints().fixed[i]) d[i] = 0;
+      if (form_->constraints().fixed[i]) d[i] = 0;
     return result;
   }
   algebra::LinearMethod method() const override { return linear_solver_.method(); }
   double force_scale() const override { return forces_.scale; }
 
  private:
-  const contact::NitscheForm<dim>& form_;
+  const contact::NitscheForm<dim>* form_;
   algebra::SparseMatrix stiffness_;  ///< a(phi_j, phi_i)
   algebra::SparseMatrix contact_;    ///< -(DT(u)[phi_j], phi_i)_C
   algebra::SparseMatrix tangent_;    ///< their sum

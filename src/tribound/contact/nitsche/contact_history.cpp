@@ -36,14 +36,10 @@ ContactHistory<dim>::ContactHistory(std::vector<problem::InterfaceState<dim>> st
 
 template <int dim>
 ContactHistory<dim>::ContactHistory(std::vector<problem::InterfaceState<dim>> values,
-                                    const fem::Quadrature<dim - 1>& rule, int degree,
-                                    std::span<const problem::ContactLaw* const> laws)
+                                    const fem::Quadrature<dim - 1>& rule, int degree, const Cut& cut)
     : ContactHistory(std::move(values), rule, degree)
 {
-  const std::size_t n_points = rule.size();
-  assert(laws.size() * n_points == states_.size());
-  for (std::size_t i = 0; i < states_.size(); ++i)
-    states_[i] = problem::admissible<dim>(*laws[i / n_points], states_[i]);
+  for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = cut(i, states_[i]);
 }
 
 template <int dim>

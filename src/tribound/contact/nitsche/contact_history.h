@@ -4,6 +4,7 @@
 /// What the contact boundary remembers of the steps before (method section 12.2).
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,10 +25,11 @@ class ContactHistory
   /// `states`: by number of the contact points of a form with the given rule; `degree`: p + 2.
   ContactHistory(std::vector<problem::InterfaceState<dim>> states, const fem::Quadrature<dim - 1>& rule,
                  int degree);
+  using Cut = std::function<problem::InterfaceState<dim>(std::size_t point, problem::InterfaceState<dim>)>;
   /// From values of D, q and w that a law need not admit, such as those of the polynomials of another one:
-  /// they become the polynomials, and states are cut to what laws[k] admits on segment k.
+  /// they become the polynomials, and `cut` makes the states at the points of them.
   ContactHistory(std::vector<problem::InterfaceState<dim>> values, const fem::Quadrature<dim - 1>& rule,
-                 int degree, std::span<const problem::ContactLaw* const> laws);
+                 int degree, const Cut& cut);
 
   [[nodiscard]] std::span<const problem::InterfaceState<dim>> states() const { return states_; }
   /// On segment k, at the point with coordinates s.
