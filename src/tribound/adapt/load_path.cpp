@@ -30,6 +30,9 @@ void put_before(std::span<const solve::NewtonStep> first, std::vector<CertifiedS
   steps = std::move(all);
 }
 
+constexpr const char* other_contact = "the contact points of the checkpoint are not those of the mesh";
+constexpr const char* as_it_was = "go on with pairs, degree and boundaries as they were";
+
 /// LoadStep::forces; `contact_load`: (t, phi_i)_C.
 template <int dim>
 std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
@@ -43,10 +46,11 @@ std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<c
 
 /// Where a body slides away, u may become so large that its rounding is all of the residual, and this passes
 /// for a solution.
-bool has_run_away(const std::vector<CertifiedStep>& steps, Stopping stopping)
+bool has_run_away(const std::vector<CertifiedStep>& steps, const Method& method)
 {
-  constexpr double largest = 1e-6;  // residual of a solution, over the forces
-  const bool is_solved_to_the_end = stopping == Stopping::tolerance || stopping == Stopping::last_bounded;
+  const double largest = std::max(1e-6, method.newton.tolerance);  // residual of a solution, over the forces
+  const Stopping criterion = method.stopping.criterion;
+  const bool is_solved_to_the_end = criterion == Stopping::tolerance || criterion == Stopping::last_bounded;
   return is_solved_to_the_end && steps.back().step.residual > largest;
 }
 
@@ -110,8 +114,7 @@ std::string LoadPath<dim>::try_step(const Attempt& attempt, const StepObserver& 
   step->reference_force = position_.reference_force;
   solve_with_crack(*step, attempt, observer);
   if (!step->level.solved()) return step->level.failure;
-  if (has_run_away(step->level.steps, method_.stopping.criterion))
-    return "the displacement grows beyond all bounds";
+  if (has_run_away(step->level.steps, method_)) return "the displacement grows beyond all bounds";
   if (attempt.fault)
     if (std::string why = attempt.fault(step->at->discrete.form, step->level.u); !why.empty()) return why;
   commit(std::move(step));
@@ -294,9 +297,7 @@ auto LoadPath<dim>::recall(const SavedStep<dim>& saved, PathPoint before) const 
   if (!saved.history.states.empty())
   {
     std::shared_ptr<const contact::ContactHistory<dim>> history = history_on(form, saved.history);
-    if (grid_->mesh.ranks().any(history == nullptr))
-      throw InputError({}, "the contact points of the checkpoint are not those of the mesh",
-                       "go on with pairs, degree and boundaries as they were");
+    if (grid_->mesh.ranks().any(history == nullptr)) throw InputError({}, other_contact, as_it_was);
     form.set_history(std::move(history));
   }
   auto step = std::make_shared<LoadStep<dim>>();
@@ -322,6 +323,8 @@ auto LoadPath<dim>::recall(const SavedPath<dim>& saved,
                            const std::optional<certify::FriedrichsConstant>& friedrichs)
     -> std::vector<Position>
 {
+  if (saved.steps.front().tips.size() != position_.tips.size())
+    throw InputError({}, other_contact, as_it_was);
   friedrichs_ = friedrichs;
   std::vector<Position> positions;
   for (std::size_t i = 0; i < saved.steps.size(); ++i)

@@ -1,6 +1,7 @@
 #include "tribound/io/state/path_checkpoint.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "tribound/base/error.h"
@@ -157,6 +158,41 @@ Fields<dim> fields_of(const fem::LagrangeSpace<dim>& space, std::span<const Inde
   return fields;
 }
 
+template <int dim>
+adapt::ReplayState<dim> state_of(const CheckpointFacts& facts, const fem::LagrangeSpace<dim>& space,
+                                 std::span<const Index> cells, std::span<const double> values,
+                                 std::span<const double> points)
+{
+  const Json json = Json::parse(facts.path);
+  adapt::ReplayState<dim> state;
+  state.pass = facts.start.level;
+  state.friedrichs = facts.start.friedrichs;
+  state.progress = progress_of<dim>(json.at("progress"));
+  state.worst = bound_of(json.at("worst"));
+  state.worst_step = json.at("worst_step");
+  state.verdict = {static_cast<certify::RunStatus>(json.at("status").get<int>()), json.at("reason")};
+  Fields<dim> fields = fields_of<dim>(space, cells, values, facts.n_functions);
+  state.cells = std::move(fields.components);
+  std::size_t k = 0;
+  for (const Json& step : json.at("steps"))
+  {
+    const std::size_t n = step.at("points").get<std::size_t>() * point_width(dim);
+    if (n > points.size()) throw std::out_of_range("contact points are missing");
+    state.path.steps.push_back({.number = step.at("number"),
+                                .t = step.at("t"),
+                                .control = step.at("control"),
+                                .reference_force = step.at("reference_force"),
+                                .largest_sigma = step.at("largest_sigma"),
+                                .tips = step.at("tips"),
+                                .u = std::move(fields.functions.at(k++)),
+                                .history = history_of<dim>(points.first(n))});
+    points = points.subspan(n);
+  }
+  if (!json.at("before").is_null())
+    state.path.before = {json.at("before"), std::move(fields.functions.at(k))};
+  return state;
+}
+
 }  // namespace
 
 template <int dim>
@@ -194,33 +230,20 @@ adapt::ReplayState<dim> from_checkpoint(const CheckpointFacts& facts, const fem:
                                         std::span<const Index> cells, std::span<const double> values,
                                         std::span<const double> points)
 {
-  const Json json = Json::parse(facts.path);
-  adapt::ReplayState<dim> state;
-  state.pass = facts.start.level;
-  state.friedrichs = facts.start.friedrichs;
-  state.progress = progress_of<dim>(json.at("progress"));
-  state.worst = bound_of(json.at("worst"));
-  state.worst_step = json.at("worst_step");
-  state.verdict = {static_cast<certify::RunStatus>(json.at("status").get<int>()), json.at("reason")};
-  Fields<dim> fields = fields_of<dim>(space, cells, values, facts.n_functions);
-  state.cells = std::move(fields.components);
-  std::size_t k = 0;
-  for (const Json& step : json.at("steps"))
+  const auto damaged = [](const char* why)
+  { return InputError({}, std::string("the checkpoint is damaged: ") + why, "start the run anew"); };
+  try
   {
-    const std::size_t n = step.at("points").get<std::size_t>() * point_width(dim);
-    state.path.steps.push_back({.number = step.at("number"),
-                                .t = step.at("t"),
-                                .control = step.at("control"),
-                                .reference_force = step.at("reference_force"),
-                                .largest_sigma = step.at("largest_sigma"),
-                                .tips = step.at("tips"),
-                                .u = std::move(fields.functions.at(k++)),
-                                .history = history_of<dim>(points.first(n))});
-    points = points.subspan(n);
+    return state_of<dim>(facts, space, cells, values, points);
   }
-  if (!json.at("before").is_null())
-    state.path.before = {json.at("before"), std::move(fields.functions.at(k))};
-  return state;
+  catch (const Json::exception& error)
+  {
+    throw damaged(error.what());
+  }
+  catch (const std::out_of_range& error)
+  {
+    throw damaged(error.what());
+  }
 }
 
 template CheckpointFields to_checkpoint(const adapt::ReplayState<2>&, CheckpointFacts&);
