@@ -214,6 +214,7 @@ bool PathReport<dim>::give_up()
 template <int dim>
 void PathReport<dim>::write_record()
 {
+  if (record_.levels.empty() && !record_.earlier.steps.empty()) return;  // nothing new: what there is holds
   ranks_.on_first([&] { io::write_report(output_.directory, record_); });
   written_ = Clock::now();
 }

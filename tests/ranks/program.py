@@ -152,6 +152,10 @@ def load_steps_go_on(name, step, *arguments):
             expect(f"{name} on {n} {key}", alike(whole.get(key), certificate.get(key)), whole.get(key), certificate.get(key))
         for key in ("levels", "steps"):
             expect(f"{name} on {n}", len(whole[key]) == len(certificate[key]), key)
+        before = (out(name, n + 10) / "certificate.json").read_text()
+        again = run(n, PROGRAM, "run", "-q", "--restart", str(out(name, n + 10)))  # there is nothing left to do
+        expect(f"{name} again on {n}", again.returncode == result.returncode, again.returncode, again.stderr)
+        expect(f"{name} again on {n}", (out(name, n + 10) / "certificate.json").read_text() == before, "certificate.json")
 
 
 def killed_load_steps_go_on(name, *arguments):
