@@ -108,7 +108,8 @@ ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::opti
 /// What is to be gone on with: a directory of results with its checkpoint, or one of several there.
 std::filesystem::path checkpoint_file(const std::filesystem::path& restart)
 {
-  return std::filesystem::is_directory(restart) ? restart / io::checkpoint_name : restart;
+  const bool is_file = restart.extension() == ".h5" && !std::filesystem::is_directory(restart);
+  return is_file ? restart : restart / io::checkpoint_name;
 }
 
 /// The case of a checkpoint, whose results go on in the directory.

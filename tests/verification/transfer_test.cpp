@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <vector>
@@ -387,14 +389,18 @@ TEST(Transfer, AStepBeyondThePeakOfTheFinerMeshStays)
         adapt::transfer<2>(path, beyond_the_peak(), adapt::make_strategy<2>({.tolerance = tolerance}),
                            {.path_end = [&](const adapt::PathEnd& e) { end = e; }});
     EXPECT_EQ(end.failure, "");
-    EXPECT_EQ(verdict.status, certify::RunStatus::budget);
+    EXPECT_EQ(verdict.status, end.notes.empty() ? certify::RunStatus::certified : certify::RunStatus::budget);
     EXPECT_GT(path.last()->number, 10);
+    EXPECT_NEAR(end.peak.value_or(adapt::Peak()).t, 0.74, 0.01);
     return end.notes;
   };
-  EXPECT_THAT(
-      notes(0.1),
-      testing::Each(testing::HasSubstr("stays on the coarser mesh: the solution is on another branch")));
-  EXPECT_THAT(notes(0.2), testing::Contains(testing::HasSubstr("stays on the coarser mesh: step ")));
+  // On which meshes a step is beyond the peak depends on the tolerance.
+  std::vector<std::string> all;
+  for (const double tolerance : {0.07, 0.1, 0.12, 0.18, 0.25})
+    std::ranges::move(notes(tolerance), std::back_inserter(all));
+  EXPECT_THAT(all, testing::Each(testing::HasSubstr("stays on the coarser mesh: ")));
+  EXPECT_THAT(all, testing::Contains(testing::HasSubstr("the solution is on another branch")));
+  EXPECT_THAT(all, testing::Contains(testing::HasSubstr("above newton.tolerance")));
 }
 
 /// Work is made from forces of two steps, the earlier of which have been carried.
