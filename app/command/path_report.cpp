@@ -32,8 +32,7 @@ bool is_of_unfinished_pass(const std::filesystem::path& file)
 template <int dim>
 adapt::LevelView<dim> view_of(const adapt::LoadStep<dim>& step)
 {
-  const std::shared_ptr<const adapt::Discretisation<dim>> discrete(step.at, &step.at->discrete);
-  return {step.number, *discrete, step.level, step.verdict, step.seconds, discrete};
+  return {step.number, step.at->discrete, step.level, step.verdict, step.seconds, step.discrete()};
 }
 
 }  // namespace

@@ -113,9 +113,9 @@ std::filesystem::path checkpoint_file(const std::filesystem::path& restart)
 }
 
 /// The case of a checkpoint, whose results go on in the directory.
-case_file::Config restarted_config(const RunRequest& request, const io::CheckpointFacts& checkpoint)
+case_file::Config restarted_config(const RunRequest& request, const std::filesystem::path& file,
+                                   const io::CheckpointFacts& checkpoint)
 {
-  const std::filesystem::path file = checkpoint_file(request.restart);
   std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
   if (directory.filename() == unfinished_pass) directory /= "..";
   // Before the others: paths of the effective case lead from there.
@@ -141,12 +141,12 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
 {
   const Progress progress(request.quiet || !ranks.is_first());
   std::optional<io::CheckpointFacts> checkpoint;
-  if (!request.restart.empty())
-    checkpoint = io::read_checkpoint_facts(checkpoint_file(request.restart), ranks);
+  const std::filesystem::path file = checkpoint_file(request.restart);
+  if (!request.restart.empty()) checkpoint = io::read_checkpoint_facts(file, ranks);
   const case_file::Config config = ranks.together(
       [&]
       {
-        return checkpoint ? restarted_config(request, *checkpoint)
+        return checkpoint ? restarted_config(request, file, *checkpoint)
                           : case_file::read_config(request.case_file, request.overrides);
       });
   std::optional<mesh::AnyMesh> whole;
@@ -162,8 +162,7 @@ ExitCode run_on(const Ranks& ranks, const RunRequest& request)
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   const auto run_in = is_plane ? run_part<2> : run_part<3>;
-  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, checkpoint_file(request.restart),
-                progress);
+  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, file, progress);
 }
 
 /// One for each of several processes, where the environment does not say how many.

@@ -32,31 +32,6 @@ Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functi
           }};
 }
 
-/// Blocks of n values, one for each cell, as rows[k] has them: those of all rows, cell by cell.
-std::vector<double> by_cells(const std::vector<std::vector<double>>& rows, std::size_t n_cells, std::size_t n)
-{
-  std::vector<double> values;
-  values.reserve(rows.size() * n_cells * n);
-  for (std::size_t c = 0; c < n_cells; ++c)
-    for (const std::vector<double>& row : rows)
-      values.insert(values.end(), row.begin() + static_cast<std::ptrdiff_t>(c * n),
-                    row.begin() + static_cast<std::ptrdiff_t>((c + 1) * n));
-  return values;
-}
-
-/// Row k of these.
-std::vector<double> row_of(std::span<const double> values, std::size_t n_rows, std::size_t n, std::size_t k)
-{
-  std::vector<double> row;
-  row.reserve(values.size() / n_rows);
-  for (std::size_t begin = k * n; begin < values.size(); begin += n_rows * n)
-  {
-    const std::span<const double> block = values.subspan(begin, n);
-    row.insert(row.end(), block.begin(), block.end());
-  }
-  return row;
-}
-
 /// The same of a mesh that is shared out: its cells take the values at their nodes with them.
 template <int dim>
 Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& functions,
@@ -73,7 +48,10 @@ Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& f
             std::vector<std::vector<double>> rows;
             for (const std::span<const double> u : functions)
               rows.push_back(fem::nested_values<dim>(from, u, part->cells, part->parent));
-            const std::vector<double> values = by_cells(rows, part->cells.size(), n_each);
+            std::vector<fem::CellColumn> columns;
+            columns.reserve(rows.size());
+            for (const std::vector<double>& row : rows) columns.push_back({row, n_each});
+            const std::vector<double> values = fem::beside_each_other(columns, part->cells.size());
             *balanced = mesh::balance<dim>(from.mesh(), std::move(part->cells), values,
                                            static_cast<int>(n_functions * n_each));
             return std::move((*balanced)->mesh);
@@ -83,7 +61,8 @@ Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& f
             std::vector<std::vector<double>> carried;
             for (std::size_t k = 0; k < n_functions; ++k)
               carried.push_back(fem::from_cell_values<dim>(
-                  space, (*balanced)->cells, row_of((*balanced)->values, n_functions, n_each, k)));
+                  space, (*balanced)->cells,
+                  fem::cell_column((*balanced)->values, n_functions * n_each, k * n_each, n_each)));
             return carried;
           }};
 }

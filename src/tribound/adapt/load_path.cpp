@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -30,20 +29,6 @@ void put_before(std::span<const solve::NewtonStep> first, std::vector<CertifiedS
   steps = std::move(all);
 }
 
-constexpr const char* other_contact = "the contact points of the checkpoint are not those of the mesh";
-constexpr const char* as_it_was = "go on with pairs, degree and boundaries as they were";
-
-/// LoadStep::forces; `contact_load`: (t, phi_i)_C.
-template <int dim>
-std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                              std::vector<double> contact_load)
-{
-  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
-  std::vector<double> forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
-  for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= contact_load[i];
-  return forces;
-}
-
 /// Where a body slides away, u may become so large that its rounding is all of the residual, and this passes
 /// for a solution.
 bool has_run_away(const std::vector<CertifiedStep>& steps, const Method& method)
@@ -55,6 +40,15 @@ bool has_run_away(const std::vector<CertifiedStep>& steps, const Method& method)
 }
 
 }  // namespace
+
+template <int dim>
+std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                              std::span<const double> contact_load)
+{
+  std::vector<double> forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
+  for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= contact_load[i];
+  return forces;
+}
 
 template <int dim>
 DiscreteAtTime<dim>::DiscreteAtTime(const problem::Problem<dim>& general, double load_factor,
@@ -256,7 +250,8 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
   position_.reference_force =
       std::max(position_.reference_force, solve::external_forces(form).scale + space.norm(contact_load));
 
-  step.forces = forces_on(form, u, std::move(contact_load));
+  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
+  step.forces = forces_on<dim>(form, u, contact_load);
   std::vector<double> mean = step.forces;
   std::vector<double> moved = u;
   if (last())
@@ -266,76 +261,6 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
       moved[i] -= last()->level.u[i];
     }
   step.work = space.dot(mean, moved) / 2;
-}
-
-template <int dim>
-SavedPath<dim> LoadPath<dim>::save(std::span<const Position> positions)
-{
-  SavedPath<dim> saved;
-  for (const Position& position : positions)
-  {
-    const LoadStep<dim>& step = *position.last;
-    saved.steps.push_back({.number = step.number,
-                           .t = step.t,
-                           .control = step.control,
-                           .reference_force = position.reference_force,
-                           .largest_sigma = position.largest_sigma,
-                           .tips = position.tips,
-                           .u = step.level.u,
-                           .history = gather_history(step.at->discrete.form)});
-  }
-  saved.before = positions.back().before_last;
-  return saved;
-}
-
-template <int dim>
-auto LoadPath<dim>::recall(const SavedStep<dim>& saved, PathPoint before) const -> Position
-{
-  auto at = std::make_shared<DiscreteAtTime<dim>>(problem_.with_crack_tips(saved.tips), saved.t, grid_,
-                                                  method_, nullptr);
-  contact::NitscheForm<dim>& form = at->discrete.form;
-  if (!saved.history.states.empty())
-  {
-    std::shared_ptr<const contact::ContactHistory<dim>> history = history_on(form, saved.history);
-    if (grid_->mesh.ranks().any(history == nullptr)) throw InputError({}, other_contact, as_it_was);
-    form.set_history(std::move(history));
-  }
-  auto step = std::make_shared<LoadStep<dim>>();
-  step->number = saved.number;
-  step->t = saved.t;
-  step->control = saved.control;
-  step->largest_sigma = saved.largest_sigma;
-  step->level.u = saved.u;
-  step->level.traction = form.traction(saved.u);
-  step->level.friedrichs = friedrichs_;
-  step->responses = form.advance(saved.u);
-  std::vector<double> contact_load(form.space().n_dofs(), 0.0);
-  form.add_contact_load(step->level.traction, contact_load);
-  step->forces = forces_on(form, saved.u, std::move(contact_load));
-  step->at = std::move(at);
-  std::shared_ptr<const contact::ContactHistory<dim>> after = history_after(*step);
-  return {std::move(step),       std::move(before),   std::move(after),
-          saved.reference_force, saved.largest_sigma, saved.tips};
-}
-
-template <int dim>
-auto LoadPath<dim>::recall(const SavedPath<dim>& saved,
-                           const std::optional<certify::FriedrichsConstant>& friedrichs)
-    -> std::vector<Position>
-{
-  if (saved.steps.front().tips.size() != position_.tips.size())
-    throw InputError({}, other_contact, as_it_was);
-  friedrichs_ = friedrichs;
-  std::vector<Position> positions;
-  for (std::size_t i = 0; i < saved.steps.size(); ++i)
-  {
-    const bool is_oldest = i + 1 == saved.steps.size();
-    positions.push_back(recall(
-        saved.steps[i], is_oldest ? saved.before : PathPoint{saved.steps[i + 1].t, saved.steps[i + 1].u}));
-  }
-  position_ = positions.front();
-  prepared_.reset();
-  return positions;
 }
 
 template <int dim>
@@ -440,94 +365,10 @@ std::shared_ptr<const DiscreteAtTime<dim>> LoadPath<dim>::at_time(double t,
                                                      position_.history);
 }
 
-/// The step that begins with theta times the one before.
-template <int dim>
-std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta,
-                                       const StepObserver& observer)
-{
-  const LoadStep<dim>& now = *last();
-  const PathPoint& before = position_.before_last;
-  PathPoint point{now.t + theta * (now.t - before.t), now.level.u};
-  for (std::size_t i = 0; i < point.u.size(); ++i) point.u[i] += theta * (now.level.u[i] - before.u[i]);
-
-  if (!bordered_)
-    bordered_ = std::make_shared<Bordered<dim>>(
-        typename Bordered<dim>::Form(last()->at, &now.at->discrete.form), method_.solver);
-  const double target = control.measure.value(now.at->discrete.form, now.level.u) + control.increment;
-  const BorderedOptions options{
-      .max_steps = options_.full_steps,
-      .tolerance = method_.newton.tolerance,
-      .measure_tolerance = std::max(1e-10 * std::abs(target), 1e-7 * std::abs(control.increment)),
-      .force = position_.reference_force,
-      .t_before = now.t,
-      .largest_change = control.largest_change,
-      .difference = 1e-6 * control.largest_change};
-  const auto search =
-      [&](std::span<const double> tips, PathPoint& from, std::vector<solve::NewtonStep>& steps)
-  {
-    const auto form_at = [&](double t)
-    {
-      const std::shared_ptr<const DiscreteAtTime<dim>> at = at_time(t, tips);
-      return typename Bordered<dim>::Form(at, &at->discrete.form);
-    };
-    const auto note = [&](const solve::NewtonStep& step)
-    {
-      steps.push_back(step);
-      if (observer) observer({step, {}});
-    };
-    return (*bordered_)(form_at, control.measure, target, options, from, note);
-  };
-  const auto fault = [&](const contact::NitscheForm<dim>& form, std::span<const double> u)
-  {
-    constexpr double most = 1e-3;  // of the increment; Newton's method at t moves by its tolerance
-    const bool left = std::abs(control.measure.value(form, u) - target) > most * std::abs(control.increment);
-    return std::string(left ? "Newton's method leaves the path that was found for u and t" : "");
-  };
-  try
-  {
-    return try_step({.t = point.t,
-                     .cuts = control.cuts,
-                     .control = control.name,
-                     .start = std::move(point.u),
-                     .search = search,
-                     .fault = fault},
-                    observer);
-  }
-  catch (const InputError& error)  // data that are not valid at the t of an iterate
-  {
-    require_all_failed(grid_->mesh.ranks(), error.what());
-    return error.what();
-  }
-}
-
-template <int dim>
-std::string LoadPath<dim>::follow(const Control<dim>& control, const Observer& observer,
-                                  const StepObserver& step_observer)
-{
-  assert(last() && last()->number > 1);
-  if (std::string why = interruption(); !why.empty()) return why;
-  begin_ = Clock::now();
-  const double usual = control.last_increment != 0 ? control.increment / control.last_increment : 1;
-  std::vector<double> thetas = {usual, 2 * usual, 0.5 * usual};
-  const double last_change = last()->t - position_.before_last.t;
-  if (control.failed && last_change != 0)
-    for (const double part : {1.0, 0.5, 0.25})
-      thetas.push_back(part * (*control.failed - last()->t) / last_change);
-  std::string failure;
-  for (const double theta : thetas)
-  {
-    failure = guarded([&] { return try_control(control, theta, step_observer); });
-    if (failure.empty())
-    {
-      if (observer) observer(*last());
-      return {};
-    }
-    if (std::string why = interruption(); !why.empty()) return why;
-  }
-  return fmt::format("load step {} by {}, after t = {:.9g}: {}", last()->number + 1, control.name, last()->t,
-                     failure);
-}
-
+template std::vector<double> forces_on(const contact::NitscheForm<2>&, std::span<const double>,
+                                       std::span<const double>);
+template std::vector<double> forces_on(const contact::NitscheForm<3>&, std::span<const double>,
+                                       std::span<const double>);
 template struct DiscreteAtTime<2>;
 template struct DiscreteAtTime<3>;
 template class LoadPath<2>;

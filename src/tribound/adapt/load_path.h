@@ -59,7 +59,14 @@ struct LoadStep
   std::vector<double> forces;
   double work = 0;     ///< of them since the step before, by the trapezoidal rule; energy
   double seconds = 0;  ///< wall time, attempts that failed included
+
+  [[nodiscard]] std::shared_ptr<const Discretisation<dim>> discrete() const { return {at, &at->discrete}; }
 };
+
+/// a(u, phi_i) - contact_load_i: LoadStep::forces where contact_load_i = (t + p_w n, phi_i)_C.
+template <int dim>
+[[nodiscard]] std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                            std::span<const double> contact_load);
 
 /// What steps are allowed to do.
 struct PathOptions

@@ -31,14 +31,8 @@ class Pass
     if (state_.cells.empty()) state_.cells.resize(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i)
       if (cells[i].total_sharp() > state_.cells[i].total_sharp()) state_.cells[i] = cells[i];
-    if (state_.worst_step == 0 || step.level.estimate.total_sharp > state_.worst.total_sharp)
-    {
-      state_.worst = step.level.estimate.bound();
-      state_.worst_step = step.number;
-    }
-    if (step.verdict.status > state_.verdict.status)
-      state_.verdict = {step.verdict.status, fmt::format("load step {} at t = {:.9g}: {}", step.number,
-                                                         step.t, step.verdict.reason)};
+    state_.note_worst(step);
+    state_.note_verdict(step);
   }
 
   [[nodiscard]] bool holds() const { return certify::is_bound(state_.verdict.status); }
@@ -115,6 +109,23 @@ std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& v
 }  // namespace
 
 template <int dim>
+bool ReplayState<dim>::note_worst(const LoadStep<dim>& step)
+{
+  if (worst_step > 0 && step.level.estimate.total_sharp <= worst.total_sharp) return false;
+  worst = step.level.estimate.bound();
+  worst_step = step.number;
+  return true;
+}
+
+template <int dim>
+void ReplayState<dim>::note_verdict(const LoadStep<dim>& step)
+{
+  if (step.verdict.status > verdict.status)
+    verdict = {step.verdict.status,
+               fmt::format("load step {} at t = {:.9g}: {}", step.number, step.t, step.verdict.reason)};
+}
+
+template <int dim>
 void ReplayState<dim>::note(const LoadPath<dim>& of)
 {
   std::vector<typename LoadPath<dim>::Position> positions = progress.positions;
@@ -157,7 +168,7 @@ certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram&
     verdict = pass.verdict();
     if (observer.complete) observer.complete(pass.view());
     if (verdict.status == certify::RunStatus::certified) return verdict;
-    const std::shared_ptr<const Discretisation<dim>> discrete(path->last()->at, &path->last()->at->discrete);
+    const std::shared_ptr<const Discretisation<dim>> discrete = path->last()->discrete();
     const CertifiedLevel<dim> to_mark = pass.to_mark();
     const LevelView<dim> view{number, *discrete, to_mark, verdict, 0, discrete};
     std::string end = strategy.stop ? strategy.stop(view) : std::string();

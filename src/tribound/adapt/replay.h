@@ -42,6 +42,9 @@ struct ReplayState
   int worst_step = 0;                           ///< its number
   certify::Verdict verdict{certify::RunStatus::certified, {}};
 
+  /// A step of the pass: whether it has the largest bound so far, and the worst verdict.
+  bool note_worst(const LoadStep<dim>& step);
+  void note_verdict(const LoadStep<dim>& step);
   /// Notes where the path is, for a state that is told.
   void note(const LoadPath<dim>& of);
   /// Brings a path on the same mesh there, for a run that goes on. Throws as LoadPath::recall().

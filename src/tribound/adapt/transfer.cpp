@@ -94,8 +94,7 @@ class Carrier
     const std::vector<double>& u = carried.level.u;
     std::vector<double> contact_load(u.size(), 0.0);
     form.add_contact_load(traction, contact_load);
-    carried.forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
-    for (std::size_t i = 0; i < u.size(); ++i) carried.forces[i] -= contact_load[i];
+    carried.forces = forces_on<dim>(form, u, contact_load);
     const std::vector<Point<dim>> water = form.water_pressure();
     for (std::size_t i = 0; i < water.size(); ++i) traction[i] -= water[i];
     carried.level.traction = std::move(traction);
@@ -163,10 +162,7 @@ class Transfer
   void compare()
   {
     const std::shared_ptr<const LoadStep<dim>>& step = path_.last();
-    if (state_.worst_step > 0 && step->level.estimate.total_sharp <= state_.worst.total_sharp) return;
-    state_.worst = step->level.estimate.bound();
-    state_.worst_step = step->number;
-    worst_ = step;
+    if (state_.note_worst(*step)) worst_ = step;
   }
 
   void committed(std::span<Position<dim>> kept)
@@ -182,18 +178,15 @@ class Transfer
         break;
       }
     before_ = path_.position();
-    const LoadStep<dim>& step = *path_.last();
-    if (step.verdict.status > state_.verdict.status)
-      state_.verdict = {step.verdict.status, fmt::format("load step {} at t = {:.9g}: {}", step.number,
-                                                         step.t, step.verdict.reason)};
+    state_.note_verdict(*path_.last());
   }
 
   /// Not empty: why the last step stays as it is; so does all else.
   [[nodiscard]] std::string solve_on_finer(std::span<Position<dim>> kept)
   {
     const std::shared_ptr<const LoadStep<dim>> step = path_.last();
-    const std::shared_ptr<const Discretisation<dim>> discrete(step->at, &step->at->discrete);
-    const LevelView<dim> level{state_.pass, *discrete, step->level, step->verdict, 0, discrete};
+    const LevelView<dim> level{state_.pass, step->at->discrete, step->level, step->verdict,
+                               0,           step->discrete()};
     if (strategy_.stop) end_ = strategy_.stop(level);
     if (!end_.empty()) return end_;
     const Position<dim> here = path_.position();

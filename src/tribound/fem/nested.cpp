@@ -112,6 +112,31 @@ std::vector<double> cell_values(const LagrangeSpace<dim>& space, std::span<const
   return values;
 }
 
+std::vector<double> beside_each_other(std::span<const CellColumn> columns, std::size_t n_cells)
+{
+  std::vector<double> values;
+  for (std::size_t c = 0; c < n_cells; ++c)
+    for (const auto& [column, n] : columns)
+    {
+      const std::span<const double> of_cell = column.subspan(c * n, n);
+      values.insert(values.end(), of_cell.begin(), of_cell.end());
+    }
+  return values;
+}
+
+std::vector<double> cell_column(std::span<const double> values, std::size_t width, std::size_t first,
+                                std::size_t n_each)
+{
+  std::vector<double> column;
+  column.reserve(values.size() / width * n_each);
+  for (std::size_t begin = first; begin < values.size(); begin += width)
+  {
+    const std::span<const double> of_cell = values.subspan(begin, n_each);
+    column.insert(column.end(), of_cell.begin(), of_cell.end());
+  }
+  return column;
+}
+
 template <int dim>
 std::vector<double> from_cell_values(const LagrangeSpace<dim>& space, std::span<const Index> cells,
                                      std::span<const double> values)

@@ -3,6 +3,7 @@
 /// @file nested.h
 /// Functions carried to a space that contains theirs.
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,19 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::vector<double> cell_values(const LagrangeSpace<dim>& space, std::span<const double> u,
                                               std::span<const Index> cells);
+
+/// So many numbers of each cell, cell by cell.
+struct CellColumn
+{
+  std::span<const double> values;
+  std::size_t n_each;
+};
+/// Columns side by side: of every cell the numbers of the first, then those of the next, as they travel with
+/// it.
+[[nodiscard]] std::vector<double> beside_each_other(std::span<const CellColumn> columns, std::size_t n_cells);
+/// A column of them: of every cell, which has `width` numbers, n_each from `first` on.
+[[nodiscard]] std::vector<double> cell_column(std::span<const double> values, std::size_t width,
+                                              std::size_t first, std::size_t n_each);
 
 /// The function with such values on own cells cells[0], cells[1], ..., all that there are. All ranks call it
 /// together, and agree on the values at common nodes.

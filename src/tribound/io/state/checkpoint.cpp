@@ -179,21 +179,14 @@ std::vector<double> values_of_cells(const fem::LagrangeSpace<dim>& space, const 
                                     std::span<const mesh::CellRecord<dim>> cells, std::span<const Index> own)
 {
   const std::size_t n = static_cast<std::size_t>(dim) * space.basis().n_nodes();
-  const std::size_t width = n_values_of_cell(facts);
-  std::vector<double> values(own.size() * width);
-  const auto put = [&](std::span<const double> column, std::size_t n_each, std::size_t first)
-  {
-    for (std::size_t c = 0; c < own.size(); ++c)
-      std::ranges::copy(column.subspan(c * n_each, n_each), &values[c * width + first]);
-  };
-  std::size_t first = 0;
+  std::vector<std::vector<double>> functions;
   for (const std::span<const double> u : fields.functions)
-  {
-    put(fem::nested_values<dim>(space, u, cells, own), n, first);
-    first += n;
-  }
-  if (facts.n_cell_values > 0) put(fields.cell_values, facts.n_cell_values, first);
-  return values;
+    functions.push_back(fem::nested_values<dim>(space, u, cells, own));
+  std::vector<fem::CellColumn> columns;
+  columns.reserve(functions.size() + 1);
+  for (const std::vector<double>& function : functions) columns.push_back({function, n});
+  columns.push_back({fields.cell_values, static_cast<std::size_t>(facts.n_cell_values)});
+  return fem::beside_each_other(columns, own.size());
 }
 
 }  // namespace

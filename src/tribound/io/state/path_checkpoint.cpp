@@ -141,16 +141,8 @@ Fields<dim> fields_of(const fem::LagrangeSpace<dim>& space, std::span<const Inde
   const std::size_t width = n * n_functions + n_components;
   Fields<dim> fields;
   for (int k = 0; k < n_functions; ++k)
-  {
-    std::vector<double> of_cells;
-    of_cells.reserve(cells.size() * n);
-    for (std::size_t c = 0; c < cells.size(); ++c)
-    {
-      const std::span<const double> part = values.subspan(c * width + k * n, n);
-      of_cells.insert(of_cells.end(), part.begin(), part.end());
-    }
-    fields.functions.push_back(fem::from_cell_values<dim>(space, cells, of_cells));
-  }
+    fields.functions.push_back(
+        fem::from_cell_values<dim>(space, cells, fem::cell_column(values, width, k * n, n)));
   fields.components.resize(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (int i = 0; i < n_components; ++i)
