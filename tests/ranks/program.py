@@ -66,14 +66,22 @@ def expect_same_tables(name, n):
                    value, found[key])
 
 
-def alike(one, other):
-    """Whether two parts of certificates agree up to what rounding may do to numbers."""
+def largest(part):
+    if isinstance(part, (dict, list)):
+        return max(map(largest, part.values() if isinstance(part, dict) else part), default=0)
+    return abs(part) if isinstance(part, float) else 0
+
+
+def alike(one, other, zero=None):
+    """Whether two parts of certificates agree up to what rounding may do to numbers; what is zero beside moments of 1e5 is rounding of these."""
+    if zero is None:
+        zero = max(1e-9, 1e-12 * largest(one))
     if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(alike(value, other[key]) for key, value in one.items())
+        return one.keys() == other.keys() and all(alike(value, other[key], zero) for key, value in one.items())
     if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(alike, one, other))
+        return len(one) == len(other) and all(alike(a, b, zero) for a, b in zip(one, other))
     if isinstance(one, float) and isinstance(other, float):
-        return abs(one - other) <= 1e-6 * max(abs(one), abs(other)) + 1e-9
+        return abs(one - other) <= 1e-6 * max(abs(one), abs(other)) + zero
     return one == other
 
 
