@@ -96,6 +96,9 @@ io::Json profile_json(const ContactProfile& profile, const std::string& boundary
                 {"slip", column(profile.slip, length)},
                 {"status", pack_integers(profile.status)},
                 {"bodies", pack_integers(profile.bodies)}};
+  if (!profile.damage.empty())
+    json.update({{"damage", column(profile.damage, 1)}, {"opening", column(profile.opening, length)}});
+  if (!profile.water.empty()) json["water"] = column(profile.water, std::max(stress, largest(profile.water)));
   if (paired)
     json.update({{"opposite", column(profile.opposite, largest(profile.opposite))},
                  {"opposite_displacement", column(profile.opposite_displacement,

@@ -36,6 +36,18 @@ void add_point(ContactProfile& profile, const contact::ContactState<2>& state, d
   profile.status.push_back(static_cast<Index>(state.status));
 }
 
+/// What a joint remembers, and the water in it.
+void add_joint(ContactProfile& profile, const problem::Contact& contact,
+               const contact::ContactState<2>& state)
+{
+  if (cone(contact.law).is_bonded)
+  {
+    profile.damage.push_back(state.state.damage);
+    profile.opening.push_back(state.opening);
+  }
+  if (contact.water) profile.water.push_back(state.water);
+}
+
 /// Pi(x) for the point number q of the table.
 void add_opposite(ContactProfile& profile, const contact::NitscheForm<2>& form, std::span<const double> u,
                   const contact::SegmentSide<2>& master, const contact::SegmentTable<2>& table, std::size_t q)
@@ -67,6 +79,7 @@ ContactProfile contact_profile(const contact::NitscheForm<2>& form, std::span<co
     {
       const std::size_t q = link.reversed ? n - i : i;
       add_point(profile, states[q], link.arc + segment.measure * points[i][0]);
+      add_joint(profile, *segment.contact, states[q]);
       profile.bodies.push_back(body_of[segment.slave.facet.cell]);
       if (!segment.master) continue;
       add_opposite(profile, form, u, *segment.master, tables[link.segment], q);

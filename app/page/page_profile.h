@@ -27,9 +27,12 @@ struct ContactProfile
   std::vector<double> friction;  ///< T.t, t = n turned by +90 degrees
   std::vector<double> limit;     ///< what |T.t| may reach
   std::vector<double> gap;
-  std::vector<double> slip;   ///< u.t
-  std::vector<Index> status;  ///< ContactStatus
-  std::vector<Index> bodies;  ///< that of the point
+  std::vector<double> slip;     ///< u.t
+  std::vector<Index> status;    ///< ContactStatus
+  std::vector<double> damage;   ///< D and the opening delta^n that a step which ends here leaves; empty
+  std::vector<double> opening;  ///< without a bond
+  std::vector<double> water;    ///< p_w; empty without water
+  std::vector<Index> bodies;    ///< that of the point
   /// Between bodies: Pi(x), its displacement and its body.
   std::vector<double> opposite;
   std::vector<double> opposite_displacement;

@@ -9,6 +9,7 @@ import { element, number, powerOfTen, section } from "./dom.js";
 import { contactPlans, quantities } from "./plan.js";
 import { boundaryTitle, resultants } from "./resultants.js";
 import { shownStates } from "./scales.js";
+import { stagesOf } from "./stages.js";
 import { readSurface } from "./surface.js";
 
 /** Stretches of equal status along a profile. */
@@ -30,6 +31,16 @@ const panels = [
   { key: "friction", title: (unit) => `friction [${unit("S")}], dashed: its limit`, colour: "#d55e00", limits: true },
   { key: "gap", title: (unit) => `gap [${unit("L")}]`, colour: "#009e73", zero: true },
   { key: "slip", title: (unit) => `slip [${unit("L")}]`, colour: "#8458a3", zero: true },
+];
+
+/** Those of a joint: of water, and of a bond. */
+const panelsOfWater = [
+  { key: "effective", title: (unit) => `effective pressure [${unit("S")}]`, colour: "#0072b2", zero: true },
+  { key: "water", title: (unit) => `pressure of the water [${unit("S")}]`, colour: "#56b4e9", zero: true },
+];
+const panelsOfBond = [
+  { key: "damage", title: (unit) => (unit("") ? `damage [${unit("")}]` : "damage"), colour: "#a6611a", zero: true },
+  { key: "opening", title: (unit) => `opening of the joint [${unit("L")}]`, colour: "#009e73", zero: true },
 ];
 
 function panel(rows, zones, { key, title, colour, limits, zero }, width, isLast) {
@@ -59,14 +70,17 @@ function panel(rows, zones, { key, title, colour, limits, zero }, width, isLast)
 function profileCharts(run, profile) {
   const rows = Array.from(profile.arc, (arc, i) => ({ arc, x: profile.points[2 * i], y: profile.points[2 * i + 1],
     pressure: profile.pressure[i], friction: profile.friction[i], limit: profile.limit[i], gap: profile.gap[i],
-    slip: profile.slip[i], status: profile.status[i] }));
+    slip: profile.slip[i], status: profile.status[i],
+    ...(profile.water ? { effective: profile.pressure[i] - profile.water[i], water: profile.water[i] } : {}),
+    ...(profile.damage ? { damage: profile.damage[i], opening: profile.opening[i] } : {}) }));
+  const shown = [...panels, ...(profile.water ? panelsOfWater : []), ...(profile.damage ? panelsOfBond : [])];
   const zones = zonesOf(profile);
   const present = [0, 1, 2, 3].filter((kind) => zones.some(({ status }) => status === kind));
   return element("figure", {}, element("h3", {}, boundaryTitle(run, profile.boundary)),
     element("ul", { class: "legend" }, present.map((kind) =>
       element("li", {}, element("span", { class: "swatch swatch-zone", style: `--colour:${statusColours[kind]}` }), statusNames[kind]))),
     responsive(`Contact pressure, friction, gap and slip along ${profile.boundary}`, (width) => element("div", {},
-      panels.map((what, i) => panel(rows, zones, what, width, i === panels.length - 1))),
+      shown.map((what, i) => panel(rows, zones, what, width, i === shown.length - 1))),
       { name: `contact_${profile.boundary}`, rows: () => rows.map((row) => ({ ...row, status: statusNames[row.status] })) }),
     zoneText(zones));
 }
@@ -145,6 +159,20 @@ function contactIn3d(run, surface) {
   surface.nContactFaces > 0 ? scatterChart(surface, names.filter((name) => !surface.pairs?.some(({ boundary }) => boundary === name)), quantity) : ""];
 }
 
+/** In 2D: curves along each boundary; of load steps those of the step that is chosen, at first the last one. */
+async function contactIn2d(run, levels) {
+  const place = element("div", {});
+  const draw = async (level) => place.replaceChildren(...(await readSurface(level)).profiles.filter(({ arc }) => arc.length > 1)
+    .map((profile) => profileCharts(run, profile)));
+  await draw(levels.at(-1));
+  if (!run.steps || levels.length < 2) return [place];
+  const { text } = stagesOf(run);
+  const step = element("select", { id: "contact-step", onchange: () => draw(levels[Number(step.value)]) },
+    levels.map((level, i) => element("option", { value: i }, text(level.level))));
+  step.value = levels.length - 1;
+  return [element("div", { class: "controls screen-only" }, element("label", { class: "control" }, element("span", {}, "Step"), step)), place];
+}
+
 /** What a length or an area adds up to, and how much of it is open. */
 function summaryOfProfiles(profiles) {
   const summary = { size: 0, open: 0, largest: 0, place: null };
@@ -187,7 +215,7 @@ export function contactSection(data) {
       : null, place, resultants(run)),
     summary: async () => (last?.profiles ? summaryOfProfiles((await readSurface(last)).profiles) : is3d ? summaryOfSurface(await readSurface(last)) : null),
     start: async () => {
-      if (last?.profiles) place.append(...(await readSurface(last)).profiles.filter(({ arc }) => arc.length > 1).map((profile) => profileCharts(run, profile)));
+      if (last?.profiles) place.append(...await contactIn2d(run, data.fields));
       if (is3d) place.append(...contactIn3d(run, await readSurface(last)));
     },
   };

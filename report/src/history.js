@@ -59,6 +59,8 @@ function charts(run) {
       of("effective pressure", (step) => -hydraulic("effective_normal")(step)), of("uplift", hydraulic("uplift"))] },
     { title: "Crack mouth", name: "crack_mouth", yLabel: "displacement [L]", lines: [
       of("opening", hydraulic("cmod")), of("sliding", hydraulic("csd"))] },
+    { title: "Watched", name: "watched", yLabel: "displacement [L]", lines: Object.keys(steps[0].watch ?? {}).slice(0, colours.length)
+      .map((name) => of(name, (step) => step.watch?.[name] ?? 0)) },
     { title: "Energies", name: "energies", yLabel: `energy [${energy}]`, lines: [
       of("work", (step) => step.work), of("in the bodies", (step) => step.energy / 2), of("dissipated", (step) => step.dissipated),
       of("by friction", (step) => step.dissipated_friction), of("in the interface", (step) => step.stored)] },

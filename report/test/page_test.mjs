@@ -111,6 +111,28 @@ stopping = "tolerance"
 ` },
 };
 
+// A bond with water in it, peeled off from the right in load steps.
+const joint = { exit: 0, text: `
+title = "Joint"
+degree = 1
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] } }
+material = { E = 1.0, nu = 0.3 }
+[boundary.left]
+displacement = [0, 0]
+[boundary.right]
+traction = [0, 0]
+[boundary.top]
+displacement = ["free", "0.045*t*x"]
+[boundary.bottom]
+interface = { law = "joint", tensile_strength = 0.05, fracture_energy = 0.003, coefficient = 0.5, water = { pressure = "0.01*t" } }
+[history]
+steps = [0.5, 1, 1.5]
+watch = { top = "top.y" }
+[adapt]
+max_levels = 0
+tolerance = 0.9
+` };
+
 const study = { command: "study", exit: 0, text: `
 title = "Block, studied"
 degree = 1
@@ -295,6 +317,23 @@ async function checkStudy(browser, directory) {
   await variant.page.close();
 }
 
+/** What a joint remembers, at each load step. */
+async function checkJoint(browser) {
+  const directory = solve("joint", joint);
+  const { page, complaints, seconds } = await openPage(browser, pathToFileURL(`${directory}/report.html`).href);
+  const curves = page.locator("#contact .chart").first();
+  await curves.waitFor();
+  const last = await curves.innerHTML();
+  for (const title of ["effective pressure", "pressure of the water", "damage", "opening of the joint"]) assert(last.includes(title), title);
+  assert.equal(await page.locator("#contact-step option").count(), 3);
+  await page.locator("#contact-step").selectOption("0");
+  await page.waitForFunction((before) => document.querySelector("#contact .chart").innerHTML !== before, last);
+  assert.deepEqual((await page.locator("#history h3").allTextContents()).filter((title) => title === "Watched"), ["Watched"]);
+  assert.deepEqual(complaints, []);
+  report("joint", directory, seconds);
+  await page.close();
+}
+
 function report(name, directory, seconds) {
   console.log(`${name}: opens in ${seconds.toFixed(2)} s, ${(readFileSync(`${directory}/report.html`).length / 1e6).toFixed(2)} MB`);
 }
@@ -330,6 +369,7 @@ try {
     report(name, directory, seconds);
     await page.close();
   }
+  await checkJoint(browser);
   await checkStudy(browser, solve("study", study));
 } finally {
   await browser.close();

@@ -18,6 +18,7 @@ TEST(PageProfile, ValuesAlongTheFloor)
   ASSERT_EQ(profiles.size(), 1u);
   const app::ContactProfile& profile = profiles[0];
   EXPECT_EQ(box.mesh.boundary_names()[profile.tag], "bottom");
+  EXPECT_TRUE(profile.damage.empty() && profile.opening.empty() && profile.water.empty());
   ASSERT_EQ(profile.arc.size(), 4u * 11);
   EXPECT_EQ(profile.arc.front(), 0.0);
   EXPECT_NEAR(profile.arc.back(), 2.0, 1e-14);
@@ -35,6 +36,32 @@ TEST(PageProfile, ValuesAlongTheFloor)
     EXPECT_NEAR(profile.slip[i], 0.1 * profile.arc[i], 1e-14);
     EXPECT_EQ(profile.status[i], static_cast<Index>(problem::ContactStatus::slip));
   }
+}
+
+/// A bond opened by 0.3 x - 0.1, with water in it.
+TEST(PageProfile, WhatAJointRemembers)
+{
+  ProblemData<2> data{.boundaries = {clamped<2>("left"),
+                                     obstacle<2>("bottom", problem::JointLaw({.tension = {0.05, 0.003}}))}};
+  data.boundaries.back().contact->water.emplace(formula("0.01*x"));
+  const DiscreteProblem<2> box(block<2>({8, 4}, {1, 1, 1}), data, {.degree = 2});
+  const std::vector<double> u =
+      interpolate(box.space, [](const Point<2>& x) { return Point<2>(0, 0.3 * x[0] - 0.1); });
+  const app::ContactProfile profile = app::contact_profiles(box.form, u, 40).at(0);
+  ASSERT_EQ(profile.water.size(), profile.arc.size());
+  ASSERT_EQ(profile.damage.size(), profile.arc.size());
+  ASSERT_EQ(profile.opening.size(), profile.arc.size());
+  for (std::size_t i = 0; i < profile.arc.size(); ++i)
+  {
+    SCOPED_TRACE(profile.points[2 * i]);
+    EXPECT_NEAR(profile.water[i], 0.01 * profile.points[2 * i], 1e-14);
+    EXPECT_EQ(profile.opening[i] > 0, profile.damage[i] > 0);
+    if (profile.damage[i] < 1) continue;
+    EXPECT_NEAR(profile.pressure[i], profile.water[i], 1e-12);  // nothing else acts on what is broken
+    EXPECT_EQ(profile.status[i], static_cast<Index>(problem::ContactStatus::open));
+  }
+  EXPECT_EQ(profile.damage.front(), 0);
+  EXPECT_EQ(profile.damage.back(), 1);
 }
 
 TEST(PageProfile, BothSidesBetweenBodies)
