@@ -90,6 +90,8 @@ DamageFacts damage_facts(const contact::NitscheForm<dim>& form, std::span<const 
                          int tag)
 {
   DamageFacts facts;
+  const auto* const joint = std::get_if<problem::JointLaw>(&form.problem().contact(tag)->law);
+  if (joint && joint->tension.strength == 0) facts.open_cohesion = joint->cohesion;
   const contact::SofteningMargin margin = contact::softening_margin(form, tag);
   if (margin.ratio == 0) return facts;
   const contact::ContactSegment<dim>& segment = form.segments()[margin.segment];

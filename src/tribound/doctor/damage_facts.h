@@ -32,6 +32,7 @@ struct DamageFacts
   /// vertices (2D) or edges (3D) between facets that are broken and others, A / (a f (dim - 1)); in 3D two
   /// triangles make a row. Empty unless there are both broken facets and points with 0 < D < 1.
   std::optional<double> process_zone;
+  double open_cohesion = 0;  ///< of a joint without tensile strength, whose cohesion opening does not break
 };
 
 /// The states at the points of a segment.

@@ -153,6 +153,13 @@ void add_damage(const ContactOutcome& outcome, std::vector<Finding>& warnings)
                     "more resolve them",
                     *outcome.damage.process_zone),
         *outcome.damage.process_zone, outcome.boundary));
+  if (outcome.damage.open_cohesion > 0)
+    warnings.push_back(warning(
+        "open_cohesion",
+        fmt::format("an open point keeps its cohesion of {:.4g}, since only slip takes it from a joint "
+                    "without tensile strength: with tensile_strength and fracture_energy what opens breaks",
+                    outcome.damage.open_cohesion),
+        outcome.damage.open_cohesion, outcome.boundary));
 }
 
 }  // namespace

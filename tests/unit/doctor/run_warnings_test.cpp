@@ -151,6 +151,12 @@ TEST(RunWarnings, Damage)
   EXPECT_THAT(warnings[0].text, HasSubstr("facets of less than 0.4 there, or a nitsche.gamma0 of 1.2 times"));
   EXPECT_EQ(warnings[1].code, "process_zone");
   EXPECT_DOUBLE_EQ(warnings[1].numbers[0].second, 2.5);
+  outcome = closed_contact();
+  outcome.damage.open_cohesion = 0.7;
+  const auto kept = doctor::run_warnings(sound, std::array{outcome});
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].code, "open_cohesion");
+  EXPECT_THAT(kept[0].text, HasSubstr("an open point keeps its cohesion of 0.7"));
 }
 
 }  // namespace

@@ -122,6 +122,22 @@ TEST(SolutionFacts, SofteningMargin)
             0);
 }
 
+TEST(SolutionFacts, CohesionThatOpeningDoesNotBreak)
+{
+  const auto open_cohesion = [](const problem::Joint& joint)
+  {
+    return outcome(problem::Contact(problem::JointLaw(joint)),
+                   [](const Point<2>&) -> Point<2> {
+                     return {0, 0};
+                   })
+        .damage.open_cohesion;
+  };
+  EXPECT_EQ(open_cohesion({.cohesion = 0.7}), 0.7);
+  EXPECT_EQ(open_cohesion({.cohesion = 0.7, .slip_length = 2}), 0.7);
+  EXPECT_EQ(open_cohesion({.tension = {1, 1}, .cohesion = 0.7}), 0);
+  EXPECT_EQ(open_cohesion({.coefficient = 0.5}), 0);
+}
+
 TEST(SolutionFacts, SlidingAndSticking)
 {
   const problem::Contact coulomb(Coulomb(0.5));
