@@ -276,6 +276,8 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
   expect(problem::JointLaw({.tension = {10, 1, Unloading::origin}}),
          "the interface \"bottom\" at (0.25, 0) softens with the slope 50, and gamma =");
   expect(problem::JointLaw({.tension = soft}), "has a gap of 0.01 under a bond", 10, 0.01);
+  EXPECT_EQ(message(problem::JointLaw({.tension = soft}), 10, 1e-10), "");  // what meshes round
+  EXPECT_EQ(message(problem::JointLaw({.tension = soft}), 10, -0.01), "");  // pressed together
   expect(problem::JointLaw({.tension = {1, 0, Unloading::origin}}), "needs a fracture energy");
   expect(problem::JointLaw({.cohesion = 1, .stick = true}), "needs a tensile strength");
   expect(problem::JointLaw({.tension = soft, .slip_length = 1}), "a slip length needs a cohesion");

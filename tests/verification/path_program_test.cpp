@@ -154,6 +154,48 @@ TEST(PathProgram, PeakOfHalvedSteps)
   EXPECT_LE(std::abs(followed.end.peak->change.value()), 1e-3 * exact);
 }
 
+/// Displacement and pressure of water that are not affine in t: with d(t) the displacement of the top and
+/// delta = D delta_c, sigma = ft (1 - D) - p_w(t) and d(t) = sigma / M + delta.
+TEST(PathProgram, DataNeedNotBeAffineInT)
+{
+  ProblemData<2> data = Bar<2>::data(problem::JointLaw({.tension = {ft, Gc}}));
+  data.boundaries[0] = problem::with_displacement<2>("top", {std::nullopt, formula("t + 100*t^2")});
+  data.boundaries[1].contact->water.emplace(formula("2e5*t^2"));
+  const Bar<2> bar(2);
+  const problem::Problem<2> problem = data.on(mesh::Mesh<2>(bar.mesh));
+  const double M = Bar<2>::material().lambda + 2 * Bar<2>::material().mu;
+  adapt::LoadPath<2> path(problem, bar.method, {}, mesh::Mesh<2>(bar.mesh));
+  std::vector<double> t;
+  const auto check = [&](const adapt::LoadStep<2>& step)
+  {
+    SCOPED_TRACE(step.t);
+    EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified) << step.verdict.reason;
+    EXPECT_LE(step.level.steps.size(), 7U);
+    t.push_back(step.t);
+    const double top = step.t + 100 * step.t * step.t;
+    const double water = 2e5 * step.t * step.t;
+    for (const problem::InterfaceResponse<2>& response : step.responses)
+    {
+      const double damage = response.state.damage;
+      EXPECT_NEAR(-response.traction[1], M * (top - damage * critical), 1e-9);
+      if (damage > 0)
+      {
+        EXPECT_NEAR(-response.traction[1], ft * (1 - damage) - water, 1e-9);
+      }
+    }
+  };
+  const adapt::PathEnd end = adapt::follow<2>(path,
+                                              {.targets = {0.0007, 0.0012},
+                                               .following = adapt::Following::damage,
+                                               .damage_step = 0.2,
+                                               .enough_damage = 0.9},
+                                              check, {});
+  EXPECT_EQ(end.failure, "");
+  EXPECT_NEAR(end.peak.value().t, 0.0013155, 2e-6);  // M d + p_w = ft
+  EXPECT_GT(t.size(), 8U);
+  EXPECT_LT(t.back(), 0.001);
+}
+
 /// The bond softens along its closed formula whether its damage is given or how far it opens.
 TEST(ProcessZone, LeadsOnInPlaceOfTheDamage)
 {

@@ -212,6 +212,16 @@ TEST(Interface, Mistakes)
   EXPECT_THAT(message_of_law("law = 'joint', tensile_strength = 1"), HasSubstr("boundary.b.interface.law"));
   EXPECT_THAT(message_of_law("law = 'joint', slip_length = 1"), HasSubstr("without cohesion"));
   EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1"),
+  EXPECT_THAT(message_of_law("law = 'joint', fracture_energy = 1"),
+              HasSubstr("boundary.b.interface.law: a fracture energy needs a tensile strength"));
+  EXPECT_THAT(message_of_law("law = 'joint', stick = true"),
+              HasSubstr("what sticks until it breaks needs a tensile strength"));
+  EXPECT_THAT(
+      message_of_law("law = 'joint', tensile_strength = 1, fracture_energy = 1, cohesion = 1, stick = true"),
+      HasSubstr("what sticks until it breaks has no cohesion beside that"));
+  EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1, fracture_energy = 1, coefficient = 0.5, "
+                             "unloading = 'vertical'"),
+              HasSubstr("friction goes with unloading to the origin only"));
               HasSubstr("boundary.b.interface.fracture_energy: is missing"));
   EXPECT_THAT(message_of_law("law = 'endo', normal_stiffness = 0"), HasSubstr("must be positive"));
   EXPECT_THAT(message_of_law("law = 'joint', friction = 'coulomb'"), HasSubstr("friction: unknown key"));

@@ -133,6 +133,22 @@ TEST(ContactLaw, HoldsOfTheEffectiveTraction)
     }
 }
 
+/// What is between points, or comes from another mesh, need not be a state.
+TEST(ContactLaw, CutsStatesThatNoStepLeaves)
+{
+  const ContactLaw law = problem::JointLaw({.cohesion = 0.7, .slip_length = 2});
+  const auto cut = [](const ContactLaw& of, double damage, double slipped)
+  {
+    const auto state = problem::admissible<2>(of, {.damage = damage, .slipped = slipped});
+    return std::pair(state.damage, state.slipped);
+  };
+  EXPECT_EQ(cut(law, -0.1, -0.2), std::pair(0.0, 0.0));
+  EXPECT_EQ(cut(law, 0.25, 0.4), std::pair(0.25, 0.4));
+  EXPECT_EQ(cut(law, 0.25, 0.6), std::pair(0.25, 0.5));  // q <= D slip_c
+  EXPECT_EQ(cut(law, 1.1, 3), std::pair(1.0, 3.0));
+  EXPECT_EQ(cut(problem::JointLaw({.cohesion = 0.7}), 0.25, 0.6), std::pair(0.25, 0.6));
+}
+
 TEST(ContactLaw, KindsAreNamedOnceAndMadeFromTheirKeys)
 {
   std::set<std::string_view> names;

@@ -280,6 +280,28 @@ TEST(InterfaceLaws, BreakingTakesTheFractureEnergy)
   }
 }
 
+/// In shear gamma_t = beta^2 gamma may be below the slope of softening: gamma has to exceed it, and is enough
+/// for the law to be met, t_eff = ft (1 - delta_eff / delta_c) with |T^t| = beta t_eff, delta_eff = beta
+/// |delta^t|.
+TEST(InterfaceLaws, MixedNeedsGammaAboveItsSlope)
+{
+  const problem::Mixed law{{1.0, 0.8, Unloading::origin}, 0.5, 0};
+  const double gamma = 1.5;
+  ASSERT_GT(gamma, law.softening_slope());
+  ASSERT_LT(gamma * law.tangential_weight(), law.softening_slope());
+  const LawPoint<2> point{{0, 1}, 0, gamma};
+  const double critical = law.tension.critical_opening();
+  for (const double r : {1.2, 1.7, 2.3})
+  {
+    const InterfaceResponse<2> response = problem::respond<2>(law, point, {r * law.shear_ratio, 0});
+    const double jump = (r * law.shear_ratio - response.traction[0]) / (gamma * law.tangential_weight());
+    const double effective = law.shear_ratio * jump;
+    EXPECT_GT(effective, 0.1);
+    EXPECT_NEAR(response.traction[0], law.shear_ratio * (1 - effective / critical), 1e-14);
+    EXPECT_NEAR(response.state.damage, effective / critical, 1e-14);
+  }
+}
+
 /// Under constant pressure slip alone takes c slip_c / 2 and what friction takes, however it is divided.
 TEST(InterfaceLaws, SlidingTakesTheCohesion)
 {
