@@ -83,7 +83,8 @@ void PathReport<dim>::begin(int pass, const adapt::Grid<dim>& grid)
   record_.levels.clear();
   in_work_ = Pass(pass, page_template_);
   if (printed_ == Printed::everything)
-    print_mesh(carries_ ? "mesh" : "pass", pass, grid.mesh.n_global_cells(), grid.space.n_global_dofs());
+    print_mesh(fmt::format("{} {}", carries_ ? "mesh" : "pass", pass), grid.mesh.n_global_cells(),
+               grid.space.n_global_dofs());
 }
 
 template <int dim>
@@ -178,7 +179,8 @@ void PathReport<dim>::refine(const adapt::PassView<dim>& left, const adapt::Grid
 {
   add_mesh(left);
   if (printed_ == Printed::everything)
-    print_mesh("mesh", left.number + 1, finer.mesh.n_global_cells(), finer.space.n_global_dofs());
+    print_mesh(fmt::format("mesh {}", left.number + 1), finer.mesh.n_global_cells(),
+               finer.space.n_global_dofs());
 }
 
 template <int dim>
@@ -195,6 +197,40 @@ void PathReport<dim>::complete(const adapt::PassView<dim>& pass)
   record_.status = pass.verdict.status;
   record_.reason = pass.verdict.reason;
   write_record();
+}
+
+template <int dim>
+std::shared_ptr<const adapt::Grid<dim>> PathReport<dim>::last_grid() const
+{
+  return in_work_.last ? in_work_.last->discrete->grid : nullptr;
+}
+
+template <int dim>
+void PathReport<dim>::begin_check(const adapt::Grid<dim>& grid)
+{
+  record_.check.emplace().cells = grid.mesh.n_global_cells();
+  if (printed_ == Printed::everything) print_mesh("check", record_.check->cells, grid.space.n_global_dofs());
+}
+
+template <int dim>
+void PathReport<dim>::add_to_check(const adapt::LoadStep<dim>& step)
+{
+  std::optional<io::LoadStepRecord>& last = record_.check->last;
+  last = io::load_step_record<dim>(step, last ? &*last : nullptr);
+  record_.check->steps = step.number;
+  io::LevelRecord shown;
+  shown.level = step.number;
+  shown.newton = step.level.steps;
+  shown.times.level = step.seconds;
+  shown.load_step = last;
+  if (printed_ == Printed::everything) print_level(shown);
+}
+
+template <int dim>
+void PathReport<dim>::end_check(const adapt::PathEnd& end)
+{
+  if (!record_.check) record_.check.emplace();
+  record_.check->end = end;
 }
 
 template <int dim>

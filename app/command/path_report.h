@@ -49,6 +49,12 @@ class PathReport
   void refine(const adapt::PassView<dim>& left, const adapt::Grid<dim>& finer);
   /// The pass in work leads nowhere: the one before is what holds, where it is there.
   bool give_up();
+  /// The mesh of the last step of what holds; null where this run has solved none.
+  [[nodiscard]] std::shared_ptr<const adapt::Grid<dim>> last_grid() const;
+  /// The path followed once more (adapt::follow_finely): its mesh, each of its steps, what came of it.
+  void begin_check(const adapt::Grid<dim>& grid);
+  void add_to_check(const adapt::LoadStep<dim>& step);
+  void end_check(const adapt::PathEnd& end);
   /// The last word. Throws WriteError.
   [[nodiscard]] ExitCode close(const certify::Verdict& verdict);
   /// The files of the steps so far, where the run ends by an exception.

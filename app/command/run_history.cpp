@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/command/path_report.h"
+#include "tribound/adapt/history_check.h"
 #include "tribound/adapt/replay.h"
 #include "tribound/adapt/transfer.h"
 #include "tribound/base/rank_failure.h"
@@ -12,6 +13,27 @@
 
 namespace tribound::app
 {
+
+namespace
+{
+
+/// The path that has been followed to its end, once more with half the steps on a finer mesh.
+template <int dim>
+void check_history(const case_file::Config& config, const problem::Problem<dim>& problem,
+                   const std::atomic<bool>& stop, const Progress& progress, PathReport<dim>& report)
+{
+  const std::shared_ptr<const adapt::Grid<dim>> grid = report.last_grid();
+  if (!grid) return;  // a run that had nothing left to do
+  if (grid->mesh.ranks().any(stop)) return report.end_check({.failure = "interrupted"});
+  const adapt::ReplayObserver<dim> observer{
+      .newton = [&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
+      .begins = [&](int, const adapt::Grid<dim>& finer) { report.begin_check(finer); },
+      .step = [&](const adapt::LoadStep<dim>& step) { report.add_to_check(step); }};
+  report.end_check(
+      adapt::follow_finely<dim>(*grid, problem, config.method, config.history->program, observer, &stop));
+}
+
+}  // namespace
 
 template <int dim>
 ExitCode run_history(const case_file::Config& config, const problem::Problem<dim>& problem,
@@ -48,9 +70,14 @@ ExitCode run_history(const case_file::Config& config, const problem::Problem<dim
   try
   {
     const adapt::ReplayState<dim>* state = from ? &*from : nullptr;
-    return report.close(config.history->refine == case_file::Refine::transfer
-                            ? adapt::transfer<dim>(*path, program, strategy, observer, state)
-                            : adapt::replay<dim>(std::move(path), program, strategy, observer, state));
+    const certify::Verdict verdict =
+        config.history->refine == case_file::Refine::transfer
+            ? adapt::transfer<dim>(*path, program, strategy, observer, state)
+            : adapt::replay<dim>(std::move(path), program, strategy, observer, state);
+    path.reset();  // its factors are in the way
+    if (config.history->check && certify::is_bound(verdict.status))
+      check_history<dim>(config, problem, stop, progress, report);
+    return report.close(verdict);
   }
   catch (const SolveError& error)
   {

@@ -147,10 +147,9 @@ std::string level_text(const io::LevelRecord& level)
                           level.dofs, io::newton_steps(level), bound, level.times.level));
 }
 
-std::string mesh_text(std::string_view caption, int number, std::int64_t cells, std::int64_t dofs)
+std::string mesh_text(std::string_view caption, std::int64_t cells, std::int64_t dofs)
 {
-  return line(fmt::format("{} {}", caption, number),
-              fmt::format("{} cells, {} degrees of freedom", cells, dofs));
+  return line(caption, fmt::format("{} cells, {} degrees of freedom", cells, dofs));
 }
 
 std::string certificate_text(const io::RunRecord& run)
@@ -207,6 +206,9 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
   return text + verdict_text(run, directory);
 }
 
+namespace
+{
+
 std::string path_text(const adapt::PathEnd& path)
 {
   std::string text;
@@ -223,6 +225,28 @@ std::string path_text(const adapt::PathEnd& path)
   return text;
 }
 
+/// The path followed once more, where it was.
+std::string comparison_text(const io::RunRecord& run)
+{
+  if (!run.check) return {};
+  const io::HistoryCheck& check = *run.check;
+  if (!check.end.failure.empty())
+    return paragraph("check", "half the steps on a finer mesh: " + check.end.failure);
+  std::string text =
+      fmt::format("half the steps on {}, not guaranteed:", count(check.cells, "cell", "cells"));
+  const io::LoadStepRecord last = io::last_load_step(run).value_or(io::LoadStepRecord());
+  for (const io::ComparedFigure& figure : io::compare(run.path, last, check))
+    if (const std::optional<double> difference = figure.difference())
+    {
+      const bool is_rounding = std::abs(*difference) <= 1e-9 * std::abs(*figure.path);
+      text += fmt::format(" {} {:.6g} ({:+.2g}),", figure.word, *figure.check, is_rounding ? 0 : *difference);
+    }
+  text.pop_back();
+  return paragraph("check", text);
+}
+
+}  // namespace
+
 std::string verdict_text(const io::RunRecord& run, const std::string& directory)
 {
   std::string reason = run.reason;
@@ -236,7 +260,7 @@ std::string verdict_text(const io::RunRecord& run, const std::string& directory)
                  ? fmt::format("the bound is at most adapt.tolerance = {:g} % of ||sigma(u_h)||",
                                100 * run.tolerance)
                  : std::string("the stress is zero up to rounding, and so is the bound of its error");
-  return path_text(run.path) +
+  return path_text(run.path) + comparison_text(run) +
          line("status", certify::to_string(run.status) + (reason.empty() ? "" : ": " + reason)) +
          line_if_any("results", directory);
 }
@@ -297,9 +321,9 @@ void print_level(const io::LevelRecord& level)
   print(level_text(level));
 }
 
-void print_mesh(std::string_view caption, int number, std::int64_t cells, std::int64_t dofs)
+void print_mesh(std::string_view caption, std::int64_t cells, std::int64_t dofs)
 {
-  print(mesh_text(caption, number, cells, dofs));
+  print(mesh_text(caption, cells, dofs));
 }
 
 void print_summary(const io::RunRecord& run, const std::string& directory)

@@ -25,8 +25,7 @@ namespace tribound::app
 /// One line on a level: its size, Newton steps, bound and time.
 [[nodiscard]] std::string level_text(const io::LevelRecord& level);
 /// A pass over all load steps that begins, or a finer mesh in the middle of one.
-[[nodiscard]] std::string mesh_text(std::string_view caption, int number, std::int64_t cells,
-                                    std::int64_t dofs);
+[[nodiscard]] std::string mesh_text(std::string_view caption, std::int64_t cells, std::int64_t dofs);
 /// The bound of the last level, component by component, and what it guarantees; nothing without a bound.
 [[nodiscard]] std::string certificate_text(const io::RunRecord& run);
 /// A paragraph for each warning; nothing without any.
@@ -45,7 +44,7 @@ namespace tribound::app
 
 void print_header(const io::CaseFacts& facts, const io::MeshFacts& mesh);
 void print_level(const io::LevelRecord& level);
-void print_mesh(std::string_view caption, int number, std::int64_t cells, std::int64_t dofs);
+void print_mesh(std::string_view caption, std::int64_t cells, std::int64_t dofs);
 void print_summary(const io::RunRecord& run, const std::string& directory);
 /// Warnings and status only.
 void print_verdict(const io::RunRecord& run, const std::string& directory);

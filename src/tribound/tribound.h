@@ -88,6 +88,7 @@
 // The adaptive loop: a level of it, where to refine, the whole.
 #include "tribound/adapt/contact_functions.h"
 #include "tribound/adapt/excerpt.h"
+#include "tribound/adapt/history_check.h"
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/levels.h"
 #include "tribound/adapt/load_path.h"
@@ -105,6 +106,7 @@
 #include "tribound/io/fields/contact_line.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/record/facts.h"
+#include "tribound/io/record/history_check.h"
 #include "tribound/io/record/level_record.h"
 #include "tribound/io/record/load_step_record.h"
 #include "tribound/io/record/report.h"

@@ -156,7 +156,7 @@ def load_steps_go_on(name, step, *arguments):
         expect_same_steps(name, n + 10)
         expect(f"{name} on {n}", len(table(name, n + 10)) == len(table(name, 1)), len(table(name, n + 10)))
         certificate = json.loads((out(name, n + 10) / "certificate.json").read_text())
-        for key in ("status", "reason", "path", "contact", "bodies", "balance", "not_covered"):
+        for key in ("status", "reason", "path", "history_check", "contact", "bodies", "balance", "not_covered"):
             expect(f"{name} on {n} {key}", alike(whole.get(key), certificate.get(key)), whole.get(key), certificate.get(key))
         for key in ("levels", "steps"):
             expect(f"{name} on {n}", len(whole[key]) == len(certificate[key]), key)
@@ -313,8 +313,9 @@ the_same_as_one("order2_pair", f"{CASES}/order2_pair.toml")
 DAM_TO_FAILURE = [f"{EXAMPLES}/20_dam_to_failure/case.toml", "--set", "history.damage_step=6", "--set", "newton.tolerance=1e-12"]
 load_steps_go_on("past_the_peak", 7, *DAM_TO_FAILURE, "--set", "adapt.max_levels=0", "--set", "boundary.base.interface.water.crack=true", "--set",
                  "history.steps=[0, 40, 70, 80]")
-load_steps_go_on("second_pass", 3, f"{EXAMPLES}/18_shear_cycle/case.toml", "--set", "adapt.max_levels=1", "--set", "newton.tolerance=1e-12")
-load_steps_go_on("joint_of_two", 2, f"{EXAMPLES}/22_contraction_joint/case.toml")
+load_steps_go_on("second_pass", 3, f"{EXAMPLES}/18_shear_cycle/case.toml", "--set", "adapt.max_levels=1", "--set", "newton.tolerance=1e-12", "--set",
+                 "history.check=true")
+load_steps_go_on("joint_of_two", 2, f"{EXAMPLES}/22_contraction_joint/case.toml", "--set", "history.check=true")
 load_steps_go_on("rock3d_in_steps", 2, f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "degree=1", "--set", "adapt.max_levels=0", "--set",
                  "solver.method=direct", "--set", "history.steps=[30, 45, 50]", "--set", "newton.tolerance=1e-12", "--set",
                  "boundary.upstream.pressure='1000*9.81*1e-6*max(0, t - y)'", "--set", "boundary.reservoir.pressure='1000*9.81*1e-6*t'")

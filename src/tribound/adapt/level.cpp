@@ -146,6 +146,22 @@ void keep_last(const contact::NitscheForm<dim>& form, Certifier<dim>& certifier,
   level.identities = certify::check_identities<dim>(form, level.traction, level.stress);
 }
 
+void append_step(const solve::NewtonStep& step, std::vector<CertifiedStep>& steps)
+{
+  steps.push_back({step, {}});
+  steps.back().step.step = static_cast<int>(steps.size());
+}
+
+template <int dim>
+void keep_solution(solve::NewtonResult<dim>&& newton, CertifiedLevel<dim>& level)
+{
+  level.failure = std::move(newton.message);
+  level.converged = newton.status == solve::NewtonStatus::converged;
+  level.u = std::move(newton.u);
+  level.traction = std::move(newton.traction);
+  level.equilibrium = std::move(newton.equilibrium);
+}
+
 /// The level with its systems solved as far as rounding lets them be, where this mends the identities.
 template <int dim>
 void tighten(const contact::NitscheForm<dim>& form, const Method& method, const StepObserver& observer,
@@ -229,11 +245,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   std::optional<DeltaUpdates> regularisation;
   if (method.regularisation) regularisation = DeltaUpdates{*method.regularisation, delta};
 
-  const auto record = [&](const solve::NewtonStep& step)
-  {
-    level.steps.push_back({step, {}});
-    level.steps.back().step.step = static_cast<int>(level.steps.size());
-  };
+  const auto record = [&](const solve::NewtonStep& step) { append_step(step, level.steps); };
   const auto certify = [&](const solve::NewtonIterate<dim>& iterate)
   {
     record(iterate.step);
@@ -281,11 +293,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     level.delta = regularisation->delta;
     level.delta_updates = regularisation->n_updates;
   }
-  level.failure = std::move(newton.message);
-  level.converged = newton.status == solve::NewtonStatus::converged;
-  level.u = std::move(newton.u);
-  level.traction = std::move(newton.traction);
-  level.equilibrium = std::move(newton.equilibrium);
+  keep_solution(std::move(newton), level);
   if (!level.solved())
   {
     level.norms = contact::stress_norms(form.problem(), form.space(), level.u);
@@ -301,6 +309,31 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   return level;
 }
 
+template <int dim>
+CertifiedLevel<dim> solve_without_bound(const contact::NitscheForm<dim>& form, std::span<const double> start,
+                                        const Method& method, const StepObserver& observer,
+                                        std::shared_ptr<solve::Equilibrium<dim>> equilibrium)
+{
+  CertifiedLevel<dim> level;
+  const auto record = [&](const solve::NewtonStep& step)
+  {
+    append_step(step, level.steps);
+    if (observer) observer(level.steps.back());
+  };
+  const auto go_on = [&](const solve::NewtonIterate<dim>& iterate)
+  {
+    record(iterate.step);
+    return false;
+  };
+  {
+    const ScopedTimer timer(level.solve_seconds, level.solve_cpu);
+    keep_solution(solve_persistently<dim>(form, start, method, go_on, 0, record, std::move(equilibrium)),
+                  level);
+  }
+  level.norms = contact::stress_norms(form.problem(), form.space(), level.u);
+  return level;
+}
+
 template CertifiedLevel<2> solve_and_certify(const contact::NitscheForm<2>&, std::span<const double>,
                                              const Method&, const StepObserver&, double,
                                              const std::optional<double>&,
@@ -311,6 +344,12 @@ template CertifiedLevel<3> solve_and_certify(const contact::NitscheForm<3>&, std
                                              const std::optional<double>&,
                                              const std::optional<certify::FriedrichsConstant>&,
                                              std::shared_ptr<solve::Equilibrium<3>>);
+template CertifiedLevel<2> solve_without_bound(const contact::NitscheForm<2>&, std::span<const double>,
+                                               const Method&, const StepObserver&,
+                                               std::shared_ptr<solve::Equilibrium<2>>);
+template CertifiedLevel<3> solve_without_bound(const contact::NitscheForm<3>&, std::span<const double>,
+                                               const Method&, const StepObserver&,
+                                               std::shared_ptr<solve::Equilibrium<3>>);
 template std::optional<CertifiedLevel<2>> converge(const contact::NitscheForm<2>&, const CertifiedLevel<2>&,
                                                    const Method&, const StepObserver&);
 template std::optional<CertifiedLevel<3>> converge(const contact::NitscheForm<3>&, const CertifiedLevel<3>&,

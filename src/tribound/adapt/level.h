@@ -166,6 +166,14 @@ template <int dim>
                                                           const Method& method,
                                                           const StepObserver& observer = {});
 
+/// A solution without any bound: Newton's method from `start` to newton.tolerance, whatever the stopping
+/// criterion, with T itself. The level has no stress, estimate, identities and friedrichs. Otherwise as
+/// solve_and_certify().
+template <int dim>
+[[nodiscard]] CertifiedLevel<dim> solve_without_bound(
+    const contact::NitscheForm<dim>& form, std::span<const double> start, const Method& method,
+    const StepObserver& observer = {}, std::shared_ptr<solve::Equilibrium<dim>> equilibrium = {});
+
 /// Whether there is a solution and judge() may call its bound a bound.
 template <int dim>
 [[nodiscard]] bool bound_holds(const CertifiedLevel<dim>& level, int degree);

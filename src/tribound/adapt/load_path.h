@@ -76,6 +76,9 @@ struct PathOptions
   double smallest = 1e-6;   ///< step, over the first one of its target
   double tolerance = 0.01;  ///< of the verdict
   int full_steps = 20;      ///< Method::full_steps
+  /// Whether steps have a bound; else the problem is known to be well posed, and what only a whole mesh tells
+  /// of it is not asked.
+  bool certifies = true;
 };
 
 /// Where a path is between two values of t that are given.

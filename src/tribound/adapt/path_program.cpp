@@ -168,7 +168,7 @@ Stage<dim> Follower<dim>::main_stage() const
   Stage<dim> stage{.name = "damage",
                    .gauges = nullptr,
                    .measure = {},
-                   .step = program_.damage_step.value_or(measure / 50),
+                   .step = program_.damage_step.value_or(measure / program_.damage_steps),
                    .until = enough,
                    .enough_damage = {}};
   if (program_.following == Following::displacement) stage = stage_of(program_.displacement);

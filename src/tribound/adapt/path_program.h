@@ -38,11 +38,12 @@ struct PathProgram
 {
   std::vector<double> targets{};  ///< the values of t, not empty
   Following following = Following::load;
-  std::optional<double> damage_step{};  ///< of the integral of D; a fiftieth of all interfaces where absent
-  DisplacementStage displacement{};     ///< of Following::displacement
-  double enough_damage = 0.99;          ///< mean D of all interfaces at which a stage ends
-  std::optional<double> t_min{};        ///< a stage ends with t at or beyond it, after the peak
-  int max_steps = 200;                  ///< of a stage
+  std::optional<double> damage_step{};      ///< of the integral of D
+  int damage_steps = 50;                    ///< all interfaces are damaged in, where `damage_step` is absent
+  DisplacementStage displacement{};         ///< of Following::displacement
+  double enough_damage = 0.99;              ///< mean D of all interfaces at which a stage ends
+  std::optional<double> t_min{};            ///< a stage ends with t at or beyond it, after the peak
+  int max_steps = 200;                      ///< of a stage
   std::optional<DisplacementStage> then{};  ///< after all
 };
 

@@ -26,6 +26,7 @@ struct HistoryConfig
   adapt::PathProgram program{.targets = {1.0}};
   std::vector<adapt::Watch> watch{};
   Refine refine = Refine::replay;
+  bool check = false;  ///< whether the path is followed once more, with half the steps on a finer mesh
   Where where{};
 };
 

@@ -139,8 +139,8 @@ std::vector<adapt::Watch> read_watch(const Node& node)
   return watch;
 }
 
-constexpr std::array<std::string_view, 7> history_keys = {"steps", "control", "damage_step", "stop",
-                                                          "then",  "watch",   "refine"};
+constexpr std::array<std::string_view, 8> history_keys = {"steps", "control", "damage_step", "stop",
+                                                          "then",  "watch",   "refine",      "check"};
 
 HistoryConfig read_history(const Node& node)
 {
@@ -156,6 +156,7 @@ HistoryConfig read_history(const Node& node)
   if (const Node* then = table.find("then")) program.then = to_displacement(*then, true);
   table.read("watch", history.watch, read_watch);
   table.read("refine", history.refine, one_of<Refine>({"replay", "transfer", "none"}));
+  table.read("check", history.check, to_bool);
   return history;
 }
 

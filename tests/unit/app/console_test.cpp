@@ -142,6 +142,45 @@ TEST(Console, Summary)
             "results       out\n");
 }
 
+/// A path and the same with half the steps, on which everything is a tenth larger.
+io::RunRecord checked_run()
+{
+  const auto step = [](double factor)
+  {
+    io::LoadStepRecord record;
+    record.t = 80;
+    record.effective_normal = -37 * factor;
+    record.dissipated = 0.5 * factor;
+    return record;
+  };
+  io::RunRecord run;
+  run.levels.resize(1);
+  run.levels[0].load_step = step(1);
+  run.path.peak = adapt::Peak{.t = 100, .number = 1};
+  run.check = io::HistoryCheck{
+      .cells = 64, .steps = 2, .last = step(1.1), .end = {.peak = adapt::Peak{.t = 110, .number = 2}}};
+  return run;
+}
+
+TEST(Console, ACheckOfThePathIsALine)
+{
+  io::RunRecord run = checked_run();
+  EXPECT_THAT(app::verdict_text(run, ""),
+              HasSubstr("check         half the steps on 64 cells, not guaranteed: t of the peak 110\n"
+                        "              (+10), at the end t 80 (+0), N -40.7 (-3.7), V 0 (+0), dissipated\n"
+                        "              0.55 (+0.05)\n"
+                        "status"));
+  run.path.peak.reset();
+  EXPECT_THAT(app::verdict_text(run, ""), HasSubstr("not guaranteed: at the end t 80 (+0)"));
+  run.check->end.failure = "load step 2 at t = 0.5: no convergence";
+  EXPECT_THAT(app::verdict_text(run, ""),
+              AllOf(HasSubstr("check         half the steps on a finer mesh: load step 2 at t = 0.5: no\n"
+                              "              convergence\n"),
+                    Not(HasSubstr("not guaranteed"))));
+  run.check.reset();
+  EXPECT_THAT(app::verdict_text(run, ""), Not(HasSubstr("check")));
+}
+
 TEST(Console, SummaryJudgesSliding)
 {
   io::RunRecord run;

@@ -85,6 +85,8 @@ TEST(History, Control)
   EXPECT_EQ(damage.refine, case_file::Refine::none);
   EXPECT_EQ(of("").refine, case_file::Refine::replay);
   EXPECT_EQ(of("refine = 'transfer'").refine, case_file::Refine::transfer);
+  EXPECT_FALSE(of("").check);
+  EXPECT_TRUE(of("check = true").check);
   ASSERT_EQ(damage.watch.size(), 3U);
   EXPECT_EQ(damage.watch[0].name, "p");
   EXPECT_EQ(damage.watch[0].gauges.at(0).boundary, "a.b");
@@ -210,8 +212,6 @@ TEST(Interface, Mistakes)
               AllOf(HasSubstr(R"(shear_ratio: does not belong to law = "joint")"),
                     HasSubstr(R"(it goes with law = "mixed")")));
   EXPECT_THAT(message_of_law("law = 'joint', tensile_strength = 1"), HasSubstr("boundary.b.interface.law"));
-  EXPECT_THAT(message_of_law("law = 'joint', slip_length = 1"), HasSubstr("without cohesion"));
-  EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1"),
   EXPECT_THAT(message_of_law("law = 'joint', fracture_energy = 1"),
               HasSubstr("boundary.b.interface.law: a fracture energy needs a tensile strength"));
   EXPECT_THAT(message_of_law("law = 'joint', stick = true"),
@@ -222,6 +222,8 @@ TEST(Interface, Mistakes)
   EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1, fracture_energy = 1, coefficient = 0.5, "
                              "unloading = 'vertical'"),
               HasSubstr("friction goes with unloading to the origin only"));
+  EXPECT_THAT(message_of_law("law = 'joint', slip_length = 1"), HasSubstr("without cohesion"));
+  EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1"),
               HasSubstr("boundary.b.interface.fracture_energy: is missing"));
   EXPECT_THAT(message_of_law("law = 'endo', normal_stiffness = 0"), HasSubstr("must be positive"));
   EXPECT_THAT(message_of_law("law = 'joint', friction = 'coulomb'"), HasSubstr("friction: unknown key"));

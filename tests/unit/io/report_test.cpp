@@ -209,6 +209,37 @@ TEST(Report, CertificateOfACertifiedRun)
   EXPECT_EQ(certificate["identities"]["jump"], 2e-14);
 }
 
+TEST(Report, CertificateComparesThePathWithItsCheck)
+{
+  io::RunRecord run = certified_run();
+  run.levels[0].load_step.emplace();
+  run.levels[0].load_step->dissipated = 0.5;
+  EXPECT_FALSE(json::parse(io::certificate_json(run)).contains("history_check"));
+
+  io::LoadStepRecord last;
+  last.control = "damage";
+  last.dissipated = 0.75;
+  run.path.peak = adapt::Peak{.t = 100, .number = 1};
+  run.check = io::HistoryCheck{.cells = 64, .steps = 3, .last = last};
+  run.check->end.notes = {"ended early"};
+  json check = json::parse(io::certificate_json(run)).at("history_check");
+  EXPECT_EQ(check["cells"], 64);
+  EXPECT_EQ(check["steps"], 3);
+  EXPECT_TRUE(check.at("failure").is_null());
+  EXPECT_EQ(check["notes"], json({"ended early"}));
+  EXPECT_EQ(check["control"], json({{"path", "load"}, {"check", "damage"}}));
+  EXPECT_EQ(check["compared"].size(), 5U);
+  EXPECT_EQ(check["compared"]["dissipated"], json({{"path", 0.5}, {"check", 0.75}, {"difference", 0.25}}));
+  EXPECT_EQ(check["compared"]["peak_t"],
+            json({{"path", 100.0}, {"check", nullptr}, {"difference", nullptr}}));
+  EXPECT_THAT(check["note"].get<std::string>(), testing::HasSubstr("not guaranteed"));
+
+  run.check->end.failure = "out of memory";
+  check = json::parse(io::certificate_json(run)).at("history_check");
+  EXPECT_EQ(check["failure"], "out of memory");
+  EXPECT_TRUE(check.at("compared").is_null());
+}
+
 TEST(Report, SlidingIsJudgedWhereFrictionIsCoulombs)
 {
   io::RunRecord run = certified_run();

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
+
+#include "tribound/io/record/solution_figures.h"
 
 namespace tribound::io
 {
@@ -106,6 +109,13 @@ LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStep
   record.work += step.work;
   record.balance = record.work - step.level.norms.energy / 2 - record.all.stored - record.dissipated;
   const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  std::vector<Point<dim>> effective = form.water_pressure();
+  for (std::size_t i = 0; i < effective.size(); ++i) effective[i] += step.level.traction[i];
+  const contact::ContactResultants<dim> resultants = contact::contact_resultants<dim>(form, effective);
+  constexpr double of_sums = 1e-12;  // rounding
+  const double resolution = of_sums * (std::abs(resultants.normal) + resultants.abs_tangential);
+  record.effective_normal = known_digits(resultants.normal, resolution);
+  record.tangential = known_digits(resultants.tangential, resolution);
   for (const adapt::Watch& watched : watch)
     record.watched.emplace_back(watched.name,
                                 form.space().dot(adapt::functional<dim>(form, watched.gauges), step.level.u));

@@ -43,6 +43,8 @@ struct LoadStepRecord
   std::vector<InterfaceFigures> interfaces{};
   /// Their sum. Of several hydraulic ones forces alone add up.
   InterfaceFigures all{};
+  double effective_normal = 0;  ///< integral of T^n + p_w over all contact; force
+  double tangential = 0;        ///< as Resultants::tangential has it
   // From the first step on:
   double dissipated = 0;
   double rubbed = 0;

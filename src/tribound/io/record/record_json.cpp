@@ -295,6 +295,22 @@ Json path_json(const adapt::PathEnd& path)
   return object;
 }
 
+Json check_json(const RunRecord& run)
+{
+  const HistoryCheck& check = *run.check;
+  Json object{
+      {"cells", check.cells},     {"steps", check.steps}, {"failure", text_or_null(check.end.failure)},
+      {"notes", check.end.notes}, {"control", nullptr},   {"compared", nullptr},
+      {"note", words_of_check()}};
+  const LoadStepRecord last = last_load_step(run).value_or(LoadStepRecord());
+  for (const ComparedFigure& figure : compare(run.path, last, check))
+    object["compared"][figure.name] = {{"path", number_or_null(figure.path)},
+                                       {"check", number_or_null(figure.check)},
+                                       {"difference", number_or_null(figure.difference())}};
+  if (check.last) object["control"] = {{"path", last.control}, {"check", check.last->control}};
+  return object;
+}
+
 Json level_json(const LevelRecord& level)
 {
   return json(level);
@@ -341,6 +357,7 @@ Json certificate(const RunRecord& run)
   {
     object["steps"] = steps_json(run);
     object["path"] = path_json(run.path);
+    if (run.check) object["history_check"] = check_json(run);
   }
   object["times"] = times_json(run);
   return object;

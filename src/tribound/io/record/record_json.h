@@ -25,8 +25,9 @@ namespace tribound::io
 [[nodiscard]] Json level_json(const LevelRecord& level);
 [[nodiscard]] Json steps_json(const RunRecord& run);
 
-/// `path` of the certificate.
+/// `path` of the certificate, and `history_check` of a run that has one.
 [[nodiscard]] Json path_json(const adapt::PathEnd& path);
+[[nodiscard]] Json check_json(const RunRecord& run);
 
 /// `balance` of the certificate.
 [[nodiscard]] Json balance_json(const certify::Balance& balance);

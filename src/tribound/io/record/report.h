@@ -12,6 +12,7 @@
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/doctor/findings.h"
 #include "tribound/io/record/facts.h"
+#include "tribound/io/record/history_check.h"
 #include "tribound/io/record/level_record.h"
 
 namespace tribound::io
@@ -40,10 +41,11 @@ struct RunRecord
   certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
   EarlierLevels earlier;
-  std::vector<LevelRecord> levels;  ///< after them; of a run over a history its load steps in the last pass
-  std::vector<LevelRecord> passes;  ///< over a history: the worst step on each mesh
-  adapt::PathEnd path;              ///< over a history: what came of it in that pass
-  double tolerance = 0.0;           ///< of bound / ||sigma(u_h)||
+  std::vector<LevelRecord> levels;    ///< after them; of a run over a history its load steps in the last pass
+  std::vector<LevelRecord> passes;    ///< over a history: the worst step on each mesh
+  adapt::PathEnd path;                ///< over a history: what came of it in that pass
+  std::optional<HistoryCheck> check;  ///< over a history, where it was asked for
+  double tolerance = 0.0;             ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
   std::vector<doctor::Finding> warnings;  ///< about the last level
   EffectiveCase effective;                ///< empty where the run is a part of something larger
