@@ -126,10 +126,7 @@ template <int dim>
 void update_statements(io::RunRecord& record, const adapt::LevelView<dim>& view, certify::ContactRule rule)
 {
   if (view.level.steps.empty()) return;
-  const bool uses_friedrichs = view.level.estimate.global.quad > 0;
-  record.statements = certify::statements(
-      view.discrete.form, rule,
-      uses_friedrichs ? view.level.friedrichs : std::optional<certify::FriedrichsConstant>());
+  record.statements = certify::statements(view.discrete.form, rule, view.level.friedrichs);
   if (!record.levels.back().load_step && view.discrete.form.problem().uses_time())
     record.statements.assumptions.emplace_back("load_factor", "t = 1 in all formulas, without [history]");
   if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))

@@ -91,7 +91,7 @@ std::string paragraph(std::string_view caption, std::string_view text)
 /// Component by component with its share of the sum of squares.
 std::string component_lines(const certify::BoundComponents& components, const certify::RunKind& kind)
 {
-  constexpr double round_off = 1e-12;
+  constexpr double round_off = 1e-9;  // as on the page
   std::vector<certify::Component> all = certify::components_of_run(kind);
   std::erase_if(all, [](const certify::Component& c) { return !c.is_summand(); });
   double squares = 0;

@@ -45,7 +45,8 @@ export function boundSection(run, components) {
   if (run.bound === null || run.bound === undefined) return null;
   const levels = run.levels.filter((level) => level.bound !== null);
   return section("bound", "Bound", "The bound and its causes",
-    `The bound is the root of a sum over all cells${run.components.quad > 0 ? " and, as loads jump along curves, quad" : ""}; `
+    `The bound is the root of a sum over all cells${run.components.quad > 0 ? " and, as loads jump along curves, quad" : ""}`
+      + `${run.components.alg > roundOff * run.bound ? " and, as the linear solver ends early, alg" : ""}; `
       + "each component measures one cause of the error. Shares are those of the squares, which add up.",
     boundFormula(components, run.components),
     element("div", { class: "two-columns" },

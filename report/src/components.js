@@ -5,6 +5,7 @@ const palettes = {
   discretisation: ["#56b4e9", "#0072b2", "#009e73", "#d55e00", "#e69f00", "#5b6b7a", "#b0413e"],
   linearisation: ["#cc79a7", "#a84f8c", "#8458a3"],
   regularisation: ["#7a7a2e", "#a5a058", "#c9c48a"],
+  algebra: ["#9aa3ad"],
 };
 
 /** `components`: name, meaning, part and cause of each; those of one cause get the colours of its palette in turn. */

@@ -48,7 +48,7 @@ const total = () => sub(i("\u03b7"), element("math:mtext", {}, "tot"));
 const squared = (names) => sup(bracket("(", names.flatMap((name, k) => (k === 0 ? [eta(name)] : [o("+"), eta(name)])), ")"), n(2));
 const display = (...children) => element("math:math", { display: "block" }, ...children);
 
-/** The bound from its components, sums over the cells T but for those of the whole body, which are shown where they have a value. */
+/** The bound from its components, sums over the cells T but for those of the whole body, which are shown where they are no round-off. */
 export function boundFormula(components, values) {
   // Of stress and transfer the norm of the sum counts.
   const isPaired = components.some(({ name }) => name === "mor");
@@ -56,7 +56,8 @@ export function boundFormula(components, values) {
     .map(({ name }) => (isPaired && name === "str" ? "str+mor" : name));
   const sum = ["body", "normal", "tangential"].flatMap((part, k) => (k === 0 ? [squared(namesOf(part))] : [o("+"), squared(namesOf(part))]));
   const cells = [sumOver("T"), bracket("[", sum, "]")];
-  const whole = namesOf("whole").filter((name) => values[name] > 0);
+  const visible = 1e-9 * Math.max(...Object.values(values));
+  const whole = namesOf("whole").filter((name) => values[name] > visible);
   if (whole.length === 0) return display(sup(total(), n(2)), o("="), ...cells);
   return display(total(), o("="), element("math:msqrt", {}, ...cells), ...whole.flatMap((name) => [o("+"), eta(name)]));
 }

@@ -18,7 +18,7 @@ TIME_LIMIT = 600  # seconds
 HERE = Path(__file__).resolve().parent
 VARIANTS = ["adaptive", "adaptive_converged", "uniform", "uniform_converged"]
 COLUMNS = (
-    "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,total,total_sharp,relative,energy_error,"
+    "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,alg,total,total_sharp,relative,energy_error,"
     "stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,t_certify,t_level"
 )
 ADAPTIVE = ["newton.stopping=adaptive", "newton.tolerance=1e-10", "adapt.theta=0.6", "adapt.max_levels=12", "study.figures=false"]

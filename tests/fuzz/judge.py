@@ -18,7 +18,7 @@ from results import Unreadable, read_results
 from verdict import Verdict, near
 
 STATUS_OF_EXIT = {0: ["certified"], 2: ["failed", "not certified"], 3: ["budget"]}
-COMPONENTS = ["osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t", "quad"]
+COMPONENTS = ["osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t", "quad", "alg"]
 OF_A_LATER_LEVEL = object()  # contact.csv where a killed run has written it before the certificate of its level
 
 

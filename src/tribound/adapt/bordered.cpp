@@ -78,7 +78,7 @@ void Bordered<dim>::move(const State& now, const State& then, const PathMeasure<
     d.assign(r.size(), 0.0);
     const double tolerance =
         std::max(0.01 * options.tolerance * options.force, 1e-12 * equilibrium_->norm(r));
-    const algebra::LinearSolve linear = equilibrium_->solve(tangent, r, tolerance, d);
+    const algebra::LinearSolve linear = equilibrium_->solve(tangent, r, tolerance, d, {});
     step.linear_iterations += linear.iterations;
     step.factorised = step.factorised || linear.factorised;
     step.fell_back = step.fell_back || linear.fell_back;

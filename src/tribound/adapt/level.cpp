@@ -79,6 +79,8 @@ class Certifier
   /// needed.
   [[nodiscard]] bool is_candidate(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
+    if (!known_ && !stress_)
+      stress_ = contact::stress_norms(form_.problem(), form_.space(), iterate.rough_u()).sigma;
     const Stopping criterion = method_.stopping.criterion;
     if (criterion == Stopping::tolerance || method_.regularisation) return true;
     const bool may_be_accepted = linearisation_may_be_negligible(iterate, step);
@@ -89,6 +91,29 @@ class Certifier
   [[nodiscard]] bool accepts(const CertifiedLevel<dim>& level) const
   {
     return linearisation_is_negligible(level.estimate, method_.stopping, form_.space().mesh().ranks());
+  }
+
+  /// Whether <R_lin, phi_i> is negligible beside the bound that is expected; never without C_F.
+  [[nodiscard]] bool is_balanced(std::span<const double> residual) const
+  {
+    constexpr double of_stress = 0.1;  // bounds on first meshes are no smaller, as a rule
+    const std::optional<double> eta = known_    ? known_
+                                      : stress_ ? std::optional(of_stress * *stress_)
+                                                : std::nullopt;
+    return eta && estimator_.algebraic_bound(residual) <= method_.solver.gamma_alg * *eta;
+  }
+  /// Whether alg is in the bound that the level has. Systems that are solved to a tolerance may be out by 1
+  /// %.
+  [[nodiscard]] bool is_balanced(const CertifiedLevel<dim>& level) const
+  {
+    const double gamma = method_.solver.gamma_alg > 0 ? method_.solver.gamma_alg : 0.01;
+    return level.estimate.global.alg <= gamma * level.estimate.total_sharp;
+  }
+
+  [[nodiscard]] certify::IdentityDefects identities(const CertifiedLevel<dim>& level) const
+  {
+    return certify::check_identities<dim>(form_, level.traction, level.stress,
+                                          estimator_.algebraic_remainder(level.u, level.traction));
   }
 
   /// The stress of the iterate and its bound.
@@ -114,16 +139,22 @@ class Certifier
     const double factor = method_.stopping.criterion == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
     step.linearisation =
         estimator_.linearisation(equilibrator_.linearisation(iterate.contact_u, iterate.traction));
-    if (!known_) known_ = contact::stress_norms(form_.problem(), form_.space(), iterate.rough_u()).sigma;
-    return step.linearisation->linearisation() <= factor * method_.stopping.gamma_lin * *known_;
+    return step.linearisation->linearisation() <=
+           factor * method_.stopping.gamma_lin * (known_ ? *known_ : *stress_);
   }
 
   const contact::NitscheForm<dim>& form_;
   const Method& method_;
-  std::optional<double> known_;  ///< discretisation() of the last complete bound, or what it is taken for
+  std::optional<double> known_;   ///< discretisation() of the last complete bound, or what is expected
+  std::optional<double> stress_;  ///< ||sigma(u^1)||
   certify::Equilibrator<dim> equilibrator_;
   certify::Estimator<dim> estimator_;
 };
+
+bool is_iterative(const solve::NewtonStep& step)
+{
+  return step.method == algebra::LinearMethod::iterative;
+}
 
 /// The steps after the one at which Stopping::adaptive would have ended, by the bound of the last.
 int steps_beyond_need(std::span<const CertifiedStep> steps, const certify::BoundComponents& eta,
@@ -138,12 +169,12 @@ int steps_beyond_need(std::span<const CertifiedStep> steps, const certify::Bound
 
 /// The stress, the bound and the identities of the last step, whose iterate is kept.
 template <int dim>
-void keep_last(const contact::NitscheForm<dim>& form, Certifier<dim>& certifier, CertifiedLevel<dim>& level)
+void keep_last(Certifier<dim>& certifier, CertifiedLevel<dim>& level)
 {
   CertifiedStep& last = level.steps.back();
   if (!last.bound) certifier.complete(level.u, level.traction, last, level);
   last.accepted = true;
-  level.identities = certify::check_identities<dim>(form, level.traction, level.stress);
+  level.identities = certifier.identities(level);
 }
 
 void append_step(const solve::NewtonStep& step, std::vector<CertifiedStep>& steps)
@@ -162,7 +193,7 @@ void keep_solution(solve::NewtonResult<dim>&& newton, CertifiedLevel<dim>& level
   level.equilibrium = std::move(newton.equilibrium);
 }
 
-/// The level with its systems solved as far as rounding lets them be, where this mends the identities.
+/// The level with its systems solved as far as rounding lets them be, where this mends the bound.
 template <int dim>
 void tighten(const contact::NitscheForm<dim>& form, const Method& method, const StepObserver& observer,
              CertifiedLevel<dim>& level)
@@ -218,14 +249,11 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   if (newton.status != solve::NewtonStatus::converged) return std::nullopt;
   for (CertifiedStep& step : result.steps) step.accepted = false;
   result.finishing_steps += static_cast<int>(result.steps.size()) - before;
-  result.converged = true;
-  result.u = std::move(newton.u);
-  result.traction = std::move(newton.traction);
-  result.equilibrium = std::move(newton.equilibrium);
+  keep_solution(std::move(newton), result);
   {
     const ScopedTimer timer(result.certify_seconds, result.certify_cpu);
     Certifier<dim> certifier(form, method, {}, level.friedrichs);
-    keep_last(form, certifier, result);
+    keep_last(certifier, result);
   }
   if (!bound_holds(result, method.degree)) return std::nullopt;
   return result;
@@ -261,9 +289,14 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
       if (!certifier) timed([&] { certifier.emplace(form, method, expected, friedrichs); });
       if (timed([&] { return certifier->is_candidate(iterate, step); }))
       {
-        const std::span<const double> u = iterate.u();
+        const auto complete = [&]
+        {
+          const std::span<const double> u = iterate.u();
+          timed([&] { certifier->complete(u, iterate.traction, step, level); });
+        };
+        complete();
+        if (is_iterative(iterate.step) && !certifier->is_balanced(level)) complete();
         step.step.linear_iterations = iterate.step.linear_iterations;
-        timed([&] { certifier->complete(u, iterate.traction, step, level); });
         advice = certifier->accepts(level);
       }
       if (regularisation)
@@ -274,11 +307,15 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     if (observer) observer(step);
     return advice;
   };
+  Method balanced = method;
+  if (method.solver.gamma_alg > 0)
+    balanced.newton.small_enough = [&](std::span<const double> residual)
+    { return certifier && certifier->is_balanced(residual); };
   solve::NewtonResult<dim> newton;
   {
     const ScopedTimer timer(wall, cpu);
     newton = solve_persistently<dim>(
-        form, start, method, certify, delta,
+        form, start, balanced, certify, delta,
         [&](const solve::NewtonStep& step)
         {
           record(step);
@@ -301,11 +338,12 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   }
   {
     const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
-    keep_last(form, *certifier, level);
+    keep_last(*certifier, level);
   }
   if (method.stopping.criterion == Stopping::last_bounded)
     level.finishing_steps = steps_beyond_need(level.steps, level.estimate.global, method.stopping.gamma_lin);
-  if (!bound_holds(level, method.degree)) tighten(form, method, observer, level);
+  const bool is_loose = !certifier->is_balanced(level) && !certify::is_round_off(level.estimate, level.norms);
+  if (is_loose || !bound_holds(level, method.degree)) tighten(form, method, observer, level);
   return level;
 }
 

@@ -103,10 +103,11 @@ struct CertifiedLevel
   certify::Estimate estimate;
   contact::StressNorms norms{};  ///< of u
   certify::IdentityDefects identities;
-  std::optional<certify::FriedrichsConstant> friedrichs;  ///< where it was needed, on this mesh or one before
-  double solve_seconds = 0;                               ///< wall time
-  double certify_seconds = 0;                             ///< of all iterates
-  double solve_cpu = 0;                                   ///< CPU time, all threads
+  std::optional<certify::FriedrichsConstant>
+      friedrichs;              ///< of this mesh or one before; absent: no bound yet
+  double solve_seconds = 0;    ///< wall time
+  double certify_seconds = 0;  ///< of all iterates
+  double solve_cpu = 0;        ///< CPU time, all threads
   double certify_cpu = 0;
   RefinementSeconds refinement;
   std::shared_ptr<solve::Equilibrium<dim>> equilibrium;  ///< with factors, for converge()
@@ -146,8 +147,9 @@ using StepObserver = std::function<void(const CertifiedStep&)>;
 /// Where Newton's method fails it is started anew (solve_persistently); `steps` has the steps of all
 /// attempts.
 ///
-/// Where the identities of the iterate that is kept are violated, the linear systems may have been solved too
-/// loosely: Newton's method goes on with new factors, solving them as far as rounding lets it.
+/// Linear systems are solved as well as alg needs it to be solver.gamma_alg of the bound. Where it is more
+/// all the same, or the identities of the iterate that is kept are violated, Newton's method goes on with new
+/// factors, solving them as far as rounding lets it.
 ///
 /// Throws SolveError when a matrix is singular or a patch has no equilibrated stress.
 template <int dim>

@@ -81,9 +81,8 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
 template <int dim>
 void Levels<dim>::ask(const mesh::Mesh<dim>* whole)
 {
-  if (current_->form.data().effort().loads > 0)
-    level_.friedrichs =
-        current_->mesh.ranks().on_first([&] { return certify::friedrichs_constant<dim>(problem_, *whole); });
+  level_.friedrichs =
+      current_->mesh.ranks().on_first([&] { return certify::friedrichs_constant<dim>(problem_, *whole); });
 }
 
 template <int dim>

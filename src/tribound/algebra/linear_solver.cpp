@@ -17,17 +17,35 @@ using detail::check;
 namespace
 {
 
-/// When GMRES stops: at the target, after `budget` iterations, or, if `forecast` is set, as soon as the
-/// rate of convergence says that the budget will not do.
+/// When GMRES stops: at the target, when `small_enough`, if there is one, finds its residual so, after
+/// `budget` iterations, or, if `forecast` is set, as soon as the rate of convergence says that the budget
+/// will not do.
 struct StopRule
 {
   double target;
   int budget;
   bool forecast;
-  std::vector<double> history;
+  std::function<bool(Vec)> small_enough;
+  std::vector<double> history{};
+  double asked_at = HUGE_VAL;  ///< the norm of the residual when it was asked last
 };
 
-PetscErrorCode stop(KSP, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason, void* context)
+/// Asks when the residual is half as long as the last time: the residual itself costs a product with the
+/// matrix, and the question about as much.
+bool is_small_enough(KSP ksp, double residual, StopRule& rule)
+{
+  constexpr double often_enough = 0.5;
+  if (!rule.small_enough || residual > often_enough * rule.asked_at) return false;
+  rule.asked_at = residual;
+  Vec r = nullptr;
+  check(KSPBuildResidual(ksp, nullptr, nullptr, &r), "looking at a residual");
+  const bool yes = rule.small_enough(r);
+  check(VecDestroy(&r), "looking at a residual");
+  return yes;
+}
+
+PetscErrorCode stop(KSP ksp, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason,
+                    void* context)
 {
   constexpr int window = 4;
   // After a tenth of the budget, factors of another contact state have left 0.9 of the residual and more,
@@ -38,7 +56,7 @@ PetscErrorCode stop(KSP, PetscInt iteration, PetscReal residual, KSPConvergedRea
   *reason = KSP_CONVERGED_ITERATING;
   if (!std::isfinite(residual))
     *reason = KSP_DIVERGED_NANORINF;
-  else if (residual <= rule.target)
+  else if (residual <= rule.target || (iteration > 0 && is_small_enough(ksp, residual, rule)))
     *reason = KSP_CONVERGED_ATOL;
   else if (iteration >= rule.budget || (rule.forecast && iteration == std::max(1, rule.budget / 10) &&
                                         residual > hopeless * rule.history.front()))
@@ -241,22 +259,24 @@ int LinearSolver::patience(std::int64_t n) const
 }
 
 LinearSolve LinearSolver::solve(const SparseMatrix& a, std::span<const double> b, double tolerance,
-                                std::span<double> x)
+                                std::span<double> x, const ResidualTest& small_enough)
 {
   LinearSolve result;
   detail::on_owned_entries(a.sharing(), a.block_size(), b, x,
-                           [&](Vec own_b, Vec own_x) { result = solve_owned(a, own_b, tolerance, own_x); });
+                           [&](Vec own_b, Vec own_x)
+                           { result = solve_owned(a, own_b, tolerance, own_x, small_enough); });
   if (a.sharing()) a.sharing()->update(x, a.block_size());
   return result;
 }
 
-LinearSolve LinearSolver::solve_owned(const SparseMatrix& a, Vec b, double tolerance, Vec x)
+LinearSolve LinearSolver::solve_owned(const SparseMatrix& a, Vec b, double tolerance, Vec x,
+                                      const ResidualTest& small_enough)
 {
   if (method_ == LinearMethod::direct || config_.method == LinearMethod::iterative)
-    return attempt(a, b, tolerance, x);
+    return attempt(a, b, tolerance, x, small_enough);
   try
   {
-    return attempt(a, b, tolerance, x);
+    return attempt(a, b, tolerance, x, small_enough);
   }
   catch (const SolveError& error)  // nobody insisted on multigrid
   {
@@ -266,13 +286,17 @@ LinearSolve LinearSolver::solve_owned(const SparseMatrix& a, Vec b, double toler
     multigrid_.reset();
     reuse_budget_ = 0;
   }
-  LinearSolve result = attempt(a, b, tolerance, x);
+  LinearSolve result = attempt(a, b, tolerance, x, small_enough);
   result.fell_back = true;
   return result;
 }
 
-LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance, Vec x)
+LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance, Vec x,
+                                  const ResidualTest& small_enough)
 {
+  std::function<bool(Vec)> test;
+  if (small_enough && method_ == LinearMethod::iterative)
+    test = [&](Vec r) { return small_enough(detail::from_owned_entries(a.sharing(), a.block_size(), r)); };
   if (!ksp_) configure(a);
   std::optional<detail::SingleProduct> single;  // GMRES itself works in double precision
   if (multigrid_) single.emplace(a.handle());
@@ -282,7 +306,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance
   From from = From::zero;
   if (reuse_budget_ > 0)
   {
-    StopRule rule{tolerance, reuse_budget_, true, {}};
+    StopRule rule{tolerance, reuse_budget_, true, test};
     const bool converged = iterate(ksp_.get(), b, rule, x, from);
     result.iterations = static_cast<int>(rule.history.size()) - 1;
     if (converged) return result;
@@ -291,7 +315,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance
 
   prepare(a, product);
   const bool direct = method_ == LinearMethod::direct;
-  StopRule rule{tolerance, direct ? 4 : patience(a.global_size()), false, {}};
+  StopRule rule{tolerance, direct ? 4 : patience(a.global_size()), false, test};
   const bool converged = iterate(ksp_.get(), b, rule, x, from);
   const int iterations = std::max(0, static_cast<int>(rule.history.size()) - 1);
   constexpr double useless = 1e-6;

@@ -4,6 +4,7 @@
 /// Linear systems of a Newton loop: factorisations kept as preconditioners, or multigrid.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -41,6 +42,7 @@ struct SolverOptions
   LinearMethod method = LinearMethod::automatic;
   DirectPackage package = DirectPackage::automatic;
   double tolerance = 1e-10;  ///< relative residual of an iterative solve
+  double gamma_alg = 0.05;   ///< alg may be this fraction of the bound; 0: solved to the tolerance
   int max_iterations = 500;
 };
 
@@ -56,6 +58,10 @@ struct LinearSolve
   bool factorised = false;  ///< whether a new factorisation or multigrid hierarchy was made
   bool fell_back = false;   ///< whether multigrid failed and the direct solver took its place
 };
+
+/// Whether the residual b - A x is small enough; what ghosts have in it means nothing. All ranks call it
+/// together.
+using ResidualTest = std::function<bool(std::span<const double>)>;
 
 /// What is known about a matrix. Of a symmetric positive definite one a direct solver computes half the
 /// factors.
@@ -92,9 +98,11 @@ class LinearSolver
   LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
 
-  /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off, on several ranks with the values of
-  /// ghosts. Throws SolveError when A is singular or the iteration stalls.
-  LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x);
+  /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off, or whose residual the test, if
+  /// there is one, finds small enough; on several ranks with the values of ghosts. Throws SolveError when A
+  /// is singular or the iteration stalls.
+  LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x,
+                    const ResidualTest& small_enough = {});
 
   /// All matrices to come are a constant one plus this part, whose entries are among theirs and which has the
   /// values of the matrix that is being solved with: multigrid is renewed at the cost of the part.
@@ -103,8 +111,10 @@ class LinearSolver
   [[nodiscard]] LinearMethod method() const { return method_; }
 
  private:
-  [[nodiscard]] LinearSolve solve_owned(const SparseMatrix& a, _p_Vec* b, double tolerance, _p_Vec* x);
-  [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, _p_Vec* b, double tolerance, _p_Vec* x);
+  [[nodiscard]] LinearSolve solve_owned(const SparseMatrix& a, _p_Vec* b, double tolerance, _p_Vec* x,
+                                        const ResidualTest& small_enough);
+  [[nodiscard]] LinearSolve attempt(const SparseMatrix& a, _p_Vec* b, double tolerance, _p_Vec* x,
+                                    const ResidualTest& small_enough);
   [[nodiscard]] int patience(std::int64_t n) const;
   void configure(const SparseMatrix& a);
   void configure_direct(const SparseMatrix& a);

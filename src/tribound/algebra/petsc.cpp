@@ -51,6 +51,23 @@ VecHandle wrap(std::span<const double> values, MPI_Comm processes)
   return wrap(std::span(const_cast<double*>(values.data()), values.size()), processes);  // NOLINT
 }
 
+std::vector<double> from_owned_entries(const Sharing& sharing, int block_size, Vec owned)
+{
+  PetscInt n = 0;
+  const PetscScalar* entries = nullptr;
+  check(VecGetLocalSize(owned, &n), "reading a vector");
+  check(VecGetArrayRead(owned, &entries), "reading a vector");
+  const std::span<const double> own(entries, static_cast<std::size_t>(n));
+  std::vector<double> all(own.begin(), own.end());
+  if (sharing)
+  {
+    all.assign(block_size * sharing->global.size(), 0.0);
+    put_owned_entries(*sharing, block_size, own, std::span(all));
+  }
+  check(VecRestoreArrayRead(owned, &entries), "reading a vector");
+  return all;
+}
+
 bool waits_for_others(PetscObject object)
 {
   if (std::uncaught_exceptions() == 0) return false;

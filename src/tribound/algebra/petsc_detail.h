@@ -67,6 +67,8 @@ void on_owned_entries(const Sharing& sharing, int block_size, std::span<const do
   operation(wrap(own_x, processes).get(), wrap(std::span(own_y), processes).get());
   put_owned_entries<double>(*sharing, block_size, own_y, y);
 }
+/// The other way: entries for all unknowns from a vector of what this process owns; 0 for those of ghosts.
+[[nodiscard]] std::vector<double> from_owned_entries(const Sharing& sharing, int block_size, Vec owned);
 /// The number of an unknown in PETSc's rows.
 [[nodiscard]] inline PetscInt global_unknown(const fem::NodeNumbers& nodes, int block_size, int unknown)
 {

@@ -150,13 +150,16 @@ void read_certify(const Node& node, adapt::Method& method)
 
 algebra::SolverOptions read_solver(const Node& node)
 {
-  const TableReader table(node, {"method", "package", "tolerance", "max_iterations"});
+  const TableReader table(node, {"method", "package", "tolerance", "gamma_alg", "max_iterations"});
   algebra::SolverOptions solver;
   table.read("method", solver.method,
              one_of<algebra::LinearMethod>({"auto", "direct", "condensed", "iterative"}));
   table.read("package", solver.package, one_of<algebra::DirectPackage>({"auto", "mumps", "umfpack"}));
   table.read("tolerance", solver.tolerance,
              number_in({.lower = 0.0, .upper = 1.0}, "a relative residual, such as 1e-10"));
+  table.read("gamma_alg", solver.gamma_alg,
+             number_in({.lower = 0.0, .upper = 1.0, .includes_lower = true},
+                       "the fraction of the bound that the linear solver may leave, such as 0.05, or 0"));
   table.read("max_iterations", solver.max_iterations, integer_from(1, "a number of iterations, such as 500"));
   return solver;
 }

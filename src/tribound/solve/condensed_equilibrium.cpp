@@ -119,7 +119,7 @@ class CondensedEquilibrium final : public Equilibrium<dim>
   }
 
   algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r, double tolerance,
-                             std::span<double> d) override
+                             std::span<double> d, const algebra::ResidualTest& /*small_enough*/) override
   {
     contact_.values.assign(contact.begin(), contact.end());
     std::ranges::copy(condensed_.solve(contact_, r, tolerance), d.begin());

@@ -55,9 +55,11 @@ class Equilibrium
   [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
 
   /// d with (K + contact) d = r, contact by NitscheForm::contact_tangent_values(), |residual| <= tolerance up
-  /// to round-off. Throws SolveError when the matrix is singular.
+  /// to round-off; an iteration may end when its residual is `small_enough`. Throws SolveError when the
+  /// matrix is singular.
   virtual algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r,
-                                     double tolerance, std::span<double> d) = 0;
+                                     double tolerance, std::span<double> d,
+                                     const algebra::ResidualTest& small_enough) = 0;
   [[nodiscard]] virtual algebra::LinearMethod method() const = 0;
   /// ExternalForces::scale.
   [[nodiscard]] virtual double force_scale() const = 0;

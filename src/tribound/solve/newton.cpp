@@ -70,7 +70,8 @@ class Newton
   [[nodiscard]] std::string describe_residual() const;
   void step(contact::Linearisation kind);
   [[nodiscard]] algebra::LinearSolve solve_tangent(std::span<const double> rhs, double target,
-                                                   std::span<double> delta);
+                                                   std::span<double> delta,
+                                                   const algebra::ResidualTest& small_enough = {});
   [[nodiscard]] double search(std::span<const double> direction, bool full_step);
 
   const contact::NitscheForm<dim>& form_;
@@ -147,10 +148,13 @@ double Newton<dim>::tight_target(std::span<const double> rhs) const
 template <int dim>
 void Newton<dim>::balance_traction()
 {
-  if (!std::exchange(loose_, false)) return;
+  if (!loose_) return;
   const std::vector<double> defect = equilibrium_->residual(internal_, traction_);
+  if (config_.small_enough && config_.small_enough(defect)) return;
+  displacement_.reset();
   std::vector<double> delta(x_.size(), 0.0);
-  report_.linear_iterations += solve_tangent(defect, tight_target(defect), delta).iterations;
+  const double target = tight_target(defect);
+  report_.linear_iterations += solve_tangent(defect, target, delta, config_.small_enough).iterations;
   const std::vector<Point<dim>> before = linearised_.traction(form_, u_);
   axpy(1, delta, x_);
   axpy(1, equilibrium_->internal_forces(delta), internal_);
@@ -158,17 +162,15 @@ void Newton<dim>::balance_traction()
   const std::vector<Point<dim>> after = linearised_.traction(form_, u_);
   for (std::size_t i = 0; i < after.size(); ++i) traction_[i] += after[i] - before[i];
   set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
+  loose_ = config_.small_enough && equilibrium_->norm(equilibrium_->residual(internal_, traction_)) > target;
 }
 
 /// u^k everywhere, computed when it is first asked for, with t^k in equilibrium.
 template <int dim>
 std::vector<double>& Newton<dim>::displacement()
 {
-  if (!displacement_)
-  {
-    balance_traction();
-    displacement_ = equilibrium_->displacement(x_);
-  }
+  balance_traction();
+  if (!displacement_) displacement_ = equilibrium_->displacement(x_);
   return *displacement_;
 }
 
@@ -230,11 +232,12 @@ double Newton<dim>::search(std::span<const double> direction, bool full_step)
 /// Solves with the tangent of the step; says at which step it failed.
 template <int dim>
 algebra::LinearSolve Newton<dim>::solve_tangent(std::span<const double> rhs, double target,
-                                                std::span<double> delta)
+                                                std::span<double> delta,
+                                                const algebra::ResidualTest& small_enough)
 {
   try
   {
-    return equilibrium_->solve(linearised_.tangent(form_), rhs, target, delta);
+    return equilibrium_->solve(linearised_.tangent(form_), rhs, target, delta, small_enough);
   }
   catch (const SolveError& error)
   {
@@ -329,7 +332,8 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
     result.message =
         fmt::format("step {} was the last of newton.max_steps; {}", config_.max_steps, describe_residual());
   loose_ = loose_ && config_.balanced;
-  result.u = std::move(displacement());
+  // An observer that has asked for u has bounded it: it must not be solved for any better now.
+  result.u = displacement_ ? std::move(*displacement_) : std::move(displacement());
   if (!result.steps.empty()) result.steps.back() = report_;
   result.traction = std::move(traction_);
   result.equilibrium = std::move(equilibrium_);

@@ -29,6 +29,9 @@ struct NewtonOptions
   double reference_force = 0;
   /// Whether t^k of the result is in equilibrium; a start for another solve has no use for it.
   bool balanced = true;
+  /// Whether <R_lin, phi_i>, by which u^k and t^k are out of equilibrium, is small enough not to be solved
+  /// any better; absent: when it is as small as solver.tolerance asks for.
+  algebra::ResidualTest small_enough{};
 };
 
 struct NewtonStep
@@ -73,8 +76,9 @@ struct NewtonIterate
   std::span<const double> contact_u;     ///< u^k on the cells at the contact boundary, elsewhere anything
   std::span<const Point<dim>> traction;  ///< t^k
   bool converged;                        ///< the residual is below the tolerance, and t^k is T(u^k)
-  /// u^k everywhere. Where the linear system was solved loosely, this solves it tightly first, and u^k, t^k
-  /// and the iterations of the step change: from then on, t^k is in equilibrium.
+  /// u^k everywhere. Where the linear system was solved loosely, this solves it better first, until
+  /// NewtonOptions::small_enough, and u^k, t^k and the iterations of the step change: from then on, t^k is in
+  /// equilibrium. It may be called again when small_enough asks for more.
   std::function<std::span<const double>()> u;
 
   /// u^k everywhere as a loose solve has left it.

@@ -77,7 +77,7 @@ TEST_F(ReportPageFile, HoldsTheRunAndTheUsersStringsAsTheyAre)
   EXPECT_EQ(read["certificate"]["reason"], run.reason);
   EXPECT_EQ(read["newton"], json::array());
   EXPECT_THAT(unpack_text(read["tables"]["newton.csv"]), HasSubstr("level,step"));
-  EXPECT_EQ(read["components"].size(), 9u);
+  EXPECT_EQ(read["components"].size(), 10u);
   EXPECT_TRUE(read["fields"].empty());
   EXPECT_TRUE(read["files"].empty());
   EXPECT_FALSE(read["machine"]["written"].get<std::string>().empty());

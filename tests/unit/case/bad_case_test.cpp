@@ -157,6 +157,8 @@ std::vector<BadCase> values()
        "must be a string, found the integer 1", "one of \"resolved\", \"reference\""},
       {"SolverMethod", head + "[solver]\nmethod = 'lu'\n", "case.toml:4:10: solver.method: ",
        "unknown value \"lu\"", "one of \"auto\", \"direct\", \"condensed\", \"iterative\""},
+      {"GammaAlg", head + "[solver]\ngamma_alg = 1\n",
+       "case.toml:4:13: solver.gamma_alg: ", "must lie in [0, 1), found 1", "0.05"},
       {"SolverIterations", head + "[solver]\nmax_iterations = 1e3\n",
        "case.toml:4:18: solver.max_iterations: ", "must be an integer, found the number 1000", "500"},
       {"Vtu", head + "[output]\nvtu = 1\n",

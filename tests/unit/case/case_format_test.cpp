@@ -321,6 +321,8 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
        { return choice(row, static_cast<int>(c.method.solver.package)); }},
       {"solver.tolerance",
        [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.method.solver.tolerance); }},
+      {"solver.gamma_alg",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.method.solver.gamma_alg); }},
       {"solver.max_iterations",
        [](const case_file::Config& c, const Row&) { return with_spaces(c.method.solver.max_iterations); }},
       {"study.reference_degree", [](const case_file::Config& c, const Row&)

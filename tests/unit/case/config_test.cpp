@@ -66,6 +66,7 @@ contact_rule = "reference"
 method = "iterative"
 package = "umfpack"
 tolerance = 1e-8
+gamma_alg = 0.02
 max_iterations = 7
 
 [study]
@@ -107,6 +108,7 @@ TEST(Config, ReadsEveryKey)
   EXPECT_EQ(config.method.solver.method, algebra::LinearMethod::iterative);
   EXPECT_EQ(config.method.solver.package, algebra::DirectPackage::umfpack);
   EXPECT_EQ(config.method.solver.tolerance, 1e-8);
+  EXPECT_EQ(config.method.solver.gamma_alg, 0.02);
   EXPECT_EQ(config.method.solver.max_iterations, 7);
   EXPECT_EQ(config.study.reference_degree, 4);
   EXPECT_EQ(config.study.reference_factor, 0.125);

@@ -250,6 +250,33 @@ double dirichlet_interpolation_bound(const contact::NitscheForm<dim>& form)
   return form.space().mesh().ranks().max(largest);
 }
 
+namespace
+{
+
+/// C_F with what it was proved by, or what there is in the place of alg.
+template <int dim>
+void add_friedrichs(const std::optional<FriedrichsConstant>& c, Statements& statements)
+{
+  if (!c || !std::isfinite(c->value))
+  {
+    statements.assumptions.emplace_back(
+        "linear_systems",
+        "no Friedrichs constant could be proved, so that alg is not in the bound: they were solved to "
+        "solver.tolerance, and the identities show what is left");
+    return;
+  }
+  statements.constants.emplace_back("friedrichs", c->value);
+  statements.constants.emplace_back("friedrichs_theta", c->theta);
+  statements.constants.emplace_back("friedrichs_mesh_cells", c->cells);
+  if (c->mesh_size > 0)
+  {
+    statements.constants.emplace_back("friedrichs_mesh_size", c->mesh_size);
+    statements.constants.emplace_back("kappa", friedrichs_kappa<dim>());
+  }
+}
+
+}  // namespace
+
 template <int dim>
 Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                       const std::optional<FriedrichsConstant>& friedrichs)
@@ -264,8 +291,9 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                           ? "; no unknown constant"
                           : ", between bodies with the jump of v over the segments on which a facet of one "
                             "lies opposite a facet of the other; no unknown constant"),
-      "the errors of discretisation, of the data, of the contact and friction conditions, and of stopping "
-      "Newton's method"};
+      "the errors of discretisation, of the data, of the contact and friction conditions, of stopping "
+      "Newton's "
+      "method, and of solving its linear systems"};
   if (!form.problem().pairs().empty())
     result.covered.emplace_back(
         "what contact tractions lose between meshes that do not match (mor); forces on slave and master are "
@@ -274,7 +302,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
   result.constants = {{"poincare", poincare_constant(1)},
                       {"trace_squared", trace_constant_squared<dim>()},
                       {"identity_limit", identity_limit}};
-  if (friedrichs) result.constants.emplace_back("friedrichs", friedrichs->value);
+  add_friedrichs<dim>(friedrichs, result);
 
   double largest = 0;
   for (const double value : form.constraints().values) largest = std::max(largest, std::abs(value));

@@ -64,7 +64,7 @@ struct Statements
   std::vector<std::string> not_covered;                          ///< errors outside the bound
 };
 
-/// C_F is given where the bound contains it. All ranks call this and the next two together.
+/// C_F is that of the bound. All ranks call this and the next two together.
 template <int dim>
 [[nodiscard]] Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                                     const std::optional<FriedrichsConstant>& friedrichs = {});

@@ -24,22 +24,25 @@ double IdentityDefects::largest(int degree) const
 namespace
 {
 
-/// ||div sigma_h + Pi^{p-1} f||_T^2: div sigma_h is of degree p-1 itself. The points of the rule come in
-/// the numbering of the cell, in which f is given.
+/// ||div sigma_h + Pi^{p-1} f - rho||_T^2: div sigma_h is of degree p-1 itself, and so is rho. The points of
+/// the rule come in the numbering of the cell, in which f is given; rho by its values at the vertices.
 template <int dim>
 double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index cell,
                                  const CheckTables<dim>& tables, const CheckedStress<dim>& sigma,
-                                 const mesh::CellMap<dim>& map)
+                                 const mesh::CellMap<dim>& map, const std::array<Point<dim>, dim + 1>* rho)
 {
   std::vector<Point<dim>> moments = sigma.divergence(tables);
-  if (data.has_body_force(cell))
+  if (data.has_body_force(cell) || rho)
   {
     std::vector<double> chi(tables.n_less);
-    std::vector<Point<dim>> f(tables.data_rule.size());
-    data.body_force(cell, f);
+    std::vector<Point<dim>> f(tables.data_rule.size(), Point<dim>::Zero());
+    if (data.has_body_force(cell)) data.body_force(cell, f);
     for (int q = 0; q < tables.data_rule.size(); ++q)
     {
-      sigma.truncated_basis_at(map(tables.data_rule.points[q]), chi);
+      const Point<dim>& x = tables.data_rule.points[q];
+      if (rho) f[q] -= (1 - x.sum()) * (*rho)[0];
+      for (int i = 0; rho && i < dim; ++i) f[q] -= x[i] * (*rho)[i + 1];
+      sigma.truncated_basis_at(map(x), chi);
       for (int i = 0; i < tables.n_less; ++i)
         moments[i] += tables.data_rule.weights[q] * std::sqrt(map.det) * chi[i] * f[q];
     }
@@ -52,7 +55,7 @@ double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index c
 /// Sums of squares on the cells, and the square of the norm of sigma_h.
 template <int dim>
 double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
-                   const CheckTables<dim>& tables, IdentityDefects& squares)
+                   const CheckTables<dim>& tables, const AffineFields<dim>& rho, IdentityDefects& squares)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const auto of_cell = [&](std::size_t cell)
@@ -62,7 +65,8 @@ double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& str
     return Eigen::Array3d(
         sigma.squared_norm(), sigma.squared_skew_part(tables.n_less),
         std::pow(mesh::cell_diameter(mesh, c), 2) *
-            squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c)));
+            squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c),
+                                      rho.empty() ? nullptr : &rho[cell]));
   };
   const Eigen::Array3d sums =
       parallel_sum<Eigen::Array3d>(mesh.n_owned_cells(), Eigen::Array3d::Zero(), of_cell);
@@ -235,12 +239,12 @@ void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point
 
 template <int dim>
 IdentityDefects check_identities(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t,
-                                 const Stress<dim>& stress)
+                                 const Stress<dim>& stress, const AffineFields<dim>& rho)
 {
   const CheckTables<dim> tables(stress.degree);
   IdentityDefects squares;
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const double own_norm_squared = check_cells(form, stress, tables, squares);
+  const double own_norm_squared = check_cells(form, stress, tables, rho, squares);
   squares.jump = check_jumps(mesh, stress, tables) + check_jumps_between_ranks(mesh, stress, tables);
   check_boundary(form, t, stress, squares);
   std::array sums{own_norm_squared, squares.divergence, squares.jump,
@@ -253,8 +257,8 @@ IdentityDefects check_identities(const contact::NitscheForm<dim>& form, std::spa
 }
 
 template IdentityDefects check_identities(const contact::NitscheForm<2>&, std::span<const Point<2>>,
-                                          const Stress<2>&);
+                                          const Stress<2>&, const AffineFields<2>&);
 template IdentityDefects check_identities(const contact::NitscheForm<3>&, std::span<const Point<3>>,
-                                          const Stress<3>&);
+                                          const Stress<3>&, const AffineFields<3>&);
 
 }  // namespace tribound::certify

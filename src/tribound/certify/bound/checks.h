@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "tribound/certify/bound/algebraic.h"
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -16,7 +17,7 @@ namespace tribound::certify
 /// stress.
 struct IdentityDefects
 {
-  double divergence = 0;  ///< (sum h_T^2 ||div sigma_h + Pi^{p-1} f||_T^2)^{1/2}
+  double divergence = 0;  ///< (sum h_T^2 ||div sigma_h + Pi^{p-1} f - rho||_T^2)^{1/2}
   double jump = 0;        ///< (sum h_F ||[sigma_h n]||_F^2)^{1/2} over facets inside Omega
   double neumann = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F g_N||_F^2)^{1/2}, free components only
   double contact = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
@@ -26,10 +27,11 @@ struct IdentityDefects
   [[nodiscard]] double largest(int degree) const;
 };
 
-/// t: the running traction t^k at the contact points of the form. All ranks call it together: facets between
-/// them count, too.
+/// t: the running traction t^k at the contact points of the form; rho: what the linear solver has left, where
+/// it is part of the bound, empty: 0. All ranks call it together: facets between them count, too.
 template <int dim>
 [[nodiscard]] IdentityDefects check_identities(const contact::NitscheForm<dim>& form,
-                                               std::span<const Point<dim>> t, const Stress<dim>& stress);
+                                               std::span<const Point<dim>> t, const Stress<dim>& stress,
+                                               const AffineFields<dim>& rho = {});
 
 }  // namespace tribound::certify

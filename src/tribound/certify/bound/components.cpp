@@ -61,6 +61,8 @@ const char* to_string(BoundCause cause)
       return "discretisation";
     case BoundCause::linearisation:
       return "linearisation";
+    case BoundCause::algebra:
+      return "algebra";
     case BoundCause::regularisation:
       break;
   }

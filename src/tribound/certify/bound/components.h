@@ -23,7 +23,8 @@ struct BoundComponents
   double lin2n = 0;  ///< (sum h_F ||sigma_lin^n||_F^2)^{1/2}
   double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
   double quad =
-      0;  ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
+      0;           ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
+  double alg = 0;  ///< what the linear solver has left, see algebraic_error(); of no single cell
   double reg1 = 0;     ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
   double reg2n = 0;    ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
   double reg2t = 0;    ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
@@ -42,7 +43,8 @@ struct BoundComponents
   [[nodiscard]] double total() const;
   /// The same with a = body() and b = contact(): normal and tangential part are orthogonal.
   [[nodiscard]] double total_sharp() const;
-  /// osc + str + mor + neu + cnt + frc + quad: neither Newton's method nor the regularisation.
+  /// osc + str + mor + neu + cnt + frc + quad: neither Newton's method nor the regularisation, nor what it is
+  /// solved with.
   [[nodiscard]] double discretisation() const { return osc + str + mor + neu + cnt + frc + quad; }
   [[nodiscard]] double linearisation() const { return lin1 + lin2n + lin2t; }
   [[nodiscard]] double regularisation() const { return reg1 + reg2n + reg2t; }
@@ -63,7 +65,8 @@ enum class BoundCause
 {
   discretisation,  ///< the mesh, with the data on it
   linearisation,   ///< the number of Newton steps
-  regularisation   ///< delta, method section 7
+  regularisation,  ///< delta, method section 7
+  algebra          ///< how far linear systems are solved
 };
 
 [[nodiscard]] const char* to_string(BoundPart part);
@@ -87,7 +90,7 @@ struct Component
 };
 
 /// In the order of all files and tables.
-inline constexpr std::array<Component, 14> all_components = {{
+inline constexpr std::array<Component, 15> all_components = {{
     {"osc", &BoundComponents::osc, "data oscillation", BoundPart::body, BoundCause::discretisation},
     {"str", &BoundComponents::str, "stress", BoundPart::body, BoundCause::discretisation},
     {"neu", &BoundComponents::neu, "Neumann data", BoundPart::body, BoundCause::discretisation},
@@ -99,6 +102,7 @@ inline constexpr std::array<Component, 14> all_components = {{
     {"lin2t", &BoundComponents::lin2t, "linearisation, tangential", BoundPart::tangential,
      BoundCause::linearisation},
     {"quad", &BoundComponents::quad, "quadrature of the loads", BoundPart::whole, BoundCause::discretisation},
+    {"alg", &BoundComponents::alg, "linear solver", BoundPart::whole, BoundCause::algebra},
     {"reg1", &BoundComponents::reg1, "regularisation, body", BoundPart::body, BoundCause::regularisation},
     {"reg2n", &BoundComponents::reg2n, "regularisation, normal", BoundPart::normal,
      BoundCause::regularisation},
@@ -110,13 +114,13 @@ inline constexpr std::array<Component, 14> all_components = {{
 }};
 
 /// Those of every run.
-inline constexpr std::span plain_components = std::span(all_components).first<9>();
+inline constexpr std::span plain_components = std::span(all_components).first<10>();
 
 /// Those that a regularised run has beside them.
-inline constexpr std::span regularisation_components = std::span(all_components).subspan<9, 3>();
+inline constexpr std::span regularisation_components = std::span(all_components).subspan<10, 3>();
 
 /// Those that a run with pairs of bodies has behind all others.
-inline constexpr std::span transfer_components = std::span(all_components).subspan<12, 2>();
+inline constexpr std::span transfer_components = std::span(all_components).subspan<13, 2>();
 
 /// What a run is beside the plain method and contact with obstacles.
 struct RunKind

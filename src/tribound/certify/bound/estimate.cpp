@@ -19,7 +19,7 @@ namespace
 
 /// Component by component the root of the sum of squares over all ranks, and both totals with what no cell
 /// has.
-void add_up(Estimate& estimate, double quad, const Ranks& ranks)
+void add_up(Estimate& estimate, double quad, double alg, const Ranks& ranks)
 {
   std::array<double, std::size(all_components) + 3> sums{};
   auto& total = sums[std::size(all_components)];
@@ -38,8 +38,9 @@ void add_up(Estimate& estimate, double quad, const Ranks& ranks)
     estimate.global.*all_components[i].value = std::sqrt(sums[i]);
   if (estimate.global.mor > 0) estimate.global.str_mor = std::sqrt(stresses);
   estimate.global.quad = quad;
-  estimate.total = std::sqrt(total) + quad;
-  estimate.total_sharp = std::sqrt(total_sharp) + quad;
+  estimate.global.alg = alg;
+  estimate.total = std::sqrt(total) + quad + alg;
+  estimate.total_sharp = std::sqrt(total_sharp) + quad + alg;
 }
 
 }  // namespace
@@ -49,13 +50,12 @@ Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rul
                           const std::optional<FriedrichsConstant>& known)
     : form_(form),
       data_(data_terms(form)),
-      friedrichs_(known),
+      friedrichs_(known ? *known : friedrichs_constant(form.problem(), form.space().mesh())),
+      algebraic_(form),
       contact_(form, rule),
       rule_(fem::quadrature<dim>(2 * form.space().degree())),
       stress_table_(form.space().degree(), rule_.points)
 {
-  if (data_.missed > 0 && !friedrichs_)
-    friedrichs_ = friedrichs_constant(form.problem(), form.space().mesh());
   const fem::Tabulation<dim> table = form.space().basis().tabulate(rule_.points);
   const int n_points = rule_.size();
   gradient_.resize(static_cast<std::size_t>(dim) * table.n_nodes * n_points);
@@ -83,7 +83,11 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
         contact_terms(u, stress, result);
         transfer_terms(u, stress, result);
       });
-  add_up(result, data_.missed > 0 ? friedrichs_->value * data_.missed : 0, mesh.ranks());
+  const double alg =
+      std::isfinite(friedrichs_.value)
+          ? algebraic_error<dim>(mesh, algebraic_remainder(u, stress.tractions.running()), friedrichs_.value)
+          : 0;
+  add_up(result, data_.missed > 0 ? friedrichs_.value * data_.missed : 0, alg, mesh.ranks());
   return result;
 }
 
@@ -254,6 +258,14 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
   for (const Index cell : touched)
     for (const Component& c : all_components)
       if (c.is_on_contact()) result.cells[cell].*c.value = std::sqrt(result.cells[cell].*c.value);
+}
+
+template <int dim>
+AffineFields<dim> Estimator<dim>::algebraic_remainder(std::span<const double> u,
+                                                      std::span<const Point<dim>> t) const
+{
+  if (!std::isfinite(friedrichs_.value)) return {};
+  return algebraic_.body_force(algebraic_.residual(u, t));
 }
 
 template class Estimator<2>;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/certify/bound/algebraic.h"
 #include "tribound/certify/bound/components.h"
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/data_terms.h"
@@ -22,7 +23,7 @@ namespace tribound::certify
 struct Bound
 {
   BoundComponents global;  ///< (sum of squares over the cells)^{1/2}, component by component
-  double total = 0;        ///< (sum_T total_T^2)^{1/2} + quad, as in the paper
+  double total = 0;        ///< (sum_T total_T^2)^{1/2} + quad + alg, as in the paper
   double total_sharp = 0;  ///< the bound with total_sharp_T: ||R(u^k)||_* <= total_sharp
 };
 
@@ -41,12 +42,21 @@ class Estimator
 {
  public:
   /// Evaluates what depends on the data alone. C_F may be `known` from a mesh of which the form's is a
-  /// refinement; it is computed if it is needed and is not.
+  /// refinement; it is computed if it is not.
   explicit Estimator(const contact::NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved,
                      const std::optional<FriedrichsConstant>& known = {});
 
-  /// C_F, where it is known.
-  [[nodiscard]] const std::optional<FriedrichsConstant>& friedrichs() const { return friedrichs_; }
+  /// Where it is infinite the bound has no alg: then div sigma_h + Pi^{p-1} f = 0 is required of the stress.
+  [[nodiscard]] const FriedrichsConstant& friedrichs() const { return friedrichs_; }
+
+  /// rho of the iterate u with the running traction t; empty where C_F is infinite.
+  [[nodiscard]] AffineFields<dim> algebraic_remainder(std::span<const double> u,
+                                                      std::span<const Point<dim>> t) const;
+  /// C_F ||rho||, rho of <R_lin, phi_i>: no less than the alg of the bound.
+  [[nodiscard]] double algebraic_bound(std::span<const double> residual) const
+  {
+    return friedrichs_.value * field_norm<dim>(form_.space().mesh(), algebraic_.body_force(residual));
+  }
 
   /// The components of the iterate u with its equilibrated stress. Cells are shared out to `n_threads`
   /// threads (0: as many as OpenMP offers).
@@ -76,7 +86,8 @@ class Estimator
 
   const contact::NitscheForm<dim>& form_;
   DataTerms data_;
-  std::optional<FriedrichsConstant> friedrichs_;
+  FriedrichsConstant friedrichs_;
+  AlgebraicResidual<dim> algebraic_;
   ContactTerms<dim> contact_;
   fem::Quadrature<dim> rule_;           ///< exact to degree 2p
   StressTabulation<dim> stress_table_;  ///< basis of the stress at its points

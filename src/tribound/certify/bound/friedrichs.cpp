@@ -362,6 +362,14 @@ FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, con
   }
 }
 
+template <int dim>
+double friedrichs_kappa()
+{
+  return std::sqrt(kappa_squared<dim>());
+}
+
+template double friedrichs_kappa<2>();
+template double friedrichs_kappa<3>();
 template FriedrichsConstant friedrichs_constant(const problem::Problem<2>&, const mesh::Mesh<2>&, Index);
 template FriedrichsConstant friedrichs_constant(const problem::Problem<3>&, const mesh::Mesh<3>&, Index);
 

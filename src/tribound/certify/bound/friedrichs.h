@@ -22,6 +22,10 @@ struct FriedrichsConstant
   Index cells;       ///< of the mesh of the proof
 };
 
+/// kappa with ||w - I w||_T <= kappa h_T ||grad(w - I w)||_T, I w the Crouzeix-Raviart interpolant [CGR12].
+template <int dim>
+[[nodiscard]] double friedrichs_kappa();
+
 /// With more cells than this in 3D the proof needs no factorisation. A cube of Kuhn's tetrahedra, one
 /// component, seconds of a core with factors and without: 105 000 cells 10 and 1.4, 304 000 cells 40 and 6,
 /// where the factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large.

@@ -30,6 +30,15 @@ struct Stress
     std::vector<Point<dim>> dis;  ///< T(u^k)
     std::vector<Point<dim>> lin;  ///< t^k - T_delta(u^k)
     std::vector<Point<dim>> reg;  ///< T_delta(u^k) - T(u^k); empty unless T was regularised
+
+    /// Their sum t^k.
+    [[nodiscard]] std::vector<Point<dim>> running() const
+    {
+      std::vector<Point<dim>> t = dis;
+      for (std::size_t i = 0; i < t.size(); ++i) t[i] += lin[i];
+      for (std::size_t i = 0; i < reg.size(); ++i) t[i] += reg[i];
+      return t;
+    }
   } tractions;
 
   [[nodiscard]] std::size_t block_size() const { return static_cast<std::size_t>(dim) * dim * n; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -62,8 +63,8 @@ Json state_json(const CheckpointFacts& facts)
                {"functions", facts.n_functions},
                {"cell_values", facts.n_cell_values}};
   if (start.expected) json["expected"] = *start.expected;
-  if (const auto& c = start.friedrichs; c && std::isfinite(c->value) && std::isfinite(c->theta))
-    json["friedrichs"] = {c->value, c->theta, c->mesh_size, c->cells};
+  if (const auto& c = start.friedrichs; c && std::isfinite(c->theta))  // JSON has no infinity
+    json["friedrichs"] = {std::isfinite(c->value) ? c->value : 0, c->theta, c->mesh_size, c->cells};
   return json;
 }
 
@@ -85,6 +86,8 @@ CheckpointFacts facts_of(const Json& json)
   {
     const Json& c = json.at("friedrichs");
     facts.start.friedrichs = {c.at(0), c.at(1), c.at(2), c.at(3)};
+    if (facts.start.friedrichs->theta == 0)
+      facts.start.friedrichs->value = std::numeric_limits<double>::infinity();
   }
   return facts;
 }

@@ -1,0 +1,370 @@
+#include "tribound/certify/bound/algebraic.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "tribound/base/parallel.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+AlgebraicResidual<dim>::AlgebraicResidual(const contact::NitscheForm<dim>& form)
+    : form_(form), fixed_begin_(form.space().mesh().n_vertices() + 1, 0)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const auto for_each_fixed = [&](const auto& take)
+  {
+    for (const mesh::BoundaryFacet& facet : mesh.boundary())
+      if (form.problem().boundary(facet.tag).fixes_any())
+        for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local)) take(v, facet);
+  };
+  for_each_fixed([&](Index v, const mesh::BoundaryFacet&) { ++fixed_begin_[v + 1]; });
+  std::partial_sum(fixed_begin_.begin(), fixed_begin_.end(), fixed_begin_.begin());
+  fixed_.resize(fixed_begin_.back());
+  std::vector<Index> next(fixed_begin_.begin(), fixed_begin_.end() - 1);
+  for_each_fixed(
+      [&](Index v, const mesh::BoundaryFacet& facet)
+      {
+        FixedFacet<dim>& fixed = fixed_[next[v]++];
+        fixed.vertices =
+            mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+        for (int c = 0; c < dim; ++c) fixed.fixed[c] = form.problem().boundary(facet.tag).fixes(c);
+      });
+}
+
+template <int dim>
+std::vector<double> AlgebraicResidual<dim>::residual(std::span<const double> u,
+                                                     std::span<const Point<dim>> t) const
+{
+  std::vector<double> r = contact::apply_stiffness(form_.problem(), form_.space(), u);
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = form_.load()[i] - r[i];
+  form_.add_contact_load(t, r);
+  for (std::size_t i = 0; i < r.size(); ++i)
+    if (form_.constraints().fixed[i]) r[i] = 0;
+  return r;
+}
+
+template <int dim>
+auto AlgebraicResidual<dim>::forces_at_vertices(std::span<const double> residual) const -> std::vector<Forces>
+{
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  std::vector<Forces> forces(mesh.n_vertices());
+  std::vector<char> visited(space.n_nodes(), 0);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const auto vertices = mesh::points_of(mesh.vertices(), mesh.cell(c));
+    const std::span<const Index> nodes = space.cell_nodes(c);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+    {
+      if (std::exchange(visited[nodes[i]], 1) != 0) continue;
+      Point<dim> r;
+      Point<dim> x = Point<dim>::Zero();
+      for (int k = 0; k < dim; ++k)
+      {
+        const std::size_t dof = static_cast<std::size_t>(dim) * nodes[i] + k;
+        r[k] = form_.constraints().fixed[dof] ? 0 : residual[dof];
+      }
+      const std::array<int, dim + 1>& node = space.basis().node(static_cast<int>(i));
+      for (int v = 0; v <= dim; ++v) x += node[v] * vertices[v] / space.degree();
+      for (int v = 0; v <= dim; ++v)
+      {
+        const Point<dim> share = node[v] * r / space.degree();
+        Forces& at_vertex = forces[mesh.cell(c)[v]];
+        at_vertex.sum += share;
+        at_vertex.moment += share * (x - vertices[v]).transpose();
+      }
+    }
+  }
+  return forces;
+}
+
+template <int dim>
+RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& forces) const
+{
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
+  const Point<dim>& a = mesh.vertex(vertex);
+  double size = 0;
+  double volume = 0;
+  Point<dim> position = Point<dim>::Zero();             // (x - a, 1) on the patch
+  Tensor<dim> position_position = Tensor<dim>::Zero();  // (x - a, x - a)
+  const std::span<const Index> begin = mesh.topology().vertex_cells_begin;
+  for (Index k = begin[vertex]; k < begin[vertex + 1]; ++k)
+  {
+    const Index cell = mesh.topology().vertex_cells[k];
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
+    const auto points = mesh::points_of(mesh.vertices(), mesh.cell(cell));
+    const double measure = map.measure();
+    const auto local = std::ranges::find(mesh.cell(cell), vertex) - mesh.cell(cell).begin();
+    const double slope = local == 0 ? map.inverse_transpose.rowwise().sum().norm()
+                                    : map.inverse_transpose.col(local - 1).norm();
+    size = std::max(size, 1 / slope);  // as the patches have it: the same motions are admitted
+    Point<dim> sum = Point<dim>::Zero();
+    Tensor<dim> squares = Tensor<dim>::Zero();
+    for (const Point<dim>& x : points)
+    {
+      sum += x - a;
+      squares += (x - a) * (x - a).transpose();
+    }
+    volume += measure;
+    position += measure / (dim + 1) * sum;
+    position_position += measure / ((dim + 1) * (dim + 2)) * (squares + sum * sum.transpose());
+  }
+
+  const RigidMotions<dim> motions(
+      a, size,
+      std::span(fixed_).subspan(fixed_begin_[vertex], fixed_begin_[vertex + 1] - fixed_begin_[vertex]));
+  const int n = form_.space().degree() == 1 ? motions.n_translations() : motions.size();
+  using Gram = Eigen::Matrix<double, RigidMotions<dim>::n_all, RigidMotions<dim>::n_all>;
+  Gram gram = Gram::Identity();
+  Eigen::Matrix<double, RigidMotions<dim>::n_all, 1> work =
+      Eigen::Matrix<double, RigidMotions<dim>::n_all, 1>::Zero();
+  for (int i = 0; i < n; ++i)
+  {
+    const auto& [t, g] = motions[i];
+    work[i] = t.dot(forces.sum) + g.cwiseProduct(forces.moment).sum();
+    for (int j = 0; j < n; ++j)
+      gram(i, j) = volume * t.dot(motions[j].translation) + t.dot(motions[j].gradient * position) +
+                   motions[j].translation.dot(g * position) +
+                   (g * position_position).cwiseProduct(motions[j].gradient).sum();
+  }
+  work = gram.llt().solve(work);
+  RigidField<dim> rho{Point<dim>::Zero(), Tensor<dim>::Zero()};
+  for (int i = 0; i < n; ++i)
+  {
+    rho.translation += work[i] * motions[i].translation;
+    rho.gradient += work[i] * motions[i].gradient;
+  }
+  return rho;
+}
+
+template <int dim>
+AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> residual) const
+{
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
+  std::vector<double> all(residual.begin(), residual.end());
+  if (const auto& numbers = form_.space().numbers()) numbers->update(std::span(all), dim);
+  const std::vector<Forces> forces = forces_at_vertices(all);
+  std::vector<RigidField<dim>> at_vertex(mesh.n_vertices());
+  parallel_for(at_vertex.size(),
+               [&](std::size_t v)
+               {
+                 if (mesh.has_patch(static_cast<Index>(v)))
+                   at_vertex[v] = rigid_force(static_cast<Index>(v), forces[v]);
+               });
+  AffineFields<dim> rho(mesh.n_owned_cells());
+  parallel_for(rho.size(),
+               [&](std::size_t c)
+               {
+                 const mesh::Cell<dim>& cell = mesh.cell(static_cast<Index>(c));
+                 for (int b = 0; b <= dim; ++b)
+                 {
+                   rho[c][b] = Point<dim>::Zero();
+                   for (const Index a : cell)
+                     rho[c][b] += at_vertex[a].translation +
+                                  at_vertex[a].gradient * (mesh.vertex(cell[b]) - mesh.vertex(a));
+                 }
+               });
+  return rho;
+}
+
+namespace
+{
+
+/// A union of cells that is a simplex, with what the tree bound needs of it.
+template <int dim>
+struct TreeNode
+{
+  mesh::Cell<dim> vertices;
+  double volume;
+  Point<dim> integral;          ///< of rho
+  int height;                   ///< bisections from here to the deepest cell
+  std::array<int, 2> children;  ///< -1: a cell of the mesh
+};
+
+/// The vertex of the union of two simplices with a common facet, in place of `middle`, where it is a simplex
+/// again: exactly as bisection puts it in the middle of an edge.
+template <int dim>
+std::optional<mesh::Cell<dim>> united(const mesh::Mesh<dim>& mesh, const mesh::Cell<dim>& first,
+                                      const mesh::Cell<dim>& second)
+{
+  const auto is_in = [](const mesh::Cell<dim>& cell, Index v)
+  { return std::ranges::find(cell, v) != cell.end(); };
+  Index own = -1;
+  Index other = -1;
+  for (int i = 0; i <= dim; ++i)
+  {
+    if (!is_in(second, first[i])) own = own < 0 ? first[i] : -2;
+    if (!is_in(first, second[i])) other = second[i];
+    if (own == -2) return std::nullopt;
+  }
+  if (own < 0) return std::nullopt;
+  const Point<dim> middle = 0.5 * (mesh.vertex(own) + mesh.vertex(other));
+  mesh::Cell<dim> whole = first;
+  for (Index& v : whole)
+    if (mesh.vertex(v) == middle)
+    {
+      v = other;
+      return whole;
+    }
+  return std::nullopt;
+}
+
+/// The own cells with the simplices that bisection has made them of: siblings follow each other. Roots are
+/// those that nothing continues.
+template <int dim>
+struct Forest
+{
+  std::vector<TreeNode<dim>> nodes;
+  std::vector<int> roots;
+
+  Forest(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho)
+  {
+    nodes.reserve(2 * rho.size());
+    for (std::size_t c = 0; c < rho.size(); ++c)
+    {
+      const auto cell = static_cast<Index>(c);
+      const double volume = mesh::cell_map(mesh, cell).measure();
+      Point<dim> sum = Point<dim>::Zero();
+      for (const Point<dim>& value : rho[c]) sum += value;
+      nodes.push_back({mesh.cell(cell), volume, volume / (dim + 1) * sum, 0, {-1, -1}});
+      roots.push_back(static_cast<int>(nodes.size()) - 1);
+      while (roots.size() > 1 && unite_last(mesh))
+      {
+      }
+    }
+  }
+
+  bool unite_last(const mesh::Mesh<dim>& mesh)
+  {
+    const int first = roots[roots.size() - 2];
+    const int second = roots.back();
+    const auto whole = united<dim>(mesh, nodes[first].vertices, nodes[second].vertices);
+    if (!whole) return false;
+    nodes.push_back({*whole,
+                     nodes[first].volume + nodes[second].volume,
+                     nodes[first].integral + nodes[second].integral,
+                     1 + std::max(nodes[first].height, nodes[second].height),
+                     {first, second}});
+    roots.pop_back();
+    roots.back() = static_cast<int>(nodes.size()) - 1;
+    return true;
+  }
+};
+
+}  // namespace
+
+namespace
+{
+
+/// The squares of the sums in algebraic_error(), level by level.
+template <int dim>
+class TreeSums
+{
+ public:
+  explicit TreeSums(const mesh::Mesh<dim>& mesh, const Forest<dim>& forest) : mesh_(mesh), forest_(forest)
+  {
+    int height = 0;
+    for (const int root : forest.roots) height = std::max(height, forest.nodes[root].height);
+    const int n_levels = (height + dim - 1) / dim;
+    squares_.resize(static_cast<std::size_t>(mesh.ranks().max(n_levels)), 0.0);
+    for (const int root : forest.roots) descend(root, 0);
+  }
+
+  [[nodiscard]] std::vector<double>& squares() { return squares_; }
+
+ private:
+  /// What T_{level + 1} has of a simplex of T_level.
+  void collect(int node, int bisections, std::vector<int>& parts) const
+  {
+    const TreeNode<dim>& of = forest_.nodes[node];
+    if (bisections == 0 || of.height == 0) return parts.push_back(node);
+    for (const int child : of.children) collect(child, bisections - 1, parts);
+  }
+
+  void descend(int node, std::size_t level)
+  {
+    const TreeNode<dim>& of = forest_.nodes[node];
+    if (of.height == 0) return;
+    std::vector<int> parts;
+    parts.reserve(std::size_t{1} << dim);
+    collect(node, dim, parts);
+    double square = 0;
+    for (const int part : parts)
+    {
+      const TreeNode<dim>& smaller = forest_.nodes[part];
+      square += smaller.volume * (smaller.integral / smaller.volume - of.integral / of.volume).squaredNorm();
+      descend(part, level + 1);
+    }
+    const double h = mesh::diameter(mesh::points_of(mesh_.vertices(), of.vertices));
+    squares_[level] += std::pow(h / std::numbers::pi, 2) * square;
+  }
+
+  const mesh::Mesh<dim>& mesh_;
+  const Forest<dim>& forest_;
+  std::vector<double> squares_;
+};
+
+/// ||rho - mean||_T^2 and ||rho||_T^2.
+template <int dim>
+std::array<double, 2> squares_on_cell(const std::array<Point<dim>, dim + 1>& rho, double volume)
+{
+  Point<dim> mean = Point<dim>::Zero();
+  for (const Point<dim>& value : rho) mean += value / (dim + 1);
+  double deviation = 0;
+  for (const Point<dim>& value : rho) deviation += (value - mean).squaredNorm();
+  deviation *= volume / ((dim + 1) * (dim + 2));
+  return {deviation, deviation + volume * mean.squaredNorm()};
+}
+
+}  // namespace
+
+template <int dim>
+double field_norm(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho)
+{
+  const auto square = [&](std::size_t c)
+  { return squares_on_cell<dim>(rho[c], mesh::cell_map(mesh, static_cast<Index>(c)).measure())[1]; };
+  return std::sqrt(mesh.ranks().sum(parallel_sum(rho.size(), 0.0, square)));
+}
+
+template <int dim>
+double algebraic_error(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho, double friedrichs)
+{
+  const Forest<dim> forest(mesh, rho);
+  std::vector<double> squares = TreeSums<dim>(mesh, forest).squares();
+  double means = 0;
+  double remainder = 0;
+  for (const int root : forest.roots)
+    means += forest.nodes[root].integral.squaredNorm() / forest.nodes[root].volume;
+  for (std::size_t c = 0; c < rho.size(); ++c)
+  {
+    const auto cell = static_cast<Index>(c);
+    remainder += std::pow(mesh::cell_diameter(mesh, cell) / std::numbers::pi, 2) *
+                 squares_on_cell<dim>(rho[c], mesh::cell_map(mesh, cell).measure())[0];
+  }
+  squares.push_back(remainder);
+  squares.push_back(means);
+  mesh.ranks().sum(std::span(squares));
+  double tree = friedrichs * std::sqrt(squares.back());
+  squares.pop_back();
+  for (const double square : squares) tree += std::sqrt(square);
+  return std::min(tree, friedrichs * field_norm<dim>(mesh, rho));
+}
+
+template class AlgebraicResidual<2>;
+template class AlgebraicResidual<3>;
+template double field_norm(const mesh::Mesh<2>&, const AffineFields<2>&);
+template double field_norm(const mesh::Mesh<3>&, const AffineFields<3>&);
+template double algebraic_error(const mesh::Mesh<2>&, const AffineFields<2>&, double);
+template double algebraic_error(const mesh::Mesh<3>&, const AffineFields<3>&, double);
+
+}  // namespace tribound::certify
