@@ -20,9 +20,11 @@
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/transfer.h"
 #include "tribound/certify/bound/transfer_terms.h"
+#include "tribound/certify/energy/admissible_stress.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/penalty.h"
+#include "tribound/fem/degree.h"
 #include "tribound/mesh/box.h"
 
 namespace
@@ -231,6 +233,27 @@ void both(benchmark::State& state)
   count_per_cell(state, b.mesh.n_cells());
 }
 
+/// The nearest admissible stress of every cell, given sigma_h; sigma(v) is 0, which costs as much as any.
+template <int dim>
+void admissible_stress(benchmark::State& state)
+{
+  const Block<dim>& b = block<dim>(state);
+  const certify::Stress<dim> stress = certify::equilibrate<dim>(b.form, b.u, b.t);
+  const std::size_t n = fem::polynomial_dimension(dim, stress.degree - 1);
+  const std::vector<double> sigma_v(dim * dim * n);
+  fem::with_degree(stress.degree,
+                   [&](auto degree)
+                   {
+                     certify::AdmissibleStressSolver<dim, degree()> solver;
+                     for (auto _ : state)
+                       for (Index c = 0; c < b.mesh.n_cells(); ++c)
+                         benchmark::DoNotOptimize(solver.solve(certify::make_sorted_cell(b.mesh, c),
+                                                               b.problem.material(b.mesh.region(c)),
+                                                               stress.dis_in(c), sigma_v));
+                   });
+  count_per_cell(state, b.mesh.n_cells());
+}
+
 /// Of the segments of Gamma_C.
 template <int dim>
 void count_per_segment(benchmark::State& state, const Block<dim>& b)
@@ -313,6 +336,14 @@ BENCHMARK(both<2>)
 BENCHMARK(both<3>)
     ->ArgNames({"p", "distorted", "bodies"})
     ->ArgsProduct({{1, 2, 3}, {1}, {1, 2}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(admissible_stress<2>)
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{2, 3, 4}, {1}, {1}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(admissible_stress<3>)
+    ->ArgNames({"p", "distorted", "bodies"})
+    ->ArgsProduct({{2, 3, 4}, {1}, {1}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(contact_terms<2>)
     ->ArgNames({"p", "distorted", "bodies"})
