@@ -191,22 +191,35 @@ Eigen::MatrixXd of_skew_functions(const RowConstraints<dim>& row_constraints,
   {
     const auto [r, c] = skew_pairs<dim>[pair];
     const auto column = static_cast<Eigen::Index>(pair) * n;
-    result.block(r * n_rows, column, n_rows, n) = row_constraints.entry(c) * functions;
-    result.block(c * n_rows, column, n_rows, n) = -row_constraints.entry(r) * functions;
+    result.block(r * n_rows, column, n_rows, n) = row_constraints.entry(c).lazyProduct(functions);
+    result.block(c * n_rows, column, n_rows, n) = -row_constraints.entry(r).lazyProduct(functions);
   }
   return result;
 }
 
-std::vector<double> row_by_row(const Eigen::MatrixXd& matrix)
+/// columns = Q columns, reflection by reflection.
+void apply_reflections(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Eigen::MatrixXd& columns)
 {
-  const Eigen::MatrixXd transposed = matrix.transpose();
-  return {transposed.data(), transposed.data() + transposed.size()};
+  Eigen::VectorXd workspace(columns.cols());
+  for (Eigen::Index k = qr.hCoeffs().size() - 1; k >= 0; --k)
+  {
+    const Eigen::Index below = columns.rows() - k - 1;
+    columns.bottomRows(below + 1).applyHouseholderOnTheLeft(qr.matrixQR().col(k).tail(below), qr.hCoeffs()[k],
+                                                            workspace.data());
+  }
+}
+
+std::vector<double> column_by_column(const Eigen::MatrixXd& matrix)
+{
+  return {matrix.data(), matrix.data() + matrix.size()};
 }
 
 }  // namespace
 
 // B^T = Q R P^T: the last columns of Q span the kernel of B, and with the independent rows of B first, x =
-// Q_1 R_1^{-T} (P^T c)_1 solves B x = c. These rows are all but the rigid motions.
+// Q_1 R_1^{-T} (P^T c)_1 solves B x = c. These rows are all but the rigid motions. Large products are left to
+// vector instructions: Eigen's would start threads, and a program that was compiled without OpenMP has its
+// own version of what they call, which the linker may take for both.
 template <int dim>
 AlfeldFactors alfeld_factors(int q)
 {
@@ -217,22 +230,25 @@ AlfeldFactors alfeld_factors(int q)
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(constraints.transpose());
   const Eigen::Index rank = constraints.rows() - dim * (dim + 1) / 2;
   const Eigen::Index n = constraints.cols();
+  const Eigen::MatrixXd triangle = qr.matrixR().template triangularView<Eigen::Upper>();
 
-  const Eigen::MatrixXd orthonormal = qr.householderQ();
-  const Eigen::MatrixXd all = qr.matrixR().template triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd triangle = all.topLeftCorner(rank, rank);
-  const Eigen::MatrixXd data =
-      (qr.colsPermutation().transpose() * of_skew_functions(row_constraints, restriction)).topRows(rank);
-  const Eigen::MatrixXd lifting =
-      orthonormal.leftCols(rank) * triangle.transpose().template triangularView<Eigen::Lower>().solve(data);
+  Eigen::MatrixXd data = qr.colsPermutation().transpose() * of_skew_functions(row_constraints, restriction);
+  data.conservativeResize(rank, Eigen::NoChange);
+  triangle.topLeftCorner(rank, rank).transpose().template triangularView<Eigen::Lower>().solveInPlace(data);
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(n, n - rank + data.cols());  // of the kernel, of the lifting
+  columns.bottomLeftCorner(n - rank, n - rank).setIdentity();
+  columns.topRightCorner(rank, data.cols()) = data;
+  apply_reflections(qr, columns);
 
   AlfeldFactors result;
-  result.restriction = row_by_row(restriction);
-  result.kernel = row_by_row(orthonormal.rightCols(n - rank).transpose());
-  result.lifting = row_by_row(lifting.transpose());
-  result.smallest_pivot = triangle.diagonal().cwiseAbs().minCoeff();
+  result.restriction = column_by_column(restriction.transpose());
+  result.kernel = column_by_column(columns.leftCols(n - rank));
+  result.lifting = column_by_column(columns.rightCols(data.cols()));
+  result.smallest_pivot = triangle.diagonal().head(rank).cwiseAbs().minCoeff();
   if (n > rank)
-    result.largest_rest = all.bottomRightCorner(n - rank, constraints.rows() - rank).cwiseAbs().maxCoeff();
+    result.largest_rest =
+        triangle.bottomRightCorner(n - rank, constraints.rows() - rank).cwiseAbs().maxCoeff();
   return result;
 }
 
