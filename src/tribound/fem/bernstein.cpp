@@ -36,6 +36,28 @@ double bernstein(int degree, const Eigen::Array<int, k, 1>& a, const Point<k>& x
   return value;
 }
 
+using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// B_a at node i of the basis, a that of node j: more digits than a double, so that the inverse has all.
+template <int k>
+LongMatrix bernstein_at_nodes(const LagrangeBasis<k>& basis)
+{
+  const int n = basis.n_nodes();
+  LongMatrix values = LongMatrix::Ones(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int l = 0, rest = basis.degree(); l <= k; ++l)
+        for (int m = 1; m <= basis.node(j)[l]; ++m, --rest)
+          values(i, j) *= static_cast<long double>(rest * basis.node(i)[l]) / (m * basis.degree());
+  return values;
+}
+
+std::vector<double> rounded(const LongMatrix& matrix)
+{
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result = matrix.cast<double>();
+  return {result.data(), result.data() + result.size()};
+}
+
 }  // namespace
 
 // With theta orthonormal, q = sum_j theta_j sum_i w_i theta_j(x_i) q(x_i), because the rule is exact for
@@ -67,6 +89,22 @@ std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree)
   return result;
 }
 
+template <int k>
+std::vector<double> values_from_bernstein(const LagrangeBasis<k>& basis)
+{
+  return rounded(bernstein_at_nodes(basis));
+}
+
+template <int k>
+std::vector<double> bernstein_from_values(const LagrangeBasis<k>& basis)
+{
+  return rounded(bernstein_at_nodes(basis).partialPivLu().inverse());
+}
+
+template std::vector<double> values_from_bernstein(const LagrangeBasis<1>&);
+template std::vector<double> values_from_bernstein(const LagrangeBasis<2>&);
+template std::vector<double> bernstein_from_values(const LagrangeBasis<1>&);
+template std::vector<double> bernstein_from_values(const LagrangeBasis<2>&);
 template std::vector<double> bernstein_from_points(const Quadrature<1>&, int);
 template std::vector<double> bernstein_from_points(const Quadrature<2>&, int);
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "tribound/fem/lagrange.h"
 #include "tribound/fem/quadrature.h"
 
 namespace tribound::fem
@@ -17,5 +18,15 @@ namespace tribound::fem
 /// projection.
 template <int k>
 [[nodiscard]] std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree);
+
+/// The matrix, [node * n + coefficient], that gives the values of q = sum_a b_a B_a at the nodes of the basis
+/// from b, both in the order of the nodes: a is that of LagrangeBasis::node(). On an edge or a facet of the
+/// simplex q has the coefficients of the nodes there.
+template <int k>
+[[nodiscard]] std::vector<double> values_from_bernstein(const LagrangeBasis<k>& basis);
+
+/// Its inverse.
+template <int k>
+[[nodiscard]] std::vector<double> bernstein_from_values(const LagrangeBasis<k>& basis);
 
 }  // namespace tribound::fem

@@ -81,6 +81,45 @@ TEST(Bernstein, CoefficientsEnclosePolynomials)
     }
 }
 
+/// From values at nodes, against the definition |a|!/a! lambda^a, and back.
+template <int k>
+void expect_transformed(int degree, std::mt19937& dice)
+{
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const fem::LagrangeBasis<k> basis(degree);
+  const int n = basis.n_nodes();
+  std::uniform_real_distribution<double> number(-1, 1);
+  const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return number(dice); });
+  const std::vector<double> to_values = fem::values_from_bernstein<k>(basis);
+  const std::vector<double> from_values = fem::bernstein_from_values<k>(basis);
+  const Eigen::VectorXd values = Eigen::Map<const RowMajor>(to_values.data(), n, n) * b;
+  for (int i = 0; i < n; ++i)
+  {
+    double sum = 0;
+    for (int j = 0; j < n; ++j)
+    {
+      double product = std::tgamma(degree + 1);
+      for (int l = 0; l <= k; ++l)
+        product *= std::pow(static_cast<double>(basis.node(i)[l]) / degree, basis.node(j)[l]) /
+                   std::tgamma(basis.node(j)[l] + 1);
+      sum += product * b[j];
+    }
+    EXPECT_NEAR(values[i], sum, 1e-14);
+  }
+  const Eigen::VectorXd back = Eigen::Map<const RowMajor>(from_values.data(), n, n) * values;
+  EXPECT_LE((back - b).cwiseAbs().maxCoeff(), 1e-15 * std::pow(4, degree));
+}
+
+TEST(Bernstein, CoefficientsAtNodesAreThoseOfValues)
+{
+  std::mt19937 dice(9);
+  for (int degree = 1; degree <= 5; ++degree)
+  {
+    expect_transformed<1>(degree, dice);
+    expect_transformed<2>(degree, dice);
+  }
+}
+
 }  // namespace
 
 }  // namespace tribound::test

@@ -1,0 +1,250 @@
+#include "tribound/certify/energy/admissible_displacement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "tribound/certify/energy/control_point.h"
+#include "tribound/certify/energy/obstacle_facets.h"
+
+namespace tribound::certify
+{
+
+namespace
+{
+
+/// What holds at all contact points of a facet, at none of them, or at some.
+enum class Extent
+{
+  nowhere,
+  somewhere,
+  everywhere
+};
+
+/// What T(u) says of a facet.
+struct FacetState
+{
+  Extent closed = Extent::nowhere;
+  Extent sticks = Extent::nowhere;
+  double pressure = 0;  ///< mean of |T^n|
+  double friction = 0;  ///< mean of S_h
+
+  [[nodiscard]] bool is_in_transition() const
+  {
+    return closed == Extent::somewhere || sticks == Extent::somewhere;
+  }
+};
+
+Extent extent(int n_there, int n)
+{
+  if (n_there == 0) return Extent::nowhere;
+  return n_there == n ? Extent::everywhere : Extent::somewhere;
+}
+
+template <int dim>
+FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Point<dim>> t, std::size_t k)
+{
+  const int n = form.n_segment_points();
+  const problem::FrictionCone cone = problem::cone(form.segments()[k].contact->law);
+  FacetState state;
+  constexpr double rounding = 1e-12;  // of T^n where that is 0, and of |T^t| where that is the limit
+  int n_closed = 0;
+  int n_sticking = 0;
+  for (int q = 0; q < n; ++q)
+  {
+    const contact::ContactPoint<dim>& point = form.contact_points(k)[q];
+    const Point<dim>& traction = t[k * n + q];
+    const double component = traction.dot(point.normal);
+    const double along = component < -rounding * traction.norm() ? component : 0;
+    const double tangential = (traction - component * point.normal).norm();
+    const double limit = cone.closed_limit(point.strength, along);
+    n_closed += along < 0 ? 1 : 0;
+    n_sticking += tangential < (1 - rounding) * limit ? 1 : 0;
+    state.pressure -= along / n;
+    state.friction += limit / n;
+  }
+  state.closed = extent(n_closed, n);
+  state.sticks = extent(n_sticking, n);
+  return state;
+}
+
+/// Those of all facets; facets in transition are taken for what they are at all, or only everywhere.
+template <int dim>
+class ControlPoints
+{
+ public:
+  ControlPoints(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
+                std::span<const double> u, std::span<const FacetState> states)
+      : form_(form), facets_(facets), states_(states)
+  {
+    for (std::size_t k = 0; k < states.size(); ++k)
+    {
+      const std::vector<Point<dim>> coefficients = facets.coefficients(k, u);
+      for (std::size_t j = 0; j < coefficients.size(); ++j)
+        points_.try_emplace(facets.nodes(k)[j]).first->second.add(coefficients[j], {k, j});
+    }
+  }
+
+  /// By node what is to be added to the control points, at ghosts what their owners say.
+  [[nodiscard]] std::vector<double> corrections(bool transition_is_closed) const
+  {
+    const fem::LagrangeSpace<dim>& space = form_.space();
+    std::vector<double> result(space.n_dofs(), 0.0);
+    for (const auto& [node, at] : points_)
+    {
+      std::array<bool, dim> fixed;
+      for (int a = 0; a < dim; ++a) fixed[a] = form_.constraints().fixed[dim * node + a] != 0;
+      const Point<dim> step =
+          moved<dim>(at.position, fixed, conditions(at, transition_is_closed)) - at.position;
+      std::copy_n(step.data(), dim, &result[dim * node]);
+    }
+    space.update(std::span(result));
+    return result;
+  }
+
+ private:
+  struct Place
+  {
+    std::size_t facet;
+    std::size_t coefficient;
+  };
+  struct ControlPoint
+  {
+    Point<dim> position = Point<dim>::Zero();
+    std::vector<Place> places;
+
+    /// The position is that of the first facet; all have the same up to rounding.
+    void add(const Point<dim>& c, const Place& place)
+    {
+      if (places.empty()) position = c;
+      places.push_back(place);
+    }
+  };
+
+  /// Facets of the same normal together.
+  [[nodiscard]] std::vector<ControlCondition<dim>> conditions(const ControlPoint& at,
+                                                              bool transition_is_closed) const
+  {
+    const auto holds = [&](Extent extent)
+    { return extent == Extent::everywhere || (transition_is_closed && extent == Extent::somewhere); };
+    constexpr double same = 1e-12;
+    std::vector<ControlCondition<dim>> result;
+    for (const auto& [k, j] : at.places)
+    {
+      const Point<dim>& normal = form_.segments()[k].normal;
+      const double gap = facets_.gap(k)[j];
+      auto found = std::ranges::find_if(
+          result, [&](const ControlCondition<dim>& other) { return (other.normal - normal).norm() <= same; });
+      if (found == result.end()) found = result.insert(found, {.normal = normal, .gap = gap});
+      found->gap = std::min(found->gap, gap);
+      found->closed = found->closed || holds(states_[k].closed);
+      found->sticks = found->sticks || holds(states_[k].sticks);
+      found->pressure += states_[k].pressure;
+      found->friction += states_[k].friction;
+    }
+    return result;
+  }
+
+  const contact::NitscheForm<dim>& form_;
+  const ObstacleFacets<dim>& facets_;
+  std::span<const FacetState> states_;
+  std::map<Index, ControlPoint> points_;  ///< by node
+};
+
+/// u with its control points moved.
+template <int dim>
+std::vector<double> with_corrections(const fem::LagrangeSpace<dim>& space, const ObstacleFacets<dim>& facets,
+                                     std::span<const double> u, std::span<const double> corrections)
+{
+  std::vector<double> v(u.begin(), u.end());
+  for (std::size_t k = 0; k < facets.size(); ++k)
+  {
+    const std::vector<Point<dim>> change = facets.values(k, corrections);
+    for (std::size_t i = 0; i < change.size(); ++i)
+      for (int a = 0; a < dim; ++a)
+      {
+        const Index dof = dim * facets.nodes(k)[i] + a;
+        v[dof] = u[dof] + change[i][a];
+      }
+  }
+  space.update(std::span(v));
+  return v;
+}
+
+/// The largest coefficient of v^n - g_h.
+template <int dim>
+double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
+              std::span<const double> v)
+{
+  double largest = -HUGE_VAL;
+  for (std::size_t k = 0; k < facets.size(); ++k)
+  {
+    const std::vector<Point<dim>> coefficients = facets.coefficients(k, v);
+    for (std::size_t j = 0; j < coefficients.size(); ++j)
+      largest = std::max(largest, form.segments()[k].normal.dot(coefficients[j]) - facets.gap(k)[j]);
+  }
+  return form.space().mesh().ranks().max(largest);
+}
+
+/// max |u|, |g| on Gamma_C.
+template <int dim>
+double size_on(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
+               std::span<const double> u)
+{
+  double largest = 0;
+  for (std::size_t k = 0; k < facets.size(); ++k)
+  {
+    for (const Index node : facets.nodes(k))
+      for (int a = 0; a < dim; ++a) largest = std::max(largest, std::abs(u[dim * node + a]));
+    for (const double g : facets.gap(k)) largest = std::max(largest, std::abs(g));
+  }
+  return form.space().mesh().ranks().max(largest);
+}
+
+}  // namespace
+
+template <int dim>
+AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>& form,
+                                                 std::span<const double> u, std::span<const Point<dim>> t)
+{
+  const Ranks& ranks = form.space().mesh().ranks();
+  AdmissibleDisplacements result;
+  result.reason = obstacles_unfit(form);
+  if (!result.reason.empty()) return result;
+  const ObstacleFacets<dim> facets(form);
+  std::vector<FacetState> states;
+  states.reserve(facets.size());
+  for (std::size_t k = 0; k < facets.size(); ++k) states.push_back(facet_state<dim>(form, t, k));
+  result.has_transition = ranks.any(
+      std::ranges::any_of(states, [](const FacetState& state) { return state.is_in_transition(); }));
+  result.gap_remainder = ranks.max(facets.gap_remainder());
+
+  const ControlPoints<dim> control_points(form, facets, u, states);
+  const double most = 1e-14 * size_on(form, facets, u);  // rounding
+  const auto make = [&](bool transition_is_closed, double& beyond) -> std::optional<std::vector<double>>
+  {
+    std::vector<double> v =
+        with_corrections<dim>(form.space(), facets, u, control_points.corrections(transition_is_closed));
+    beyond = excess<dim>(form, facets, v);
+    if (beyond > most) return {};
+    return v;
+  };
+  result.open = make(false, result.excess_open);
+  if (!result.has_transition)
+  {
+    result.closed = result.open;
+    result.excess_closed = result.excess_open;
+    return result;
+  }
+  result.closed = make(true, result.excess_closed);
+  return result;
+}
+
+template AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<2>&,
+                                                          std::span<const double>, std::span<const Point<2>>);
+template AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<3>&,
+                                                          std::span<const double>, std::span<const Point<3>>);
+
+}  // namespace tribound::certify

@@ -1,0 +1,70 @@
+#pragma once
+
+/// @file obstacle_facets.h
+/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles.
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/lagrange.h"
+
+namespace tribound::certify
+{
+
+/// Why v^n - g_h is no polynomial on some facet of Gamma_C, or contact there no matter of v^n <= g alone;
+/// empty where neither is so. The same on all ranks, which call it together.
+template <int dim>
+[[nodiscard]] std::string obstacles_unfit(const contact::NitscheForm<dim>& form);
+
+/// The facets of Gamma_C, numbered as the segments of the form. Coefficient j of a facet belongs to its node
+/// j: on vertices and edges facets share both. Keeps a reference to the form, of which obstacles_unfit() says
+/// nothing.
+template <int dim>
+class ObstacleFacets
+{
+ public:
+  explicit ObstacleFacets(const contact::NitscheForm<dim>& form);
+
+  [[nodiscard]] std::size_t size() const { return form_.segments().size(); }
+  /// Nodes of the space on facet k.
+  [[nodiscard]] std::span<const Index> nodes(std::size_t k) const
+  {
+    return std::span(nodes_).subspan(k * n_, n_);
+  }
+  /// Coefficients of g_h, the interpolant of g of degree p.
+  [[nodiscard]] std::span<const double> gap(std::size_t k) const
+  {
+    return std::span(gaps_).subspan(k * n_, n_);
+  }
+  /// Of a function of the space.
+  [[nodiscard]] std::vector<Point<dim>> coefficients(std::size_t k, std::span<const double> u) const
+  {
+    return transformed(k, from_values_, u);
+  }
+  /// Values at the nodes of facet k, from coefficients by node, as degrees of freedom.
+  [[nodiscard]] std::vector<Point<dim>> values(std::size_t k, std::span<const double> coefficients) const
+  {
+    return transformed(k, to_values_, coefficients);
+  }
+  /// Largest |g - g_h| at the contact points of this rank.
+  [[nodiscard]] double gap_remainder() const;
+
+ private:
+  [[nodiscard]] std::vector<Point<dim>> transformed(std::size_t k, std::span<const double> matrix,
+                                                    std::span<const double> by_node) const;
+
+  const contact::NitscheForm<dim>& form_;
+  fem::LagrangeBasis<dim - 1> basis_;
+  std::size_t n_;  ///< of its nodes
+  std::vector<double> to_values_;
+  std::vector<double> from_values_;
+  std::vector<Index> nodes_;
+  std::vector<double> nodal_gaps_;
+  std::vector<double> gaps_;
+};
+
+}  // namespace tribound::certify

@@ -1,0 +1,96 @@
+/// @file energy_test.cpp
+/// Admissible displacements of a body on obstacles, by all ranks together, against those of the whole.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/meshes.h"
+#include "support/problem_data.h"
+#include "tribound/certify/energy/admissible_displacement.h"
+#include "tribound/contact/nitsche/penalty.h"
+#include "tribound/mesh/share_out.h"
+
+namespace tribound::test
+{
+namespace
+{
+
+/// What admissible_displacements() gives from a wave, by place: of both kinds one after the other.
+template <int dim>
+struct Displacements
+{
+  Displacements(const mesh::Mesh<dim>& mesh, int degree, bool fits)
+  {
+    const ProblemData<dim> data = {.boundaries = {clamped<dim>("left"),
+                                                  obstacle<dim>("bottom", Tresca(0.1), fits ? 0.01 : -0.01),
+                                                  obstacle<dim>("right", Coulomb(0.3), 0.02)}};
+    const problem::Problem<dim> problem = data.on(mesh);
+    const fem::LagrangeSpace<dim> space(mesh, degree);
+    const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
+    const std::vector<Point<dim>> points = space.node_points();
+    std::vector<double> u;
+    for (const Point<dim>& x : points)
+      for (int a = 0; a < dim; ++a)
+        u.push_back(form.constraints().fixed[u.size()] ? 0 : 0.05 * std::sin(5 * x[0] + 3 * x[dim - 1] + a));
+    const auto result = certify::admissible_displacements<dim>(form, u, form.traction(u));
+    has_transition = result.has_transition;
+    numbers = {result.gap_remainder, result.excess_open, result.excess_closed};
+    is_given = result.open.has_value() && result.closed.has_value();
+    if (!is_given) return;
+    for (Index node = 0; node < space.n_nodes(); ++node)
+    {
+      std::array<std::int64_t, dim> key;
+      for (int a = 0; a < dim; ++a) key[a] = std::llround(points[node][a] * 1e9);
+      for (const std::vector<double>* v : {&*result.open, &*result.closed})
+        at[key].insert(at[key].end(), &(*v)[dim * node], &(*v)[dim * node] + dim);
+    }
+  }
+
+  bool has_transition = false;
+  bool is_given = false;
+  std::array<double, 3> numbers{};
+  std::map<std::array<std::int64_t, dim>, std::vector<double>> at;
+};
+
+template <int dim>
+void expect_same(int degree, bool fits)
+{
+  const Ranks ranks = Ranks::world();
+  const mesh::Mesh<dim> whole(distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
+  const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr);
+  const Displacements<dim> all(whole, degree, fits);
+  const Displacements<dim> here(part, degree, fits);
+  EXPECT_EQ(all.is_given, fits);
+  EXPECT_EQ(here.is_given, fits);
+  EXPECT_EQ(here.has_transition, all.has_transition);
+  for (std::size_t i = 0; i < all.numbers.size(); ++i) EXPECT_NEAR(here.numbers[i], all.numbers[i], 1e-14);
+  for (const auto& [place, values] : here.at)  // of own nodes and ghosts
+  {
+    const std::vector<double>& expected = all.at.at(place);
+    ASSERT_EQ(values.size(), expected.size());
+    // compromises magnify rounding by the inverse of their small weight
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-10);
+  }
+}
+
+TEST(AdmissibleDisplacements, AreThoseOfTheWhole)
+{
+  for (int degree = 1; degree <= 4; ++degree)
+    for (const bool fits : {true, false})
+    {
+      SCOPED_TRACE("degree " + std::to_string(degree));
+      expect_same<2>(degree, fits);
+      expect_same<3>(degree, fits);
+    }
+}
+
+}  // namespace
+}  // namespace tribound::test
