@@ -74,6 +74,7 @@
 #include "tribound/certify/bound/data_terms.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/friedrichs.h"
+#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/equilibrate/stress.h"
 

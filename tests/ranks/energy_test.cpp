@@ -1,5 +1,6 @@
 /// @file energy_test.cpp
-/// Admissible displacements of a body on obstacles, by all ranks together, against those of the whole.
+/// Admissible displacements and the energy bound of a body on obstacles, by all ranks together, against those
+/// of the whole.
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@
 #include "support/meshes.h"
 #include "support/problem_data.h"
 #include "tribound/certify/energy/admissible_displacement.h"
+#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/mesh/share_out.h"
 
@@ -90,6 +92,45 @@ TEST(AdmissibleDisplacements, AreThoseOfTheWhole)
       expect_same<2>(degree, fits);
       expect_same<3>(degree, fits);
     }
+}
+
+/// The parts of the bound of a wave.
+template <int dim>
+std::vector<double> energy_bound(const mesh::Mesh<dim>& mesh, int degree)
+{
+  const problem::Problem<dim> problem = pressed_block<dim>().on(mesh);
+  const fem::LagrangeSpace<dim> space(mesh, degree);
+  const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
+  std::vector<double> u;
+  for (const Point<dim>& x : space.node_points())
+    for (int a = 0; a < dim; ++a)
+      u.push_back(form.constraints().fixed[u.size()] ? 0 : 0.05 * std::sin(5 * x[0] + 3 * x[dim - 1] + a));
+  const certify::EnergyBound eta =
+      certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct})(u);
+  EXPECT_EQ(eta.reason, "");
+  double cells = 0;
+  for (const double square : eta.cells) cells += square;
+  return {eta.bound, eta.b_v,        eta.mid,     eta.dist,
+          eta.gap,   eta.correction, eta.contact, mesh.ranks().sum(cells)};
+}
+
+TEST(EnergyBound, IsThatOfTheWhole)
+{
+  const Ranks ranks = Ranks::world();
+  const auto expect_same_bound = [&]<int dim>(int degree)
+  {
+    const mesh::Mesh<dim> whole(distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
+    const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr);
+    const std::vector<double> expected = energy_bound<dim>(whole, degree);
+    const std::vector<double> found = energy_bound<dim>(part, degree);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_NEAR(found[i], expected[i], 1e-9 * expected[i]) << dim << "D, p = " << degree << ", " << i;
+  };
+  for (int degree = 1; degree <= 3; ++degree)
+  {
+    expect_same_bound.template operator()<2>(degree);
+    expect_same_bound.template operator()<3>(degree);
+  }
 }
 
 }  // namespace

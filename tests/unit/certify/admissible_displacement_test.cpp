@@ -15,6 +15,7 @@
 #include "support/dimensions.h"
 #include "support/discrete_problem.h"
 #include "support/meshes.h"
+#include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::test
@@ -49,19 +50,19 @@ Point<dim - 1> random_point(std::mt19937& random)
   return s;
 }
 
-/// visit(segment, v, g_h, x) at random points of facet k, with g_h from the values of g at the nodes.
+/// visit(i, segment, v, g_h, x) at the points of facet k, with g_h from the values of g at the nodes.
 template <int dim, class Visit>
-void at_points(const DiscreteProblem<dim>& p, std::span<const double> v, std::size_t k, int n,
-               std::mt19937& random, const Visit& visit)
+void at_points(const DiscreteProblem<dim>& p, std::span<const double> v, std::size_t k,
+               std::span<const Point<dim - 1>> on_facet, const Visit& visit)
 {
   const contact::ContactSegment<dim>& segment = p.form.segments()[k];
   const auto [cell, local, tag] = segment.slave.facet;
   const mesh::CellMap<dim> map = mesh::cell_map(p.mesh, cell);
   const std::span<const Index> nodes = p.space.cell_nodes(cell);
   std::vector<Point<dim>> points;
-  for (int i = 0; i < n; ++i) points.push_back(mesh::facet_to_cell<dim>(local, random_point<dim>(random)));
+  for (const Point<dim - 1>& s : on_facet) points.push_back(mesh::facet_to_cell<dim>(local, s));
   const fem::Tabulation<dim> table = p.space.basis().tabulate(points);
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < table.n_points; ++i)
   {
     Point<dim> value = Point<dim>::Zero();
     double gap = 0;
@@ -72,8 +73,20 @@ void at_points(const DiscreteProblem<dim>& p, std::span<const double> v, std::si
       for (int a = 0; a < dim; ++a) value[a] += phi * v[dim * nodes[j] + a];
       gap += phi * (*segment.contact->gap)(map(p.space.basis().node_point(static_cast<int>(j))));
     }
-    visit(segment, value, gap, map(points[i]));
+    visit(i, segment, value, gap, map(points[i]));
   }
+}
+
+/// visit(segment, v, g_h, x) at n random points.
+template <int dim, class Visit>
+void at_random_points(const DiscreteProblem<dim>& p, std::span<const double> v, std::size_t k, int n,
+                      std::mt19937& random, const Visit& visit)
+{
+  std::vector<Point<dim - 1>> points;
+  for (int i = 0; i < n; ++i) points.push_back(random_point<dim>(random));
+  at_points<dim>(p, v, k, points,
+                 [&](int, const auto& segment, const Point<dim>& value, double gap, const Point<dim>& x)
+                 { visit(segment, value, gap, x); });
 }
 
 /// Nothing has moved off Gamma_C or where it is fixed, and v^n <= g_h at many points.
@@ -106,9 +119,9 @@ void expect_admissible(const DiscreteProblem<dim>& p, std::span<const double> u,
   std::mt19937 random(5);
   const int n = 1 + 4000 / static_cast<int>(p.form.segments().size());
   for (std::size_t k = 0; k < p.form.segments().size(); ++k)
-    at_points<dim>(p, v, k, n, random,
-                   [&](const auto& segment, const Point<dim>& value, double gap, const Point<dim>&)
-                   { EXPECT_LE(segment.normal.dot(value) - gap, 2e-14 * size); });
+    at_random_points<dim>(p, v, k, n, random,
+                          [&](const auto& segment, const Point<dim>& value, double gap, const Point<dim>&)
+                          { EXPECT_LE(segment.normal.dot(value) - gap, 2e-14 * size); });
 }
 
 template <class T>
@@ -181,22 +194,23 @@ TYPED_TEST(AdmissibleDisplacement, MeetsWhatFacetsWant)
         {
           const std::vector<double>& v = transition_is_closed ? *result.closed : *result.open;
           const int least = transition_is_closed ? 1 : n;
-          at_points<dim>(p, v, k, 20, random,
-                         [&](const auto& segment, const Point<dim>& value, double gap, const Point<dim>& x)
-                         {
-                           if (x[0] < 0.7) return;  // beside what is clamped
-                           const double along = segment.normal.dot(value);
-                           n_closed += closed >= least;
-                           n_sticking += sticking >= least;
-                           if (closed >= least)
-                           {
-                             EXPECT_NEAR(along, gap, 1e-14 * 0.1);
-                           }
-                           if (sticking >= least)
-                           {
-                             EXPECT_LE((value - along * segment.normal).norm(), 1e-14 * 0.1);
-                           }
-                         });
+          at_random_points<dim>(
+              p, v, k, 20, random,
+              [&](const auto& segment, const Point<dim>& value, double gap, const Point<dim>& x)
+              {
+                if (x[0] < 0.7) return;  // beside what is clamped
+                const double along = segment.normal.dot(value);
+                n_closed += closed >= least;
+                n_sticking += sticking >= least;
+                if (closed >= least)
+                {
+                  EXPECT_NEAR(along, gap, 1e-14 * 0.1);
+                }
+                if (sticking >= least)
+                {
+                  EXPECT_LE((value - along * segment.normal).norm(), 1e-14 * 0.1);
+                }
+              });
         }
       }
     }
@@ -311,6 +325,34 @@ TEST(AdmissibleDisplacementT2D, IsNearTheSolution)
     EXPECT_GT(moved, 0);
     EXPECT_GT(n_different, 0);
     EXPECT_LT(n_different, 20);
+  }
+}
+
+/// -2 J(v), J(v) = a(v, v)/2 - L(v) + int_C s |v^t|, as an independent program has it for problem T2D.
+TEST(AdmissibleDisplacementT2D, HasTheKnownEnergy)
+{
+  struct Known
+  {
+    int degree;
+    int n;
+    double energy;
+  };
+  for (const Known& known : {Known{2, 4, 0.0166344}, Known{2, 8, 0.0167476}, Known{3, 4, 0.0167460}})
+  {
+    const DiscreteProblem<2> p(block<2>({2 * known.n, known.n}), pressed_block<2>(),
+                               {.degree = known.degree, .newton = {.tolerance = 1e-12, .damping = false}});
+    const std::vector<double> u = p.solve().u;
+    const auto result = certify::admissible_displacements<2>(p.form, u, p.form.traction(u));
+    ASSERT_TRUE(result.open);
+    const std::vector<double>& v = *result.open;
+    double energy = -contact::stress_norms<2>(p.problem, p.space, v).energy;
+    for (std::size_t i = 0; i < v.size(); ++i) energy += 2 * p.form.load()[i] * v[i];
+    const fem::Quadrature<1> rule = fem::quadrature<1>(60);  // |v^t| has kinks
+    for (std::size_t k = 0; k < p.form.segments().size(); ++k)
+      at_points<2>(p, v, k, rule.points,
+                   [&](int q, const auto& segment, const Point<2>& value, double, const Point<2>&)
+                   { energy -= 2 * 0.03 * std::abs(value[0]) * segment.measure * rule.weights[q]; });
+    EXPECT_NEAR(energy, known.energy, 1e-7);
   }
 }
 

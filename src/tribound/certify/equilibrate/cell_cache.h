@@ -90,6 +90,7 @@ struct CellSource
   std::span<const double> u;
   const BodyMoments<dim, p>& body;
   const RepeatedShapes<dim, p>& shapes;
+  std::span<const Tensor<dim>> turning = {};  ///< K_{T,a}, see Equilibrator::balanced(); empty: 0
 
   /// The Schur complement is only made if `for_patches`.
   void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
@@ -102,6 +103,15 @@ struct CellSource
     cell.divergence = cell.op->divergence(cell.sorted, cell.sigma);
     for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
     find_moments(cell);
+    if (!turning.empty()) turn(turning.subspan(static_cast<std::size_t>(c) * (dim + 1), dim + 1), cell);
+  }
+
+  /// K_{T,a} (x - x_T) beside -psi_a f.
+  static void turn(std::span<const Tensor<dim>> of_vertices, PreparedCell<dim, p>& cell)
+  {
+    const Point<dim> to_centre = cell.sorted.jacobian.rowwise().sum() / (dim + 1);
+    for (int a = 0; a <= dim; ++a)
+      add_moments(cell.body[a], cell, 0, RigidField<dim>{-of_vertices[a] * to_centre, of_vertices[a]}, -1);
   }
 
   void find_operator(Index c, PreparedCell<dim, p>& cell, bool for_patches) const

@@ -7,10 +7,9 @@ namespace tribound::certify
 {
 
 template <int dim>
-Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_threads)
-    : ranks_(form.space().mesh().ranks())
+Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_threads) : form_(form)
 {
-  ranks_.together(
+  form.space().mesh().ranks().together(
       [&]
       {
         fem::with_degree(form.space().degree(),
@@ -21,17 +20,47 @@ Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_thr
 template <int dim>
 Equilibrator<dim>::~Equilibrator() = default;
 
+namespace
+{
+
+/// What the parts of the stress of an iterate carry on Gamma_C.
+template <int dim>
+typename Stress<dim>::Tractions tractions_of(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                             std::span<const Point<dim>> t, double delta)
+{
+  typename Stress<dim>::Tractions tractions{form.traction(u), {t.begin(), t.end()}, {}};
+  auto& [dis, lin, reg] = tractions;
+  if (delta > 0) reg = form.traction(u, delta);
+  for (std::size_t i = 0; i < lin.size(); ++i) lin[i] -= delta > 0 ? reg[i] : dis[i];
+  for (std::size_t i = 0; i < reg.size(); ++i) reg[i] -= dis[i];
+  return tractions;
+}
+
+}  // namespace
+
 template <int dim>
 Stress<dim> Equilibrator<dim>::operator()(std::span<const double> u, std::span<const Point<dim>> t,
                                           double delta)
 {
-  return ranks_.together([&] { return implementation_->run(u, t, delta, true); });
+  return form_.space().mesh().ranks().together(
+      [&] { return implementation_->run(u, tractions_of(form_, u, t, delta), true, {}); });
 }
 
 template <int dim>
 Stress<dim> Equilibrator<dim>::linearisation(std::span<const double> u, std::span<const Point<dim>> t)
 {
-  return ranks_.together([&] { return implementation_->run(u, t, 0, false); });
+  return form_.space().mesh().ranks().together(
+      [&] { return implementation_->run(u, tractions_of(form_, u, t, 0), false, {}); });
+}
+
+template <int dim>
+Stress<dim> Equilibrator<dim>::balanced(std::span<const double> u, std::span<const Point<dim>> t,
+                                        std::span<const Tensor<dim>> turning)
+{
+  return form_.space().mesh().ranks().together(
+      [&] {
+        return implementation_->run(u, {{t.begin(), t.end()}, {}, {}}, true, turning);
+      });
 }
 
 template class Equilibrator<2>;

@@ -39,12 +39,17 @@ class Equilibrator
   /// The same sigma_lin for delta = 0 without sigma_dis (`dis` is empty): only patches around vertices on
   /// Gamma_C.
   [[nodiscard]] Stress<dim> linearisation(std::span<const double> u, std::span<const Point<dim>> t);
+  /// sigma_dis with the traction t in place of T(u), of a u that is in equilibrium with t. `turning` is
+  /// K_{T,a}, d + 1 skew tensors per cell by its vertices in ascending order, adding up to 0 on every cell,
+  /// or empty: b + K_{T,a} (x - x_T) in place of b (certify/energy/edge_moments.h).
+  [[nodiscard]] Stress<dim> balanced(std::span<const double> u, std::span<const Point<dim>> t,
+                                     std::span<const Tensor<dim>> turning);
 
   /// What the object is for one degree.
   class Implementation;
 
  private:
-  Ranks ranks_;
+  const contact::NitscheForm<dim>& form_;
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -27,10 +27,8 @@ class FacetData
   /// Moments for each vertex of the facet; entry c * S::facet + i belongs to component c.
   using Moments = std::array<FacetVector, dim>;
 
-  /// u is the Newton iterate and t its running traction t^k at the contact points of the form; T_delta is
-  /// what Newton's method linearises.
-  FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
-            double delta);
+  /// `tractions`: what the parts of the stress carry on Gamma_C, at the contact points of the form.
+  FacetData(const contact::NitscheForm<dim>& form, typename Stress<dim>::Tractions tractions);
 
   [[nodiscard]] bool is_boundary(Index facet) const { return number_[facet] >= 0; }
   /// Whether Gamma_D fixes the component on the facet.
@@ -39,7 +37,7 @@ class FacetData
     return conditions_[number_[facet]].fixed[component];
   }
   [[nodiscard]] bool fixes_any(Index facet) const;
-  /// Parts of the stress: dis and lin, and reg for delta > 0.
+  /// Parts of the stress: dis, lin and reg as far as they have tractions.
   [[nodiscard]] int n_parts() const { return n_parts_; }
   /// psi_a g_N or psi_a T(u), -psi_a T(u) on a master; null where the facet carries no load.
   [[nodiscard]] const Moments* discretisation(Index facet) const

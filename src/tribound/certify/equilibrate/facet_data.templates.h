@@ -64,11 +64,13 @@ class FacetMoments
 }  // namespace detail
 
 template <int dim, int p>
-FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                             std::span<const Point<dim>> t, double delta)
+FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, typename Stress<dim>::Tractions tractions)
     : number_(form.space().mesh().topology().facets.size(), -1),
+      tractions_(std::move(tractions)),
       on_contact_(form.space().mesh().n_vertices(), 0),
-      n_parts_(delta > 0 ? 3 : 2)
+      n_parts_(!tractions_.reg.empty()   ? 3
+               : !tractions_.lin.empty() ? 2
+                                         : 1)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
@@ -79,12 +81,6 @@ FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<co
     for (int c = 0; c < dim; ++c) condition.fixed[c] = form.problem().boundary(facet.tag).fixes(c);
     if (form.data().has_traction(number)) add_load(form, number);
   }
-  auto& [dis, lin, reg] = tractions_;
-  dis = form.traction(u);
-  if (delta > 0) reg = form.traction(u, delta);
-  lin.assign(t.begin(), t.end());
-  for (std::size_t i = 0; i < lin.size(); ++i) lin[i] -= delta > 0 ? reg[i] : dis[i];
-  for (std::size_t i = 0; i < reg.size(); ++i) reg[i] -= dis[i];
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     form.segments()[k].for_each_side([&](const contact::SegmentSide<dim>& side)
                                      { add_contact(form, k, side); });
@@ -127,7 +123,7 @@ void FacetData<dim, p>::add_contact(const contact::NitscheForm<dim>& form, std::
   if (condition.contact < 0)
   {
     condition.contact = static_cast<int>(linearisation_.size());
-    linearisation_.emplace_back();
+    if (n_parts_ >= 2) linearisation_.emplace_back();
     if (n_parts_ == 3) regularisation_.emplace_back();
     for (const Index v : mesh::facet_vertices(mesh.cell(side.facet.cell), side.facet.local))
       on_contact_[v] = 1;
@@ -140,7 +136,7 @@ void FacetData<dim, p>::add_contact(const contact::NitscheForm<dim>& form, std::
     const double weight = side.sign * form.contact_points()[i].weight;
     on_facet.at(side.on_facet(form.facet_rule().points[q]));
     on_facet.add(weight, tractions_.dis[i], discretisation);
-    on_facet.add(weight, tractions_.lin[i], linearisation_[condition.contact]);
+    if (n_parts_ >= 2) on_facet.add(weight, tractions_.lin[i], linearisation_[condition.contact]);
     if (n_parts_ == 3) on_facet.add(weight, tractions_.reg[i], regularisation_[condition.contact]);
   }
 }

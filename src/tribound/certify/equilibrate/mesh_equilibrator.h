@@ -17,9 +17,10 @@ class Equilibrator<dim>::Implementation
 {
  public:
   virtual ~Implementation() = default;
-  /// The stress for the arguments of Equilibrator's members; without sigma_dis unless `with_dis`.
-  virtual Stress<dim> run(std::span<const double> u, std::span<const Point<dim>> t, double delta,
-                          bool with_dis) = 0;
+  /// The stress of u, its parts with these tractions; without sigma_dis unless `with_dis`. `turning`: as
+  /// Equilibrator::balanced() has it.
+  virtual Stress<dim> run(std::span<const double> u, typename Stress<dim>::Tractions tractions, bool with_dis,
+                          std::span<const Tensor<dim>> turning) = 0;
 };
 
 /// An Equilibrator of degree p; arguments are those of its constructor. Compiled for each dimension and

@@ -175,10 +175,10 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
   {
   }
 
-  Stress<dim> run(std::span<const double> u, std::span<const Point<dim>> t, double delta,
-                  bool with_dis) override
+  Stress<dim> run(std::span<const double> u, typename Stress<dim>::Tractions tractions, bool with_dis,
+                  std::span<const Tensor<dim>> turning) override
   {
-    const FacetData<dim, p> data(form_, u, t, delta);
+    const FacetData<dim, p> data(form_, std::move(tractions));
     std::optional<VertexPartition>& partition = with_dis ? all_ : on_contact_;
     if (!partition)
     {
@@ -187,7 +187,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
         if (mesh_.has_patch(v) && (with_dis || data.on_contact(v))) vertices.push_back(v);
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
-    const CellSource<dim, p> source{form_, u, body_, shapes_};
+    const CellSource<dim, p> source{form_, u, body_, shapes_, turning};
     Stress<dim> stress = Equilibration<dim, p>(mesh_, data, source, *partition, with_dis).run();
     stress.tractions = data.tractions();
     return stress;

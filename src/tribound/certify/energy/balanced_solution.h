@@ -1,0 +1,36 @@
+#pragma once
+
+/// @file balanced_solution.h
+/// The discrete solution with a given contact traction, and the stress that balances it.
+
+#include <span>
+#include <vector>
+
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::certify
+{
+
+/// Whether displacement conditions hold every body by themselves. All ranks together.
+template <int dim>
+[[nodiscard]] bool held_by_conditions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh);
+
+/// The same function in a space of higher degree on the same mesh: values at its nodes.
+template <int dim>
+[[nodiscard]] std::vector<double> raised(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+                                         const fem::LagrangeSpace<dim>& richer);
+
+/// u~ of `space` with a(u~, v) = L(v) + (t, [v])_C for all v of it, load and contact points being those of
+/// `rich`, whose space contains it: as degrees of freedom of that. The residual is 1e-12 of the forces, up to
+/// rounding; from `start`, whose fixed degrees of freedom have their values. held_by_conditions() is
+/// required.
+template <int dim>
+[[nodiscard]] std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
+                                                    const fem::LagrangeSpace<dim>& space,
+                                                    std::span<const double> start,
+                                                    std::span<const Point<dim>> t,
+                                                    const algebra::SolverOptions& solver);
+
+}  // namespace tribound::certify

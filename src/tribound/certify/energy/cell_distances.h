@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file cell_distances.h
+/// How far stresses that are statically admissible are from those of displacements, cell by cell.
+
+#include <span>
+#include <vector>
+
+#include "tribound/certify/equilibrate/stress.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::certify
+{
+
+/// Per own cell, tau the admissible stress nearest to sigma(v) (certify/energy/admissible_stress.h), c = u -
+/// v.
+struct CellDistances
+{
+  std::vector<double> square;       ///< ||tau - sigma(v)||^2 in the norm of C^{-1}
+  std::vector<double> to_discrete;  ///< ||(tau + sigma(v))/2 - sigma(u)||^2
+  std::vector<double> correction;   ///< ||c||_en^2
+  double unbalanced = 0;  ///< largest part of sigma_h that no cell can balance, of the norm of sigma_h there
+};
+
+/// For the stress of `dis` and functions u, v of the form's space; `stress` in equilibrium on every cell.
+template <int dim, int q>
+[[nodiscard]] CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                                           std::span<const double> u, std::span<const double> v);
+
+}  // namespace tribound::certify

@@ -1,0 +1,59 @@
+#pragma once
+
+/// @file cell_distances.templates.h
+/// The definition of cell_distances.h, for the kernels alone (certify/energy/kernel.cpp.in).
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribound/base/norm.h"
+#include "tribound/base/parallel.h"
+#include "tribound/certify/energy/admissible_stress.h"
+#include "tribound/certify/energy/cell_distances.h"
+#include "tribound/certify/equilibrate/cell_operator.h"
+
+namespace tribound::certify
+{
+
+template <int dim, int q>
+CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                             std::span<const double> u, std::span<const double> v)
+{
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const auto n_cells = static_cast<std::size_t>(mesh.n_owned_cells());
+  CellDistances result{std::vector<double>(n_cells), std::vector<double>(n_cells),
+                       std::vector<double>(n_cells)};
+  std::vector<double> c(u.begin(), u.end());
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] -= v[i];
+  const int n_threads = max_threads();
+  std::vector<double> unbalanced(n_threads, 0.0);
+  const auto on_thread = [&](int thread)
+  {
+    AdmissibleStressSolver<dim, q> solver;
+    for (std::size_t k = n_cells * thread / n_threads; k < n_cells * (thread + 1) / n_threads; ++k)
+    {
+      const auto cell = static_cast<Index>(k);
+      const SortedCell<dim> sorted = make_sorted_cell(mesh, cell);
+      const problem::Material& material = form.problem().material(mesh.region(cell));
+      const auto sigma = [&](std::span<const double> w)
+      { return discrete_stress<dim, q>(sorted, material, space.cell_nodes(cell), w); };
+      const std::span<const double> sigma_h = stress.dis_in(cell);
+      const AdmissibleStress<dim, q> tau = solver.solve(sorted, material, sigma_h, sigma(v));
+      const double size = norm(sigma_h);
+      if (size > 0) unbalanced[thread] = std::max(unbalanced[thread], tau.unbalanced / size);
+      const PiecewiseStress<dim, q> of_c = on_pieces<dim, q>(sigma(c));
+      result.square[k] = tau.square;
+      result.correction[k] = compliance_product(material, of_c, of_c);
+      PiecewiseStress<dim, q> from_mean;  // (tau + sigma(v))/2 - sigma(u) = (tau - sigma(v))/2 - sigma(c)
+      add_multiple(from_mean, 0.5, tau.difference);
+      add_multiple(from_mean, -1, of_c);
+      result.to_discrete[k] = compliance_product(material, from_mean, from_mean);
+    }
+  };
+  in_threads(n_threads, on_thread);
+  result.unbalanced = std::ranges::max(unbalanced);
+  return result;
+}
+
+}  // namespace tribound::certify

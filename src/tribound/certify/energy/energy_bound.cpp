@@ -1,0 +1,235 @@
+#include "tribound/certify/energy/energy_bound.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/data_terms.h"
+#include "tribound/certify/energy/admissible_displacement.h"
+#include "tribound/certify/energy/admissible_traction.h"
+#include "tribound/certify/energy/balanced_solution.h"
+#include "tribound/certify/energy/cell_distances.h"
+#include "tribound/certify/energy/edge_moments.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/fem/degree.h"
+#include "tribound/mesh/geometry.h"
+
+namespace tribound::certify
+{
+
+namespace
+{
+
+/// The stress of degree 2 is the lowest that can be symmetric and in equilibrium with any affine load.
+constexpr int lowest_degree = 2;
+
+template <int dim>
+std::string why_not(const contact::NitscheForm<dim>& form)
+{
+  if (std::string unfit = obstacles_unfit(form); !unfit.empty()) return unfit;
+  if (form.space().mesh().ranks().any(form.history() != nullptr && form.history()->states().size() > 0))
+    return "contact remembers earlier load steps";
+  if (!held_by_conditions(form.problem(), form.space().mesh())) return "contact alone holds a body";
+  return {};
+}
+
+/// R(psi_a psi_b e_i) for each edge: a quarter of what the function of the node in its middle sees.
+template <int dim>
+std::vector<Point<dim>> edge_forces(const fem::LagrangeSpace<dim>& space, std::span<const double> residual)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  constexpr auto edges = mesh::local_edges<dim>;
+  std::vector<Point<dim>> forces(mesh.topology().edges.size(), Point<dim>::Zero());
+  for (std::size_t e = 0; e < edges.size(); ++e)
+  {
+    int middle = 0;
+    while (space.basis().node(middle)[edges[e][0]] != 1 || space.basis().node(middle)[edges[e][1]] != 1)
+      ++middle;
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+      for (int a = 0; a < dim; ++a)
+        forces[mesh.topology().cell_edges[c][e]][a] = residual[dim * space.cell_nodes(c)[middle] + a] / 4;
+  }
+  return forces;
+}
+
+/// K_T with ||grad w|| <= K_T ||eps(w)|| on a triangle for w without mean rotation [HP83, CD15].
+double korn_constant(const mesh::Mesh<2>& mesh, Index cell)
+{
+  const auto points = mesh::points_of(mesh.vertices(), mesh.cell(cell));
+  double smallest = std::numbers::pi;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Point<2> a = points[(i + 1) % 3] - points[i];
+    const Point<2> b = points[(i + 2) % 3] - points[i];
+    smallest = std::min(smallest, std::acos(std::clamp(a.dot(b) / (a.norm() * b.norm()), -1.0, 1.0)));
+  }
+  return std::numbers::sqrt2 / std::sin(smallest / 4);
+}
+
+/// O_T of the cells; in 3D, where no constant is known, 0.
+template <int dim>
+std::vector<double> oscillation(const contact::NitscheForm<dim>& form, const DataTerms& data)
+{
+  std::vector<double> result(data.osc.size(), 0.0);
+  if constexpr (dim == 2)
+    for (std::size_t k = 0; k < result.size(); ++k)
+    {
+      const auto cell = static_cast<Index>(k);
+      const double of_data = data.osc[k] + data.neu[k];
+      if (of_data == 0) continue;
+      const problem::Material& m = form.problem().material(form.space().mesh().region(cell));
+      result[k] = korn_constant(form.space().mesh(), cell) /
+                  std::sqrt(std::min(2 * m.mu, 2 * m.mu + 2 * m.lambda)) * of_data;
+    }
+  return result;
+}
+
+}  // namespace
+
+/// What the functions on a mesh share. For p = 1 the form is that of degree 2.
+template <int dim>
+struct EnergyEstimator<dim>::Parts
+{
+  explicit Parts(const contact::NitscheForm<dim>& given)
+      : form(given.space().degree() >= lowest_degree ? given : richer(given)),
+        equilibrator(form),
+        facets(form),
+        gaps(form, facets),
+        data(data_terms(form)),
+        oscillation(certify::oscillation(form, data))
+  {
+  }
+
+  const contact::NitscheForm<dim>& richer(const contact::NitscheForm<dim>& given)
+  {
+    rich_space.emplace(given.space().mesh(), lowest_degree);
+    return rich_form.emplace(given.problem(), *rich_space, given.gamma0(),
+                             std::vector(given.segments().begin(), given.segments().end()));
+  }
+
+  std::optional<fem::LagrangeSpace<dim>> rich_space;
+  std::optional<contact::NitscheForm<dim>> rich_form;
+  const contact::NitscheForm<dim>& form;
+  mutable Equilibrator<dim> equilibrator;
+  ObstacleFacets<dim> facets;
+  ContactGap<dim> gaps;
+  DataTerms data;
+  std::vector<double> oscillation;  ///< O_T
+};
+
+template <int dim>
+EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
+                                      const algebra::SolverOptions& solver)
+    : form_(form), solver_(solver), reason_(why_not(form))
+{
+  if (!reason_.empty()) return;
+  parts_ = std::make_unique<Parts>(form);
+  if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
+}
+
+template <int dim>
+EnergyEstimator<dim>::~EnergyEstimator() = default;
+
+namespace
+{
+
+/// E of v and the stress that carries t_h, and what follows from it.
+template <int dim, class Parts>
+EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
+                       std::span<const double> u, std::span<const double> v)
+{
+  const contact::NitscheForm<dim>& form = parts.form;
+  CellDistances cells;
+  fem::with_degree<lowest_degree>(form.space().degree(),
+                                  [&](auto q) { cells = cell_distances<dim, q>(form, stress, u, v); });
+  EnergyBound result;
+  result.cells = cells.square;
+  // ||tau - sigma(v)||^2, A^2, ||O||^2, ||c||^2, dist^2, G_c, squares of the data in 3D
+  std::array<double, 7> sums{};
+  auto& [square, a_square, o_square, c_square, dist_square, g, data_square] = sums;
+  for (std::size_t k = 0; k < cells.square.size(); ++k)
+  {
+    const double o = parts.oscillation[k];
+    square += cells.square[k];
+    a_square += std::pow(std::sqrt(cells.square[k]) + o, 2);
+    o_square += o * o;
+    c_square += cells.correction[k];
+    dist_square += cells.to_discrete[k];
+    if (dim == 3) data_square += std::pow(parts.data.osc[k] + parts.data.neu[k], 2);
+  }
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+  {
+    const double gap = parts.gaps(k, t_h, v);
+    g += gap;
+    result.cells[form.segments()[k].slave.facet.cell] += 4 * gap;
+  }
+  const Ranks& ranks = form.space().mesh().ranks();
+  ranks.sum(std::span(sums));
+  result.cell_balance = ranks.max(cells.unbalanced);
+  if (!(result.cell_balance <= cell_balance_limit)) result.reason = "a cell does not balance";
+  const double a = std::sqrt(a_square);
+  result.contact = g;
+  result.oscillation = std::sqrt(o_square);
+  result.correction = std::sqrt(c_square);
+  result.dist = std::sqrt(dist_square);
+  result.loads_remainder = std::sqrt(data_square);
+  result.b_v = a / 2 + std::sqrt(a_square / 4 + g);
+  result.gap = square / 2 + g + result.oscillation * result.b_v;
+  result.mid = std::sqrt(square / 4 + g + result.oscillation * result.b_v);
+  result.bound = std::min(result.b_v + result.correction, result.mid + result.dist);
+  if (!std::isfinite(result.bound)) result.reason = "the bound is not a finite number";
+  return result;
+}
+
+}  // namespace
+
+template <int dim>
+EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
+{
+  if (!reason_.empty()) return {.reason = reason_};
+  const contact::NitscheForm<dim>& form = parts_->form;
+  const Ranks& ranks = form.space().mesh().ranks();
+  const bool is_raised = &form != &form_;
+  const std::vector<double> rich_u =
+      is_raised ? raised(form_.space(), u, form.space()) : std::vector<double>(u.begin(), u.end());
+  const std::vector<Point<dim>> t = form.traction(rich_u);
+  const AdmissibleTraction<dim> t_h = admissible_traction<dim>(form, t);
+  const std::vector<double> balanced = balanced_solution<dim>(form, form_.space(), u, t_h.at_points, solver_);
+  std::vector<Tensor<dim>> turning;
+  if (is_raised)
+    turning = edge_moments<dim>(
+        form.space().mesh(),
+        edge_forces<dim>(form.space(), AlgebraicResidual<dim>(form).residual(balanced, t_h.at_points)));
+  const Stress<dim> stress = parts_->equilibrator.balanced(balanced, t_h.at_points, turning);
+
+  const IdentityDefects identities = check_identities<dim>(form, t_h.at_points, stress);
+  if (!(identities.largest(stress.degree) <= cell_balance_limit))
+    return {.reason = "an identity of the equilibrated stress is violated"};
+  const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
+  if (!v.reason.empty()) return {.reason = v.reason};
+  EnergyBound best{.reason = "no displacement near the computed one is admissible"};
+  for (const bool is_open : {true, false})
+  {
+    const std::optional<std::vector<double>>& candidate = is_open ? v.open : v.closed;
+    if (!candidate || (!is_open && !v.has_transition && v.open)) continue;
+    EnergyBound bound = bound_with<dim>(*parts_, stress, t_h, rich_u, *candidate);
+    bound.is_open = is_open;
+    if (!best.reason.empty() || (bound.reason.empty() && bound.bound < best.bound)) best = std::move(bound);
+  }
+  best.gap_remainder = v.gap_remainder;
+  best.threshold_remainder = ranks.max(t_h.threshold_remainder);
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+    if (problem::cone(segment.contact->law).coefficient > 0) best.target = EnergyTarget::computed_friction;
+  if (ranks.any(best.target == EnergyTarget::computed_friction))
+    best.target = EnergyTarget::computed_friction;
+  return best;
+}
+
+template class EnergyEstimator<2>;
+template class EnergyEstimator<3>;
+
+}  // namespace tribound::certify

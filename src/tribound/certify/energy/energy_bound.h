@@ -1,0 +1,83 @@
+#pragma once
+
+/// @file energy_bound.h
+/// The guaranteed bound of the error in the energy norm, method section 13.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::certify
+{
+
+/// What the bound is one of.
+enum class EnergyTarget
+{
+  solution,          ///< the exact solution
+  computed_friction  ///< Coulomb: the exact solution of Tresca's problem with the computed threshold -mu_F
+                     ///< t_h^n
+};
+
+/// ||u - u_h||_en <= bound, ||v||_en^2 = (sigma(v), eps(v)). Energies have the unit of a(u, u); B_v, mid,
+/// dist, correction and oscillation are roots of energies.
+struct EnergyBound
+{
+  std::string reason{};  ///< why there is no bound; empty: there is one
+  double bound = 0;      ///< min(B_v + correction, mid + dist)
+  EnergyTarget target = EnergyTarget::solution;
+  double b_v = 0;                  ///< bounds ||u - v||_en
+  double mid = 0;                  ///< bounds the distance of sigma(u) from (tau + sigma(v))/2
+  double dist = 0;                 ///< that of sigma(u_h) from it
+  double gap = 0;                  ///< E, the duality gap of v and tau
+  double correction = 0;           ///< ||u_h - v||_en
+  double contact = 0;              ///< G_c
+  double oscillation = 0;          ///< ||O||, what data that are no polynomials contribute
+  double cell_balance = 0;         ///< largest part of the data of a cell that it cannot balance
+  double gap_remainder = 0;        ///< largest |g - g_h| at the contact points; length
+  double threshold_remainder = 0;  ///< largest |s - s_h| there; stress
+  double loads_remainder =
+      0;  ///< 3D: ||f - Pi f|| and ||g_N - Pi g_N||, weighted; the bound is for the projected loads
+  bool is_open = true;  ///< which v is the better: facets in transition taken for open and slipping
+  /// Per own cell ||tau - sigma(v)||^2 + 4 G_F of its facets, for marking.
+  std::vector<double> cells{};
+};
+
+/// Above this share of the stress a cell does not balance: there is no bound.
+inline constexpr double cell_balance_limit = 1e-8;
+
+/// Bounds the error of functions on one mesh. A statically admissible stress tau has the contact traction
+/// t_h, the nearest to T(u) that obeys the law everywhere: u~ with a(u~, v) = L(v) + (t_h, v)_C is
+/// equilibrated on vertex patches, and made symmetric cell by cell. A kinematically admissible v is next to
+/// u. Then with
+///     E = 1/2 ||tau - sigma(v)||^2 + G_c,
+/// E >= 1/2 ||u - v||_en^2 + 1/2 ||sigma(u) - tau||^2, norms of stresses in C^{-1}. Any function u_h of the
+/// space has a bound, converged or not. All ranks construct and call it together.
+template <int dim>
+class EnergyEstimator
+{
+ public:
+  /// The form must outlive the object; `solver`: for u~, which is solved for to 1e-12.
+  EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver);
+  ~EnergyEstimator();
+  EnergyEstimator(const EnergyEstimator&) = delete;
+  EnergyEstimator& operator=(const EnergyEstimator&) = delete;
+
+  /// Why there can be no bound for this form; empty: there can.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  /// Throws SolveError as the equilibration does.
+  [[nodiscard]] EnergyBound operator()(std::span<const double> u) const;
+
+ private:
+  struct Parts;
+
+  const contact::NitscheForm<dim>& form_;
+  algebra::SolverOptions solver_;
+  std::string reason_;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace tribound::certify

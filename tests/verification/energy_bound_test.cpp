@@ -1,0 +1,241 @@
+/// @file energy_bound_test.cpp
+/// The bound of the error in the energy norm: as sharp as that of an independent program, above the distance
+/// from much richer solutions, nothing where the stress is constant, at every iterate and in random cases.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
+#include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/truth/true_error.h"
+#include "verification/affine.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+const problem::ContactLaw frictionless{problem::Frictionless()};
+
+template <int dim>
+certify::EnergyBound energy_bound(const DiscreteProblem<dim>& c, std::span<const double> u)
+{
+  return certify::EnergyEstimator<dim>(c.form, c.method.solver)(u);
+}
+
+/// T2D on nx x nx/2 squares: errors of the solutions and effectivities of an independent program that takes
+/// the nearest tractions of degree p in the law's cone.
+struct UniformCase
+{
+  int p;
+  int nx;
+  double error;
+  double effectivity;
+};
+
+class EnergyT2D : public ::testing::TestWithParam<UniformCase>
+{
+};
+
+TEST_P(EnergyT2D, IsAsSharpAsThatOfAnIndependentProgram)
+{
+  const auto& [p, nx, error, effectivity] = GetParam();
+  const DiscreteProblem<2> c(block<2>({nx, nx / 2}), pressed_block<2>(),
+                             {.degree = p, .newton = {.tolerance = 1e-12, .damping = false}});
+  const certify::EnergyBound eta = energy_bound(c, c.solve().u);
+  ASSERT_EQ(eta.reason, "");
+  EXPECT_GE(eta.bound, error);
+  EXPECT_NEAR(eta.bound / error, effectivity, 0.025);
+  EXPECT_LE(eta.cell_balance, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Uniform, EnergyT2D,
+    ::testing::Values(UniformCase{1, 4, 0.055307243, 1.261}, UniformCase{1, 8, 0.036753, 1.277},
+                      UniformCase{1, 16, 0.023160, 1.281}, UniformCase{2, 4, 0.021909977, 1.257},
+                      UniformCase{2, 8, 0.012742, 1.252}, UniformCase{2, 16, 0.007469, 1.237},
+                      UniformCase{3, 4, 0.012559205, 1.359}));
+
+/// Cells of all shapes in (0,2) x (0,1) (x (0,1)), whose sides stay flat.
+template <int dim>
+mesh::MeshData<dim> irregular(mesh::MeshData<dim> data, double phase = 0)
+{
+  const auto map = [&](const Point<dim>& x) -> Point<dim>
+  {
+    Point<dim> y = x;
+    for (int a = 0; a < dim; ++a)
+      y[a] += 0.1 * std::sin(std::numbers::pi * x[a] / (a == 0 ? 2 : 1)) *
+              std::cos(2 * x[(a + 1) % dim] + a + phase);
+    return y;
+  };
+  return renumbered(mapped<dim>(std::move(data), map), 11);
+}
+
+/// bound / distance from a richer solution.
+template <int dim>
+double effectivity(const DiscreteProblem<dim>& c, std::span<const double> u, const certify::EnergyBound& eta,
+                   const certify::RicherSpace& richer)
+{
+  const certify::RicherSolution truth =
+      certify::compare_with_richer<dim>(c.form, u, richer, c.form.gamma0(), c.method.newton, c.method.solver);
+  EXPECT_EQ(truth.failure, "");
+  EXPECT_EQ(eta.reason, "");
+  EXPECT_LE(eta.cell_balance, 1e-11);
+  return eta.bound / truth.error->energy;
+}
+
+template <int dim>
+void expect_effectivity(const char* name, const ProblemData<dim>& data, mesh::MeshData<dim> mesh, int p,
+                        const certify::RicherSpace& richer, double largest)
+{
+  const DiscreteProblem<dim> c(std::move(mesh), data, {.degree = p, .newton = {.tolerance = 1e-12}});
+  const std::vector<double> u = c.solve().u;
+  const certify::EnergyBound eta = energy_bound(c, u);
+  const double found = effectivity<dim>(c, u, eta, richer);
+  fmt::print("{:<14} {}D p = {}: {:.3f}; bound {:.3e}, ||c|| {:.1e}, G_c {:.1e}, O {:.1e}\n", name, dim, p,
+             found, eta.bound, eta.correction, eta.contact, eta.oscillation);
+  EXPECT_GE(found, 1) << name << p;
+  EXPECT_LE(found, largest) << name << p;
+}
+
+class Energy : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(Energy, IsABound2D)
+{
+  const int p = GetParam();
+  const certify::RicherSpace richer{.refinements = 3, .degree = p + 1};
+  expect_effectivity<2>("Tresca", pressed_block<2>(), block<2>({4, 2}), p, richer, 1.5);
+  expect_effectivity<2>("frictionless", pressed_block<2>(frictionless), block<2>({4, 2}), p, richer, 1.5);
+  ProblemData<2> heavy = pressed_block<2>();
+  heavy.body_force = components<2>(formula("0.1*x*y"), formula("-0.1*(1 + x^2*y)"), formula("0"));
+  expect_effectivity<2>("heavy", heavy, irregular<2>(block<2>({4, 2})), p, richer, 1.6);
+}
+
+TEST_P(Energy, IsABound3D)
+{
+  const int p = GetParam();
+  const certify::RicherSpace richer{.refinements = p > 2 ? 1 : 2, .degree = p + 1};
+  expect_effectivity<3>("Tresca", pressed_block<3>(), block<3>({2, 1, 1}), p, richer, 2.5);
+  expect_effectivity<3>("frictionless", pressed_block<3>(frictionless), block<3>({2, 1, 1}), p, richer, 2.5);
+}
+
+template <int dim>
+void expect_nothing_where_the_stress_is_constant(int p)
+{
+  for_all_states<dim>(Tensor<dim>::Identity(),
+                      [&](const AffineCase<dim>& exact, const Point<dim>& right, const Point<dim>&)
+                      {
+                        const DiscreteProblem<dim> c(irregular<dim>(structured<dim>()),
+                                                     affine_data<dim>(exact, right), affine_method(p));
+                        const certify::EnergyBound eta = energy_bound(c, c.solve().u);
+                        ASSERT_EQ(eta.reason, "") << exact.name;
+                        const double stress = std::sqrt(2 * std::max(0.0, eta.gap - eta.contact));
+                        EXPECT_LE(stress, 1e-11) << exact.name << ", p = " << p;
+                        EXPECT_LE(eta.correction, 1e-11) << exact.name << ", p = " << p;
+                        EXPECT_LE(eta.contact, 1e-15) << exact.name << ", p = " << p;  // a square
+                      });
+}
+
+TEST_P(Energy, IsNothingWhereTheStressIsConstant)
+{
+  expect_nothing_where_the_stress_is_constant<2>(GetParam());
+  if (GetParam() <= 2) expect_nothing_where_the_stress_is_constant<3>(GetParam());
+}
+
+TEST_P(Energy, HoldsAtEveryIterate)
+{
+  const int p = GetParam();
+  DiscreteProblem<2> c(block<2>({4, 2}), pressed_block<2>(), {.degree = p});
+  const std::vector<double> solution = c.solve().u;
+  for (const int k : {1, 2, 3})
+  {
+    c.method.newton.max_steps = k;
+    const std::vector<double> u = c.solve().u;
+    const certify::EnergyBound eta = energy_bound(c, u);
+    c.method.newton.max_steps = 50;
+    EXPECT_GE((effectivity<2>(c, u, eta, {.refinements = 3, .degree = p + 1})), 1) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, Energy, ::testing::Range(1, 4));
+
+/// A block with a random material, shape, mesh and loads on an obstacle with a gap, held at its left side.
+struct RandomBlock
+{
+  std::mt19937 random;
+  double between(double low, double high)
+  {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  }
+
+  ProblemData<2> data()
+  {
+    const std::array<double, 5> ratios = {-0.3, 0, 0.3, 0.45, 0.49};
+    const problem::Material material = problem::lame(1, ratios[random() % ratios.size()]);
+    const bool slips = random() % 3 != 0;
+    const problem::ContactLaw law = slips ? problem::ContactLaw(Tresca(between(0.001, 0.1))) : frictionless;
+    ProblemData<2> data{
+        .boundaries = {clamped<2>("left"),
+                       obstacle<2>("bottom", law, formula(fmt::format("{}*x", between(0, 0.01)))),
+                       loaded<2>("top", between(-0.05, 0.05), between(-0.2, 0.01)),
+                       loaded<2>("right", between(-0.1, 0.1), between(-0.1, 0.1))},
+        .body_force = components<2>(formula(fmt::format("{}", between(-0.1, 0.1))),
+                                    formula(fmt::format("{}*x", between(-0.1, 0.1))), formula("0"))};
+    data.material = material;
+    return data;
+  }
+};
+
+TEST(EnergyRandom, NoBoundFails)
+{
+  double smallest = HUGE_VAL;
+  double largest = 0;
+  for (unsigned seed = 0; seed < 60; ++seed)
+  {
+    RandomBlock block_of{std::mt19937(seed)};
+    const int p = 1 + static_cast<int>(seed % 3);
+    mesh::MeshData<2> mesh = irregular<2>(block<2>({3 + static_cast<int>(seed % 3), 2}), seed);
+    const double height = block_of.between(0.4, 2);
+    mesh = mapped<2>(std::move(mesh),
+                     [&](const Point<2>& x) -> Point<2> {
+                       return {x[0], height * x[1]};
+                     });
+    const DiscreteProblem<2> c(std::move(mesh), block_of.data(),
+                               {.degree = p, .newton = {.tolerance = 1e-11}});
+    const std::vector<double> u = c.solve().u;
+    const double found = effectivity<2>(c, u, energy_bound(c, u), {.refinements = 2, .degree = p + 2});
+    EXPECT_GE(found, 1) << seed;
+    smallest = std::min(smallest, found);
+    largest = std::max(largest, found);
+  }
+  fmt::print("random blocks: effectivity {:.3f} to {:.3f}\n", smallest, largest);
+}
+
+TEST(EnergyReasons, AreGiven)
+{
+  const auto reason = [](const ProblemData<2>& data)
+  {
+    const DiscreteProblem<2> c(block<2>({4, 2}), data, {.degree = 2});
+    return certify::EnergyEstimator<2>(c.form, {}).reason();
+  };
+  EXPECT_EQ(reason(pressed_block<2>()), "");
+  EXPECT_EQ(reason({.boundaries = {obstacle<2>("bottom", frictionless), fixed<2>("left", 0, free),
+                                   loaded<2>("top", 0, -0.1)}}),
+            "contact alone holds a body");
+  const DiscreteProblem<2> coulomb(
+      block<2>({4, 2}), pressed_block<2>(problem::ContactLaw(problem::Coulomb(0.3))), {.degree = 2});
+  EXPECT_EQ(energy_bound(coulomb, coulomb.solve().u).target, certify::EnergyTarget::computed_friction);
+}
+
+}  // namespace
+
+}  // namespace tribound::test
