@@ -44,6 +44,7 @@
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/nitsche/segment_values.h"
 #include "tribound/contact/pairing/pairing.h"

@@ -8,7 +8,7 @@
 
 #include "tribound/base/clock.h"
 #include "tribound/base/error.h"
-#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/solve/equilibrium.h"
 
 namespace tribound::adapt
@@ -57,11 +57,7 @@ Bordered<dim>::State::State(Form at_t, PathPoint& point, const PathMeasure<dim>&
   const fem::Constraints& constraints = form->constraints();
   for (std::size_t i = 0; i < point.u.size(); ++i)
     if (constraints.fixed[i]) point.u[i] = constraints.values[i];
-  residual = contact::apply_stiffness<dim>(form->problem(), form->space(), point.u);
-  for (std::size_t i = 0; i < point.u.size(); ++i) residual[i] = form->load()[i] - residual[i];
-  form->add_contact_load(form->traction(point.u), residual);
-  for (std::size_t i = 0; i < point.u.size(); ++i)
-    if (constraints.fixed[i]) residual[i] = 0;
+  residual = contact::residual<dim>(*form, point.u, form->traction(point.u));
   norm = form->space().norm(residual);
   measure = of_path.value(*form, point.u);
 }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "tribound/base/parallel.h"
-#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -45,12 +45,7 @@ template <int dim>
 std::vector<double> AlgebraicResidual<dim>::residual(std::span<const double> u,
                                                      std::span<const Point<dim>> t) const
 {
-  std::vector<double> r = contact::apply_stiffness(form_.problem(), form_.space(), u);
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = form_.load()[i] - r[i];
-  form_.add_contact_load(t, r);
-  for (std::size_t i = 0; i < r.size(); ++i)
-    if (form_.constraints().fixed[i]) r[i] = 0;
-  return r;
+  return contact::residual<dim>(form_, u, t);
 }
 
 template <int dim>
@@ -152,7 +147,7 @@ AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> res
 {
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
   std::vector<double> all(residual.begin(), residual.end());
-  if (const auto& numbers = form_.space().numbers()) numbers->update(std::span(all), dim);
+  form_.space().update(std::span(all));
   const std::vector<Forces> forces = forces_at_vertices(all);
   std::vector<RigidField<dim>> at_vertex(mesh.n_vertices());
   parallel_for(at_vertex.size(),
@@ -191,8 +186,8 @@ struct TreeNode
   std::array<int, 2> children;  ///< -1: a cell of the mesh
 };
 
-/// The vertex of the union of two simplices with a common facet, in place of `middle`, where it is a simplex
-/// again: exactly as bisection puts it in the middle of an edge.
+/// The union of two simplices with a common facet, where it is a simplex again: a vertex that both have is
+/// exactly in the middle of the edge between the other two, as bisection puts it.
 template <int dim>
 std::optional<mesh::Cell<dim>> united(const mesh::Mesh<dim>& mesh, const mesh::Cell<dim>& first,
                                       const mesh::Cell<dim>& second)
@@ -260,11 +255,6 @@ struct Forest
     return true;
   }
 };
-
-}  // namespace
-
-namespace
-{
 
 /// The squares of the sums in algebraic_error(), level by level.
 template <int dim>

@@ -31,6 +31,14 @@ Matrix bernstein_at(int degree, std::span<const Point<dim - 1>> points)
          Eigen::Map<const RowMajor>(to_values.data(), n, n);
 }
 
+/// Its coefficients from values at the nodes.
+template <int k>
+Matrix bernstein_from_nodes(const fem::LagrangeBasis<k>& basis)
+{
+  return Eigen::Map<const RowMajor>(fem::bernstein_from_values(basis).data(), basis.n_nodes(),
+                                    basis.n_nodes());
+}
+
 /// Where the coefficients of a traction may be: |t^t| <= limit - coefficient t^n, t^n <= 0.
 template <int dim>
 struct Cone
@@ -69,7 +77,10 @@ class Fit
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
 
   explicit Fit(const contact::NitscheForm<dim>& form)
-      : rule_(form.facet_rule()), at_points_(bernstein_at<dim>(form.space().degree(), rule_.points))
+      : rule_(form.facet_rule()),
+        basis_(form.space().degree()),
+        from_values_(bernstein_from_nodes(basis_)),
+        at_points_(bernstein_at<dim>(basis_.degree(), rule_.points))
   {
     const Eigen::Map<const Eigen::VectorXd> weights(rule_.weights.data(), rule_.size());
     weighted_ = at_points_.transpose() * weights.asDiagonal();
@@ -108,31 +119,26 @@ class Fit
     return b;
   }
 
+  /// Of a threshold, from its values at the nodes of the segment; none is negative.
+  [[nodiscard]] Eigen::VectorXd threshold(const contact::NitscheForm<dim>& form, std::size_t k) const
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    const auto map = contact::simplex_map(form.space().mesh(), segment.slave);
+    Eigen::VectorXd values(basis_.n_nodes());
+    for (int j = 0; j < basis_.n_nodes(); ++j)
+      values[j] = problem::strength_at<dim>(segment.contact->law, map(basis_.node_point(j)));
+    return (from_values_ * values).cwiseMax(0.0);
+  }
+
  private:
   const fem::Quadrature<dim - 1>& rule_;
+  fem::LagrangeBasis<dim - 1> basis_;
+  Matrix from_values_;
   Matrix at_points_;
   Matrix weighted_;
   Matrix gram_;
   Eigen::LLT<Matrix> factors_;
 };
-
-/// Values of the threshold at the nodes of the facet, as coefficients that are not negative.
-template <int dim>
-std::vector<double> threshold_coefficients(const contact::NitscheForm<dim>& form, std::size_t k)
-{
-  const contact::ContactSegment<dim>& segment = form.segments()[k];
-  const fem::LagrangeBasis<dim - 1> basis(form.space().degree());
-  const std::vector<double> from_values = fem::bernstein_from_values(basis);
-  const auto map = contact::simplex_map(form.space().mesh(), segment.slave);
-  const int n = basis.n_nodes();
-  Eigen::VectorXd values(n);
-  for (int j = 0; j < n; ++j)
-    values[j] = problem::strength_at<dim>(segment.contact->law, map(basis.node_point(j)));
-  const Eigen::VectorXd b = Eigen::Map<const RowMajor>(from_values.data(), n, n) * values;
-  std::vector<double> result(n);
-  for (int j = 0; j < n; ++j) result[j] = std::max(b[j], 0.0);
-  return result;
-}
 
 }  // namespace
 
@@ -144,15 +150,14 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
   const Eigen::Index n = fit.at_points().cols();
   const int n_points = form.n_segment_points();
   AdmissibleTraction<dim> result;
-  result.coefficients.resize(form.segments().size() * n);
-  result.thresholds.resize(result.coefficients.size());
+  result.thresholds.resize(form.segments().size() * n);
   result.at_points.resize(t.size());
   std::vector<double> remainders(form.segments().size(), 0.0);
   const auto on_facet = [&](std::size_t k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     const double coefficient = problem::cone(segment.contact->law).coefficient;
-    const std::vector<double> s = threshold_coefficients(form, k);
+    const Eigen::VectorXd s = fit.threshold(form, k);
     std::vector<Cone<dim>> cones;
     cones.reserve(n);
     for (Eigen::Index j = 0; j < n; ++j) cones.push_back({segment.normal, s[j], coefficient});
@@ -162,16 +167,12 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
     for (int q = 0; q < n_points; ++q)
     {
       result.at_points[k * n_points + q] = values.col(q);
-      double s_h = 0;
-      for (Eigen::Index j = 0; j < n; ++j) s_h += fit.at_points()(q, j) * s[j];
+      const double s_h = fit.at_points().row(q).dot(s);
       if (coefficient == 0)
         remainders[k] = std::max(remainders[k], std::abs(form.contact_points(k)[q].strength - s_h));
     }
     for (Eigen::Index j = 0; j < n; ++j)
-    {
-      result.coefficients[k * n + j] = b.col(j);
       result.thresholds[k * n + j] = coefficient > 0 ? -coefficient * b.col(j).dot(segment.normal) : s[j];
-    }
   };
   parallel_for(form.segments().size(), on_facet);
   if (!remainders.empty()) result.threshold_remainder = std::ranges::max(remainders);
@@ -207,8 +208,7 @@ class SlipIntegral
       : basis_(degree),
         rule_(fem::quadrature<dim - 1>(2 * degree)),
         at_points_(bernstein_at<dim>(degree, rule_.points)),
-        from_values_(Eigen::Map<const RowMajor>(fem::bernstein_from_values(basis_).data(), basis_.n_nodes(),
-                                                basis_.n_nodes()))
+        from_values_(bernstein_from_nodes(basis_))
   {
     const std::vector<Point<dim - 1>> nodes = basis_.node_points();
     for (const fem::Part<dim - 1>& part : equal_parts<dim - 1>())

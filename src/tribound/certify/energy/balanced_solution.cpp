@@ -6,31 +6,15 @@
 #include <utility>
 
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/support/rigid_modes.h"
 #include "tribound/mesh/bodies.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
 {
 
 namespace
 {
-
-/// Motions with their values at x - centre, by size.
-template <int dim>
-inline constexpr int n_motions = dim*(dim + 1) / 2;
-
-template <int dim>
-Eigen::Matrix<double, dim, n_motions<dim>> rigid_motions_at(const Point<dim>& x)
-{
-  Eigen::Matrix<double, dim, n_motions<dim>> motions = Eigen::Matrix<double, dim, n_motions<dim>>::Zero();
-  for (int a = 0; a < dim; ++a) motions(a, a) = 1;
-  for (int r = 0, i = dim; r < dim; ++r)
-    for (int c = r + 1; c < dim; ++c, ++i)
-    {
-      motions(r, i) = -x[c];
-      motions(c, i) = x[r];
-    }
-  return motions;
-}
 
 /// For each node of the richer space, once: visit(node, node of the space, value of its basis function
 /// there).
@@ -56,22 +40,11 @@ void for_each_inclusion(const fem::LagrangeSpace<dim>& space, const fem::Lagrang
 template <int dim>
 bool held_by_conditions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
-  constexpr int n = n_motions<dim>;
+  constexpr int n = contact::RigidModes<dim>::n_modes;
   using Gram = Eigen::Matrix<double, n, n>;
   const mesh::Bodies bodies = mesh::number_bodies(mesh);
-  Point<dim> lower = Point<dim>::Constant(HUGE_VAL);
-  Point<dim> upper = -lower;
-  for (const Point<dim>& x : mesh.vertices())
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  for (int a = 0; a < dim; ++a)
-  {
-    lower[a] = -mesh.ranks().max(-lower[a]);
-    upper[a] = mesh.ranks().max(upper[a]);
-  }
-  const double size = (upper - lower).norm();
+  const mesh::BoundingBox<dim> box = mesh::box_around(mesh);
+  const contact::RigidModes<dim> modes{.centre = box.lower, .size = box.diagonal()};
   std::vector<double> grams(static_cast<std::size_t>(bodies.n) * n * n, 0.0);
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
@@ -80,7 +53,7 @@ bool held_by_conditions(const problem::Problem<dim>& problem, const mesh::Mesh<d
     Eigen::Map<Gram> gram(&grams[static_cast<std::size_t>(bodies.of_cell[facet.cell]) * n * n]);
     for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
     {
-      const auto motions = rigid_motions_at<dim>((mesh.vertex(v) - lower) / size);
+      const auto motions = modes.at(mesh.vertex(v));
       for (int c = 0; c < dim; ++c)
         if (boundary.fixes(c)) gram += motions.row(c).transpose() * motions.row(c);
     }

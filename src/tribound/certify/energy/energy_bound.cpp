@@ -15,6 +15,7 @@
 #include "tribound/certify/energy/cell_distances.h"
 #include "tribound/certify/energy/edge_moments.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/degree.h"
 #include "tribound/mesh/geometry.h"
 
@@ -203,7 +204,7 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   if (is_raised)
     turning = edge_moments<dim>(
         form.space().mesh(),
-        edge_forces<dim>(form.space(), AlgebraicResidual<dim>(form).residual(balanced, t_h.at_points)));
+        edge_forces<dim>(form.space(), contact::residual<dim>(form, balanced, t_h.at_points)));
   const Stress<dim> stress = parts_->equilibrator.balanced(balanced, t_h.at_points, turning);
 
   const IdentityDefects identities = check_identities<dim>(form, t_h.at_points, stress);
@@ -222,9 +223,8 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   }
   best.gap_remainder = v.gap_remainder;
   best.threshold_remainder = ranks.max(t_h.threshold_remainder);
-  for (const contact::ContactSegment<dim>& segment : form.segments())
-    if (problem::cone(segment.contact->law).coefficient > 0) best.target = EnergyTarget::computed_friction;
-  if (ranks.any(best.target == EnergyTarget::computed_friction))
+  if (ranks.any(std::ranges::any_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
+                                    { return problem::cone(segment.contact->law).coefficient > 0; })))
     best.target = EnergyTarget::computed_friction;
   return best;
 }

@@ -1,0 +1,25 @@
+#include "tribound/contact/nitsche/residual.h"
+
+#include "tribound/contact/nitsche/elasticity.h"
+
+namespace tribound::contact
+{
+
+template <int dim>
+std::vector<double> residual(const NitscheForm<dim>& form, std::span<const double> u,
+                             std::span<const Point<dim>> t)
+{
+  std::vector<double> r = apply_stiffness(form.problem(), form.space(), u);
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = form.load()[i] - r[i];
+  form.add_contact_load(t, r);
+  for (std::size_t i = 0; i < r.size(); ++i)
+    if (form.constraints().fixed[i]) r[i] = 0;
+  return r;
+}
+
+template std::vector<double> residual(const NitscheForm<2>&, std::span<const double>,
+                                      std::span<const Point<2>>);
+template std::vector<double> residual(const NitscheForm<3>&, std::span<const double>,
+                                      std::span<const Point<3>>);
+
+}  // namespace tribound::contact

@@ -1,0 +1,20 @@
+#pragma once
+
+/// @file residual.h
+/// What is out of equilibrium in the discrete problem, on the degrees of freedom.
+
+#include <span>
+#include <vector>
+
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::contact
+{
+
+/// L(phi_i) - a(u, phi_i) + (t, [phi_i])_C for every degree of freedom, 0 at fixed ones; not for all of
+/// ghosts. t is given at the contact points of the form: T(u), or another traction.
+template <int dim>
+[[nodiscard]] std::vector<double> residual(const NitscheForm<dim>& form, std::span<const double> u,
+                                           std::span<const Point<dim>> t);
+
+}  // namespace tribound::contact
