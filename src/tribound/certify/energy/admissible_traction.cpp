@@ -1,152 +1,21 @@
 #include "tribound/certify/energy/admissible_traction.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "tribound/base/parallel.h"
-#include "tribound/contact/nitsche/simplex_map.h"
+#include "tribound/certify/energy/traction_fit.h"
 #include "tribound/fem/bernstein.h"
 #include "tribound/fem/simplex_parts.h"
 
 namespace tribound::certify
 {
 
-namespace
-{
-
-using Matrix = Eigen::MatrixXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Bernstein's basis of the facets of the form at points of the reference facet, [point, coefficient].
-template <int dim>
-Matrix bernstein_at(int degree, std::span<const Point<dim - 1>> points)
-{
-  const fem::LagrangeBasis<dim - 1> basis(degree);
-  const fem::Tabulation<dim - 1> table = basis.tabulate(points);
-  const std::vector<double> to_values = fem::values_from_bernstein(basis);
-  const int n = basis.n_nodes();
-  return Eigen::Map<const RowMajor>(table.values.data(), table.n_points, n) *
-         Eigen::Map<const RowMajor>(to_values.data(), n, n);
-}
-
-/// Its coefficients from values at the nodes.
-template <int k>
-Matrix bernstein_from_nodes(const fem::LagrangeBasis<k>& basis)
-{
-  return Eigen::Map<const RowMajor>(fem::bernstein_from_values(basis).data(), basis.n_nodes(),
-                                    basis.n_nodes());
-}
-
-/// Where the coefficients of a traction may be: |t^t| <= limit - coefficient t^n, t^n <= 0.
-template <int dim>
-struct Cone
-{
-  Point<dim> normal;
-  double limit;
-  double coefficient;
-
-  [[nodiscard]] bool contains(const Point<dim>& t, double tolerance) const
-  {
-    const double n = t.dot(normal);
-    return n <= tolerance && (t - n * normal).norm() <= limit - coefficient * n + tolerance;
-  }
-
-  /// The nearest point; with coefficient > 0 of a cone with its tip at 0.
-  [[nodiscard]] Point<dim> nearest(const Point<dim>& t) const
-  {
-    const double n = t.dot(normal);
-    const Point<dim> tangential = t - n * normal;
-    const double length = tangential.norm();
-    if (coefficient == 0)
-      return std::min(n, 0.0) * normal + (length > limit ? limit / length : 1.0) * tangential;
-    if (n <= 0 && length <= -coefficient * n) return t;
-    const double along = (coefficient * length - n) / (1 + coefficient * coefficient);  // -t^n
-    if (along <= 0 || length == 0) return Point<dim>::Zero();
-    return -along * normal + coefficient * along / length * tangential;
-  }
-};
-
-/// Fits coefficients to tractions at the points of the facet rule. On all facets the products of the basis
-/// differ by a factor only.
-template <int dim>
-class Fit
-{
- public:
-  using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
-
-  explicit Fit(const contact::NitscheForm<dim>& form)
-      : rule_(form.facet_rule()),
-        basis_(form.space().degree()),
-        from_values_(bernstein_from_nodes(basis_)),
-        at_points_(bernstein_at<dim>(basis_.degree(), rule_.points))
-  {
-    const Eigen::Map<const Eigen::VectorXd> weights(rule_.weights.data(), rule_.size());
-    weighted_ = at_points_.transpose() * weights.asDiagonal();
-    gram_ = weighted_ * at_points_;
-    factors_.compute(gram_);
-  }
-
-  [[nodiscard]] const Matrix& at_points() const { return at_points_; }
-
-  /// The nearest t_h to t, columns at the points, with its coefficients in the cones: where the projection of
-  /// t on polynomials is there, that; else coefficient after coefficient is made the best.
-  [[nodiscard]] Columns operator()(const Columns& t, std::span<const Cone<dim>> cones) const
-  {
-    constexpr int most_sweeps = 400;
-    const Columns moments = t * weighted_.transpose();
-    Columns b = factors_.solve(moments.transpose()).transpose();
-    const double scale = b.cwiseAbs().maxCoeff();
-    bool is_pure = true;
-    for (Eigen::Index j = 0; j < b.cols(); ++j)
-    {
-      is_pure = is_pure && cones[j].contains(b.col(j), 1e-12 * scale);
-      b.col(j) = cones[j].nearest(b.col(j));
-    }
-    double change = is_pure ? 0 : scale;
-    for (int sweep = 0; sweep < most_sweeps && change > 1e-14 * scale; ++sweep)
-    {
-      change = 0;
-      for (Eigen::Index j = 0; j < b.cols(); ++j)
-      {
-        const Point<dim> free = b.col(j) + (moments.col(j) - b * gram_.col(j)) / gram_(j, j);
-        const Point<dim> better = cones[j].nearest(free);
-        change = std::max(change, (better - b.col(j)).cwiseAbs().maxCoeff());
-        b.col(j) = better;
-      }
-    }
-    return b;
-  }
-
-  /// Of a threshold, from its values at the nodes of the segment; none is negative.
-  [[nodiscard]] Eigen::VectorXd threshold(const contact::NitscheForm<dim>& form, std::size_t k) const
-  {
-    const contact::ContactSegment<dim>& segment = form.segments()[k];
-    const auto map = contact::simplex_map(form.space().mesh(), segment.slave);
-    Eigen::VectorXd values(basis_.n_nodes());
-    for (int j = 0; j < basis_.n_nodes(); ++j)
-      values[j] = problem::strength_at<dim>(segment.contact->law, map(basis_.node_point(j)));
-    return (from_values_ * values).cwiseMax(0.0);
-  }
-
- private:
-  const fem::Quadrature<dim - 1>& rule_;
-  fem::LagrangeBasis<dim - 1> basis_;
-  Matrix from_values_;
-  Matrix at_points_;
-  Matrix weighted_;
-  Matrix gram_;
-  Eigen::LLT<Matrix> factors_;
-};
-
-}  // namespace
-
 template <int dim>
 AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& form,
                                             std::span<const Point<dim>> t)
 {
-  const Fit<dim> fit(form);
+  const TractionFit<dim> fit(form);
   const Eigen::Index n = fit.at_points().cols();
   const int n_points = form.n_segment_points();
   AdmissibleTraction<dim> result;
@@ -155,24 +24,20 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
   std::vector<double> remainders(form.segments().size(), 0.0);
   const auto on_facet = [&](std::size_t k)
   {
-    const contact::ContactSegment<dim>& segment = form.segments()[k];
-    const double coefficient = problem::cone(segment.contact->law).coefficient;
-    const Eigen::VectorXd s = fit.threshold(form, k);
-    std::vector<Cone<dim>> cones;
-    cones.reserve(n);
-    for (Eigen::Index j = 0; j < n; ++j) cones.push_back({segment.normal, s[j], coefficient});
-    const Eigen::Map<const typename Fit<dim>::Columns> given(t[k * n_points].data(), dim, n_points);
-    const typename Fit<dim>::Columns b = fit(given, cones);
-    const typename Fit<dim>::Columns values = b * fit.at_points().transpose();
+    const std::vector<TractionCone<dim>> cones = fit.cones(k);
+    const auto b = fit(fit.columns(k, t), cones);
+    const typename TractionFit<dim>::Columns values = b * fit.at_points().transpose();
     for (int q = 0; q < n_points; ++q)
     {
       result.at_points[k * n_points + q] = values.col(q);
-      const double s_h = fit.at_points().row(q).dot(s);
-      if (coefficient == 0)
+      double s_h = 0;
+      for (Eigen::Index j = 0; j < n; ++j) s_h += fit.at_points()(q, j) * cones[j].limit;
+      if (cones.front().coefficient == 0)
         remainders[k] = std::max(remainders[k], std::abs(form.contact_points(k)[q].strength - s_h));
     }
     for (Eigen::Index j = 0; j < n; ++j)
-      result.thresholds[k * n + j] = coefficient > 0 ? -coefficient * b.col(j).dot(segment.normal) : s[j];
+      result.thresholds[k * n + j] =
+          cones[j].coefficient > 0 ? -cones[j].coefficient * b.col(j).dot(cones[j].normal) : cones[j].limit;
   };
   parallel_for(form.segments().size(), on_facet);
   if (!remainders.empty()) result.threshold_remainder = std::ranges::max(remainders);
@@ -181,6 +46,8 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
 
 namespace
 {
+
+using Matrix = Eigen::MatrixXd;
 
 /// The reference simplex cut at the middles of its edges.
 template <int k>

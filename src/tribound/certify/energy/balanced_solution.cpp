@@ -1,14 +1,10 @@
 #include "tribound/certify/energy/balanced_solution.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include "tribound/contact/nitsche/elasticity.h"
-#include "tribound/contact/support/rigid_modes.h"
-#include "tribound/mesh/bodies.h"
-#include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
 {
@@ -35,39 +31,22 @@ void for_each_inclusion(const fem::LagrangeSpace<dim>& space, const fem::Lagrang
     }
 }
 
-}  // namespace
-
+/// A spring at each degree of freedom, given as a row, as stiff as the body is there. As many as there are
+/// free motions to stop: when the load does no work in these, neither does any spring.
 template <int dim>
-bool held_by_conditions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+void add_springs(algebra::SparseRows& rows, const fem::LagrangeSpace<dim>& space,
+                 std::span<const Index> supports)
 {
-  constexpr int n = contact::RigidModes<dim>::n_modes;
-  using Gram = Eigen::Matrix<double, n, n>;
-  const mesh::Bodies bodies = mesh::number_bodies(mesh);
-  const mesh::BoundingBox<dim> box = mesh::box_around(mesh);
-  const contact::RigidModes<dim> modes{.centre = box.lower, .size = box.diagonal()};
-  std::vector<double> grams(static_cast<std::size_t>(bodies.n) * n * n, 0.0);
-  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
+  for (const Index row : supports)
   {
-    const auto& boundary = problem.boundary(facet.tag);
-    if (!boundary.fixes_any()) continue;
-    Eigen::Map<Gram> gram(&grams[static_cast<std::size_t>(bodies.of_cell[facet.cell]) * n * n]);
-    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
-    {
-      const auto motions = modes.at(mesh.vertex(v));
-      for (int c = 0; c < dim; ++c)
-        if (boundary.fixes(c)) gram += motions.row(c).transpose() * motions.row(c);
-    }
+    const Index column = dim * space.owned_node(row / dim) + row % dim;
+    const auto first = rows.columns.begin() + rows.begin[row];
+    const auto found = std::lower_bound(first, rows.columns.begin() + rows.begin[row + 1], column);
+    rows.values[found - rows.columns.begin()] *= 2;
   }
-  mesh.ranks().sum(std::span(grams));
-  constexpr double threshold = 1e-10;
-  for (int b = 0; b < bodies.n; ++b)
-  {
-    const Eigen::Map<const Gram> gram(&grams[static_cast<std::size_t>(b) * n * n]);
-    const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram);
-    if (!(eigen.eigenvalues()[0] > threshold * eigen.eigenvalues()[n - 1])) return false;
-  }
-  return true;
 }
+
+}  // namespace
 
 template <int dim>
 std::vector<double> raised(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
@@ -85,7 +64,8 @@ std::vector<double> raised(const fem::LagrangeSpace<dim>& space, std::span<const
 template <int dim>
 std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                                       const fem::LagrangeSpace<dim>& space, std::span<const double> start,
-                                      std::span<const Point<dim>> t, const algebra::SolverOptions& solver)
+                                      std::span<const Point<dim>> t, const FreeMotions<dim>& motions,
+                                      const algebra::SolverOptions& solver)
 {
   const fem::Constraints constraints = fem::dirichlet(rich.problem(), space);
   std::vector<double> load(rich.load().begin(), rich.load().end());
@@ -99,8 +79,9 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
   const std::vector<double> internal = contact::apply_stiffness(rich.problem(), space, start);
   const double scale = space.norm(r) + space.norm(internal);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = constraints.fixed[i] ? 0 : r[i] - internal[i];
-  const algebra::SparseMatrix matrix(dim, contact::stiffness(rich.problem(), space, constraints),
-                                     space.numbers());
+  algebra::SparseRows rows = contact::stiffness(rich.problem(), space, constraints);
+  if (motions.size() > 0) add_springs<dim>(rows, space, motions.supports(space));
+  const algebra::SparseMatrix matrix(dim, std::move(rows), space.numbers());
   algebra::LinearSolver linear(solver, space, algebra::MatrixKind::positive_definite);
   constexpr double tight = 1e-12;
   std::vector<double> u(space.n_dofs(), 0.0);
@@ -109,17 +90,15 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
   return &space == &rich.space() ? u : raised(space, std::span<const double>(u), rich.space());
 }
 
-template bool held_by_conditions(const problem::Problem<2>&, const mesh::Mesh<2>&);
-template bool held_by_conditions(const problem::Problem<3>&, const mesh::Mesh<3>&);
 template std::vector<double> raised(const fem::LagrangeSpace<2>&, std::span<const double>,
                                     const fem::LagrangeSpace<2>&);
 template std::vector<double> raised(const fem::LagrangeSpace<3>&, std::span<const double>,
                                     const fem::LagrangeSpace<3>&);
 template std::vector<double> balanced_solution(const contact::NitscheForm<2>&, const fem::LagrangeSpace<2>&,
                                                std::span<const double>, std::span<const Point<2>>,
-                                               const algebra::SolverOptions&);
+                                               const FreeMotions<2>&, const algebra::SolverOptions&);
 template std::vector<double> balanced_solution(const contact::NitscheForm<3>&, const fem::LagrangeSpace<3>&,
                                                std::span<const double>, std::span<const Point<3>>,
-                                               const algebra::SolverOptions&);
+                                               const FreeMotions<3>&, const algebra::SolverOptions&);
 
 }  // namespace tribound::certify

@@ -1,21 +1,17 @@
 #pragma once
 
 /// @file balanced_solution.h
-/// The discrete solution with a given contact traction, and the stress that balances it.
+/// The discrete solution with a given contact traction.
 
 #include <span>
 #include <vector>
 
 #include "tribound/algebra/linear_solver.h"
-#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/energy/free_motions.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
 {
-
-/// Whether displacement conditions hold every body by themselves. All ranks together.
-template <int dim>
-[[nodiscard]] bool held_by_conditions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh);
 
 /// The same function in a space of higher degree on the same mesh: values at its nodes.
 template <int dim>
@@ -24,13 +20,15 @@ template <int dim>
 
 /// u~ of `space` with a(u~, v) = L(v) + (t, [v])_C for all v of it, load and contact points being those of
 /// `rich`, whose space contains it: as degrees of freedom of that. The residual is 1e-12 of the forces, up to
-/// rounding; from `start`, whose fixed degrees of freedom have their values. held_by_conditions() is
-/// required.
+/// rounding; from `start`, whose fixed degrees of freedom have their values. Load and t have to do no work in
+/// the free motions: of the solutions, which these tell apart, that is taken which leaves
+/// FreeMotions::supports() as they are in `start`.
 template <int dim>
 [[nodiscard]] std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                                                     const fem::LagrangeSpace<dim>& space,
                                                     std::span<const double> start,
                                                     std::span<const Point<dim>> t,
+                                                    const FreeMotions<dim>& motions,
                                                     const algebra::SolverOptions& solver);
 
 }  // namespace tribound::certify

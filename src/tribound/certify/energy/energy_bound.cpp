@@ -12,8 +12,10 @@
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/admissible_traction.h"
 #include "tribound/certify/energy/balanced_solution.h"
+#include "tribound/certify/energy/balanced_traction.h"
 #include "tribound/certify/energy/cell_distances.h"
 #include "tribound/certify/energy/edge_moments.h"
+#include "tribound/certify/energy/free_motions.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/degree.h"
@@ -34,7 +36,6 @@ std::string why_not(const contact::NitscheForm<dim>& form)
   if (std::string unfit = obstacles_unfit(form); !unfit.empty()) return unfit;
   if (form.space().mesh().ranks().any(form.history() != nullptr && form.history()->states().size() > 0))
     return "contact remembers earlier load steps";
-  if (!held_by_conditions(form.problem(), form.space().mesh())) return "contact alone holds a body";
   return {};
 }
 
@@ -100,6 +101,7 @@ struct EnergyEstimator<dim>::Parts
         equilibrator(form),
         facets(form),
         gaps(form, facets),
+        motions(form.problem(), form.space().mesh()),
         data(data_terms(form)),
         oscillation(certify::oscillation(form, data))
   {
@@ -118,6 +120,7 @@ struct EnergyEstimator<dim>::Parts
   mutable Equilibrator<dim> equilibrator;
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
+  FreeMotions<dim> motions;
   DataTerms data;
   std::vector<double> oscillation;  ///< O_T
 };
@@ -129,6 +132,7 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
 {
   if (!reason_.empty()) return;
   parts_ = std::make_unique<Parts>(form);
+  if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
 }
 
@@ -198,8 +202,11 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   const std::vector<double> rich_u =
       is_raised ? raised(form_.space(), u, form.space()) : std::vector<double>(u.begin(), u.end());
   const std::vector<Point<dim>> t = form.traction(rich_u);
-  const AdmissibleTraction<dim> t_h = admissible_traction<dim>(form, t);
-  const std::vector<double> balanced = balanced_solution<dim>(form, form_.space(), u, t_h.at_points, solver_);
+  const std::optional<AdmissibleTraction<dim>> traction = balanced_traction<dim>(form, parts_->motions, t);
+  if (!traction) return {.reason = "no contact traction was found that obeys the law and holds a body"};
+  const AdmissibleTraction<dim>& t_h = *traction;
+  const std::vector<double> balanced =
+      balanced_solution<dim>(form, form_.space(), u, t_h.at_points, parts_->motions, solver_);
   std::vector<Tensor<dim>> turning;
   if (is_raised)
     turning = edge_moments<dim>(

@@ -1,0 +1,26 @@
+#pragma once
+
+/// @file balanced_traction.h
+/// Contact tractions that obey the law and hold the bodies that nothing else does.
+
+#include <optional>
+#include <span>
+
+#include "tribound/certify/energy/admissible_traction.h"
+#include "tribound/certify/energy/free_motions.h"
+
+namespace tribound::certify
+{
+
+/// Of the tractions t_h that admissible_traction() chooses from the nearest to t with
+///     L(z) + (t_h, z)_C = 0   for all free motions z,
+/// up to 1e-13 of the forces. It is t_h(lambda), the nearest to t + sum_i lambda_i z_i, for some lambda: the
+/// minimum of a convex function of lambda, whose gradient these conditions are, found by Newton's method. On
+/// a mesh with free motions it is absent where that finds none, as where loads pull a body off its
+/// obstacle. All ranks together.
+template <int dim>
+[[nodiscard]] std::optional<AdmissibleTraction<dim>> balanced_traction(const contact::NitscheForm<dim>& form,
+                                                                       const FreeMotions<dim>& motions,
+                                                                       std::span<const Point<dim>> t);
+
+}  // namespace tribound::certify

@@ -1,0 +1,65 @@
+#pragma once
+
+/// @file free_motions.h
+/// The rigid motions of bodies that displacement conditions do not stop.
+
+#include <span>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/contact/support/rigid_modes.h"
+#include "tribound/fem/space.h"
+#include "tribound/mesh/bodies.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::certify
+{
+
+/// The rigid motions of each body whose fixed components vanish on Gamma_D, as an orthonormal basis of their
+/// coefficients (contact::RigidModes): up to d(d+1)/2 for each body, none for those that conditions hold. All
+/// ranks, which construct it and call its members together, have those of all bodies.
+template <int dim>
+class FreeMotions
+{
+ public:
+  FreeMotions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh);
+
+  /// Whether it cannot be told of some motion if conditions stop it: they hardly do.
+  [[nodiscard]] bool is_unclear() const { return is_unclear_; }
+  /// Of all bodies.
+  [[nodiscard]] std::size_t size() const { return motions_.size(); }
+  [[nodiscard]] int n_bodies() const { return bodies_.n; }
+  [[nodiscard]] int body_of(Index cell) const { return bodies_.of_cell[cell]; }
+
+  /// Numbers of motions.
+  struct Range
+  {
+    int begin;
+    int end;
+    [[nodiscard]] int size() const { return end - begin; }
+  };
+  [[nodiscard]] Range of_body(int body) const { return {begin_[body], begin_[body + 1]}; }
+  [[nodiscard]] Range of_cell(Index cell) const { return of_body(body_of(cell)); }
+
+  /// z_i(x).
+  [[nodiscard]] Point<dim> operator()(int i, const Point<dim>& x) const
+  {
+    return modes_[i].at(x) * motions_[i];
+  }
+
+  /// As many degrees of freedom as motions, those of each body such that no motion but 0 leaves them all at
+  /// rest, far from each other. What this rank owns of them: dim * k + component for the own node k.
+  [[nodiscard]] std::vector<Index> supports(const fem::LagrangeSpace<dim>& space) const;
+
+ private:
+  using Modes = contact::RigidModes<dim>;
+
+  mesh::Bodies bodies_;
+  std::vector<int> begin_;                             ///< per body: its first motion
+  std::vector<Modes> modes_;                           ///< per motion: those of its body
+  std::vector<typename Modes::Coefficients> motions_;  ///< z_i
+  bool is_unclear_ = false;
+};
+
+}  // namespace tribound::certify
