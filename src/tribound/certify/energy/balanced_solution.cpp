@@ -1,10 +1,9 @@
 #include "tribound/certify/energy/balanced_solution.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
-#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/certify/energy/elastic_system.h"
 
 namespace tribound::certify
 {
@@ -31,21 +30,6 @@ void for_each_inclusion(const fem::LagrangeSpace<dim>& space, const fem::Lagrang
     }
 }
 
-/// A spring at each degree of freedom, given as a row, as stiff as the body is there. As many as there are
-/// free motions to stop: when the load does no work in these, neither does any spring.
-template <int dim>
-void add_springs(algebra::SparseRows& rows, const fem::LagrangeSpace<dim>& space,
-                 std::span<const Index> supports)
-{
-  for (const Index row : supports)
-  {
-    const Index column = dim * space.owned_node(row / dim) + row % dim;
-    const auto first = rows.columns.begin() + rows.begin[row];
-    const auto found = std::lower_bound(first, rows.columns.begin() + rows.begin[row + 1], column);
-    rows.values[found - rows.columns.begin()] *= 2;
-  }
-}
-
 }  // namespace
 
 template <int dim>
@@ -67,7 +51,6 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                                       std::span<const Point<dim>> t, const FreeMotions<dim>& motions,
                                       const algebra::SolverOptions& solver)
 {
-  const fem::Constraints constraints = fem::dirichlet(rich.problem(), space);
   std::vector<double> load(rich.load().begin(), rich.load().end());
   rich.add_contact_load(t, load);
   std::vector<double> r(space.n_dofs(), 0.0);
@@ -76,18 +59,12 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                      {
                        for (int a = 0; a < dim; ++a) r[dim * node + a] += value * load[dim * richer + a];
                      });
-  const std::vector<double> internal = contact::apply_stiffness(rich.problem(), space, start);
-  const double scale = space.norm(r) + space.norm(internal);
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = constraints.fixed[i] ? 0 : r[i] - internal[i];
-  algebra::SparseRows rows = contact::stiffness(rich.problem(), space, constraints);
-  if (motions.size() > 0) add_springs<dim>(rows, space, motions.supports(space));
-  const algebra::SparseMatrix matrix(dim, std::move(rows), space.numbers());
-  algebra::LinearSolver linear(solver, space, algebra::MatrixKind::positive_definite);
   constexpr double tight = 1e-12;
-  std::vector<double> u(space.n_dofs(), 0.0);
-  (void)linear.solve(matrix, r, tight * scale, u);
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] = constraints.fixed[i] ? start[i] : start[i] + u[i];
-  return &space == &rich.space() ? u : raised(space, std::span<const double>(u), rich.space());
+  const std::vector<Index> supports = motions.size() > 0 ? motions.supports(space) : std::vector<Index>();
+  const ElasticSystem<dim> system(rich.problem(), space, fem::dirichlet(rich.problem(), space).fixed, solver,
+                                  {}, supports);
+  const std::vector<double> u = system.solve(r, start, tight);
+  return &space == &rich.space() ? u : raised(space, u, rich.space());
 }
 
 template std::vector<double> raised(const fem::LagrangeSpace<2>&, std::span<const double>,

@@ -1,0 +1,86 @@
+#include "tribound/certify/energy/elastic_system.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tribound/algebra/petsc.h"
+#include "tribound/contact/nitsche/elasticity.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+struct ElasticSystem<dim>::Factors
+{
+  algebra::SparseMatrix matrix;
+  algebra::LinearSolver linear;
+};
+
+namespace
+{
+
+/// A spring at each degree of freedom, given as a row, as stiff as the body is there. As many as there are
+/// free motions to stop: when the load does no work in these, neither does any spring.
+template <int dim>
+void add_springs(algebra::SparseRows& rows, const fem::LagrangeSpace<dim>& space,
+                 std::span<const Index> supports)
+{
+  for (const Index row : supports)
+  {
+    const Index column = dim * space.owned_node(row / dim) + row % dim;
+    const auto first = rows.columns.begin() + rows.begin[row];
+    const auto found = std::lower_bound(first, rows.columns.begin() + rows.begin[row + 1], column);
+    rows.values[found - rows.columns.begin()] *= 2;
+  }
+}
+
+template <int dim>
+algebra::SparseMatrix matrix_of(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                const std::vector<char>& fixed, algebra::Triplets springs,
+                                std::span<const Index> supports)
+{
+  const fem::Constraints constraints{.fixed = fixed, .values = std::vector<double>(fixed.size(), 0.0)};
+  algebra::SparseRows rows = contact::stiffness(problem, space, constraints);
+  add_springs<dim>(rows, space, supports);
+  algebra::SparseMatrix stiffness(dim, std::move(rows), space.numbers());
+  if (!space.mesh().ranks().any(!springs.rows.empty())) return stiffness;
+  const algebra::SparseMatrix added(space.n_dofs(), dim, std::move(springs), space.numbers());
+  return algebra::SparseMatrix::sum(stiffness, added);
+}
+
+}  // namespace
+
+template <int dim>
+ElasticSystem<dim>::ElasticSystem(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                  std::vector<char> fixed, const algebra::SolverOptions& solver,
+                                  algebra::Triplets springs, std::span<const Index> supports)
+    : problem_(problem),
+      space_(space),
+      fixed_(std::move(fixed)),
+      factors_(std::make_unique<Factors>(
+          Factors{matrix_of(problem, space, fixed_, std::move(springs), supports),
+                  algebra::LinearSolver(solver, space, algebra::MatrixKind::positive_definite)}))
+{
+}
+
+template <int dim>
+ElasticSystem<dim>::~ElasticSystem() = default;
+
+template <int dim>
+std::vector<double> ElasticSystem<dim>::solve(std::span<const double> b, std::span<const double> start,
+                                              double tolerance) const
+{
+  const std::vector<double> internal = contact::apply_stiffness(problem_, space_, start);
+  const double scale = space_.norm(b) + space_.norm(internal);
+  std::vector<double> r(b.size(), 0.0);
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed_[i] != 0 ? 0 : b[i] - internal[i];
+  std::vector<double> u(r.size(), 0.0);
+  (void)factors_->linear.solve(factors_->matrix, r, tolerance * scale, u);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = fixed_[i] != 0 ? start[i] : start[i] + u[i];
+  return u;
+}
+
+template class ElasticSystem<2>;
+template class ElasticSystem<3>;
+
+}  // namespace tribound::certify

@@ -1,0 +1,47 @@
+#pragma once
+
+/// @file elastic_system.h
+/// Linear elasticity on a space, solved for many loads.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tribound/algebra/linear_solver.h"
+#include "tribound/algebra/triplets.h"
+#include "tribound/fem/space.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::certify
+{
+
+/// a(u, w) + s(u, w) = b(w) for all w of the space that vanish at fixed degrees of freedom, s springs on the
+/// boundary. Keeps references and factors. All ranks construct and call it together.
+template <int dim>
+class ElasticSystem
+{
+ public:
+  /// `springs`: entries of s between free degrees of freedom; `supports`: degrees of freedom of own nodes at
+  /// each of which a spring is as stiff as the body. With these the fixed ones are to hold every body.
+  ElasticSystem(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                std::vector<char> fixed, const algebra::SolverOptions& solver, algebra::Triplets springs = {},
+                std::span<const Index> supports = {});
+  ~ElasticSystem();
+  ElasticSystem(const ElasticSystem&) = delete;
+  ElasticSystem& operator=(const ElasticSystem&) = delete;
+
+  /// u, with the values of `start` at fixed degrees of freedom; `b` at all degrees of freedom of own nodes,
+  /// without springs. The residual is `tolerance` of the forces, up to rounding. Throws SolveError.
+  [[nodiscard]] std::vector<double> solve(std::span<const double> b, std::span<const double> start,
+                                          double tolerance) const;
+
+ private:
+  struct Factors;
+
+  const problem::Problem<dim>& problem_;
+  const fem::LagrangeSpace<dim>& space_;
+  std::vector<char> fixed_;
+  std::unique_ptr<Factors> factors_;
+};
+
+}  // namespace tribound::certify
