@@ -16,6 +16,7 @@
 #include "tribound/problem/formula.h"
 #include "tribound/problem/normal_field.h"
 #include "tribound/problem/problem.h"
+#include "tribound/problem/quantity.h"
 #include "tribound/problem/surface.h"
 #include "tribound/problem/water.h"
 
@@ -76,6 +77,7 @@
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/friedrichs.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/energy/quantity_interval.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/equilibrate/stress.h"
 

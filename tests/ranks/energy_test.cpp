@@ -121,6 +121,62 @@ std::vector<double> energy_bound(const mesh::Mesh<dim>& mesh, const ProblemData<
           eta.gap,   eta.correction, eta.contact, mesh.ranks().sum(cells)};
 }
 
+/// Ends and values of the intervals of a wave, with their sizes for rounding.
+template <int dim>
+std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, int degree)
+{
+  using problem::QuantityKind;
+  ProblemData<dim> data = pressed_block<dim>(Coulomb(0.3));
+  data.boundaries.push_back(obstacle<dim>(dim == 2 ? "right" : "front", Tresca(0.1), 0.02));
+  if (dim == 2) std::erase_if(data.boundaries, [](const auto& b) { return b.name == "right" && !b.contact; });
+  const problem::Problem<dim> problem = data.on(mesh);
+  const fem::LagrangeSpace<dim> space(mesh, degree);
+  const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
+  std::vector<double> u;
+  for (const Point<dim>& x : space.node_points())
+    for (int a = 0; a < dim; ++a)
+      u.push_back(form.constraints().fixed[u.size()] ? 0 : 0.05 * std::sin(5 * x[0] + 3 * x[dim - 1] + a));
+  const std::vector<problem::Quantity<dim>> quantities = {
+      {.name = "energy"},
+      {.name = "work", .kind = QuantityKind::load_work},
+      {.name = "force", .kind = QuantityKind::contact_force, .boundary = "bottom"},
+      {.name = "moment", .kind = QuantityKind::contact_moment, .boundary = "bottom"},
+      {.name = "safety", .kind = QuantityKind::safety_factor, .boundary = "bottom"},
+      {.name = "u", .kind = QuantityKind::mean_displacement, .boundary = "top"},
+      {.name = "u of contact", .kind = QuantityKind::mean_displacement, .boundary = "bottom"}};
+  const certify::EnergyBound bound =
+      certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct}, quantities)(u);
+  EXPECT_EQ(bound.reason, "");
+  std::vector<std::array<double, 2>> result;
+  for (const certify::QuantityInterval& q : bound.quantities)
+  {
+    const double size = std::max(std::abs(q.lower), std::abs(q.upper));
+    double cells = 0;
+    for (const double cell : q.cells) cells += cell;
+    cells = mesh.ranks().sum(cells);
+    for (const double x : {q.lower, q.upper, q.value, cells}) result.push_back({x, size});
+  }
+  return result;
+}
+
+TEST(Quantities, HaveTheIntervalsOfTheWhole)
+{
+  const Ranks ranks = Ranks::world();
+  const auto expect_same_intervals = [&]<int dim>(int degree)
+  {
+    const mesh::Mesh<dim> whole(distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
+    const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr);
+    const auto expected = intervals<dim>(whole, degree);
+    const auto found = intervals<dim>(part, degree);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_NEAR(found[i][0], expected[i][0], 1e-9 * (expected[i][1] + std::abs(expected[i][0])))
+          << dim << "D, p = " << degree << ", " << i;
+  };
+  for (int degree = 1; degree <= 3; ++degree) expect_same_intervals.template operator()<2>(degree);
+  for (int degree = 1; degree <= 2; ++degree) expect_same_intervals.template operator()<3>(degree);
+}
+
 TEST(EnergyBound, IsThatOfTheWhole)
 {
   const Ranks ranks = Ranks::world();

@@ -16,6 +16,7 @@
 #include "tribound/certify/energy/cell_distances.h"
 #include "tribound/certify/energy/edge_moments.h"
 #include "tribound/certify/energy/free_motions.h"
+#include "tribound/certify/energy/quantity_bounds.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/degree.h"
@@ -127,13 +128,16 @@ struct EnergyEstimator<dim>::Parts
 
 template <int dim>
 EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
-                                      const algebra::SolverOptions& solver)
+                                      const algebra::SolverOptions& solver,
+                                      const std::vector<problem::Quantity<dim>>& quantities)
     : form_(form), solver_(solver), reason_(why_not(form))
 {
+  if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
   parts_ = std::make_unique<Parts>(form);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
+  if (reason_.empty() && quantities_) quantities_->prepare(parts_->form, solver, parts_->motions.size() == 0);
 }
 
 template <int dim>
@@ -195,7 +199,23 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
 template <int dim>
 EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
 {
-  if (!reason_.empty()) return {.reason = reason_};
+  std::vector<QuantityInterval> intervals;
+  const auto use = [&](const BoundedState<dim>& state)
+  {
+    if (!quantities_) return;
+    intervals = quantities_->from_equilibrium(u, {});
+    quantities_->add_bounded(state, intervals);
+  };
+  EnergyBound result = reason_.empty() ? bound(u, use) : EnergyBound{.reason = reason_};
+  if (quantities_ && intervals.empty()) intervals = quantities_->from_equilibrium(u, result.reason);
+  result.quantities = std::move(intervals);
+  return result;
+}
+
+template <int dim>
+template <class Use>
+EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& use) const
+{
   const contact::NitscheForm<dim>& form = parts_->form;
   const Ranks& ranks = form.space().mesh().ranks();
   const bool is_raised = &form != &form_;
@@ -233,6 +253,8 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   if (ranks.any(std::ranges::any_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
                                     { return problem::cone(segment.contact->law).coefficient > 0; })))
     best.target = EnergyTarget::computed_friction;
+  if (best.reason.empty())
+    use(BoundedState<dim>(form, best.is_open ? *v.open : *v.closed, stress, t_h, best));
   return best;
 }
 

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "tribound/algebra/linear_solver.h"
+#include "tribound/certify/energy/quantity_interval.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/problem/quantity.h"
 
 namespace tribound::certify
 {
@@ -44,10 +46,16 @@ struct EnergyBound
   bool is_open = true;  ///< which v is the better: facets in transition taken for open and slipping
   /// Per own cell ||tau - sigma(v)||^2 + 4 G_F of its facets, for marking.
   std::vector<double> cells{};
+  /// Intervals of the numbers that were asked for. Those that follow from equilibrium are there without a
+  /// bound, too.
+  std::vector<QuantityInterval> quantities{};
 };
 
 /// Above this share of the stress a cell does not balance: there is no bound.
 inline constexpr double cell_balance_limit = 1e-8;
+
+template <int dim>
+class QuantityBounds;
 
 /// Bounds the error of functions on one mesh. A statically admissible stress tau has the contact traction
 /// t_h, the nearest to T(u) that obeys the law everywhere: u~ with a(u~, v) = L(v) + (t_h, v)_C is
@@ -60,8 +68,10 @@ template <int dim>
 class EnergyEstimator
 {
  public:
-  /// The form must outlive the object; `solver`: for u~, which is solved for to 1e-12.
-  EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver);
+  /// The form must outlive the object; `solver`: for u~, which is solved for to 1e-12. Throws InputError for
+  /// quantities that the problem does not have, and SolveError where their dual problems cannot be solved.
+  EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver,
+                  const std::vector<problem::Quantity<dim>>& quantities = {});
   ~EnergyEstimator();
   EnergyEstimator(const EnergyEstimator&) = delete;
   EnergyEstimator& operator=(const EnergyEstimator&) = delete;
@@ -74,10 +84,15 @@ class EnergyEstimator
  private:
   struct Parts;
 
+  /// The bound without quantities, for which `use` is called with what it was made of.
+  template <class Use>
+  [[nodiscard]] EnergyBound bound(std::span<const double> u, const Use& use) const;
+
   const contact::NitscheForm<dim>& form_;
   algebra::SolverOptions solver_;
   std::string reason_;
   std::unique_ptr<Parts> parts_;
+  std::unique_ptr<QuantityBounds<dim>> quantities_;  ///< null: none
 };
 
 }  // namespace tribound::certify

@@ -1,0 +1,74 @@
+#pragma once
+
+/// @file contact_resultant.h
+/// Forces and moments of contact: as rigid motions with which tractions are multiplied, and what statics say
+/// of them.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/problem/quantity.h"
+
+namespace tribound::certify
+{
+
+/// m(x) = translation + spin (x - centre), spin skew.
+template <int dim>
+struct RigidMotion
+{
+  Point<dim> translation = Point<dim>::Zero();
+  Tensor<dim> spin = Tensor<dim>::Zero();
+  Point<dim> centre = Point<dim>::Zero();
+
+  [[nodiscard]] Point<dim> operator()(const Point<dim>& x) const { return translation + spin * (x - centre); }
+};
+
+/// The motion whose product with forces is their moment about the point, in 3D about `axis` through it.
+template <int dim>
+[[nodiscard]] RigidMotion<dim> rotation(const Point<dim>& point, const Point<dim>& axis);
+
+/// integral of sigma(u) n . m over the facets against obstacles and the slaves of one boundary, or of all.
+template <int dim>
+struct ContactResultant
+{
+  int tag = -1;  ///< of the boundary; -1: all
+  RigidMotion<dim> motion{};
+
+  [[nodiscard]] bool has(const mesh::BoundaryFacet& facet) const { return tag < 0 || facet.tag == tag; }
+};
+
+/// A number up to rounding and what quadrature may miss.
+struct KnownNumber
+{
+  double value = 0;
+  double uncertainty = 0;
+};
+
+/// The resultant where it follows from equilibrium: where the motion of the bodies on whose contact
+/// boundaries it is taken is stopped by nothing else. Then it is -(f, m) - (g_N, m)_N over these bodies, of
+/// every solution, whatever the laws of contact are. All ranks together.
+template <int dim>
+[[nodiscard]] std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
+                                                          const ContactResultant<dim>& resultant);
+
+/// The motion as a weight of degree 1 on the facets of the resultant that is a trace from H^1_D: 0 on other
+/// contact facets and along directions that Gamma_D fixes.
+template <int dim>
+struct ContactWeight
+{
+  std::vector<double> at_nodes;       ///< degrees of freedom of the space; 0 off these facets
+  std::vector<Point<dim>> at_points;  ///< at the contact points of the form
+  std::string note{};                 ///< where the weight is not the motion itself
+};
+
+/// The motion times min(1, d / ramp) at the vertices, d the distance from where it would jump; ramp = 0: a
+/// tenth of the diagonal of the box around the boundary. Against obstacles alone. All ranks together.
+template <int dim>
+[[nodiscard]] ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
+                                                const ContactResultant<dim>& resultant, double ramp);
+
+}  // namespace tribound::certify

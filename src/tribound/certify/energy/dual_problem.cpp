@@ -1,0 +1,144 @@
+#include "tribound/certify/energy/dual_problem.h"
+
+#include <utility>
+
+#include "tribound/certify/bound/checks.h"
+#include "tribound/certify/energy/energy_bound.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+DualProblem<dim>::DualProblem(const contact::NitscheForm<dim>& form, problem::Problem<dim> problem)
+    : problem_(std::move(problem)),
+      form_(problem_, form.space(), form.gamma0(),
+            std::vector(form.segments().begin(), form.segments().end())),
+      equilibrator_(std::make_unique<Equilibrator<dim>>(form_))
+{
+}
+
+template <int dim>
+std::vector<double> DualProblem<dim>::load(std::span<const Point<dim>> t) const
+{
+  std::vector<double> result(form_.load().begin(), form_.load().end());
+  form_.add_contact_load(t, result);
+  return result;
+}
+
+template <int dim>
+Stress<dim> DualProblem<dim>::balanced(std::span<const double> z, std::span<const Point<dim>> t,
+                                       std::string& reason) const
+{
+  Stress<dim> stress = equilibrator_->balanced(z, t, {});
+  if (!(check_identities<dim>(form_, t, stress).largest(stress.degree) <= cell_balance_limit))
+    reason = "an identity of the dual stress is violated";
+  return stress;
+}
+
+namespace
+{
+
+/// The problem with u_D = 0, its boundaries and regions changed further.
+template <int dim, class ChangeBoundary, class ChangeRegion>
+problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                              const ChangeBoundary& change_boundary, const ChangeRegion& change_region)
+{
+  std::vector<problem::Region<dim>> regions(problem.regions().begin(), problem.regions().end());
+  for (problem::Region<dim>& region : regions) change_region(region);
+  std::vector<problem::BoundaryCondition<dim>> boundaries(problem.boundaries().begin(),
+                                                          problem.boundaries().end());
+  for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
+  {
+    for (std::optional<problem::Field>& component : boundaries[tag].displacement)
+      if (component) component = problem::Field(0.0);
+    change_boundary(static_cast<int>(tag), boundaries[tag]);
+  }
+  return {mesh, regions, boundaries};
+}
+
+template <int dim>
+void unload(problem::BoundaryCondition<dim>& boundary)
+{
+  boundary.traction = {};
+  boundary.pressure.reset();
+}
+
+}  // namespace
+
+template <int dim>
+problem::Problem<dim> with_loads(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+{
+  return changed<dim>(
+      problem, mesh, [](int, const auto&) {}, [](const auto&) {});
+}
+
+template <int dim>
+problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int tag,
+                                   const Point<dim>& q)
+{
+  return changed<dim>(
+      problem, mesh,
+      [&](int number, problem::BoundaryCondition<dim>& boundary)
+      {
+        unload(boundary);
+        for (int a = 0; a < dim && number == tag; ++a) boundary.traction[a] = problem::Field(q[a]);
+      },
+      [](problem::Region<dim>& region) { region.body_force = {}; });
+}
+
+template <int dim>
+problem::Problem<dim> without_loads(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+{
+  return with_load_on<dim>(problem, mesh, -1, Point<dim>::Zero());
+}
+
+template <int dim>
+const ElasticSystem<dim>& DualSystems<dim>::with_free_contact()
+{
+  if (!free_)
+    free_ = std::make_unique<ElasticSystem<dim>>(form_.problem(), form_.space(), form_.constraints().fixed,
+                                                 solver_);
+  return *free_;
+}
+
+template <int dim>
+const ElasticSystem<dim>& DualSystems<dim>::with_held_contact()
+{
+  if (held_) return *held_;
+  std::vector<char> fixed = form_.constraints().fixed;
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  for (const contact::ContactSegment<dim>& segment : form_.segments())
+  {
+    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    for (int i = 0; i < space.basis().n_nodes(); ++i)
+      for (int a = 0; a < dim && space.basis().node(i)[facet.local] == 0; ++a)
+        fixed[dim * space.cell_nodes(facet.cell)[i] + a] = 1;
+  }
+  space.update(std::span(fixed));
+  held_ = std::make_unique<ElasticSystem<dim>>(form_.problem(), space, std::move(fixed), solver_);
+  return *held_;
+}
+
+template <int dim>
+const DualProblem<dim>& DualSystems<dim>::unloaded()
+{
+  if (!unloaded_)
+    unloaded_ =
+        std::make_unique<DualProblem<dim>>(form_, without_loads<dim>(form_.problem(), form_.space().mesh()));
+  return *unloaded_;
+}
+
+template class DualProblem<2>;
+template class DualProblem<3>;
+template class DualSystems<2>;
+template class DualSystems<3>;
+template problem::Problem<2> without_loads(const problem::Problem<2>&, const mesh::Mesh<2>&);
+template problem::Problem<3> without_loads(const problem::Problem<3>&, const mesh::Mesh<3>&);
+template problem::Problem<2> with_loads(const problem::Problem<2>&, const mesh::Mesh<2>&);
+template problem::Problem<3> with_loads(const problem::Problem<3>&, const mesh::Mesh<3>&);
+template problem::Problem<2> with_load_on(const problem::Problem<2>&, const mesh::Mesh<2>&, int,
+                                          const Point<2>&);
+template problem::Problem<3> with_load_on(const problem::Problem<3>&, const mesh::Mesh<3>&, int,
+                                          const Point<3>&);
+
+}  // namespace tribound::certify

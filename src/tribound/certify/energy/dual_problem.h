@@ -1,0 +1,79 @@
+#pragma once
+
+/// @file dual_problem.h
+/// Problems of linear elasticity whose solutions tell what the error means for a number.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/certify/energy/contact_resultant.h"
+#include "tribound/certify/energy/dual_products.h"
+#include "tribound/certify/energy/elastic_system.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::certify
+{
+
+/// The body of a problem with u_D = 0 and other loads; what contact exerts is given. Its form has the space
+/// and the segments of the given one, to which it keeps references, and is one for tractions alone. All ranks
+/// construct and call it together.
+template <int dim>
+class DualProblem
+{
+ public:
+  DualProblem(const contact::NitscheForm<dim>& form, problem::Problem<dim> problem);
+  DualProblem(const DualProblem&) = delete;
+  DualProblem& operator=(const DualProblem&) = delete;
+
+  [[nodiscard]] const contact::NitscheForm<dim>& form() const { return form_; }
+  /// (load, phi_i) + (t, phi_i)_C, t at the contact points.
+  [[nodiscard]] std::vector<double> load(std::span<const Point<dim>> t) const;
+  /// Of z, which is in equilibrium with these loads; `reason` says what is wrong with it, if anything.
+  [[nodiscard]] Stress<dim> balanced(std::span<const double> z, std::span<const Point<dim>> t,
+                                     std::string& reason) const;
+
+ private:
+  problem::Problem<dim> problem_;
+  contact::NitscheForm<dim> form_;
+  std::unique_ptr<Equilibrator<dim>> equilibrator_;
+};
+
+/// Without loads, with those of the problem, or with the traction q on one boundary.
+template <int dim>
+[[nodiscard]] problem::Problem<dim> without_loads(const problem::Problem<dim>& problem,
+                                                  const mesh::Mesh<dim>& mesh);
+template <int dim>
+[[nodiscard]] problem::Problem<dim> with_loads(const problem::Problem<dim>& problem,
+                                               const mesh::Mesh<dim>& mesh);
+template <int dim>
+[[nodiscard]] problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem,
+                                                 const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q);
+
+/// a(z, w) = ... with Gamma_C free, or held as well as Gamma_D; made when first needed.
+template <int dim>
+class DualSystems
+{
+ public:
+  DualSystems(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver)
+      : form_(form), solver_(solver)
+  {
+  }
+
+  [[nodiscard]] const ElasticSystem<dim>& with_free_contact();
+  [[nodiscard]] const ElasticSystem<dim>& with_held_contact();
+  /// Without loads.
+  [[nodiscard]] const DualProblem<dim>& unloaded();
+
+ private:
+  const contact::NitscheForm<dim>& form_;
+  algebra::SolverOptions solver_;
+  std::unique_ptr<ElasticSystem<dim>> free_;
+  std::unique_ptr<ElasticSystem<dim>> held_;
+  std::unique_ptr<DualProblem<dim>> unloaded_;
+};
+
+}  // namespace tribound::certify

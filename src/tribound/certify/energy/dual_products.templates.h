@@ -1,0 +1,110 @@
+#pragma once
+
+/// @file dual_products.templates.h
+/// The definition of dual_products.h, for the kernels alone (certify/energy/kernel.cpp.in).
+
+#include <algorithm>
+#include <memory>
+
+#include "tribound/base/norm.h"
+#include "tribound/base/parallel.h"
+#include "tribound/certify/energy/admissible_stress.h"
+#include "tribound/certify/energy/dual_products.h"
+#include "tribound/certify/equilibrate/cell_operator.h"
+
+namespace tribound::certify
+{
+
+namespace detail
+{
+
+/// One cell after another, for one thread.
+template <int dim, int q>
+class DualCell
+{
+ public:
+  DualCell(const contact::NitscheForm<dim>& form, const Stress<dim>& stress, std::span<const double> v)
+      : form_(form), stress_(stress), v_(v)
+  {
+  }
+
+  void move_to(Index cell)
+  {
+    cell_ = cell;
+    sorted_ = make_sorted_cell(form_.space().mesh(), cell);
+    material_ = &form_.problem().material(form_.space().mesh().region(cell));
+    error_ = solver_.solve(sorted_, *material_, stress_.dis_in(cell), sigma(v_)).difference;
+    tau_ = on_pieces<dim, q>(sigma(v_));
+    add_multiple(tau_, 1, error_);
+  }
+
+  /// Sets the products of the cell; returns the part of its dual stress that is not balanced.
+  [[nodiscard]] double add(const DualPair<dim>& pair, DualProducts& products)
+  {
+    double unbalanced = 0;
+    const PiecewiseStress<dim, q> of_z = on_pieces<dim, q>(sigma(pair.z));
+    PiecewiseStress<dim, q> zeta;
+    if (pair.stress)
+    {
+      const std::span<const double> sigma_h = pair.stress->dis_in(cell_);
+      const auto nearest = solver_.solve(sorted_, *material_, sigma_h, sigma(pair.target));
+      zeta = on_pieces<dim, q>(sigma(pair.target));
+      add_multiple(zeta, 1, nearest.difference);
+      if (const double size = norm(sigma_h); size > 0) unbalanced = nearest.unbalanced / size;
+    }
+    products.work[cell_] = compliance_product(*material_, tau_, of_z);
+    PiecewiseStress<dim, q> sum = zeta;
+    add_multiple(sum, 1, of_z);
+    products.centre[cell_] = 0.5 * compliance_product(*material_, sum, error_);
+    add_multiple(zeta, -1, of_z);
+    products.square[cell_] = compliance_product(*material_, zeta, zeta);
+    return unbalanced;
+  }
+
+ private:
+  [[nodiscard]] auto sigma(std::span<const double> w) const
+  {
+    return discrete_stress<dim, q>(sorted_, *material_, form_.space().cell_nodes(cell_), w);
+  }
+
+  const contact::NitscheForm<dim>& form_;
+  const Stress<dim>& stress_;
+  std::span<const double> v_;
+  AdmissibleStressSolver<dim, q> solver_;
+  Index cell_ = 0;
+  SortedCell<dim> sorted_{};
+  const problem::Material* material_ = nullptr;
+  PiecewiseStress<dim, q> error_;  ///< tau - sigma(v)
+  PiecewiseStress<dim, q> tau_;
+};
+
+}  // namespace detail
+
+template <int dim, int q>
+std::vector<DualProducts> dual_products(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                                        std::span<const double> v,
+                                        std::span<const DualPair<dim>* const> pairs)
+{
+  const auto n_cells = static_cast<std::size_t>(form.space().mesh().n_owned_cells());
+  const std::vector<double> none(n_cells, 0.0);
+  std::vector<DualProducts> result(pairs.size(), DualProducts{none, none, none});
+  const int n_threads = max_threads();
+  std::vector<std::vector<double>> unbalanced(n_threads, std::vector<double>(pairs.size(), 0.0));
+  const auto on_thread = [&](int thread)
+  {
+    const auto cell = std::make_unique<detail::DualCell<dim, q>>(form, stress, v);
+    for (std::size_t k = n_cells * thread / n_threads; k < n_cells * (thread + 1) / n_threads; ++k)
+    {
+      cell->move_to(static_cast<Index>(k));
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        unbalanced[thread][i] = std::max(unbalanced[thread][i], cell->add(*pairs[i], result[i]));
+    }
+  };
+  in_threads(n_threads, on_thread);
+  for (const std::vector<double>& of_thread : unbalanced)
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      result[i].unbalanced = std::max(result[i].unbalanced, of_thread[i]);
+  return result;
+}
+
+}  // namespace tribound::certify

@@ -1,0 +1,55 @@
+#include "tribound/certify/energy/energy_interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribound::certify
+{
+
+template <int dim>
+bool is_homogeneous(const contact::NitscheForm<dim>& form)
+{
+  const auto is_zero = [](const problem::Field& field) { return field.is_zero(); };
+  bool result = true;
+  for (const problem::BoundaryCondition<dim>& boundary : form.problem().boundaries())
+  {
+    for (const std::optional<problem::Field>& component : boundary.displacement)
+      result = result && (!component || is_zero(*component));
+    result = result && (!boundary.contact || is_zero(*boundary.contact->gap));
+  }
+  return result;
+}
+
+template <int dim>
+void set_energy(const BoundedState<dim>& state, const DualPair<dim>& pair, const DualProducts& products,
+                bool is_homogeneous, QuantityInterval& interval)
+{
+  const EnergyBound& bound = state.bound;
+  const DualSums sums(products, state.form.space().mesh().ranks());
+  const double quarter = bound.gap - bound.mid * bound.mid;        // ||tau - sigma(v)||^2 / 4
+  const double of_mean = sums.square + 2 * sums.centre + quarter;  // ||(tau + sigma(v))/2||^2
+  const double size = std::sqrt(std::max(0.0, of_mean));
+  double lower = std::pow(std::max(0.0, size - bound.mid), 2);
+  double upper = std::pow(size + bound.mid, 2);
+  interval.basis = "energy bound";
+  if (is_homogeneous)
+  {
+    const double of_tau =
+        sums.square + 4 * sums.centre + 4 * quarter + 2 * state.remainder(pair.z, sums.work);
+    const double beyond = 2 * bound.oscillation * bound.b_v;
+    intersect(lower, upper, of_tau - 2 * bound.gap, of_tau + beyond);
+    interval.basis = "duality gap";
+  }
+  constexpr double unit = 1e-13;
+  set_ends(interval, lower, upper, unit * (sums.square + sums.absolute));
+  interval.cells = state.shares((interval.upper - interval.lower) / 2);
+}
+
+template bool is_homogeneous(const contact::NitscheForm<2>&);
+template bool is_homogeneous(const contact::NitscheForm<3>&);
+template void set_energy(const BoundedState<2>&, const DualPair<2>&, const DualProducts&, bool,
+                         QuantityInterval&);
+template void set_energy(const BoundedState<3>&, const DualPair<3>&, const DualProducts&, bool,
+                         QuantityInterval&);
+
+}  // namespace tribound::certify

@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file energy_interval.h
+/// The interval of a(u, u).
+
+#include "tribound/certify/energy/linear_bound.h"
+#include "tribound/certify/energy/quantity_interval.h"
+
+namespace tribound::certify
+{
+
+/// Whether u_D = 0 and g = 0. All ranks together.
+template <int dim>
+[[nodiscard]] bool is_homogeneous(const contact::NitscheForm<dim>& form);
+
+/// Sets the interval of a(u, u) from the dual products of z = v, zeta = 0: with m = (tau + sigma(v))/2
+///     | ||u||_en - ||m|| | <= mid,
+/// and for a homogeneous problem ||tau||^2 + 2 remainder(v) + [-2E, 2 ||O|| B_v].
+template <int dim>
+void set_energy(const BoundedState<dim>& state, const DualPair<dim>& pair, const DualProducts& products,
+                bool is_homogeneous, QuantityInterval& interval);
+
+}  // namespace tribound::certify

@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tribound/certify/energy/contact_resultant.h"
+#include "tribound/fem/evaluation.h"
+#include "tribound/mesh/bodies.h"
+
+namespace tribound::certify
+{
+
+namespace
+{
+
+/// Which bodies have contact facets of the resultant, the same on all ranks.
+template <int dim>
+std::vector<double> moved_bodies(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
+                                 const ContactResultant<dim>& resultant)
+{
+  std::vector<double> moved(bodies.n, 0.0);
+  for (const contact::ContactSegment<dim>& segment : form.segments())
+    if (resultant.has(segment.slave.facet)) moved[bodies.of_cell[segment.slave.facet.cell]] = 1;
+  form.space().mesh().ranks().max(std::span(moved));
+  return moved;
+}
+
+/// Whether something else than the facets of the resultant acts on the bodies when they move.
+template <int dim>
+bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
+                std::span<const double> moved, const ContactResultant<dim>& resultant)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const auto moves = [&](const mesh::BoundaryFacet& facet) { return moved[bodies.of_cell[facet.cell]] != 0; };
+  const bool by_contact =
+      std::ranges::any_of(form.segments(),
+                          [&](const contact::ContactSegment<dim>& segment)
+                          {
+                            return (moves(segment.slave.facet) && !resultant.has(segment.slave.facet)) ||
+                                   (segment.master && moves(segment.master->facet));
+                          });
+  bool by_conditions = false;
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
+    if (const auto& condition = form.problem().boundary(facet.tag); condition.fixes_any() && moves(facet))
+      for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
+        for (int a = 0; a < dim; ++a)
+          by_conditions = by_conditions || (condition.fixes(a) && resultant.motion(mesh.vertex(v))[a] != 0);
+  return mesh.ranks().any(by_contact || by_conditions);
+}
+
+/// Sums of what loads do in the motion, of absolute values and of what quadrature may miss.
+template <int dim>
+class LoadSums
+{
+ public:
+  explicit LoadSums(const RigidMotion<dim>& motion) : motion_(motion) {}
+
+  /// Of a cell or facet with these vertices.
+  template <class Points, std::size_t n>
+  void add(const Points& points, std::span<const Point<dim>> load, const std::array<Point<dim>, n>& vertices,
+           double missed)
+  {
+    for (const auto& [q, x, dx] : points)
+    {
+      const Point<dim> m = motion_(x);
+      work_ += dx * load[q].dot(m);
+      absolute_ += dx * load[q].cwiseAbs().dot(m.cwiseAbs());
+    }
+    Point<dim> largest = Point<dim>::Zero();
+    for (const Point<dim>& x : vertices) largest = largest.cwiseMax(motion_(x).cwiseAbs());
+    missed_ += missed * largest.sum();
+  }
+
+  [[nodiscard]] KnownNumber total(const Ranks& ranks) const
+  {
+    std::array<double, 3> sums{static_cast<double>(work_), absolute_, missed_};
+    ranks.sum(std::span(sums));
+    constexpr double unit_round_offs = 64;  // of values, points and weights
+    return {-sums[0], unit_round_offs * std::numeric_limits<double>::epsilon() * sums[1] + sums[2]};
+  }
+
+ private:
+  const RigidMotion<dim>& motion_;
+  long double work_ = 0;
+  double absolute_ = 0;
+  double missed_ = 0;
+};
+
+}  // namespace
+
+template <int dim>
+std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
+                                            const ContactResultant<dim>& resultant)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const mesh::Bodies bodies = mesh::number_bodies(mesh);
+  const std::vector<double> moved = moved_bodies(form, bodies, resultant);
+  if (is_stopped<dim>(form, bodies, moved, resultant)) return {};
+  const contact::DiscreteData<dim>& data = form.data();
+  LoadSums<dim> sums(resultant.motion);
+  std::vector<Point<dim>> load(data.cell_rule().size());
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
+  {
+    if (moved[bodies.of_cell[c]] == 0 || !data.has_body_force(c)) continue;
+    data.body_force(c, load);
+    sums.add(fem::cell_points(mesh::cell_map(mesh, c), data.cell_rule()), load,
+             mesh::points_of(mesh.vertices(), mesh.cell(c)), data.body_remainder(c).mean);
+  }
+  load.resize(data.facet_rule().size());
+  for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
+  {
+    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
+    if (moved[bodies.of_cell[facet.cell]] == 0 || !data.has_traction(k)) continue;
+    data.traction(k, load);
+    sums.add(fem::facet_points(mesh, facet.cell, facet.local, data.facet_rule()), load,
+             mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local)),
+             data.traction_remainder(k).mean);
+  }
+  return sums.total(mesh.ranks());
+}
+
+template std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<2>&,
+                                                     const ContactResultant<2>&);
+template std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<3>&,
+                                                     const ContactResultant<3>&);
+
+}  // namespace tribound::certify

@@ -1,0 +1,99 @@
+#include "tribound/certify/energy/linear_bound.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tribound/fem/degree.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, std::span<const double> displacement,
+                                const Stress<dim>& equilibrated, const AdmissibleTraction<dim>& traction,
+                                const EnergyBound& energy)
+    : form(of),
+      v(displacement),
+      stress(equilibrated),
+      t_h(traction),
+      bound(energy),
+      forces(of.load().begin(), of.load().end()),
+      is_projected(false)
+{
+  double square = 0;
+  for (const double coefficient : stress.dis) square += coefficient * coefficient;
+  constexpr double rounding = 1e-10;  // of loads that are polynomials
+  is_projected = energy.loads_remainder > rounding * std::sqrt(form.space().mesh().ranks().sum(square));
+  form.add_contact_load(t_h.at_points, forces);
+}
+
+template <int dim>
+std::vector<double> BoundedState<dim>::shares(double half_width) const
+{
+  std::vector<double> result = bound.cells;
+  double sum = 0;
+  for (const double cell : result) sum += cell;
+  sum = form.space().mesh().ranks().sum(sum);
+  for (double& cell : result) cell = sum > 0 ? cell * (half_width / sum) : 0;
+  return result;
+}
+
+template <int dim>
+std::vector<DualProducts> dual_products(const BoundedState<dim>& state,
+                                        std::span<const DualPair<dim>* const> pairs)
+{
+  std::vector<DualProducts> result;
+  constexpr int lowest = 2;
+  fem::with_degree<lowest>(state.form.space().degree(), [&](auto q)
+                           { result = dual_products<dim, q>(state.form, state.stress, state.v, pairs); });
+  return result;
+}
+
+DualSums::DualSums(const DualProducts& products, const Ranks& ranks)
+{
+  std::array<double, 4> sums{};
+  for (std::size_t k = 0; k < products.centre.size(); ++k)
+  {
+    sums[0] += products.centre[k];
+    sums[1] += products.square[k];
+    sums[2] += products.work[k];
+    sums[3] += std::abs(products.centre[k]) + std::abs(products.work[k]);
+  }
+  ranks.sum(std::span(sums));
+  centre = sums[0];
+  square = sums[1];
+  work = sums[2];
+  absolute = sums[3];
+}
+
+template <int dim>
+LinearBound linear_bound(const BoundedState<dim>& state, double base, const DualPair<dim>& pair,
+                         const DualProducts& products, double m)
+{
+  const DualSums sums(products, state.form.space().mesh().ranks());
+  const double mid = state.bound.mid;
+  const double eta = std::sqrt(sums.square);
+  const bool is_second_order = eta < 2 * m * mid;
+  constexpr double unit = 1e-13;
+  LinearBound result{.centre = base + sums.centre + state.remainder(pair.z, sums.work),
+                     .radius = is_second_order ? m * mid * mid + sums.square / (4 * m) : eta * mid,
+                     .rounding = unit * (std::abs(base) + sums.absolute)};
+  if (!is_second_order)
+    result.cells = state.shares(result.radius);
+  else
+    for (std::size_t k = 0; k < products.square.size(); ++k)
+      result.cells.push_back(m * state.bound.cells[k] / 4 + products.square[k] / (4 * m));
+  return result;
+}
+
+template struct BoundedState<2>;
+template struct BoundedState<3>;
+template std::vector<DualProducts> dual_products(const BoundedState<2>&, std::span<const DualPair<2>* const>);
+template std::vector<DualProducts> dual_products(const BoundedState<3>&, std::span<const DualPair<3>* const>);
+template LinearBound linear_bound(const BoundedState<2>&, double, const DualPair<2>&, const DualProducts&,
+                                  double);
+template LinearBound linear_bound(const BoundedState<3>&, double, const DualPair<3>&, const DualProducts&,
+                                  double);
+
+}  // namespace tribound::certify

@@ -1,0 +1,75 @@
+#pragma once
+
+/// @file linear_bound.h
+/// Intervals of numbers that are linear in the solution, from the energy bound and dual pairs.
+
+#include <span>
+#include <vector>
+
+#include "tribound/certify/energy/admissible_traction.h"
+#include "tribound/certify/energy/dual_products.h"
+#include "tribound/certify/energy/energy_bound.h"
+
+namespace tribound::certify
+{
+
+/// What an energy bound was made of. Keeps references.
+template <int dim>
+struct BoundedState
+{
+  const contact::NitscheForm<dim>& form;
+  std::span<const double> v;
+  const Stress<dim>& stress;  ///< equilibrated; tau is made from it
+  const AdmissibleTraction<dim>& t_h;
+  const EnergyBound& bound;
+  std::vector<double> forces;  ///< L(phi_i) + (t_h, phi_i)_C
+  /// Whether the solution is one for other loads, the projected ones.
+  bool is_projected;
+
+  BoundedState(const contact::NitscheForm<dim>& form, std::span<const double> v, const Stress<dim>& stress,
+               const AdmissibleTraction<dim>& t_h, const EnergyBound& bound);
+
+  /// L(z) + (t_h, z)_C - (tau, eps(z)): what data that are no polynomials do, and rounding.
+  [[nodiscard]] double remainder(std::span<const double> z, double work) const
+  {
+    return is_projected ? 0 : form.space().dot(forces, z) - work;
+  }
+  /// Half the width of an interval shared out between the cells as the energy is.
+  [[nodiscard]] std::vector<double> shares(double half_width) const;
+};
+
+/// dual_products() of the degree of the form.
+template <int dim>
+[[nodiscard]] std::vector<DualProducts> dual_products(const BoundedState<dim>& state,
+                                                      std::span<const DualPair<dim>* const> pairs);
+
+/// Sums of dual products over all ranks.
+struct DualSums
+{
+  double centre = 0;
+  double square = 0;
+  double work = 0;
+  double absolute = 0;  ///< of the terms of centre and work: rounding is proportional to it
+
+  DualSums(const DualProducts& products, const Ranks& ranks);
+};
+
+/// |number - centre| <= radius.
+struct LinearBound
+{
+  double centre = 0;
+  double radius = 0;
+  double rounding = 0;
+  std::vector<double> cells{};  ///< own cells' shares in the radius
+};
+
+/// For l(u) + (sigma(u) n, phi)_C, `base` = l(v) + (t_h, phi)_C. With y = z + phi and r = zeta n - l on
+/// Gamma_C, and v and t_h there such that
+///     |(sigma(u) n - t_h) . y - r . (u - v)| <= m (the four integrands on Gamma_C of method section 13.1),
+/// the centre is base + 1/2 (zeta + sigma(z), tau - sigma(v)) + remainder(z), and the radius the largest
+/// eta x + m (mid^2 - x^2) for 0 <= x <= mid, eta = ||zeta - sigma(z)||; m = 0 where y and r vanish.
+template <int dim>
+[[nodiscard]] LinearBound linear_bound(const BoundedState<dim>& state, double base, const DualPair<dim>& pair,
+                                       const DualProducts& products, double m = 0);
+
+}  // namespace tribound::certify

@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file linear_number.h
+/// A number that is linear in the solution, with what bounds it on one mesh.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/certify/energy/dual_problem.h"
+#include "tribound/certify/energy/linear_bound.h"
+#include "tribound/certify/energy/quantity_parts.h"
+
+namespace tribound::certify
+{
+
+/// Q = l(u) + (sigma(u) n, phi)_C.
+template <int dim>
+struct LinearNumber
+{
+  std::optional<KnownNumber> known{};         ///< from equilibrium: then there is nothing else
+  std::vector<Point<dim>> phi{};              ///< at the contact points of the form of u
+  std::optional<ContactWeight<dim>> weight;   ///< phi on the form of the bounds
+  std::unique_ptr<DualProblem<dim>> loads{};  ///< with the loads l; null: none
+  std::vector<Point<dim>> on_contact{};       ///< what is left of l, on Gamma_C at its contact points
+  DualPair<dim> pair{};                       ///< with y = 0 and r = 0
+
+  /// Returns what is wrong with the pair, if anything. All ranks together.
+  [[nodiscard]] std::string make_pair(const contact::NitscheForm<dim>& form, DualSystems<dim>& systems);
+  /// l(v) + (t_h, phi)_C. All ranks together.
+  [[nodiscard]] double base(const BoundedState<dim>& state, const QuantityParts<dim>& parts) const;
+};
+
+/// A force or moment of contact where equilibrium does not give it, on the forms of u and of the bounds. All
+/// ranks together.
+template <int dim>
+void set_weight(LinearNumber<dim>& number, const contact::NitscheForm<dim>& form,
+                const contact::NitscheForm<dim>& bounded, const ContactResultant<dim>& resultant,
+                double ramp);
+
+/// A mean displacement or the work of the loads. All ranks together.
+template <int dim>
+[[nodiscard]] LinearNumber<dim> loaded_number(const QuantityParts<dim>& parts,
+                                              const contact::NitscheForm<dim>& bounded);
+
+}  // namespace tribound::certify

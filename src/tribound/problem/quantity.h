@@ -1,0 +1,65 @@
+#pragma once
+
+/// @file quantity.h
+/// Numbers that are wanted of a solution: energies, forces, displacements.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "tribound/base/error.h"
+#include "tribound/base/types.h"
+
+namespace tribound::problem
+{
+
+enum class QuantityKind
+{
+  energy,            ///< a(u, u), twice the elastic energy
+  load_work,         ///< L(u) = (f, u) + (g_N, u)_N
+  contact_force,     ///< integral of sigma(u) n . e over contact boundaries, which acts on the body
+  contact_moment,    ///< moment of sigma(u) n about a point, in 3D about an axis e through it
+  safety_factor,     ///< mu_F N / H of a plane boundary with Coulomb's friction: N = -(integral of sigma^n),
+                     ///< H = |integral of sigma^t|
+  mean_displacement  ///< mean of u . e over a boundary
+};
+
+/// "energy", "load_work", ..., as in case files.
+[[nodiscard]] constexpr std::string_view to_string(QuantityKind kind)
+{
+  switch (kind)
+  {
+    case QuantityKind::energy:
+      return "energy";
+    case QuantityKind::load_work:
+      return "load_work";
+    case QuantityKind::contact_force:
+      return "contact_force";
+    case QuantityKind::contact_moment:
+      return "contact_moment";
+    case QuantityKind::safety_factor:
+      return "safety_factor";
+    case QuantityKind::mean_displacement:
+      return "mean_displacement";
+  }
+  return {};
+}
+
+template <int dim>
+struct Quantity
+{
+  std::string name;
+  QuantityKind kind = QuantityKind::energy;
+  /// Of the mesh; empty: all contact boundaries (forces and moments).
+  std::string boundary;
+  /// e, of any length but 0; absent: the mean outward normal of the boundary.
+  std::optional<Point<dim>> direction;
+  std::optional<Point<dim>> point;  ///< of moments; absent: the origin
+  /// Where displacements are fixed or another contact boundary begins, forces and moments are not taken
+  /// alone: they are weighted by min(1, d / ramp), d the distance from there. 0: a tenth of the diagonal of
+  /// the box around the boundary.
+  double ramp = 0;
+  Where where;  ///< for messages
+};
+
+}  // namespace tribound::problem

@@ -1,0 +1,60 @@
+#pragma once
+
+/// @file quantities.h
+/// What tests ask for, and what they expect of the intervals.
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/discrete_problem.h"
+#include "tribound/certify/energy/energy_bound.h"
+
+namespace tribound::test
+{
+
+using certify::EnergyBound;
+using certify::EnergyEstimator;
+using certify::QuantityInterval;
+using problem::Quantity;
+using problem::QuantityKind;
+
+template <int dim>
+using Quantities = std::vector<Quantity<dim>>;
+
+template <int dim>
+Quantity<dim> contact_force(const std::string& boundary, const Point<dim>& direction, double ramp = 0)
+{
+  return {.name = boundary,
+          .kind = QuantityKind::contact_force,
+          .boundary = boundary,
+          .direction = direction,
+          .ramp = ramp};
+}
+
+template <int dim>
+Quantity<dim> mean_displacement(const std::string& boundary, const Point<dim>& direction)
+{
+  return {.name = "u " + boundary,
+          .kind = QuantityKind::mean_displacement,
+          .boundary = boundary,
+          .direction = direction};
+}
+
+template <int dim>
+std::vector<QuantityInterval> intervals(const DiscreteProblem<dim>& c, const Quantities<dim>& quantities,
+                                        std::span<const double> u)
+{
+  return EnergyEstimator<dim>(c.form, c.method.solver, quantities)(u).quantities;
+}
+
+inline void expect_contains(const QuantityInterval& interval, double truth, const std::string& what = {})
+{
+  EXPECT_EQ(interval.reason, "") << interval.name << what;
+  EXPECT_LE(interval.lower, truth) << interval.name << what;
+  EXPECT_GE(interval.upper, truth) << interval.name << what;
+}
+
+}  // namespace tribound::test
