@@ -14,6 +14,7 @@
 #include "tribound/io/fields/contact_line.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/record/error_bars.h"
 #include "tribound/io/state/checkpoint.h"
 #include "tribound/mesh/gmsh_text.h"
 
@@ -129,6 +130,8 @@ void update_statements(io::RunRecord& record, const adapt::LevelView<dim>& view,
   record.statements = certify::statements(view.discrete.form, rule, view.level.friedrichs);
   if (!record.levels.back().load_step && view.discrete.form.problem().uses_time())
     record.statements.assumptions.emplace_back("load_factor", "t = 1 in all formulas, without [history]");
+  if (std::string energy = io::words_of_guarantee(record.levels.back()); !energy.empty())
+    record.statements.covered.push_back(std::move(energy));
   if (view.level.solved() && is_round_off(view.level.estimate, view.level.norms))
     record.statements.assumptions.emplace_back(
         "stress",

@@ -98,6 +98,7 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
                         progress.quiet() ? Printed::verdict : Printed::everything,
                         restart ? &restart->facts.earlier : nullptr);
+  levels->ask_for(config.adapt.bars);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)

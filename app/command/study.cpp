@@ -125,6 +125,7 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
   RunReport<dim> report(config, problem_, levels.discrete(),
                         doctor::slides_as_a_whole<dim>(problem_, levels.discrete().mesh), Clock::now(),
                         Printed::levels);
+  levels.ask_for(config.adapt.bars);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop_);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress_(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)

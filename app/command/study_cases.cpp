@@ -18,6 +18,8 @@ case_file::Config variant_config(const case_file::Config& config, const std::str
     variant.method.stopping.criterion = adapt::Stopping::adaptive;
   if (name.starts_with("uniform")) variant.adapt.marking.strategy = adapt::Marking::uniform;
   variant.method.stopping.finish = false;  // stopping criteria are what is compared
+  if (config.adapt.bars.levels != adapt::EnergyLevels::off)
+    variant.adapt.bars.levels = adapt::EnergyLevels::every;  // for its effectivity
   variant.output.directory /= name;
   variant.effective = {};  // that of the study stands beside its tables
   variant.output.vtu = config.output.vtu && !converged;
@@ -36,6 +38,10 @@ case_file::Config reference_config(const case_file::Config& config, double requi
   reference.method.newton.damping = true;
   reference.method.stopping.finish = false;
   reference.adapt.tolerance = required;
+  reference.adapt.measure = adapt::ErrorMeasure::residual;
+  reference.adapt.bars.energy_tolerance.reset();
+  if (config.adapt.bars.levels != adapt::EnergyLevels::off)
+    reference.adapt.bars.levels = adapt::EnergyLevels::last;
   reference.adapt.max_levels = std::numeric_limits<int>::max();
   reference.adapt.max_cells.reset();
   reference.adapt.max_dofs = config.study.max_reference_dofs;

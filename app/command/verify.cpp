@@ -8,6 +8,7 @@
 
 #include "app/output_directory.h"
 #include "app/result/verification.h"
+#include "tribound/adapt/error_bars.h"
 #include "tribound/adapt/path_program.h"
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/clock.h"
@@ -227,6 +228,9 @@ std::string verify_single(const problem::Problem<dim>& problem, const mesh::Mesh
     result.richer =
         stages.time("richer", fmt::format("solving with degree {} on the refined mesh", result.richer_degree),
                     [&] { return richer_solution<dim>(form, newton.u, config, result.refinements); });
+  if (result.converged && config.adapt.bars.levels != adapt::EnergyLevels::off)
+    result.energy = stages.time("energy", "bounding the error in the energy norm",
+                                [&] { return adapt::energy_bound<dim>(form, config.method, newton.u); });
   result.times = stages.times();
   return result.converged ? std::string() : newton.message;
 }

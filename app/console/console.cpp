@@ -11,6 +11,7 @@
 #include "app/console/balance_text.h"
 #include "app/console/text.h"
 #include "app/result/check_json.h"
+#include "tribound/io/record/error_bars.h"
 
 namespace tribound::app
 {
@@ -152,6 +153,24 @@ std::string mesh_text(std::string_view caption, std::int64_t cells, std::int64_t
   return line(caption, fmt::format("{} cells, {} degrees of freedom", cells, dofs));
 }
 
+namespace
+{
+
+/// The bound of the error in the energy norm, or why there is none.
+std::string energy_lines(const io::LevelRecord& level)
+{
+  if (!level.energy) return {};
+  if (!level.energy->reason.empty()) return paragraph("energy error", "no bound: " + level.energy->reason);
+  const auto relative = io::relative_energy_bound(level);
+  return paragraph(
+      "energy error",
+      fmt::format("at most {:.6g}{}: the distance from {}", level.energy->bound,
+                  relative ? fmt::format(", {:.4g} % of ||u_h||_en", 100 * *relative) : std::string(),
+                  io::words_of(level.energy->target)));
+}
+
+}  // namespace
+
 std::string certificate_text(const io::RunRecord& run)
 {
   if (run.levels.empty() || !run.levels.back().bound) return {};
@@ -169,6 +188,7 @@ std::string certificate_text(const io::RunRecord& run)
     text +=
         line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
                                        level.identities->largest(run.facts.degree), certify::identity_limit));
+  text += energy_lines(level);
   for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
   text += paragraph("law", run.statements.law);
   for (const std::string& outside : run.statements.not_covered) text += paragraph("outside", outside);

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tribound/adapt/rate.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
+#include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
@@ -57,6 +59,8 @@ io::TableRow columns(const StudyVariant& variant, std::size_t number, const cert
           {"dual_norm", level.dual_norm},
           {"effectivity", level.effectivity()},
           {"effectivity_stress", level.stress_effectivity()},
+          {"energy_bound", io::energy_bound(level.record)},
+          {"energy_effectivity", level.energy_effectivity()},
           {"rate_error", rates.error},
           {"rate_bound", rates.bound},
           {"t_solve", level.record.times.stages.solve},
@@ -100,6 +104,7 @@ io::Json json(const std::optional<StudyReference>& reference)
           {"fine_enough", reference->fine_enough},
           {"reason", io::text_or_null(reference->reason)},
           {"energy", level.figures.energy},
+          {"energy_bound", io::number_or_null(io::energy_bound(level))},
           {"contact_normal", level.figures.contact.normal},
           {"contact_tangential", level.figures.contact.tangential},
           {"max_displacement", level.figures.max_displacement}};
@@ -163,6 +168,15 @@ std::optional<double> StudiedLevel::stress_effectivity() const
   return tribound::certify::effectivity(*bound, error->stress, norms_of(record));
 }
 
+std::optional<double> StudiedLevel::energy_effectivity() const
+{
+  const auto bound = io::energy_bound(record);
+  if (!bound || !error || record.energy->target != certify::EnergyTarget::solution) return std::nullopt;
+  constexpr double round_off = 1e-10;
+  if (error->energy <= round_off * std::sqrt(record.figures.energy)) return std::nullopt;
+  return *bound / error->energy;
+}
+
 const StudyVariant* find_variant(const Study& study, std::string_view name)
 {
   const auto found = std::ranges::find(study.variants, name, &StudyVariant::name);
@@ -212,6 +226,29 @@ std::vector<std::optional<double>> error_differences(const StudyVariant& with, c
   return result;
 }
 
+namespace
+{
+
+/// The triangle inequality: the reference is not the solution either.
+std::string energy_violation(const Study& study)
+{
+  const auto of_reference = study.reference ? io::energy_bound(study.reference->level) : std::nullopt;
+  if (!of_reference) return {};
+  for (const StudyVariant& variant : study.variants)
+    for (const StudiedLevel& level : variant.levels)
+      if (level.energy_effectivity() &&
+          *energy_error(level) > *io::energy_bound(level.record) + *of_reference)
+        return fmt::format(
+            "the guarantee is violated: in the variant {} on level {} the bound {:.9g} of the error in the "
+            "energy "
+            "norm and that of the reference, {:.3g}, are together below the distance {:.9g} between both",
+            variant.name, level.record.level, *io::energy_bound(level.record), *of_reference,
+            *energy_error(level));
+  return {};
+}
+
+}  // namespace
+
 std::string violation(const Study& study)
 {
   for (const StudyVariant& variant : study.variants)
@@ -222,7 +259,7 @@ std::string violation(const Study& study)
             "norm "
             "of the residual, which is at least {:.9g} (effectivity {:.6f})",
             variant.name, level.record.level, *bound_of(level), *level.dual_norm, *e);
-  return {};
+  return energy_violation(study);
 }
 
 std::string study_csv(const Study& study)

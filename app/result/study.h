@@ -30,6 +30,8 @@ struct StudiedLevel
   /// bound / ||sigma(u_ref - u_h)||, for comparison with other methods: no theorem says that it is at
   /// least 1.
   [[nodiscard]] std::optional<double> stress_effectivity() const;
+  /// Bound of the error in the energy norm / that against the reference, where both are of the same solution.
+  [[nodiscard]] std::optional<double> energy_effectivity() const;
 };
 
 /// The names of the variants, in the order of all tables. `_converged`: Newton's method runs to its
@@ -93,7 +95,8 @@ struct Rates
 [[nodiscard]] std::vector<std::optional<double>> error_differences(const StudyVariant& with,
                                                                    const StudyVariant& without);
 
-/// What is wrong when an effectivity is below 1, naming the level; empty when the guarantee holds.
+/// What is wrong when an effectivity is below 1, or an error in the energy norm above the bound and that of
+/// the reference together, naming the level; empty when the guarantees hold.
 [[nodiscard]] std::string violation(const Study& study);
 
 /// A row per variant and level; the columns are those of docs/output.md.

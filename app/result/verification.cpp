@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "app/console/text.h"
@@ -36,6 +37,18 @@ std::string iterate_line(const VerifiedIterate& iterate)
                      iterate.dual_norm, number_or_dash(iterate.effectivity()), iterate.identities);
 }
 
+/// The distance from the richer solution, and the bound.
+std::string energy_text(const Verification& v)
+{
+  const std::string error = fmt::format("{:.6g}", v.richer->error->energy);
+  if (!v.energy) return error;
+  if (!v.energy->reason.empty()) return error + "; no bound: " + v.energy->reason;
+  const auto effectivity = v.energy_effectivity();
+  return error + fmt::format("; bound {:.6g}", v.energy->bound) +
+         (effectivity ? fmt::format(", effectivity {:.4f}", *effectivity) : std::string()) +
+         (v.energy->target == certify::EnergyTarget::solution ? "" : ", for the computed friction threshold");
+}
+
 std::string richer_text(const Verification& v)
 {
   if (v.iterates.back().load_step > 0) return {};
@@ -49,8 +62,7 @@ std::string richer_text(const Verification& v)
   std::string stress = fmt::format("{:.6g}", error);
   if (sigma_norm > 0) stress += fmt::format(", {:.3g} of ||sigma||", error / sigma_norm);
   if (error > 0) stress += fmt::format("; bound / error = {:.4g}", v.iterates.back().bound / error);
-  return line("richer", where) + line("energy error", fmt::format("{:.6g}", v.richer->error->energy)) +
-         line("stress error", stress);
+  return line("richer", where) + line("energy error", energy_text(v)) + line("stress error", stress);
 }
 
 std::string status_text(const Verification& v)
@@ -86,14 +98,20 @@ io::Json json(const VerifiedIterate& iterate)
   return object;
 }
 
-io::Json json(const std::optional<certify::RicherSolution>& solution, int degree)
+io::Json richer_json(const Verification& v)
 {
-  if (!solution) return nullptr;
-  const certify::RicherSolution& richer = *solution;
-  io::Json object{{"degree", degree},         {"cells", richer.cells},
-                  {"dofs", richer.dofs},      {"newton_steps", richer.newton_steps},
-                  {"energy_error", nullptr},  {"stress_error", nullptr},
-                  {"failure", richer.failure}};
+  if (!v.richer) return nullptr;
+  const certify::RicherSolution& richer = *v.richer;
+  io::Json object{{"degree", v.richer_degree},
+                  {"cells", richer.cells},
+                  {"dofs", richer.dofs},
+                  {"newton_steps", richer.newton_steps},
+                  {"energy_error", nullptr},
+                  {"stress_error", nullptr},
+                  {"failure", richer.failure},
+                  {"energy_bound", nullptr},
+                  {"energy_effectivity", io::number_or_null(v.energy_effectivity())}};
+  if (v.energy && v.energy->reason.empty()) object["energy_bound"] = v.energy->bound;
   if (!richer.error) return object;
   object["energy_error"] = richer.error->energy;
   object["stress_error"] = richer.error->stress;
@@ -122,6 +140,16 @@ std::string refusal_of_a_solution(const Verification& v)
 
 }  // namespace
 
+std::optional<double> Verification::energy_effectivity() const
+{
+  if (!energy || !energy->reason.empty() || energy->target != certify::EnergyTarget::solution || !richer ||
+      !richer->error)
+    return std::nullopt;
+  constexpr double round_off = 1e-10;
+  if (richer->error->energy <= round_off * std::sqrt(iterates.back().norms.energy)) return std::nullopt;
+  return energy->bound / richer->error->energy;
+}
+
 std::string violation(const Verification& verification)
 {
   for (const VerifiedIterate& iterate : verification.iterates)
@@ -133,6 +161,12 @@ std::string violation(const Verification& verification)
           iterate.step.step,
           iterate.load_step > 0 ? fmt::format(" of load step {}", iterate.load_step) : std::string(),
           iterate.bound, iterate.dual_norm, *e);
+  if (const auto e = verification.energy_effectivity(); e && *e < 1)
+    return fmt::format(
+        "the guarantee is violated: the bound {:.9g} of the error in the energy norm is below the distance "
+        "{:.9g} "
+        "from the richer solution",
+        verification.energy->bound, verification.richer->error->energy);
   return refusal_of_a_solution(verification);
 }
 
@@ -194,7 +228,7 @@ std::string verification_json(const Verification& v)
       {"refinements", v.refinements},
       {"dual_space",
        {{"degree", v.dual_space.degree}, {"cells", v.dual_space.cells}, {"dofs", v.dual_space.dofs}}},
-      {"richer_solution", json(v.richer, v.richer_degree)},
+      {"richer_solution", richer_json(v)},
       {"iterates", io::Json::array()},
       {"times", io::Json::object()}};
   for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(iterate));

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/io/record/facts.h"
@@ -61,12 +62,17 @@ struct Verification
   int richer_degree = 0;
   /// What the solution was measured against, if it is one and there are no load steps.
   std::optional<certify::RicherSolution> richer;
+  std::optional<certify::EnergyBound> energy;         ///< of the same solution, where it is asked for
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
+
+  /// Bound of the error in the energy norm / that against the richer solution, where both are of the same
+  /// solution and more than rounding.
+  [[nodiscard]] std::optional<double> energy_effectivity() const;
 };
 
 /// What is wrong when an effectivity is below 1 although the identities hold, naming the iterate; then when
-/// they do not hold for the last one of a load step, which `tribound run` would not certify; empty when the
-/// guarantee holds.
+/// the richer solution is farther in the energy norm than the bound allows; then when they do not hold for
+/// the last one of a load step, which `tribound run` would not certify; empty when the guarantee holds.
 [[nodiscard]] std::string violation(const Verification& verification);
 
 /// The table of the iterates, the errors and where the file is.

@@ -18,14 +18,16 @@ export function boundCurves(levels, components) {
   const floor = Math.min(...bound.points.map(({ y }) => y)) * 1e-3;
   const parts = components.map(({ name, colour, meaning }) =>
     curve({ name, colour, meaning, strokeWidth: 1.25 }, (level) => level.components[name] ?? 0));
+  const energy = { name: "bound of the error in the energy norm, relative to that", colour: "#b07ad9", dash: "5 2", strokeWidth: 2, isEnergy: true,
+    points: levels.filter((level) => level.energy_error?.relative > 0).map((level) => ({ x: level.dofs, y: level.energy_error.relative, level: level.level })) };
   const errors = trueErrors.map(({ key, ...style }) => curve({ ...style, strokeWidth: 1.75, isError: true }, (level) => level[key]));
-  return [...parts, bound, ...errors].map((line) => ({ ...line, points: line.points.filter(({ y }) => y >= floor) }))
+  return [...parts, energy, bound, ...errors].map((line) => ({ ...line, points: line.points.filter(({ y }) => y >= floor) }))
     .filter(({ points }) => points.length > 0);
 }
 
 /** The bound, the errors, the components, as a legend names them. */
 export function curveLegend(lines, kind) {
-  const rank = ({ isBound, isError }) => (isBound ? 0 : isError ? 1 : 2);
+  const rank = ({ isBound, isEnergy, isError }) => (isBound ? 0 : isEnergy || isError ? 1 : 2);
   return legend([...lines].sort((a, b) => rank(a) - rank(b)).map((line) =>
     ({ ...line, name: line.meaning ? `${line.name}: ${line.meaning}` : line.name, line: true })), kind);
 }

@@ -77,9 +77,10 @@ export function caseSection(data) {
 }
 
 function levelTable(run) {
-  return table(["#level", "#cells", "#dofs", "#Newton steps", "#bound [%]", "#energy", "#solve", "#certify", "#whole level"],
+  return table(["#level", "#cells", "#dofs", "#Newton steps", "#bound [%]", "#energy error [%]", "#energy", "#solve", "#certify", "#whole level"],
     run.levels.map((level) => [String(level.level), count(level.cells), count(level.dofs), String(level.newton.length),
-      level.relative === null ? "\u2013" : number(100 * level.relative), number(level.energy, 6), seconds(level.times.solve),
+      level.relative === null ? "\u2013" : number(100 * level.relative),
+      level.energy_error?.relative > 0 ? number(100 * level.energy_error.relative) : "\u2013", number(level.energy, 6), seconds(level.times.solve),
       seconds(level.times.certify), seconds(level.times.level)]), { class: "long" });
 }
 

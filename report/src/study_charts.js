@@ -59,6 +59,7 @@ function quotientChart(label, lines, [low, high]) {
 export function effectivitySection(study) {
   const quotients = [
     { key: "effectivity", title: "Bound / dual norm of the residual", note: "At least 1, by the theorem." },
+    { key: "energy_effectivity", title: "Bound / error, in the energy norm", note: "Both against the reference solution; at least 1 but for what that one lacks." },
     { key: "effectivity_stress", title: "Bound / error of the stress", note: "For comparison with other methods; no theorem says that it is at least 1." },
   ].map((quotient) => ({ ...quotient, lines: known(study, quotient.key) })).filter(({ lines }) => lines.length > 0);
   if (quotients.length === 0) return null;

@@ -70,6 +70,9 @@ function placeText(place) {
   return `at (${place.map((x) => number(x, 4)).join(", ")})`;
 }
 
+/** What the error in the energy norm is the distance from. */
+const targets = { solution: "from the exact solution", tresca_with_computed_threshold: "for the computed friction threshold" };
+
 /** `contact`: the summary of contact.js, null where the page has no picture of the contact boundary. */
 function figures(run, contact) {
   if (run.cells === undefined) return null;
@@ -77,6 +80,7 @@ function figures(run, contact) {
   return [
     run.steps ? figure(percent(worstStep(run.steps)), "bound of the error", `largest of ${plural(run.steps.length, "load step", "load steps")}`)
       : run.relative === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
+    run.energy_error?.relative > 0 ? figure(percent(run.energy_error.relative), "error in the energy norm, at most", targets[run.energy_error.guaranteed_for]) : null,
     ...(isSolved(run) ? [
       safetyFigure(run),
       contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", `S, ${placeText(contact.place)}`) : null,

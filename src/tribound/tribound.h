@@ -91,6 +91,7 @@
 
 // The adaptive loop: a level of it, where to refine, the whole.
 #include "tribound/adapt/contact_functions.h"
+#include "tribound/adapt/error_bars.h"
 #include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/history_check.h"
 #include "tribound/adapt/level.h"

@@ -209,7 +209,7 @@ TEST(ProcessZone, LeadsOnInPlaceOfTheDamage)
   EXPECT_FALSE(adapt::follow_zone(path, control, {}, {}));  // nothing has been damaged so far
   ASSERT_EQ(path.follow(control), "");
 
-  const adapt::LoadStep<2>& last = *path.last();
+  const adapt::LoadStep<2> last = *path.last();
   const contact::NitscheForm<2>& form = last.at->discrete.form;
   const std::vector<double> before = path.position().before_last.u;
   const auto zone = adapt::zone_measure<2>(form, last.responses, before, last.level.u);

@@ -249,6 +249,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   if (newton.status != solve::NewtonStatus::converged) return std::nullopt;
   for (CertifiedStep& step : result.steps) step.accepted = false;
   result.finishing_steps += static_cast<int>(result.steps.size()) - before;
+  result.energy.reset();
   keep_solution(std::move(newton), result);
   {
     const ScopedTimer timer(result.certify_seconds, result.certify_cpu);

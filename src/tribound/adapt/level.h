@@ -15,6 +15,7 @@
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
@@ -103,6 +104,7 @@ struct CertifiedLevel
   certify::Estimate estimate;
   contact::StressNorms norms{};  ///< of u
   certify::IdentityDefects identities;
+  std::optional<certify::EnergyBound> energy{};  ///< of u; absent: not asked for
   std::optional<certify::FriedrichsConstant>
       friedrichs;              ///< of this mesh or one before; absent: no bound yet
   double solve_seconds = 0;    ///< wall time

@@ -233,6 +233,26 @@ bool Levels<dim>::finish(const StepObserver& observer)
 }
 
 template <int dim>
+bool Levels<dim>::bound_energy()
+{
+  if (bars_.levels == EnergyLevels::off || level_.energy || !certify::is_bound(verdict_.status)) return false;
+  const Clock::time_point begin = Clock::now();
+  if (interrupted())
+    level_.energy = certify::EnergyBound{.reason = "interrupted"};
+  else
+  {
+    const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
+    if (level_.converged) level_.equilibrium.reset();  // its factors, for finish(), take most of the memory
+    level_.energy = energy_bound<dim>(current_->form, method_, level_.u);
+  }
+  if (verdict_.status == certify::RunStatus::certified)
+    if (std::string why = unmet(bars_, *level_.energy, std::sqrt(level_.norms.energy)); !why.empty())
+      verdict_ = {certify::RunStatus::budget, std::move(why)};
+  seconds_ += seconds_since(begin);
+  return true;
+}
+
+template <int dim>
 std::string Levels<dim>::refine(const Marker<dim>& mark, const MeshLimit& limit)
 {
   assert(level_.estimate.total_sharp > 0 ||

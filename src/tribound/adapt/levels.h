@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tribound/adapt/error_bars.h"
 #include "tribound/adapt/level.h"
 
 namespace tribound::adapt
@@ -85,6 +86,11 @@ class Levels
          std::unique_ptr<Discretisation<dim>> first, const LevelStart& start, std::vector<double> u,
          const std::atomic<bool>* stop = nullptr, std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr);
 
+  /// What is bounded beside the residual, and what is demanded of it: a level on which this is not met is not
+  /// `certified`. Before the first advance().
+  void ask_for(ErrorBars bars) { bars_ = std::move(bars); }
+  [[nodiscard]] const ErrorBars& bars() const { return bars_; }
+
   /// The number of the level that advance() comes to.
   [[nodiscard]] int next_number() const { return number_ + 1; }
   /// What it starts from, and the solution carried there; between refine() and advance().
@@ -103,6 +109,10 @@ class Levels
   /// Lets Newton's method converge to newton.tolerance on the last level (newton.finish), as far as it does
   /// so without harm; whether it has changed anything.
   bool finish(const StepObserver& observer = {});
+
+  /// Bounds the error of the last level in the energy norm, if it is asked for of any level and there is none
+  /// yet; whether it has changed anything.
+  bool bound_energy();
 
   /// Bisects the cells that `mark` names for the last level and carries the solution to the new mesh, which
   /// becomes the current one. Not empty: why the current one stays: a limit, or there is not the memory.
@@ -128,6 +138,7 @@ class Levels
                                                          std::string& why) const;
   /// Newton's method to its end with one bound; nothing where it does not get there.
   [[nodiscard]] std::optional<CertifiedLevel<dim>> solve_to_the_end(const StepObserver& observer) const;
+  /// By the residual alone.
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   [[nodiscard]] std::string try_to_advance(const StepObserver& observer, bool is_last);
   [[nodiscard]] std::string try_to_refine(const Marker<dim>& mark, const MeshLimit& limit);
@@ -136,6 +147,7 @@ class Levels
   const Method& method_;
   double tolerance_;
   const std::atomic<bool>* stop_;
+  ErrorBars bars_;
   int number_ = -1;  ///< of the last level
   std::shared_ptr<const Discretisation<dim>> current_;
   CertifiedLevel<dim> level_;

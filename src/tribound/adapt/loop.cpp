@@ -41,6 +41,11 @@ Strategy<dim> make_strategy(const AdaptOptions& options, const std::atomic<bool>
     const mesh::Mesh<dim>& mesh = view.discrete.mesh;
     Markers markers{mesh.ranks(), {}};
     if (mesh.partition()) markers.names = mesh.partition()->names;
+    const std::optional<certify::EnergyBound>& energy = view.level.energy;
+    if (options.measure == ErrorMeasure::energy && energy && energy->reason.empty())
+      if (std::vector<Index> marked = mark(energy->cells, options.marking, markers);
+          mesh.ranks().any(!marked.empty()))
+        return marked;
     return mark(view.level.estimate.cells, options.marking, markers);
   };
   strategy.stop = [options, interrupt, begin = Clock::now()](const LevelView<dim>& view) -> std::string
@@ -89,16 +94,22 @@ certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy)
   {
     if (strategy.observer.level) strategy.observer.level(levels.view());
   };
-  const auto finish = [&] { return levels.finish(strategy.observer.step); };
+  const auto finish = [&]
+  {
+    const bool has_converged = levels.finish(strategy.observer.step);
+    return levels.bound_energy() || has_converged;
+  };
+  const auto is_open = [&] { return levels.verdict().status == certify::RunStatus::budget; };
   std::string end;  // why the last level is the last
   for (int number = levels.next_number();; ++number)
   {
     end = levels.advance(strategy.observer.step, number == strategy.last_level);
     const bool told = !end.empty();
+    if (!told && levels.bars().on_every_level()) levels.bound_energy();
     if (end.empty() && strategy.stop) end = strategy.stop(levels.view());
-    const bool is_last = !end.empty() || levels.verdict().status != certify::RunStatus::budget;
-    if ((is_last && finish()) || !told) tell();
-    if (is_last) break;
+    const bool has_changed = (!end.empty() || !is_open()) && finish();
+    if (has_changed || !told) tell();
+    if (!end.empty() || !is_open()) break;
     end = levels.refine(strategy.mark, strategy.limit);
     if (end.empty())
     {
@@ -121,6 +132,7 @@ certify::Verdict adapt(const problem::Problem<dim>& problem, const Method& metho
   Strategy<dim> strategy = make_strategy<dim>(options, &interrupt);
   strategy.observer = observer;
   Levels<dim> levels(problem, method, options.tolerance, std::move(first), &interrupt);
+  levels.ask_for(options.bars);
   return adapt(levels, strategy);
 }
 

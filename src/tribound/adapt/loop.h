@@ -18,11 +18,20 @@
 namespace tribound::adapt
 {
 
+/// Whose part on a cell tells whether to refine it.
+enum class ErrorMeasure
+{
+  residual,  ///< eta_tot
+  energy     ///< the bound in the energy norm, where there is one; else the residual
+};
+
 /// How far to go.
 struct AdaptOptions
 {
   double tolerance = 0.01;  ///< of eta_tot / ||sigma(u_h)||
   MarkingOptions marking{};
+  ErrorMeasure measure = ErrorMeasure::residual;  ///< what marks cells
+  ErrorBars bars{};
   int max_levels = 30;
   long max_dofs = 2'000'000;
   std::optional<long> max_cells{};     ///< no limit where absent
@@ -35,7 +44,8 @@ template <int dim>
 struct LoopObserver
 {
   StepObserver step{};
-  /// Of the last level a second time, if Newton's method has converged on it after the first.
+  /// Of the last level a second time, if Newton's method has converged or error bars have been computed on it
+  /// after the first.
   std::function<void(const LevelView<dim>&)> level{};
   /// Of the next mesh, before anything is solved on it.
   std::function<void(const Levels<dim>&)> refined{};
@@ -76,7 +86,7 @@ struct MemoryLimit
 ///
 /// On the last level Newton's method goes on to newton.tolerance (newton.finish), which changes the
 /// displacement by less than its bound, but contact forces visibly; where it fails or the run is interrupted
-/// the level stays as it is.
+/// the level stays as it is. Error bars, if the levels are asked for any, are those of the final iterate.
 ///
 /// The verdict is that of the last level of which the observer was told. Should a later level fail, or
 /// violate an identity or run out of memory, the one before it keeps its certificate: the verdict is then

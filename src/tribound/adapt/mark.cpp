@@ -181,4 +181,13 @@ std::vector<Index> mark(std::span<const certify::BoundComponents> cells, const M
   return marked;
 }
 
+std::vector<Index> mark(std::span<const double> squares, const MarkingOptions& options,
+                        const Markers& markers)
+{
+  if (options.strategy == Marking::uniform) return mark_all(squares.size());
+  std::vector<double> eta(squares.begin(), squares.end());
+  for (double& x : eta) x = std::sqrt(x);
+  return mark_one(eta, options, markers);
+}
+
 }  // namespace tribound::adapt

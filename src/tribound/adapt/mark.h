@@ -57,4 +57,8 @@ struct Markers
 [[nodiscard]] std::vector<Index> mark(std::span<const certify::BoundComponents> cells,
                                       const MarkingOptions& options, const Markers& markers = {});
 
+/// The same by one number per cell, eta_T^2, without parts that could be separate.
+[[nodiscard]] std::vector<Index> mark(std::span<const double> squares, const MarkingOptions& options,
+                                      const Markers& markers = {});
+
 }  // namespace tribound::adapt

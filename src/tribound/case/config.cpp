@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -125,10 +126,14 @@ adapt::RegularisationOptions read_regularisation(const Node& node)
 
 adapt::AdaptOptions read_adapt(const Node& node)
 {
-  const TableReader table(node, {"tolerance", "marking", "theta", "separate_contact", "max_levels",
-                                 "max_dofs", "max_cells", "max_time", "max_memory"});
+  const TableReader table(
+      node, {"tolerance", "marking", "theta", "separate_contact", "max_levels", "max_dofs", "max_cells",
+             "max_time", "max_memory", "measure", "energy_tolerance"});
   adapt::AdaptOptions adapt;
   table.read("tolerance", adapt.tolerance, number_in(positive, "a relative error, such as 0.01"));
+  table.read("measure", adapt.measure, one_of<adapt::ErrorMeasure>({"residual", "energy"}));
+  table.read("energy_tolerance", adapt.bars.energy_tolerance,
+             number_in(positive, "a relative error in the energy norm, such as 0.05"));
   table.read("marking", adapt.marking.strategy, one_of<adapt::Marking>({"doerfler", "maximum", "uniform"}));
   table.read(
       "theta", adapt.marking.theta,
@@ -142,10 +147,33 @@ adapt::AdaptOptions read_adapt(const Node& node)
   return adapt;
 }
 
-void read_certify(const Node& node, adapt::Method& method)
+constexpr std::array<std::string_view, 2> certify_keys = {"contact_rule", "energy"};
+
+void read_certify(const Node& node, Config& config)
 {
-  const TableReader table(node, {"contact_rule"});
-  table.read("contact_rule", method.contact_rule, one_of<certify::ContactRule>({"resolved", "reference"}));
+  const TableReader table(node, certify_keys);
+  table.read("contact_rule", config.method.contact_rule,
+             one_of<certify::ContactRule>({"resolved", "reference"}));
+  table.read("energy", config.adapt.bars.levels, one_of<adapt::EnergyLevels>({"off", "last", "every"}));
+}
+
+/// certify.energy where the case does not say; throws InputError where it says too little.
+void choose_energy_levels(const TableReader& root, Config& config)
+{
+  adapt::ErrorBars& bars = config.adapt.bars;
+  const bool is_steering = config.adapt.measure == adapt::ErrorMeasure::energy || bars.energy_tolerance;
+  const Node* certify = root.find("certify");
+  const Node* given = certify ? TableReader(*certify, certify_keys).find("energy") : nullptr;
+  if (is_steering && config.history)
+    throw InputError(
+        root.find("adapt")->where, "is steered by the error in the energy norm",
+        "of load steps this is not bounded: adapt.measure = \"residual\", no adapt.energy_tolerance");
+  if (is_steering && given && !bars.on_every_level())
+    throw InputError(
+        given->where, fmt::format("is {}", describe(*given)),
+        "\"every\", as adapt.measure = \"energy\" and adapt.energy_tolerance need the bound on every level");
+  if (!given) bars.levels = is_steering ? adapt::EnergyLevels::every : adapt::EnergyLevels::last;
+  if (config.history) bars.levels = adapt::EnergyLevels::off;
 }
 
 algebra::SolverOptions read_solver(const Node& node)
@@ -269,12 +297,13 @@ Config read_document(const Node& document, std::string file)
   read_method("newton", read_newton);
   root.read("regularisation", config.method.regularisation, read_regularisation);
   root.read("adapt", config.adapt, read_adapt);
-  read_method("certify", read_certify);
+  if (const Node* node = root.find("certify")) read_certify(*node, config);
   root.read("solver", config.method.solver, read_solver);
   root.read("study", config.study, [&](const Node& node) { return read_study(node, config.method.degree); });
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
   check_load_steps(root, config);
+  choose_energy_levels(root, config);
   return config;
 }
 

@@ -313,6 +313,12 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
        [](const case_file::Config& c, const Row&) { return unlimited(c.adapt.max_time, "no limit"); }},
       {"adapt.max_memory", [](const case_file::Config& c, const Row&)
        { return unlimited(c.adapt.max_memory, "9/10 of the machine's"); }},
+      {"adapt.energy_tolerance", [](const case_file::Config& c, const Row&)
+       { return unlimited(c.adapt.bars.energy_tolerance, "no demand"); }},
+      {"adapt.measure", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.adapt.measure)); }},
+      {"certify.energy", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.adapt.bars.levels)); }},
       {"certify.contact_rule", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.method.contact_rule)); }},
       {"solver.method", [](const case_file::Config& c, const Row& row)

@@ -32,6 +32,8 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   {
     record.bound = level.estimate.bound();
     record.balance = certify::balance<dim>(form, level.stress, moment_about);
+    record.energy = level.energy;
+    if (record.energy) record.energy->cells.clear();
   }
   else  // what violates an identity is no bound, and is not shown as one
     for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};

@@ -61,7 +61,8 @@ struct LevelRecord
   SolutionFigures figures;
   std::optional<certify::Bound> bound;
   std::optional<certify::IdentityDefects> identities;
-  std::optional<certify::Balance> balance;  ///< where there is a bound
+  std::optional<certify::Balance> balance;       ///< where there is a bound
+  std::optional<certify::EnergyBound> energy{};  ///< without its cells; absent: not asked for
   LevelTimes times;
   /// Where it is a load step, of which `level` is the number, or the worst one of a pass.
   std::optional<LoadStepRecord> load_step;

@@ -2,6 +2,7 @@
 
 #include "tribound/base/sha256.h"
 #include "tribound/io/file/json.h"
+#include "tribound/io/record/error_bars.h"
 
 namespace tribound::io
 {
@@ -94,6 +95,7 @@ void add_results(Json& object, const LevelRecord& level)
   object["identities"] = json(level.identities);
   object["energy"] = level.figures.energy;
   object["sigma_norm"] = level.figures.sigma_norm;
+  add_energy_error(object, level);
   object["max_displacement"] = level.figures.max_displacement;
   if (!level.figures.bodies.empty()) object["bodies"] = Json::array();
   for (const BodyFigures& body : level.figures.bodies)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tribound/io/record/error_bars.h"
+
 namespace tribound::io
 {
 
@@ -59,7 +61,8 @@ TableRow newton_row(const char* level_name, int level, const adapt::CertifiedSte
   return row;
 }
 
-TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind)
+/// Load steps have no bound in the energy norm.
+TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind, bool has_steps)
 {
   TableRow row = level_columns(level);
   append(row, {{"energy", level.figures.energy},
@@ -68,6 +71,8 @@ TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind)
                {"t_solve", level.times.stages.solve},
                {"t_certify", level.times.stages.certify},
                {"t_level", level.times.level}});
+  if (!has_steps)
+    append(row, {{"energy_bound", energy_bound(level)}, {"energy_relative", relative_energy_bound(level)}});
   append(row, further_columns(level, kind));
   return row;
 }
@@ -106,7 +111,7 @@ TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
                   {"control", step.control},
                   {"cuts", step.cuts},
                   {"passes", step.passes}};
-  TableRow of_level = convergence_row(level, kind);
+  TableRow of_level = convergence_row(level, kind, true);
   row.insert(row.end(), std::make_move_iterator(of_level.begin() + 1),
              std::make_move_iterator(of_level.end()));
   append(row, {{"relative_path", bound_along_path(level)}});
@@ -162,7 +167,7 @@ std::string convergence_csv(std::span<const LevelRecord> levels)
   const bool has_steps = std::ranges::any_of(levels, is_load_step);
   const auto row_of = [&](const LevelRecord& level)
   {
-    TableRow row = convergence_row(level, kind);
+    TableRow row = convergence_row(level, kind, has_steps);
     if (has_steps)
       append(row,
              {{"load_step", level.load_step_number.value_or(0)}, {"relative_path", bound_along_path(level)}});

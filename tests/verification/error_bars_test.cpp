@@ -1,0 +1,185 @@
+/// @file error_bars_test.cpp
+/// The bound of the error in the energy norm along the adaptive algorithm: optimal rates and effectivities on
+/// meshes that it marks, on the meshes that are asked for, of the iterate that is kept, and as a demand.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "support/meshes.h"
+#include "support/problem_data.h"
+#include "tribound/adapt/loop.h"
+#include "tribound/adapt/rate.h"
+#include "tribound/certify/truth/solution_error.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+using adapt::EnergyLevels;
+using adapt::ErrorMeasure;
+
+/// What was told of a level.
+struct ToldLevel
+{
+  int number;
+  std::shared_ptr<const adapt::Discretisation<2>> discrete;
+  adapt::CertifiedLevel<2> level;
+  certify::Verdict verdict;
+};
+
+struct Told
+{
+  std::shared_ptr<const problem::Problem<2>> problem;  ///< which the levels refer to
+  std::vector<ToldLevel> levels;
+  certify::Verdict verdict;
+};
+
+Told run(const adapt::Method& method, const adapt::AdaptOptions& options,
+         const ProblemData<2>& data = pressed_block<2>(), const std::atomic<bool>& stop = false)
+{
+  mesh::Mesh<2> mesh(block<2>({4, 2}));
+  Told told{.problem = std::make_shared<const problem::Problem<2>>(data.on(mesh))};
+  auto first = std::make_unique<adapt::Discretisation<2>>(std::move(mesh), *told.problem, method);
+  const adapt::LoopObserver<2> observer{
+      {},
+      [&](const adapt::LevelView<2>& view)
+      {
+        told.levels.push_back({view.number, view.owner, view.level, view.verdict});
+        told.levels.back().level.equilibrium.reset();  // factors, which cannot outlive MPI
+      }};
+  told.verdict = adapt::adapt<2>(*told.problem, method, options, std::move(first), observer, stop);
+  return told;
+}
+
+const ToldLevel& reference()
+{
+  static const Told told = run({.degree = 4}, {.tolerance = 1e-4, .max_levels = 40});
+  return told.levels.back();
+}
+
+/// Over the levels of all meshes whose cells its bound marks.
+class EnergyAdaptive : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(EnergyAdaptive, RatesAreOptimalOnMeshesThatItMarks)
+{
+  const int p = GetParam();
+  const adapt::AdaptOptions options{.tolerance = 1e-9,
+                                    .measure = ErrorMeasure::energy,
+                                    .bars = {.levels = EnergyLevels::every},
+                                    .max_levels = 40,
+                                    .max_dofs = p == 1 ? 8000 : 3000};
+  const Told told = run({.degree = p}, options);
+  std::vector<adapt::RatePoint> bounds;
+  std::vector<adapt::RatePoint> errors;
+  double smallest = HUGE_VAL;
+  double largest = 0;
+  for (const auto& [number, discrete, level, verdict] : told.levels)
+  {
+    ASSERT_TRUE(level.energy && level.energy->reason.empty()) << number;
+    const auto dofs = static_cast<double>(fem::n_free_dofs(discrete->space, discrete->form.constraints()));
+    const double error = certify::solution_error<2>(discrete->form.problem(), discrete->space, level.u,
+                                                    reference().discrete->space, reference().level.u)
+                             .global.energy;
+    bounds.push_back({dofs, level.energy->bound});
+    errors.push_back({dofs, error});
+    smallest = std::min(smallest, level.energy->bound / error);
+    largest = std::max(largest, level.energy->bound / error);
+  }
+  const double bound_rate = adapt::fitted_rate(bounds).value();
+  const double error_rate = adapt::fitted_rate(errors).value();
+  fmt::print(
+      "p = {}: {} levels, {:.0f} dofs, bound {:.3e}, rates of bound {:.3f} and error {:.3f}, effectivity "
+      "{:.3f} "
+      "to {:.3f}\n",
+      p, told.levels.size(), bounds.back().dofs, bounds.back().value, bound_rate, error_rate, smallest,
+      largest);
+  EXPECT_GE(smallest, 1);
+  // Facets on which the state changes: polynomials there are not complementary, less so the higher the
+  // degree.
+  EXPECT_LE(largest, p < 3 ? 1.5 : 1.75);
+  EXPECT_LE(bound_rate, -0.9 * p / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, EnergyAdaptive, ::testing::Range(1, 4));
+
+TEST(ErrorBars, AreThoseOfTheMeshesThatAreAskedFor)
+{
+  for (const EnergyLevels levels : {EnergyLevels::off, EnergyLevels::last, EnergyLevels::every})
+  {
+    const Told told = run({.degree = 2}, {.tolerance = 1e-9, .bars = {.levels = levels}, .max_levels = 3});
+    ASSERT_EQ(told.levels.back().number, 3);
+    for (const auto& [number, discrete, level, verdict] : told.levels)
+      EXPECT_EQ(level.energy.has_value(),
+                levels == EnergyLevels::every || (levels == EnergyLevels::last && number == 3));
+  }
+}
+
+/// The last level is known as such only when the next mesh turns out to be too large: it is told of again,
+/// with the bar of its final iterate.
+TEST(ErrorBars, AreThoseOfTheIterateThatIsKept)
+{
+  for (const EnergyLevels levels : {EnergyLevels::last, EnergyLevels::every})
+  {
+    const Told told = run({.degree = 2}, {.tolerance = 1e-9, .bars = {.levels = levels}, .max_dofs = 600});
+    const ToldLevel& last = told.levels.back();
+    if (levels == EnergyLevels::last)
+    {
+      ASSERT_EQ(told.levels[told.levels.size() - 2].number, last.number);
+    }
+    ASSERT_TRUE(last.level.converged && last.level.energy);
+    const certify::EnergyBound again = certify::EnergyEstimator<2>(last.discrete->form, {})(last.level.u);
+    EXPECT_NEAR(last.level.energy->bound, again.bound, 1e-9 * again.bound);
+  }
+}
+
+TEST(ErrorBars, ADemandIsPartOfTheVerdict)
+{
+  const adapt::ErrorBars bars{.levels = EnergyLevels::every, .energy_tolerance = 0.02};
+  const Told met = run({.degree = 2}, {.tolerance = 0.5, .bars = bars});
+  EXPECT_EQ(met.verdict.status, certify::RunStatus::certified) << met.verdict.reason;
+  const adapt::CertifiedLevel<2>& level = met.levels.back().level;
+  EXPECT_LE(level.energy->bound, 0.02 * std::sqrt(level.norms.energy));
+  EXPECT_GT(met.levels.size(), 2u);  // the residual alone would have ended it on the first
+  EXPECT_EQ(met.levels.front().verdict.status, certify::RunStatus::budget);
+
+  const Told missed = run({.degree = 2}, {.tolerance = 0.5, .bars = bars, .max_levels = 1});
+  EXPECT_EQ(missed.verdict.status, certify::RunStatus::budget);
+  EXPECT_NE(missed.verdict.reason.find("adapt.energy_tolerance = 2 %"), std::string::npos)
+      << missed.verdict.reason;
+}
+
+/// Where there can be no bound the demand is not met, and the run ends by its limits.
+TEST(ErrorBars, ADemandWithoutABoundIsNotMet)
+{
+  ProblemData<2> data = pressed_block<2>();
+  data.boundaries.back().contact->water = problem::Water(problem::Field(0.001));
+  const adapt::ErrorBars bars{.levels = EnergyLevels::every, .energy_tolerance = 0.5};
+  const Told told = run({.degree = 1}, {.tolerance = 0.9, .bars = bars, .max_levels = 1}, data);
+  EXPECT_EQ(told.verdict.status, certify::RunStatus::budget);
+  EXPECT_NE(told.verdict.reason.find("has no bound"), std::string::npos) << told.verdict.reason;
+}
+
+/// Who wants the run to end does not wait for them.
+TEST(ErrorBars, AnInterruptedRunHasNone)
+{
+  const Told told = run({.degree = 2}, {.tolerance = 1e-9, .bars = {.levels = EnergyLevels::last}},
+                        pressed_block<2>(), std::atomic<bool>(true));
+  ASSERT_TRUE(told.levels.back().level.energy);
+  EXPECT_EQ(told.levels.back().level.energy->reason, "interrupted");
+}
+
+}  // namespace
+
+}  // namespace tribound::test
