@@ -41,8 +41,8 @@ std::unique_ptr<OutputDirectory> take_directory(const case_file::Config& config,
   const std::filesystem::path& path = config.output.directory;
   auto directory = std::make_unique<OutputDirectory>(path);
   if (keeps_results) return directory;
-  remove_results(path, {"certificate.json", "report.html", "convergence.csv", "history.csv", "newton.csv",
-                        "contact.csv", "adapted.msh", io::checkpoint_name});
+  remove_results(path, {"certificate.json", "report.html", "convergence.csv", "quantities.csv", "history.csv",
+                        "newton.csv", "contact.csv", "adapted.msh", io::checkpoint_name});
   io::remove_series(path);
   return directory;
 }

@@ -16,6 +16,7 @@
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/base/clock.h"
 #include "tribound/base/rank_failure.h"
+#include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/support/rigid_motion.h"
@@ -93,12 +94,13 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   if (config.history)
     return run_history<dim>(config, problem, std::move(mesh), slides, stop, progress, std::move(whole),
                             restart, begin);
+  auto quantities = case_file::resolve_quantities<dim>(config, mesh.boundary_names());
   const std::unique_ptr<adapt::Levels<dim>> levels =
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
   RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
                         progress.quiet() ? Printed::verdict : Printed::everything,
                         restart ? &restart->facts.earlier : nullptr);
-  levels->ask_for(config.adapt.bars);
+  levels->ask_for(config.adapt.bars, std::move(quantities));
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)
@@ -145,6 +147,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   problem::Problem<dim> problem(case_file::resolve(config, mesh));
   if (config.history) problem = problem.at(config.history->program.targets.front());
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
+  (void)case_file::resolve_quantities<dim>(config, mesh.boundary_names());
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
   if (auto history = contact::history_at_first(form)) form.set_history(std::move(history));

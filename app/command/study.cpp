@@ -22,10 +22,12 @@
 #include "app/shared_file.h"
 #include "tribound/adapt/loop.h"
 #include "tribound/base/clock.h"
+#include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/certify/truth/solution_error.h"
 #include "tribound/doctor/support_facts.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/record/error_bars.h"
 #include "tribound/mesh/bisect.h"
 
 namespace tribound::app
@@ -57,6 +59,7 @@ class StudyCommand
       : config_(config),
         mesh_(std::move(mesh)),
         problem_(case_file::resolve(config, mesh_)),
+        quantities_(case_file::resolve_quantities<dim>(config, mesh_.boundary_names())),
         progress_(progress),
         stop_(stop_on_signals())
   {
@@ -104,6 +107,7 @@ class StudyCommand
   const case_file::Config& config_;
   mesh::Mesh<dim> mesh_;
   problem::Problem<dim> problem_;
+  std::vector<problem::Quantity<dim>> quantities_;
   const Progress& progress_;
   const std::atomic<bool>& stop_;
   Clock::time_point begin_ = Clock::now();
@@ -125,7 +129,7 @@ FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& co
   RunReport<dim> report(config, problem_, levels.discrete(),
                         doctor::slides_as_a_whole<dim>(problem_, levels.discrete().mesh), Clock::now(),
                         Printed::levels);
-  levels.ask_for(config.adapt.bars);
+  levels.ask_for(config.adapt.bars, quantities_);
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop_);
   strategy.observer = {[&](const adapt::CertifiedStep& step) { progress_(step.step, step.relative); },
                        [&](const adapt::LevelView<dim>& view)
@@ -249,6 +253,7 @@ void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
   const certify::LocalError error = certify::solution_error<dim>(
       problem_, discrete.space, kept.level.u, reference_->discrete->space, reference_->level.u);
   result.error = error.global;
+  result.intervals_agree = io::intervals_agree(result.record, study_.reference->level);
   const case_file::Config config = variant_config(config_, study_.variants[variant].name);
   if (config.output.vtu)
     write_level_fields<dim>(config.output.directory, {static_cast<int>(number)}, discrete, kept.level,

@@ -156,17 +156,23 @@ std::string mesh_text(std::string_view caption, std::int64_t cells, std::int64_t
 namespace
 {
 
-/// The bound of the error in the energy norm, or why there is none.
+/// The bound of the error in the energy norm, or why there is none, and the quantities with their intervals.
 std::string energy_lines(const io::LevelRecord& level)
 {
   if (!level.energy) return {};
-  if (!level.energy->reason.empty()) return paragraph("energy error", "no bound: " + level.energy->reason);
+  std::string quantities;
+  for (const certify::QuantityInterval& quantity : level.energy->quantities)
+    quantities +=
+        paragraph(quantities.empty() ? "quantities" : "", quantity.name + ": " + io::words_of(quantity));
+  if (!level.energy->reason.empty())
+    return paragraph("energy error", "no bound: " + level.energy->reason) + quantities;
   const auto relative = io::relative_energy_bound(level);
   return paragraph(
-      "energy error",
-      fmt::format("at most {:.6g}{}: the distance from {}", level.energy->bound,
-                  relative ? fmt::format(", {:.4g} % of ||u_h||_en", 100 * *relative) : std::string(),
-                  io::words_of(level.energy->target)));
+             "energy error",
+             fmt::format("at most {:.6g}{}: the distance from {}", level.energy->bound,
+                         relative ? fmt::format(", {:.4g} % of ||u_h||_en", 100 * *relative) : std::string(),
+                         io::words_of(level.energy->target))) +
+         quantities;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "app/page/page_volume.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
@@ -89,6 +90,8 @@ io::Json tables_json(const io::RunRecord& run, const std::string& contact)
                   {"newton.csv", table(io::newton_csv(run))},
                   {"contact.csv", table(contact)}};
   if (io::has_history(run)) tables["history.csv"] = table(io::history_csv(run));
+  if (const std::string quantities = io::quantities_csv(io::levels_json(run)); !quantities.empty())
+    tables["quantities.csv"] = table(quantities);
   return tables;
 }
 
@@ -119,8 +122,9 @@ std::size_t n_triangles(std::span<const PageLevel> levels)
 /// The files of a run, in the order in which a reader wants them.
 std::vector<std::string> run_files(const io::RunRecord& run)
 {
-  std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv", "history.csv",
-                                    "newton.csv",       "contact.csv", "adapted.msh",     "series.pvd"};
+  std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv",
+                                    "quantities.csv",   "history.csv", "newton.csv",
+                                    "contact.csv",      "adapted.msh", "series.pvd"};
   const std::string_view stem = io::has_history(run) ? "step" : "level";
   for (const io::LevelRecord& level : run.levels)
     for (const std::string& name :

@@ -61,6 +61,8 @@ io::TableRow columns(const StudyVariant& variant, std::size_t number, const cert
           {"effectivity_stress", level.stress_effectivity()},
           {"energy_bound", io::energy_bound(level.record)},
           {"energy_effectivity", level.energy_effectivity()},
+          {"intervals_agree",
+           level.intervals_agree ? std::optional(*level.intervals_agree ? 1.0 : 0.0) : std::nullopt},
           {"rate_error", rates.error},
           {"rate_bound", rates.bound},
           {"t_solve", level.record.times.stages.solve},
@@ -229,6 +231,19 @@ std::vector<std::optional<double>> error_differences(const StudyVariant& with, c
 namespace
 {
 
+std::string interval_violation(const Study& study)
+{
+  for (const StudyVariant& variant : study.variants)
+    for (const StudiedLevel& level : variant.levels)
+      if (level.intervals_agree == false)
+        return fmt::format(
+            "the guarantee is violated: in the variant {} on level {} the interval of a quantity has no "
+            "point in common "
+            "with that of the reference",
+            variant.name, level.record.level);
+  return {};
+}
+
 /// The triangle inequality: the reference is not the solution either.
 std::string energy_violation(const Study& study)
 {
@@ -244,7 +259,7 @@ std::string energy_violation(const Study& study)
             "norm and that of the reference, {:.3g}, are together below the distance {:.9g} between both",
             variant.name, level.record.level, *io::energy_bound(level.record), *of_reference,
             *energy_error(level));
-  return {};
+  return interval_violation(study);
 }
 
 }  // namespace

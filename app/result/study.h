@@ -24,6 +24,7 @@ struct StudiedLevel
   io::LevelRecord record;
   std::optional<certify::SolutionError> error;  ///< against the reference
   std::optional<double> dual_norm;              ///< of the residual, from below
+  std::optional<bool> intervals_agree{};        ///< of all quantities, with those of the reference
 
   /// bound / dual norm: at least 1.
   [[nodiscard]] std::optional<double> effectivity() const;

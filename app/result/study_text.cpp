@@ -122,6 +122,22 @@ std::string bounded_text(const Study& study, std::optional<double> (StudiedLevel
                      known.size(), error, smallest, largest);
 }
 
+/// On how many levels the intervals of the quantities could be compared; empty for none.
+std::string intervals_text(const Study& study)
+{
+  long n = 0;
+  for (const StudyVariant& variant : study.variants)
+    n += std::ranges::count_if(variant.levels,
+                               [](const StudiedLevel& level) { return level.intervals_agree == true; });
+  return n == 0
+             ? std::string()
+             : line("",
+                    fmt::format(
+                        "the intervals of the quantities meet those of the reference on all {} levels where "
+                        "both are known",
+                        n));
+}
+
 std::string guarantee_text(const Study& study)
 {
   std::string problem = violation(study);
@@ -131,7 +147,7 @@ std::string guarantee_text(const Study& study)
       bounded_text(study, &StudiedLevel::energy_effectivity, "the energy bound", "error");
   return line("guarantee",
               residual.empty() ? "no dual norm was computed, see study.dual_norm_dofs" : residual) +
-         (energy.empty() ? std::string() : line("", energy));
+         (energy.empty() ? std::string() : line("", energy)) + intervals_text(study);
 }
 
 }  // namespace

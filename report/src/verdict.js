@@ -3,6 +3,7 @@
 import { boundUnit } from "./components.js";
 import { count, element, number, percent, plural } from "./dom.js";
 import { typeset } from "./math.js";
+import { intervalText } from "./quantities.js";
 
 const verdicts = {
   certified: { title: "Certified", mark: "\u2713" },
@@ -58,6 +59,11 @@ export function figure(value, name, note) {
     element("div", { class: "figure-name" }, name), note ? element("div", { class: "figure-note" }, typeset(note)) : null);
 }
 
+/** What the case wants to know, with its error bar. */
+function quantityFigures({ quantities }) {
+  return (quantities ?? []).slice(0, 4).map((quantity) => figure(number(quantity.value, 5), quantity.name, intervalText(quantity)));
+}
+
 /** The smallest factor of safety against sliding that the certificate has. */
 function safetyFigure(run) {
   const parts = Object.entries(run.contact?.boundaries ?? {}).filter(([, { sliding }]) => sliding?.safety_factor > 0);
@@ -82,6 +88,7 @@ function figures(run, contact) {
       : run.relative === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
     run.energy_error?.relative > 0 ? figure(percent(run.energy_error.relative), "error in the energy norm, at most", targets[run.energy_error.guaranteed_for]) : null,
     ...(isSolved(run) ? [
+      ...quantityFigures(run),
       safetyFigure(run),
       contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", `S, ${placeText(contact.place)}`) : null,
       contact ? figure(percent(contact.open / contact.size), run.d === 2 ? "length that is open" : "area that is open",

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "tribound/base/error.h"
@@ -12,12 +14,13 @@ namespace tribound::adapt
 
 template <int dim>
 certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
-                                  std::span<const double> u)
+                                  std::span<const double> u,
+                                  const std::vector<problem::Quantity<dim>>& quantities)
 {
   std::string why;
   try
   {
-    return certify::EnergyEstimator<dim>(form, method.solver)(u);
+    return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u);
   }
   catch (const SolveError& error)
   {
@@ -35,7 +38,35 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
   return {.reason = why};
 }
 
-std::string unmet(const ErrorBars& bars, const certify::EnergyBound& bound, double energy_norm)
+const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound, const std::string& name)
+{
+  const auto found = std::ranges::find(bound.quantities, name, &certify::QuantityInterval::name);
+  return found != bound.quantities.end() && found->reason.empty() ? &*found : nullptr;
+}
+
+std::span<const double> shares_of_cells(const ErrorBars& bars,
+                                        const std::optional<certify::EnergyBound>& bound)
+{
+  if (!bound || !bound->reason.empty()) return {};
+  const certify::QuantityInterval* goal = bars.goal.empty() ? nullptr : find_interval(*bound, bars.goal);
+  return goal && !goal->cells.empty() ? goal->cells : bound->cells;
+}
+
+namespace
+{
+
+std::string unmet_goal(const ErrorBars& bars, const certify::EnergyBound& bound)
+{
+  if (!bars.goal_tolerance) return {};
+  const certify::QuantityInterval* goal = find_interval(bound, bars.goal);
+  if (goal == nullptr)
+    return fmt::format("\"{}\", for which adapt.goal_tolerance is given, has no error bar", bars.goal);
+  if (goal->bar() <= *bars.goal_tolerance * std::abs(goal->value)) return {};
+  return fmt::format("\"{}\" = {:.6g} is known to {:.3g}, not to adapt.goal_tolerance = {:g} %", bars.goal,
+                     goal->value, goal->bar(), 100 * *bars.goal_tolerance);
+}
+
+std::string unmet_energy(const ErrorBars& bars, const certify::EnergyBound& bound, double energy_norm)
 {
   if (!bars.energy_tolerance) return {};
   if (!bound.reason.empty())
@@ -49,9 +80,18 @@ std::string unmet(const ErrorBars& bars, const certify::EnergyBound& bound, doub
       100 * bound.bound / energy_norm, 100 * *bars.energy_tolerance);
 }
 
+}  // namespace
+
+std::string unmet(const ErrorBars& bars, const certify::EnergyBound& bound, double energy_norm)
+{
+  std::string energy = unmet_energy(bars, bound, energy_norm);
+  const std::string goal = unmet_goal(bars, bound);
+  return energy + (energy.empty() || goal.empty() ? "" : "; ") + goal;
+}
+
 template certify::EnergyBound energy_bound(const contact::NitscheForm<2>&, const Method&,
-                                           std::span<const double>);
+                                           std::span<const double>, const std::vector<problem::Quantity<2>>&);
 template certify::EnergyBound energy_bound(const contact::NitscheForm<3>&, const Method&,
-                                           std::span<const double>);
+                                           std::span<const double>, const std::vector<problem::Quantity<3>>&);
 
 }  // namespace tribound::adapt

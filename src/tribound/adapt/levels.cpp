@@ -243,7 +243,7 @@ bool Levels<dim>::bound_energy()
   {
     const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
     if (level_.converged) level_.equilibrium.reset();  // its factors, for finish(), take most of the memory
-    level_.energy = energy_bound<dim>(current_->form, method_, level_.u);
+    level_.energy = energy_bound<dim>(current_->form, method_, level_.u, quantities_);
   }
   if (verdict_.status == certify::RunStatus::certified)
     if (std::string why = unmet(bars_, *level_.energy, std::sqrt(level_.norms.energy)); !why.empty())

@@ -88,7 +88,11 @@ class Levels
 
   /// What is bounded beside the residual, and what is demanded of it: a level on which this is not met is not
   /// `certified`. Before the first advance().
-  void ask_for(ErrorBars bars) { bars_ = std::move(bars); }
+  void ask_for(ErrorBars bars, std::vector<problem::Quantity<dim>> quantities = {})
+  {
+    bars_ = std::move(bars);
+    quantities_ = std::move(quantities);
+  }
   [[nodiscard]] const ErrorBars& bars() const { return bars_; }
 
   /// The number of the level that advance() comes to.
@@ -148,6 +152,7 @@ class Levels
   double tolerance_;
   const std::atomic<bool>* stop_;
   ErrorBars bars_;
+  std::vector<problem::Quantity<dim>> quantities_;
   int number_ = -1;  ///< of the last level
   std::shared_ptr<const Discretisation<dim>> current_;
   CertifiedLevel<dim> level_;

@@ -39,12 +39,13 @@ Strategy<dim> make_strategy(const AdaptOptions& options, const std::atomic<bool>
   strategy.mark = [options](const LevelView<dim>& view)
   {
     const mesh::Mesh<dim>& mesh = view.discrete.mesh;
-    Markers markers{mesh.ranks(), {}};
+    const Ranks& ranks = mesh.ranks();
+    Markers markers{ranks, {}};
     if (mesh.partition()) markers.names = mesh.partition()->names;
-    const std::optional<certify::EnergyBound>& energy = view.level.energy;
-    if (options.measure == ErrorMeasure::energy && energy && energy->reason.empty())
-      if (std::vector<Index> marked = mark(energy->cells, options.marking, markers);
-          mesh.ranks().any(!marked.empty()))
+    const bool is_steered = options.measure == ErrorMeasure::energy || !options.bars.goal.empty();
+    if (const std::span<const double> shares = shares_of_cells(options.bars, view.level.energy);
+        is_steered && ranks.any(!shares.empty()))
+      if (std::vector<Index> marked = mark(shares, options.marking, markers); ranks.any(!marked.empty()))
         return marked;
     return mark(view.level.estimate.cells, options.marking, markers);
   };

@@ -21,7 +21,7 @@ namespace tribound::adapt
 /// Whose part on a cell tells whether to refine it.
 enum class ErrorMeasure
 {
-  residual,  ///< eta_tot
+  residual,  ///< eta_tot, unless there is a goal
   energy     ///< the bound in the energy norm, where there is one; else the residual
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include "tribound/case/history_reader.h"
 #include "tribound/case/node.h"
 #include "tribound/case/physics.h"
+#include "tribound/case/quantity_reader.h"
 #include "tribound/case/table_reader.h"
 #include "tribound/fem/degree.h"
 #include "tribound/mesh/box.h"
@@ -128,12 +128,15 @@ adapt::AdaptOptions read_adapt(const Node& node)
 {
   const TableReader table(
       node, {"tolerance", "marking", "theta", "separate_contact", "max_levels", "max_dofs", "max_cells",
-             "max_time", "max_memory", "measure", "energy_tolerance"});
+             "max_time", "max_memory", "measure", "energy_tolerance", "goal", "goal_tolerance"});
   adapt::AdaptOptions adapt;
   table.read("tolerance", adapt.tolerance, number_in(positive, "a relative error, such as 0.01"));
   table.read("measure", adapt.measure, one_of<adapt::ErrorMeasure>({"residual", "energy"}));
   table.read("energy_tolerance", adapt.bars.energy_tolerance,
              number_in(positive, "a relative error in the energy norm, such as 0.05"));
+  table.read("goal", adapt.bars.goal, to_text);
+  table.read("goal_tolerance", adapt.bars.goal_tolerance,
+             number_in(positive, "the relative size of its bar, such as 0.01"));
   table.read("marking", adapt.marking.strategy, one_of<adapt::Marking>({"doerfler", "maximum", "uniform"}));
   table.read(
       "theta", adapt.marking.theta,
@@ -147,33 +150,12 @@ adapt::AdaptOptions read_adapt(const Node& node)
   return adapt;
 }
 
-constexpr std::array<std::string_view, 2> certify_keys = {"contact_rule", "energy"};
-
 void read_certify(const Node& node, Config& config)
 {
-  const TableReader table(node, certify_keys);
+  const TableReader table(node, {"contact_rule", "energy"});
   table.read("contact_rule", config.method.contact_rule,
              one_of<certify::ContactRule>({"resolved", "reference"}));
   table.read("energy", config.adapt.bars.levels, one_of<adapt::EnergyLevels>({"off", "last", "every"}));
-}
-
-/// certify.energy where the case does not say; throws InputError where it says too little.
-void choose_energy_levels(const TableReader& root, Config& config)
-{
-  adapt::ErrorBars& bars = config.adapt.bars;
-  const bool is_steering = config.adapt.measure == adapt::ErrorMeasure::energy || bars.energy_tolerance;
-  const Node* certify = root.find("certify");
-  const Node* given = certify ? TableReader(*certify, certify_keys).find("energy") : nullptr;
-  if (is_steering && config.history)
-    throw InputError(
-        root.find("adapt")->where, "is steered by the error in the energy norm",
-        "of load steps this is not bounded: adapt.measure = \"residual\", no adapt.energy_tolerance");
-  if (is_steering && given && !bars.on_every_level())
-    throw InputError(
-        given->where, fmt::format("is {}", describe(*given)),
-        "\"every\", as adapt.measure = \"energy\" and adapt.energy_tolerance need the bound on every level");
-  if (!given) bars.levels = is_steering ? adapt::EnergyLevels::every : adapt::EnergyLevels::last;
-  if (config.history) bars.levels = adapt::EnergyLevels::off;
 }
 
 algebra::SolverOptions read_solver(const Node& node)
@@ -271,8 +253,8 @@ io::EffectiveCase effective_case(Node document, const Config& config, std::span<
 Config read_document(const Node& document, std::string file)
 {
   const TableReader root(document, {"title", "degree", "mesh", "material", "load", "boundary", "contact",
-                                    "nitsche", "newton", "obstacle", "shape", "history", "regularisation",
-                                    "adapt", "certify", "solver", "study", "output"});
+                                    "nitsche", "newton", "obstacle", "shape", "quantity", "history",
+                                    "regularisation", "adapt", "certify", "solver", "study", "output"});
   Config config;
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
@@ -288,6 +270,7 @@ Config read_document(const Node& document, std::string file)
             [&](const Node& node) { return read_obstacles(node, case_directory); });
   root.read("shape", config.shapes, [&](const Node& node) { return read_shapes(node, case_directory); });
   check_surfaces(config);
+  root.read("quantity", config.quantities, read_quantities);
   read_load_steps(root, config);
   const auto read_method = [&](std::string_view key, const auto& read)
   {
@@ -303,7 +286,7 @@ Config read_document(const Node& document, std::string file)
   config.output.directory = default_directory(config.file);
   root.read("output", config.output, [&](const Node& node) { return read_output(node, config.output); });
   check_load_steps(root, config);
-  choose_energy_levels(root, config);
+  check_error_bars(root, config);
   return config;
 }
 

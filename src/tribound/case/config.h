@@ -21,6 +21,7 @@
 #include "tribound/mesh/seams.h"
 #include "tribound/mesh/source.h"
 #include "tribound/problem/problem.h"
+#include "tribound/problem/quantity.h"
 
 namespace tribound::case_file
 {
@@ -65,6 +66,18 @@ struct ContactConfig
   GeometryConfig geometry;
   std::vector<double> direction;  ///< of the pairing; empty: along the normals of the slave
   double reach = std::numeric_limits<double>::infinity();
+  Where where;
+};
+
+/// One [[quantity]] table.
+struct QuantityConfig
+{
+  std::string name{};
+  problem::QuantityKind kind = problem::QuantityKind::energy;
+  std::string boundary{};           ///< empty: none given
+  std::vector<double> direction{};  ///< empty: the outward normal
+  std::vector<double> point{};      ///< of a moment; empty: the origin
+  double ramp = 0;                ///< 0: none given
   Where where;
 };
 
@@ -119,6 +132,7 @@ struct Config
   std::vector<ContactConfig> contacts;
   std::vector<SurfaceConfig> obstacles;
   std::vector<SurfaceConfig> shapes;
+  std::vector<QuantityConfig> quantities;
   std::optional<HistoryConfig> history;  ///< absent: one step without memory, t = 1
   adapt::Method method;
   adapt::AdaptOptions adapt;

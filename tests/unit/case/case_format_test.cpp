@@ -42,6 +42,7 @@ std::string valid_case(const std::string& table)
   if (table == "obstacle.o.cylinder")
     text += "obstacle.o.cylinder = { centre = [0, 0, 0], axis = [0, 0, 1], radius = 1 }\n";
   if (table == "contact.0") text += "contact = [{slave = 'a', master = 'b'}]\n";
+  if (table == "quantity.0") text += "quantity = [{kind = 'mean_displacement', boundary = 'top'}]\n";
   return text;
 }
 
@@ -56,6 +57,9 @@ std::vector<std::string> companions(const Row& row)
   if (row.key == "damage_step")
     return {"boundary.top.interface={law=\"joint\",tensile_strength=1,fracture_energy=1}",
             "history.steps=[0,1]", "history.control=\"damage\""};
+  if (row.name() == "quantity.0.point" || row.name() == "quantity.0.ramp")
+    return {"quantity.0.kind=contact_moment"};
+  if (row.key == "goal_tolerance") return {"quantity=[{kind=\"energy\"}]", "adapt.goal=energy"};
   if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
   return {};
 }
@@ -225,7 +229,7 @@ TEST(CaseFormat, KeysAreThoseOfTheProgram)
     documented[row.table].insert(row.key);
     if (row.table.find('.') == std::string::npos && !row.table.empty()) documented[""].insert(row.table);
   }
-  documented[""].insert({"boundary", "contact", "obstacle", "shape"});
+  documented[""].insert({"boundary", "contact", "obstacle", "quantity", "shape"});
   for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
 }
 
@@ -315,6 +319,20 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
        { return unlimited(c.adapt.max_memory, "9/10 of the machine's"); }},
       {"adapt.energy_tolerance", [](const case_file::Config& c, const Row&)
        { return unlimited(c.adapt.bars.energy_tolerance, "no demand"); }},
+      {"adapt.goal",
+       [](const case_file::Config& c, const Row&) { return c.adapt.bars.goal.empty() ? "none" : "given"; }},
+      {"adapt.goal_tolerance", [](const case_file::Config& c, const Row&)
+       { return unlimited(c.adapt.bars.goal_tolerance, "no demand"); }},
+      {"quantity.0.name", [](const case_file::Config& c, const Row&)
+       { return c.quantities[0].name == "mean_displacement top" ? "kind and boundary" : "another"; }},
+      {"quantity.0.boundary", [](const case_file::Config& c, const Row&)
+       { return c.quantities[0].boundary == "top" ? "all contact boundaries" : "another"; }},
+      {"quantity.0.direction", [](const case_file::Config& c, const Row&)
+       { return c.quantities[0].direction.empty() ? "`\"normal\"`" : "given"; }},
+      {"quantity.0.point", [](const case_file::Config& c, const Row&)
+       { return c.quantities[0].point.empty() ? "the origin" : "given"; }},
+      {"quantity.0.ramp", [](const case_file::Config& c, const Row&)
+       { return c.quantities[0].ramp == 0 ? "a tenth of the box around the boundary" : "given"; }},
       {"adapt.measure", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.adapt.measure)); }},
       {"certify.energy", [](const case_file::Config& c, const Row& row)

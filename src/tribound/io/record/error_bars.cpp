@@ -61,8 +61,78 @@ std::string words_of_guarantee(const LevelRecord& level)
       words_of(level.energy->target), words_of_remainders(*level.energy));
 }
 
+std::string words_of(const certify::QuantityInterval& quantity)
+{
+  const std::string value = fmt::format("{:.6g}", quantity.value);
+  if (!quantity.reason.empty()) return value + ", without error bar: " + quantity.reason;
+  const std::string note = quantity.note.empty() ? std::string() : "; " + quantity.note;
+  if (quantity.exact) return fmt::format("{}, exact ({}){}", value, quantity.basis, note);
+  return fmt::format("{}, guaranteed between {:.6g} and {:.6g} ({}){}", value, quantity.lower, quantity.upper,
+                     quantity.basis, note);
+}
+
+namespace
+{
+
+Json json(const certify::QuantityInterval& quantity)
+{
+  const bool is_known = quantity.reason.empty();
+  return {{"name", quantity.name},
+          {"value", quantity.value},
+          {"lower", is_known ? Json(quantity.lower) : Json(nullptr)},
+          {"upper", is_known ? Json(quantity.upper) : Json(nullptr)},
+          {"exact", quantity.exact},
+          {"rests_on", text_or_null(quantity.basis)},
+          {"note", text_or_null(quantity.note)},
+          {"reason", text_or_null(quantity.reason)}};
+}
+
+std::optional<double> known(const Json& value)
+{
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<bool> intervals_agree(const LevelRecord& level, const LevelRecord& better)
+{
+  if (!level.energy || !better.energy) return std::nullopt;
+  const bool is_conditional = level.energy->target != certify::EnergyTarget::solution;
+  std::optional<bool> agree;
+  for (const certify::QuantityInterval& quantity : level.energy->quantities)
+    for (const certify::QuantityInterval& other : better.energy->quantities)
+      if (quantity.name == other.name && quantity.reason.empty() && other.reason.empty() &&
+          (quantity.exact || !is_conditional))
+        agree = agree.value_or(true) && quantity.lower <= other.upper && other.lower <= quantity.upper;
+  return agree;
+}
+
+std::string quantities_csv(const Json& levels)
+{
+  const auto row = [](const Json& level, const Json& quantity) -> TableRow
+  {
+    return {{"level", level.at("level").get<long>()},
+            {"dofs", level.at("dofs").get<long>()},
+            {"name", quantity.at("name").get<std::string>()},
+            {"value", known(quantity.at("value"))},
+            {"lower", known(quantity.at("lower"))},
+            {"upper", known(quantity.at("upper"))},
+            {"exact", quantity.at("exact").get<bool>() ? 1L : 0L},
+            {"rests_on", quantity.at("rests_on").is_string() ? quantity.at("rests_on").get<std::string>()
+                                                             : std::string()}};
+  };
+  std::vector<TableRow> rows;
+  for (const Json& level : levels)
+    if (const auto quantities = level.find("quantities"); quantities != level.end())
+      for (const Json& quantity : *quantities) rows.push_back(row(level, quantity));
+  return rows.empty() ? std::string() : csv_text(rows.front(), rows);
+}
+
 void add_energy_error(Json& object, const LevelRecord& level)
 {
+  if (level.energy)
+    for (const certify::QuantityInterval& quantity : level.energy->quantities)
+      object["quantities"].push_back(json(quantity));
   object["energy_error"] = nullptr;
   if (!has_bound(level))
   {

@@ -24,7 +24,18 @@ namespace tribound::io
 /// What the bound guarantees, as a sentence of the certificate; empty without one.
 [[nodiscard]] std::string words_of_guarantee(const LevelRecord& level);
 
-/// Adds `energy_error` and, where it is null, `energy_reason`.
+/// A quantity in words: "1.646, guaranteed between 1.63 and 1.66 (energy bound)".
+[[nodiscard]] std::string words_of(const certify::QuantityInterval& quantity);
+
+/// Whether every interval of a level has a point in common with that of a better solution of the same
+/// problem, as both hold the number of the exact one; nothing where none can be compared, as with Coulomb's
+/// friction.
+[[nodiscard]] std::optional<bool> intervals_agree(const LevelRecord& level, const LevelRecord& better);
+
+/// A row for each quantity of each level, levels as `levels` of the certificate has them.
+[[nodiscard]] std::string quantities_csv(const Json& levels);
+
+/// Adds `energy_error` and, where it is null, `energy_reason`; and `quantities`, where there are any.
 void add_energy_error(Json& object, const LevelRecord& level);
 
 }  // namespace tribound::io

@@ -11,6 +11,18 @@ StageTimes& StageTimes::operator+=(const StageTimes& other)
   return *this;
 }
 
+namespace
+{
+
+/// What only marking needs.
+void drop_cells(certify::EnergyBound& bound)
+{
+  bound.cells.clear();
+  for (certify::QuantityInterval& quantity : bound.quantities) quantity.cells.clear();
+}
+
+}  // namespace
+
 template <int dim>
 LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
                          const std::vector<bool>& slides)
@@ -33,7 +45,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
     record.bound = level.estimate.bound();
     record.balance = certify::balance<dim>(form, level.stress, moment_about);
     record.energy = level.energy;
-    if (record.energy) record.energy->cells.clear();
+    if (record.energy) drop_cells(*record.energy);
   }
   else  // what violates an identity is no bound, and is not shown as one
     for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};

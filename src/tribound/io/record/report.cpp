@@ -6,6 +6,7 @@
 
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
+#include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
@@ -125,6 +126,8 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   if (!run.effective.text.empty()) write_file(directory / run.case_file, run.effective.text);
   write_file(directory / "convergence.csv", convergence_csv(run));
   if (has_history(run)) write_file(directory / "history.csv", history_csv(run));
+  if (const std::string quantities = quantities_csv(levels_json(run)); !quantities.empty())
+    write_file(directory / "quantities.csv", quantities);
   write_file(directory / "newton.csv", newton_csv(run));
   write_file(directory / "certificate.json", certificate_json(run));
 }

@@ -1,0 +1,230 @@
+#include "tribound/case/quantity_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace tribound::case_file
+{
+
+namespace
+{
+
+using problem::QuantityKind;
+
+/// In the order of QuantityKind, with the keys that go with each beside `name` and `kind`.
+const std::array kinds = {
+    KeyGroup{to_string(QuantityKind::energy), {}},
+    KeyGroup{to_string(QuantityKind::load_work), {}},
+    KeyGroup{to_string(QuantityKind::contact_force), {"boundary", "direction", "ramp"}},
+    KeyGroup{to_string(QuantityKind::contact_moment), {"boundary", "direction", "point", "ramp"}},
+    KeyGroup{to_string(QuantityKind::safety_factor), {"boundary", "ramp"}},
+    KeyGroup{to_string(QuantityKind::mean_displacement), {"boundary", "direction"}}};
+
+constexpr auto direction_hint = "\"normal\", the outward normal of the boundary, or a vector such as [0, 1]";
+
+std::vector<double> read_vector(const Node& node)
+{
+  std::vector<double> x;
+  for (const Node& item : to_components(node, "one number per dimension")) x.push_back(to_number(item));
+  return x;
+}
+
+/// Empty for "normal".
+std::vector<double> read_direction(const Node& node)
+{
+  if (const auto* text = std::get_if<std::string>(&node.value); text && *text == "normal") return {};
+  std::vector<double> direction = read_vector(node);
+  if (std::ranges::count(direction, 0.0) == std::ssize(direction))
+    throw InputError(node.where, "has no length", direction_hint);
+  return direction;
+}
+
+QuantityKind read_kind(const TableReader& table)
+{
+  std::vector<std::string> names;
+  for (const KeyGroup& kind : kinds) names.emplace_back(kind.name);
+  const std::size_t chosen =
+      to_choice(table.require("kind", "what is wanted, such as kind = \"contact_force\""), names);
+  refuse_keys_of_others(table, "kind", kinds, chosen);
+  return static_cast<QuantityKind>(chosen);
+}
+
+/// Where a quantity is no number without a key.
+void require_keys(const TableReader& table, const QuantityConfig& quantity)
+{
+  const bool needs_boundary =
+      quantity.kind == QuantityKind::safety_factor || quantity.kind == QuantityKind::mean_displacement;
+  if (needs_boundary) (void)table.require("boundary", "the boundary whose number it is");
+  const bool is_of_all = quantity.boundary.empty();
+  if (is_of_all && quantity.kind == QuantityKind::contact_force)
+    (void)table.require("direction", "of the force, a vector such as [0, 1]");
+  if (is_of_all && quantity.direction.empty() && table.has("direction"))
+    throw InputError(table.find("direction")->where, "is \"normal\" without a boundary",
+                     "a vector such as [0, 1], or boundary = \"...\"");
+}
+
+QuantityConfig read_quantity(const Node& node)
+{
+  const TableReader table(node, {"name", "kind", "boundary", "direction", "point", "ramp"});
+  QuantityConfig quantity{.kind = read_kind(table), .where = node.where};
+  table.read("boundary", quantity.boundary, to_text);
+  table.read("direction", quantity.direction, read_direction);
+  table.read("point", quantity.point, read_vector);
+  table.read("ramp", quantity.ramp,
+             number_in(positive, "a distance, over which the weight of a force grows from 0 to 1"));
+  require_keys(table, quantity);
+  quantity.name = to_string(quantity.kind);
+  if (!quantity.boundary.empty()) quantity.name += " " + quantity.boundary;
+  table.read("name", quantity.name, to_text);
+  if (quantity.name.empty())
+    throw InputError(table.find("name")->where, "is empty", "a name, such as \"thrust\"");
+  return quantity;
+}
+
+bool has_contact(const Config& config, const std::string& name)
+{
+  const auto is_slave = [&](const ContactConfig& contact)
+  { return contact.joint == name || std::ranges::find(contact.slave, name) != contact.slave.end(); };
+  return std::ranges::any_of(config.boundaries, [&](const BoundaryConfig& boundary)
+                             { return boundary.name == name && boundary.contact; }) ||
+         std::ranges::any_of(config.contacts, is_slave);
+}
+
+bool has_coulomb_friction(const Config& config, const std::string& name)
+{
+  return std::ranges::any_of(config.boundaries,
+                             [&](const BoundaryConfig& boundary)
+                             {
+                               return boundary.name == name && boundary.contact &&
+                                      problem::cone(boundary.contact->law).coefficient > 0;
+                             });
+}
+
+void check_boundary(const Config& config, const QuantityConfig& quantity,
+                    std::span<const std::string> boundary_names)
+{
+  if (quantity.boundary.empty()) return;
+  (void)problem::group_number(quantity.boundary, boundary_names, quantity.where, "boundary");
+  const bool is_of_contact =
+      quantity.kind == QuantityKind::contact_force || quantity.kind == QuantityKind::contact_moment;
+  if (is_of_contact && !has_contact(config, quantity.boundary))
+    throw InputError(quantity.where,
+                     fmt::format("is about \"{}\", where there is no contact", quantity.boundary),
+                     "the name of a boundary with contact, or none for all of them together");
+  if (quantity.kind == QuantityKind::safety_factor && !has_coulomb_friction(config, quantity.boundary))
+    throw InputError(quantity.where,
+                     fmt::format("is about \"{}\", which has no Coulomb friction", quantity.boundary),
+                     "a boundary with contact = { friction = \"coulomb\", coefficient = ... }");
+}
+
+template <int dim>
+Point<dim> in_dimension(const std::vector<double>& x, const char* key, const QuantityConfig& quantity)
+{
+  if (x.size() != dim)
+    throw InputError(quantity.where,
+                     fmt::format("{} has {} components, but the mesh is {}D", key, x.size(), dim),
+                     fmt::format("give {}", dim));
+  return Eigen::Map<const Point<dim>>(x.data());
+}
+
+}  // namespace
+
+std::vector<QuantityConfig> read_quantities(const Node& node)
+{
+  const auto* items = std::get_if<Node::Array>(&node.value);
+  if (items == nullptr)
+    fail_type(node, "an array of tables", "one [[quantity]] for each number, with two brackets on each side");
+  std::vector<QuantityConfig> quantities;
+  for (const Node& item : *items)
+  {
+    QuantityConfig quantity = read_quantity(item);
+    if (std::ranges::find(quantities, quantity.name, &QuantityConfig::name) != quantities.end())
+      throw InputError(quantity.where, fmt::format("has the name of another one, \"{}\"", quantity.name),
+                       "name = \"...\" of its own");
+    quantities.push_back(std::move(quantity));
+  }
+  return quantities;
+}
+
+namespace
+{
+
+void check_goal(const TableReader& root, const Config& config)
+{
+  const adapt::ErrorBars& bars = config.adapt.bars;
+  const Node* adapt = root.find("adapt");
+  if (bars.goal.empty())
+  {
+    if (bars.goal_tolerance)
+      throw InputError(adapt->where, "has a goal_tolerance without a goal",
+                       "goal = \"...\", the name of a [[quantity]]");
+    return;
+  }
+  std::vector<std::string> names;
+  for (const QuantityConfig& quantity : config.quantities) names.push_back(quantity.name);
+  if (std::ranges::find(names, bars.goal) == names.end())
+    throw InputError(adapt->where, fmt::format("has the goal \"{}\", which is no [[quantity]]", bars.goal),
+                     names.empty() ? std::string("a [[quantity]] of this name")
+                                   : fmt::format("one of {}", problem::quoted_list(names)));
+}
+
+}  // namespace
+
+void check_error_bars(const TableReader& root, Config& config)
+{
+  check_goal(root, config);
+  adapt::ErrorBars& bars = config.adapt.bars;
+  const bool is_steering =
+      config.adapt.measure == adapt::ErrorMeasure::energy || bars.energy_tolerance || !bars.goal.empty();
+  const Node* certify = root.find("certify");
+  const Entry* given = certify ? find(std::get<Node::Table>(certify->value), "energy") : nullptr;
+  if (config.history)
+  {
+    if (is_steering || !config.quantities.empty())
+      throw InputError(
+          is_steering ? root.find("adapt")->where : config.quantities.front().where,
+          "asks for the error in the energy norm",
+          "of load steps it is not bounded: drop [[quantity]], adapt.goal, adapt.energy_tolerance and "
+          "adapt.measure");
+    bars.levels = adapt::EnergyLevels::off;
+    return;
+  }
+  if (given && is_steering && !bars.on_every_level())
+    throw InputError(
+        given->where, fmt::format("is {}", describe(given->node)),
+        "\"every\", as adapt.measure = \"energy\", adapt.energy_tolerance and adapt.goal need the "
+        "bound on every mesh");
+  if (given && !config.quantities.empty() && bars.levels == adapt::EnergyLevels::off)
+    throw InputError(given->where, "is \"off\", and there is a [[quantity]]", "\"last\" or \"every\"");
+  if (!given) bars.levels = is_steering ? adapt::EnergyLevels::every : adapt::EnergyLevels::last;
+}
+
+template <int dim>
+std::vector<problem::Quantity<dim>> resolve_quantities(const Config& config,
+                                                       std::span<const std::string> boundary_names)
+{
+  std::vector<problem::Quantity<dim>> quantities;
+  for (const QuantityConfig& given : config.quantities)
+  {
+    check_boundary(config, given, boundary_names);
+    problem::Quantity<dim> quantity{.name = given.name,
+                                    .kind = given.kind,
+                                    .boundary = given.boundary,
+                                    .direction = {},
+                                    .point = {},
+                                    .ramp = given.ramp,
+                                    .where = given.where};
+    if (!given.direction.empty()) quantity.direction = in_dimension<dim>(given.direction, "direction", given);
+    if (!given.point.empty()) quantity.point = in_dimension<dim>(given.point, "point", given);
+    quantities.push_back(std::move(quantity));
+  }
+  return quantities;
+}
+
+template std::vector<problem::Quantity<2>> resolve_quantities(const Config&, std::span<const std::string>);
+template std::vector<problem::Quantity<3>> resolve_quantities(const Config&, std::span<const std::string>);
+
+}  // namespace tribound::case_file

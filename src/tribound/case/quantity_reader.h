@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file quantity_reader.h
+/// [[quantity]]: numbers that are wanted with error bars, and what the case does with them.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribound/case/config.h"
+#include "tribound/case/node.h"
+#include "tribound/case/table_reader.h"
+#include "tribound/problem/quantity.h"
+
+namespace tribound::case_file
+{
+
+/// One entry for each [[quantity]].
+[[nodiscard]] std::vector<QuantityConfig> read_quantities(const Node& array);
+
+/// certify.energy where the case does not say, as [adapt] needs it. Throws InputError where the case says
+/// less than that, and for a goal that is no quantity of it.
+void check_error_bars(const TableReader& root, Config& config);
+
+/// The quantities of the case on a mesh with these names of boundaries. Throws InputError for a boundary that
+/// does not exist or has no contact where one is needed, and for vectors of wrong length.
+template <int dim>
+[[nodiscard]] std::vector<problem::Quantity<dim>> resolve_quantities(
+    const Config& config, std::span<const std::string> boundary_names);
+
+}  // namespace tribound::case_file
