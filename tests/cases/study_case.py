@@ -19,7 +19,7 @@ HERE = Path(__file__).resolve().parent
 VARIANTS = ["adaptive", "adaptive_converged", "uniform", "uniform_converged"]
 COLUMNS = (
     "variant,level,cells,dofs,newton_steps,osc,str,neu,lin1,cnt,frc,lin2n,lin2t,quad,alg,total,total_sharp,relative,energy_error,"
-    "stress_error,dual_norm,effectivity,effectivity_stress,rate_error,rate_bound,t_solve,t_certify,t_level"
+    "stress_error,dual_norm,effectivity,effectivity_stress,energy_bound,energy_effectivity,intervals_agree,rate_error,rate_bound,t_solve,t_certify,t_level"
 )
 ADAPTIVE = ["newton.stopping=adaptive", "newton.tolerance=1e-10", "adapt.theta=0.6", "adapt.max_levels=12", "study.figures=false"]
 BETWEEN_BODIES = ["mor", "str_mor"]  # columns that follow with pairs
@@ -74,6 +74,8 @@ def check_levels(study):
         before = None
         for level in variant["levels"]:
             assert level["effectivity"] is None or level["effectivity"] >= 1, f"{name}: effectivity"
+            assert level["energy_effectivity"] is None or level["energy_effectivity"] >= 1, f"{name}: energy effectivity"
+            assert level["intervals_agree"] != 0, f"{name}: intervals"
             assert level["energy_error"] > 0 and level["stress_error"] > 0, f"{name}: errors"
             assert math.isclose(level["effectivity_stress"], level["total_sharp"] / level["stress_error"]), name
             if before:

@@ -70,15 +70,16 @@ TEST(Study, CsvHasARowPerVariantAndLevel)
 {
   const auto rows = cells(app::study_csv(example()));
   ASSERT_EQ(rows.size(), 7u);
-  EXPECT_THAT(rows[0], ElementsAre("variant", "level", "cells", "dofs", "newton_steps", "osc", "str", "neu",
-                                   "lin1", "cnt", "frc", "lin2n", "lin2t", "quad", "alg", "total",
-                                   "total_sharp", "relative", "energy_error", "stress_error", "dual_norm",
-                                   "effectivity", "effectivity_stress", "energy_bound", "energy_effectivity",
-                                   "rate_error", "rate_bound", "t_solve", "t_certify", "t_level"));
+  EXPECT_THAT(rows[0],
+              ElementsAre("variant", "level", "cells", "dofs", "newton_steps", "osc", "str", "neu", "lin1",
+                          "cnt", "frc", "lin2n", "lin2t", "quad", "alg", "total", "total_sharp", "relative",
+                          "energy_error", "stress_error", "dual_norm", "effectivity", "effectivity_stress",
+                          "energy_bound", "energy_effectivity", "intervals_agree", "rate_error", "rate_bound",
+                          "t_solve", "t_certify", "t_level"));
   EXPECT_THAT(rows[1], ElementsAre("adaptive", "0", "8", "16", "3", "0", "0.125", "0", "0", "0", "0", "0",
                                    "0", "0", "0", "0.25", "0.1875", "0.09375", "0.0625", "0.09375", "0.125",
-                                   "1.5", "2", "", "", "", "", "0.5", "0.25", "1"));
-  EXPECT_NEAR(std::stod(rows[3][26]), -1, 1e-14);  // the rate of the bound
+                                   "1.5", "2", "", "", "", "", "", "0.5", "0.25", "1"));
+  EXPECT_NEAR(std::stod(rows[3][27]), -1, 1e-14);  // the rate of the bound
   EXPECT_EQ(rows[6][0], "uniform");
 }
 
@@ -106,7 +107,7 @@ TEST(Study, WhatIsNotKnownIsEmptyInTheTableAndNullInJson)
   first.error.reset();
   first.dual_norm.reset();
   const auto row = cells(app::study_csv(study))[1];
-  for (const int column : {18, 19, 20, 21, 22, 23, 24, 25, 26}) EXPECT_EQ(row[column], "") << column;
+  for (const int column : {18, 19, 20, 21, 22, 23, 24, 25, 26, 27}) EXPECT_EQ(row[column], "") << column;
   const auto json = nlohmann::json::parse(app::study_json(study));
   EXPECT_TRUE(json["reference"].is_null());
   for (const char* name : {"energy_error", "stress_error", "dual_norm", "effectivity", "effectivity_stress"})
