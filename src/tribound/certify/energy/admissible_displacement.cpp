@@ -49,6 +49,7 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   const int n = form.n_segment_points();
   const problem::FrictionCone cone = problem::cone(form.segments()[k].contact->law);
   FacetState state;
+  if (cone.is_tied) return {Extent::everywhere, Extent::everywhere, 1, 1};
   constexpr double rounding = 1e-12;  // of T^n where that is 0, and of |T^t| where that is the limit
   int n_closed = 0;
   int n_sticking = 0;
@@ -70,7 +71,7 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   return state;
 }
 
-/// Those of all facets; facets in transition are taken for what they are at all, or only everywhere.
+/// Those of the slaves of all facets; facets in transition are taken for what they are at all, or only everywhere.
 template <int dim>
 class ControlPoints
 {
@@ -81,9 +82,10 @@ class ControlPoints
   {
     for (std::size_t k = 0; k < states.size(); ++k)
     {
-      const std::vector<Point<dim>> coefficients = facets.coefficients(k, u);
-      for (std::size_t j = 0; j < coefficients.size(); ++j)
-        points_.try_emplace(facets.nodes(k)[j]).first->second.add(coefficients[j], {k, j});
+      const std::vector<Point<dim>> on_slave = facets.on_slave(k, u);
+      const std::vector<Point<dim>> on_master = facets.on_master(k, u);
+      for (std::size_t j = 0; j < on_slave.size(); ++j)
+        points_.try_emplace(facets.nodes(k)[j]).first->second.add(on_slave[j], {k, j, on_master[j]});
     }
   }
 
@@ -96,8 +98,9 @@ class ControlPoints
     {
       std::array<bool, dim> fixed;
       for (int a = 0; a < dim; ++a) fixed[a] = form_.constraints().fixed[dim * node + a] != 0;
+      const Point<dim> from_opposite = at.position - at.places.front().opposite;
       const Point<dim> step =
-          moved<dim>(at.position, fixed, conditions(at, transition_is_closed)) - at.position;
+          moved<dim>(from_opposite, fixed, conditions(at, transition_is_closed)) - from_opposite;
       std::copy_n(step.data(), dim, &result[dim * node]);
     }
     space.update(std::span(result));
@@ -109,6 +112,7 @@ class ControlPoints
   {
     std::size_t facet;
     std::size_t coefficient;
+    Point<dim> opposite;  ///< the control point of the master; 0 against an obstacle
   };
   struct ControlPoint
   {
@@ -123,7 +127,7 @@ class ControlPoints
     }
   };
 
-  /// Facets of the same normal together.
+  /// On the distance from the control point opposite on the first facet. Facets of the same normal together.
   [[nodiscard]] std::vector<ControlCondition<dim>> conditions(const ControlPoint& at,
                                                               bool transition_is_closed) const
   {
@@ -131,10 +135,10 @@ class ControlPoints
     { return extent == Extent::everywhere || (transition_is_closed && extent == Extent::somewhere); };
     constexpr double same = 1e-12;
     std::vector<ControlCondition<dim>> result;
-    for (const auto& [k, j] : at.places)
+    for (const auto& [k, j, opposite] : at.places)
     {
       const Point<dim>& normal = form_.segments()[k].normal;
-      const double gap = facets_.gap(k)[j];
+      const double gap = facets_.gap(k)[j] + normal.dot(opposite - at.places.front().opposite);
       auto found = std::ranges::find_if(
           result, [&](const ControlCondition<dim>& other) { return (other.normal - normal).norm() <= same; });
       if (found == result.end()) found = result.insert(found, {.normal = normal, .gap = gap});
@@ -173,7 +177,7 @@ std::vector<double> with_corrections(const fem::LagrangeSpace<dim>& space, const
   return v;
 }
 
-/// The largest coefficient of v^n - g_h.
+/// The largest coefficient of [v]^n - g_h, or between bodies that are tied of |[v]|.
 template <int dim>
 double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
               std::span<const double> v)
@@ -182,8 +186,10 @@ double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& 
   for (std::size_t k = 0; k < facets.size(); ++k)
   {
     const std::vector<Point<dim>> coefficients = facets.coefficients(k, v);
+    const bool is_tied = problem::cone(form.segments()[k].contact->law).is_tied;
     for (std::size_t j = 0; j < coefficients.size(); ++j)
-      largest = std::max(largest, form.segments()[k].normal.dot(coefficients[j]) - facets.gap(k)[j]);
+      largest = std::max(largest, is_tied ? coefficients[j].norm()
+                                          : form.segments()[k].normal.dot(coefficients[j]) - facets.gap(k)[j]);
   }
   return form.space().mesh().ranks().max(largest);
 }
@@ -218,15 +224,20 @@ AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>
       std::ranges::any_of(states, [](const FacetState& state) { return state.is_in_transition(); }));
   result.gap_remainder = ranks.max(facets.gap_remainder());
 
-  const ControlPoints<dim> control_points(form, facets, u, states);
   const double most = 1e-14 * size_on(form, facets, u);  // rounding
   const auto make = [&](bool transition_is_closed, double& beyond) -> std::optional<std::vector<double>>
   {
-    std::vector<double> v =
-        with_corrections<dim>(form.space(), facets, u, control_points.corrections(transition_is_closed));
-    beyond = excess<dim>(form, facets, v);
-    if (beyond > most) return {};
-    return v;
+    // Where a slave is the master of another one the other has to follow.
+    constexpr int most_sweeps = 5;
+    std::vector<double> v(u.begin(), u.end());
+    for (int sweep = 0; sweep < most_sweeps; ++sweep)
+    {
+      const ControlPoints<dim> control_points(form, facets, v, states);
+      v = with_corrections<dim>(form.space(), facets, v, control_points.corrections(transition_is_closed));
+      beyond = excess<dim>(form, facets, v);
+      if (beyond <= most) return v;
+    }
+    return {};
   };
   result.open = make(false, result.excess_open);
   if (!result.has_transition)

@@ -13,18 +13,33 @@ namespace tribound::certify
 namespace
 {
 
-/// [local facet][j]: the node of the cell that is node j of the facet.
+/// Coordinates on reference facets agree to this where they are meant to be the same.
+constexpr double same = 1e-6;
+
+/// The node of the space on the facet with the coordinates x on the reference facet; -1: there is none.
 template <int dim>
-std::array<std::vector<int>, dim + 1> nodes_on_facets(const fem::LagrangeBasis<dim>& of_cell,
-                                                      const fem::LagrangeBasis<dim - 1>& of_facet)
+Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& facet, const Point<dim - 1>& x)
 {
-  std::array<std::vector<int>, dim + 1> result;
-  for (int f = 0; f <= dim; ++f)
-    for (int j = 0; j < of_facet.n_nodes(); ++j)
-      for (int i = 0; i < of_cell.n_nodes(); ++i)
-        if (of_cell.node(i)[f] == 0 && mesh::facet_vertices(of_cell.node(i), f) == of_facet.node(j))
-          result[f].push_back(i);
-  return result;
+  const fem::LagrangeBasis<dim>& basis = space.basis();
+  for (int i = 0; i < basis.n_nodes(); ++i)
+    if (basis.node(i)[facet.local] == 0 &&
+        (mesh::cell_to_facet<dim>(facet.local, basis.node_point(i)) - x).cwiseAbs().maxCoeff() <= same)
+      return space.cell_nodes(facet.cell)[i];
+  return -1;
+}
+
+/// Whether a side of a segment is its whole facet.
+template <int dim>
+bool is_whole(const contact::SegmentSide<dim>& side)
+{
+  if (!side.part) return true;
+  const auto corners = fem::reference_simplex<dim - 1>();
+  const auto is_corner = [&](const Point<dim - 1>& x)
+  {
+    return std::ranges::any_of(corners, [&](const Point<dim - 1>& corner)
+                               { return (x - corner).cwiseAbs().maxCoeff() <= same; });
+  };
+  return std::ranges::all_of(*side.part, is_corner);
 }
 
 }  // namespace
@@ -35,8 +50,9 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;
-  if (any([](const Segment& segment) { return !segment.is_obstacle_facet(); }))
-    return "there is contact between bodies";
+  if (any([](const Segment& segment)
+          { return !is_whole<dim>(segment.slave) || (segment.master && !is_whole<dim>(*segment.master)); }))
+    return "meshes of bodies in contact do not match";
   if (any([](const Segment& segment) { return segment.varying_normal != nullptr; }))
     return "a direction of contact varies along facets";
   if (any([](const Segment& segment) { return segment.contact->water.has_value(); }))
@@ -45,7 +61,7 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
           [](const Segment& segment)
           {
             const problem::FrictionCone cone = problem::cone(segment.contact->law);
-            return cone.is_tied || cone.is_bonded;
+            return cone.is_bonded;
           }))
     return "a contact law has a bond";
   return {};
@@ -60,20 +76,23 @@ ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
       from_values_(fem::bernstein_from_values(basis_)),
       gaps_(form.segments().size() * n_, 0.0)
 {
-  const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const auto on_facets = nodes_on_facets<dim>(form.space().basis(), basis_);
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const mesh::Mesh<dim>& mesh = space.mesh();
   for (std::size_t k = 0; k < size(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     const mesh::BoundaryFacet& facet = segment.slave.facet;
     const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
+    const bool is_tied = problem::cone(segment.contact->law).is_tied;
     for (std::size_t j = 0; j < n_; ++j)
     {
-      const Index node = form.space().cell_nodes(facet.cell)[on_facets[facet.local][j]];
       const Point<dim - 1> s = basis_.node_point(static_cast<int>(j));
-      const Point<dim> x = node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node)) : map(s);
+      const Index node = node_at<dim>(space, facet, segment.slave.on_facet(s));
+      const Point<dim> x = node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node)) : map(segment.slave.on_facet(s));
       nodes_.push_back(node);
-      nodal_gaps_.push_back(segment.gap(s, x, segment.normal));
+      master_nodes_.push_back(
+          segment.master ? node_at<dim>(space, segment.master->facet, segment.master->on_facet(s)) : -1);
+      nodal_gaps_.push_back(is_tied ? 0 : segment.gap(s, x, segment.normal));
     }
     for (std::size_t j = 0; j < n_; ++j)
       for (std::size_t i = 0; i < n_; ++i)
@@ -91,6 +110,7 @@ double ObstacleFacets<dim>::gap_remainder() const
     for (int q = 0; q < table.n_points; ++q)
     {
       const contact::ContactSegment<dim>& segment = form_.segments()[k];
+      if (problem::cone(segment.contact->law).is_tied) continue;
       double rest = segment.gap(points[q], form_.contact_points(k)[q].x, segment.normal);
       for (std::size_t i = 0; i < n_; ++i) rest -= table.values_at(q)[i] * nodal_gaps_[k * n_ + i];
       largest = std::max(largest, std::abs(rest));
@@ -99,13 +119,30 @@ double ObstacleFacets<dim>::gap_remainder() const
 }
 
 template <int dim>
-std::vector<Point<dim>> ObstacleFacets<dim>::transformed(std::size_t k, std::span<const double> matrix,
+std::vector<Point<dim>> ObstacleFacets<dim>::transformed(std::span<const Index> nodes,
+                                                         std::span<const double> matrix,
                                                          std::span<const double> by_node) const
 {
   std::vector<Point<dim>> result(n_, Point<dim>::Zero());
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t j = 0; j < n_; ++j)
-      result[i] += matrix[i * n_ + j] * Eigen::Map<const Point<dim>>(&by_node[dim * nodes(k)[j]]);
+      result[i] += matrix[i * n_ + j] * Eigen::Map<const Point<dim>>(&by_node[dim * nodes[j]]);
+  return result;
+}
+
+template <int dim>
+std::vector<Point<dim>> ObstacleFacets<dim>::on_master(std::size_t k, std::span<const double> u) const
+{
+  if (!form_.segments()[k].master) return std::vector<Point<dim>>(n_, Point<dim>::Zero());
+  return transformed(std::span(master_nodes_).subspan(k * n_, n_), from_values_, u);
+}
+
+template <int dim>
+std::vector<Point<dim>> ObstacleFacets<dim>::coefficients(std::size_t k, std::span<const double> u) const
+{
+  std::vector<Point<dim>> result = on_slave(k, u);
+  const std::vector<Point<dim>> opposite = on_master(k, u);
+  for (std::size_t j = 0; j < n_; ++j) result[j] -= opposite[j];
   return result;
 }
 

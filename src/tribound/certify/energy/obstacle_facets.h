@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file obstacle_facets.h
-/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles.
+/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles or facets of other
+/// bodies that match them.
 
 #include <array>
 #include <span>
@@ -21,8 +22,8 @@ template <int dim>
 [[nodiscard]] std::string obstacles_unfit(const contact::NitscheForm<dim>& form);
 
 /// The facets of Gamma_C, numbered as the segments of the form. Coefficient j of a facet belongs to its node
-/// j: on vertices and edges facets share both. Keeps a reference to the form, of which obstacles_unfit() says
-/// nothing.
+/// j: on vertices and edges facets share both. Between bodies to every node of the slave there is one of the
+/// master opposite. Keeps a reference to the form, of which obstacles_unfit() says nothing.
 template <int dim>
 class ObstacleFacets
 {
@@ -30,7 +31,7 @@ class ObstacleFacets
   explicit ObstacleFacets(const contact::NitscheForm<dim>& form);
 
   [[nodiscard]] std::size_t size() const { return form_.segments().size(); }
-  /// Nodes of the space on facet k.
+  /// Nodes of the space on facet k, of the slave.
   [[nodiscard]] std::span<const Index> nodes(std::size_t k) const
   {
     return std::span(nodes_).subspan(k * n_, n_);
@@ -40,21 +41,25 @@ class ObstacleFacets
   {
     return std::span(gaps_).subspan(k * n_, n_);
   }
-  /// Of a function of the space.
-  [[nodiscard]] std::vector<Point<dim>> coefficients(std::size_t k, std::span<const double> u) const
+  /// Of [u], u a function of the space.
+  [[nodiscard]] std::vector<Point<dim>> coefficients(std::size_t k, std::span<const double> u) const;
+  /// Of u on the slave, and on the master: 0 against an obstacle.
+  [[nodiscard]] std::vector<Point<dim>> on_slave(std::size_t k, std::span<const double> u) const
   {
-    return transformed(k, from_values_, u);
+    return transformed(nodes(k), from_values_, u);
   }
-  /// Values at the nodes of facet k, from coefficients by node, as degrees of freedom.
+  [[nodiscard]] std::vector<Point<dim>> on_master(std::size_t k, std::span<const double> u) const;
+  /// Values at the nodes of the slave, from coefficients by node, as degrees of freedom.
   [[nodiscard]] std::vector<Point<dim>> values(std::size_t k, std::span<const double> coefficients) const
   {
-    return transformed(k, to_values_, coefficients);
+    return transformed(nodes(k), to_values_, coefficients);
   }
   /// Largest |g - g_h| at the contact points of this rank.
   [[nodiscard]] double gap_remainder() const;
 
  private:
-  [[nodiscard]] std::vector<Point<dim>> transformed(std::size_t k, std::span<const double> matrix,
+  [[nodiscard]] std::vector<Point<dim>> transformed(std::span<const Index> nodes,
+                                                    std::span<const double> matrix,
                                                     std::span<const double> by_node) const;
 
   const contact::NitscheForm<dim>& form_;
@@ -63,6 +68,7 @@ class ObstacleFacets
   std::vector<double> to_values_;
   std::vector<double> from_values_;
   std::vector<Index> nodes_;
+  std::vector<Index> master_nodes_;  ///< opposite; -1 against an obstacle
   std::vector<double> nodal_gaps_;
   std::vector<double> gaps_;
 };

@@ -71,7 +71,7 @@ bool slides_freely(const contact::NitscheForm<dim>& form)
 
 template <int dim>
 void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
-                                  const algebra::SolverOptions& solver, bool is_held)
+                                  const algebra::SolverOptions& solver, bool is_held, bool has_pairs)
 {
   systems_ = std::make_unique<DualSystems<dim>>(bounded, solver);
   is_homogeneous_ = is_homogeneous(bounded);
@@ -79,6 +79,11 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
   for (Item& item : items_)
   {
     if (is_energy(item) || !item.reason.empty()) continue;
+    if (has_pairs && !item.is_known())
+    {
+      item.reason = "there is contact between bodies";  // whose dual problems would be coupled
+      continue;
+    }
     if (item.parts.resultants.empty() && !is_held)
     {
       item.reason = "contact alone holds a body";  // without it the load of the dual problem moves it

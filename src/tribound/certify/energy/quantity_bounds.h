@@ -26,8 +26,10 @@ class QuantityBounds
   QuantityBounds& operator=(const QuantityBounds&) = delete;
 
   /// Makes what energy bounds of this form, on the same mesh and of no lower degree, need; `is_held`: whether
-  /// displacement conditions hold every body by themselves. Throws SolveError.
-  void prepare(const contact::NitscheForm<dim>& bounded, const algebra::SolverOptions& solver, bool is_held);
+  /// displacement conditions hold every body by themselves, `has_pairs`: whether bodies touch each other.
+  /// Throws SolveError.
+  void prepare(const contact::NitscheForm<dim>& bounded, const algebra::SolverOptions& solver, bool is_held,
+               bool has_pairs);
   /// The values of u and the intervals that follow from equilibrium alone; `reason` says why there are no
   /// others.
   [[nodiscard]] std::vector<QuantityInterval> from_equilibrium(std::span<const double> u,

@@ -14,12 +14,13 @@ template <int dim>
 bool TractionCone<dim>::contains(const Point<dim>& t, double tolerance) const
 {
   const double n = t.dot(normal);
-  return n <= tolerance && (t - n * normal).norm() <= limit - coefficient * n + tolerance;
+  return is_tied || (n <= tolerance && (t - n * normal).norm() <= limit - coefficient * n + tolerance);
 }
 
 template <int dim>
 Point<dim> TractionCone<dim>::nearest(const Point<dim>& t) const
 {
+  if (is_tied) return t;
   const double n = t.dot(normal);
   const Point<dim> tangential = t - n * normal;
   const double length = tangential.norm();
@@ -34,6 +35,7 @@ Point<dim> TractionCone<dim>::nearest(const Point<dim>& t) const
 template <int dim>
 Tensor<dim> TractionCone<dim>::derivative(const Point<dim>& t) const
 {
+  if (is_tied) return Tensor<dim>::Identity();
   const double n = t.dot(normal);
   const Point<dim> tangential = t - n * normal;
   const double length = tangential.norm();
@@ -110,7 +112,8 @@ std::vector<TractionCone<dim>> TractionFit<dim>::cones(std::size_t k) const
   thresholds = (from_values_ * thresholds).cwiseMax(0.0).eval();
   std::vector<TractionCone<dim>> cones;
   cones.reserve(thresholds.size());
-  for (const double s : thresholds) cones.push_back({segment.normal, s, problem::cone(law).coefficient});
+  const problem::FrictionCone cone = problem::cone(law);
+  for (const double s : thresholds) cones.push_back({segment.normal, s, cone.coefficient, cone.is_tied});
   return cones;
 }
 

@@ -16,13 +16,14 @@ namespace tribound::certify
 {
 
 /// Where a coefficient of a traction may be: |t^t| <= limit - coefficient t^n, t^n <= 0; with coefficient > 0
-/// limit = 0.
+/// limit = 0. Between bodies that are tied anywhere.
 template <int dim>
 struct TractionCone
 {
   Point<dim> normal;
   double limit;
   double coefficient;
+  bool is_tied = false;
 
   [[nodiscard]] bool contains(const Point<dim>& t, double tolerance) const;
   /// The nearest point.

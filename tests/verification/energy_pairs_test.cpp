@@ -1,0 +1,131 @@
+/// @file energy_pairs_test.cpp
+/// The bound of the error in the energy norm of bodies on meshes that match: above the distance from much
+/// richer solutions, nothing where the stress is constant, and of tied blocks that of the block they are.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
+#include "support/two_blocks.h"
+#include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/truth/true_error.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+template <int dim>
+certify::EnergyBound energy_bound(const DiscreteProblem<dim>& c, std::span<const double> u)
+{
+  return certify::EnergyEstimator<dim>(c.form, c.method.solver)(u);
+}
+
+/// A block on another one whose mesh continues its own; names of the lower one end with "_below".
+template <int dim>
+mesh::MeshData<dim> matching_blocks()
+{
+  Point<dim> lower = Point<dim>::Zero();
+  Point<dim> upper = Point<dim>::Ones();
+  lower[1] = -1;
+  upper[1] = 0;
+  upper[0] = 2;
+  std::array<int, dim> cells;
+  cells.fill(dim == 2 ? 2 : 1);
+  cells[0] = dim == 2 ? 4 : 2;
+  Point<dim> middle = lower;
+  middle[1] = 0;
+  Point<dim> highest = upper;
+  highest[1] = 1;
+  mesh::MeshData<dim> data =
+      side_by_side(box<dim>(middle, highest, cells), box<dim>(lower, upper, cells), "_below");
+  data.interfaces = {{{{{"bottom"}, {"top_below"}}}}};
+  return data;
+}
+
+/// Both held at their left sides; the upper one is pressed down and pulled to the right.
+template <int dim>
+ProblemData<dim> two_pressed(problem::ContactLaw law)
+{
+  return {.boundaries = {clamped<dim>("left"), clamped<dim>("left_below"), loaded<dim>("top", 0, -0.1),
+                         loaded<dim>("right", 0.04, 0.06, 0.02), clamped<dim>("bottom_below")},
+          .pairs = {pair<dim>("bottom", "top_below", std::move(law))}};
+}
+
+template <int dim>
+void expect_effectivity(const char* name, const ProblemData<dim>& data, int p,
+                        const certify::RicherSpace& richer, double largest)
+{
+  const DiscreteProblem<dim> c(matching_blocks<dim>(), data, {.degree = p, .newton = {.tolerance = 1e-12}});
+  const std::vector<double> u = c.solve().u;
+  const certify::EnergyBound eta = energy_bound(c, u);
+  ASSERT_EQ(eta.reason, "") << name;
+  EXPECT_EQ(eta.target, certify::EnergyTarget::solution);
+  const certify::RicherSolution truth =
+      certify::compare_with_richer<dim>(c.form, u, richer, c.form.gamma0(), c.method.newton, c.method.solver);
+  ASSERT_EQ(truth.failure, "") << name;
+  const double found = eta.bound / truth.error->energy;
+  fmt::print("{:<14} {}D p = {}: {:.3f}; bound {:.3e}, ||c|| {:.1e}, G_c {:.1e}\n", name, dim, p, found,
+             eta.bound, eta.correction, eta.contact);
+  EXPECT_GE(found, 1) << name << p;
+  EXPECT_LE(found, largest) << name << p;
+}
+
+class EnergyPairs : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(EnergyPairs, IsABound)
+{
+  const int p = GetParam();
+  const certify::RicherSpace in_2d{.refinements = 3, .degree = p + 1};
+  const certify::RicherSpace in_3d{.refinements = p > 2 ? 1 : 2, .degree = p + 1};
+  const std::array laws = {std::pair("tied", problem::ContactLaw(problem::Tied())),
+                           std::pair("frictionless", problem::ContactLaw(problem::Frictionless())),
+                           std::pair("Tresca", problem::ContactLaw(Tresca(0.03)))};
+  for (const auto& [name, law] : laws)
+  {
+    expect_effectivity<2>(name, two_pressed<2>(law), p, in_2d, 1.6);
+    if (p <= 2) expect_effectivity<3>(name, two_pressed<3>(law), p, in_3d, 2.5);
+  }
+}
+
+TEST_P(EnergyPairs, AGapMayBeGivenAndClose)
+{
+  ProblemData<2> data = two_pressed<2>(problem::Frictionless());
+  data.pairs[0].contact.gap = formula("0.01*x");
+  expect_effectivity<2>("gap", data, GetParam(), {.refinements = 3, .degree = GetParam() + 1}, 1.7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, EnergyPairs, ::testing::Range(1, 4));
+
+/// Uniform pressure through frictionless sides.
+TEST(EnergyPairs, IsNothingWhereTheStressIsConstant)
+{
+  ProblemData<2> data = two_pressed<2>(problem::Frictionless());
+  data.boundaries = {fixed<2>("left", 0.0, {}), fixed<2>("left_below", 0.0, {}),
+                     fixed<2>("bottom_below", {}, 0.0), fixed<2>("top", {}, -0.05)};
+  for (const int p : {1, 2, 3})
+  {
+    const DiscreteProblem<2> c(matching_blocks<2>(), data, {.degree = p, .newton = {.tolerance = 1e-13}});
+    const certify::EnergyBound eta = energy_bound(c, c.solve().u);
+    ASSERT_EQ(eta.reason, "");
+    EXPECT_LE(eta.bound, 1e-7) << p;
+  }
+}
+
+TEST(EnergyPairs, MeshesThatDoNotMatchHaveNone)
+{
+  const DiscreteProblem<2> c(two_blocks<2>(), two_pressed<2>(problem::Frictionless()), {.degree = 1});
+  EXPECT_EQ(energy_bound(c, c.solve().u).reason, "meshes of bodies in contact do not match");
+}
+
+}  // namespace
+
+}  // namespace tribound::test
