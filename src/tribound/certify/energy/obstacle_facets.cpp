@@ -36,8 +36,8 @@ bool is_whole(const contact::SegmentSide<dim>& side)
   const auto corners = fem::reference_simplex<dim - 1>();
   const auto is_corner = [&](const Point<dim - 1>& x)
   {
-    return std::ranges::any_of(corners, [&](const Point<dim - 1>& corner)
-                               { return (x - corner).cwiseAbs().maxCoeff() <= same; });
+    return std::ranges::any_of(
+        corners, [&](const Point<dim - 1>& corner) { return (x - corner).cwiseAbs().maxCoeff() <= same; });
   };
   return std::ranges::all_of(*side.part, is_corner);
 }
@@ -50,8 +50,13 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;
-  if (any([](const Segment& segment)
-          { return !is_whole<dim>(segment.slave) || (segment.master && !is_whole<dim>(*segment.master)); }))
+  if (any(
+          [](const Segment& segment)
+          {
+            const bool matches =
+                segment.master && is_whole<dim>(segment.slave) && is_whole<dim>(*segment.master);
+            return !segment.is_obstacle_facet() && !matches;
+          }))
     return "meshes of bodies in contact do not match";
   if (any([](const Segment& segment) { return segment.varying_normal != nullptr; }))
     return "a direction of contact varies along facets";
@@ -88,7 +93,8 @@ ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
     {
       const Point<dim - 1> s = basis_.node_point(static_cast<int>(j));
       const Index node = node_at<dim>(space, facet, segment.slave.on_facet(s));
-      const Point<dim> x = node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node)) : map(segment.slave.on_facet(s));
+      const Point<dim> x =
+          node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node)) : map(segment.slave.on_facet(s));
       nodes_.push_back(node);
       master_nodes_.push_back(
           segment.master ? node_at<dim>(space, segment.master->facet, segment.master->on_facet(s)) : -1);
