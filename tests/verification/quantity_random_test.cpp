@@ -46,13 +46,15 @@ struct RandomCase
         happens(3) ? problem::ContactLaw(Frictionless()) : problem::ContactLaw(Tresca(between(0.001, 0.1)));
     const problem::Field gap =
         happens(2) ? problem::Field(0.0) : formula(fmt::format("{}*x", between(0, 0.01)));
+    // in 3D projected loads would have another solution
+    const std::string load = fmt::format(fmt::runtime(dim == 2 ? "{}*x^2*y" : "{}*x"), between(-0.3, 0.1));
     ProblemData<dim> data{
         .boundaries = {fixed<dim>(held, 0.5 * moved, moved), obstacle<dim>("bottom", law, gap),
                        loaded<dim>(is_held_above ? "left" : "top", between(-0.05, 0.05), between(-0.2, 0.01),
                                    between(-0.05, 0.05)),
                        loaded<dim>("right", between(-0.1, 0.1), between(-0.1, 0.1))},
         .body_force = components<dim, problem::Field>(formula(fmt::format("{}", between(-0.1, 0.1))),
-                                                      formula(fmt::format("{}*x", between(-0.3, 0.1))), 0.0)};
+                                                      formula(load), 0.0)};
     data.material = problem::lame(1, ratios[random() % ratios.size()]);
     return data;
   }
@@ -162,7 +164,8 @@ struct Asked
 struct Widths
 {
   std::map<std::string, std::vector<double>> ratios;
-  int n_narrow_failures = 0;  ///< of intervals a tenth as wide
+  std::map<std::string, double> largest_share;  ///< of half the width between centre and truth
+  int n_narrow_failures = 0;                    ///< of intervals a tenth as wide
   int n = 0;
 
   void add(const QuantityInterval& interval, double truth)
@@ -170,6 +173,8 @@ struct Widths
     const double centre = (interval.lower + interval.upper) / 2;
     const double half = (interval.upper - interval.lower) / 2;
     ratios[interval.name].push_back(half / std::abs(interval.value - truth));
+    double& share = largest_share[interval.name];
+    share = std::max(share, std::abs(truth - centre) / half);
     n_narrow_failures += std::abs(truth - centre) > half / 10 ? 1 : 0;
     ++n;
   }
@@ -178,8 +183,10 @@ struct Widths
     for (auto& [name, values] : ratios)
     {
       std::ranges::sort(values);
-      fmt::print("{:<10} half the width / error of the value: {:.2f} to {:.1f}, median {:.1f}\n", name,
-                 values.front(), values.back(), values[values.size() / 2]);
+      fmt::print(
+          "{:<10} half the width / error of the value: {:.2f} to {:.1f}, median {:.1f}; truth within {:.2f} "
+          "of it\n",
+          name, values.front(), values.back(), values[values.size() / 2], largest_share[name]);
     }
     fmt::print("{} of {} fail at a tenth of the width\n", n_narrow_failures, n);
   }
@@ -205,7 +212,7 @@ void try_random_block(unsigned seed, int p, Widths& widths)
     iterates.emplace_back(u.begin(), u.end());
     return solve::NewtonAdvice(false);
   };
-  if (seed % 6 == 0)
+  if (seed % 12 == 0)
     (void)c.solve(0, keep);
   else
     iterates.push_back(c.solve().u);

@@ -4,11 +4,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "support/meshes.h"
 #include "support/two_blocks.h"
+#include "tribound/adapt/mark.h"
+#include "tribound/mesh/bisect.h"
 #include "verification/affine.h"
 #include "verification/quantities.h"
 
@@ -74,6 +79,44 @@ INSTANTIATE_TEST_SUITE_P(Uniform, QuantityT2D,
                                            ReferenceCase{2, 16, 0, 0, 0.016747641, 0.016833214},
                                            ReferenceCase{3, 4, 0.0055586, 0.0076341, 0, 0},
                                            ReferenceCase{3, 8, 0, 0, 0.016745982, 0.016827092}));
+
+/// T2D on meshes adapted to the energy, p = 2, with the same weight. The independent program had, with 171
+/// and 466 cells of such meshes, these radii of second order.
+TEST(QuantityT2D, SharpensOnAdaptedMeshes)
+{
+  const Quantities<2> quantities = {contact_force<2>("bottom", {0, -1}, 0.5),
+                                    contact_force<2>("bottom", {1, 0}, 0.5),
+                                    mean_displacement<2>("right", {0, 1})};
+  const std::map<Index, std::array<double, 3>> radii = {{171, {4.7e-4, 2.2e-3, 5.1e-3}},
+                                                        {466, {1.2e-4, 4.9e-4, 1.5e-3}}};
+  auto next = radii.begin();
+  std::array<double, 3> lower{-0.09616134301, -0.04132273276, -1};
+  std::array<double, 3> upper{-0.09616134299, -0.04132273274, 1};
+  mesh::Mesh<2> mesh(block<2>({4, 2}));
+  while (next != radii.end())
+  {
+    const DiscreteProblem<2> c(std::move(mesh), pressed_block<2>(),
+                               {.degree = 2, .newton = {.tolerance = 1e-12}});
+    const bool is_compared = c.mesh.n_cells() >= next->first;
+    const EnergyBound bound =
+        EnergyEstimator<2>(c.form, c.method.solver, is_compared ? quantities : Quantities<2>())(c.solve().u);
+    for (std::size_t i = 0; i < bound.quantities.size(); ++i)
+    {
+      const QuantityInterval& q = bound.quantities[i];
+      fmt::print("T2D, {} cells: {:<8} {:.7f} +- {:.2e}, {}\n", c.mesh.n_cells(), q.name,
+                 (q.lower + q.upper) / 2, (q.upper - q.lower) / 2, q.basis);
+      EXPECT_EQ(q.basis, "second order");
+      EXPECT_LE((q.upper - q.lower) / 2, next->second[i]);
+      lower[i] = std::max(lower[i], q.lower);
+      upper[i] = std::min(upper[i], q.upper);
+      EXPECT_LE(lower[i], upper[i]);
+    }
+    if (is_compared) ++next;
+    std::vector<double> eta;
+    for (const double square : bound.cells) eta.push_back(std::sqrt(square));
+    mesh = mesh::bisect(c.mesh, std::span<const Index>(adapt::mark_doerfler(eta, 0.6)), 1).mesh;
+  }
+}
 
 /// Against constant stress every interval is the number itself.
 template <int dim>

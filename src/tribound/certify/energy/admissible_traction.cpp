@@ -20,6 +20,7 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
   const int n_points = form.n_segment_points();
   AdmissibleTraction<dim> result;
   result.thresholds.resize(form.segments().size() * n);
+  result.coefficients.resize(form.segments().size() * n);
   result.at_points.resize(t.size());
   std::vector<double> remainders(form.segments().size(), 0.0);
   const auto on_facet = [&](std::size_t k)
@@ -35,6 +36,7 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
       if (cones.front().coefficient == 0)
         remainders[k] = std::max(remainders[k], std::abs(form.contact_points(k)[q].strength - s_h));
     }
+    for (Eigen::Index j = 0; j < n; ++j) result.coefficients[k * n + j] = b.col(j);
     for (Eigen::Index j = 0; j < n; ++j)
       result.thresholds[k * n + j] =
           cones[j].coefficient > 0 ? -cones[j].coefficient * b.col(j).dot(cones[j].normal) : cones[j].limit;

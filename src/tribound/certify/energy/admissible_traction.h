@@ -21,9 +21,10 @@ namespace tribound::certify
 template <int dim>
 struct AdmissibleTraction
 {
-  std::vector<double> thresholds;     ///< s_j, facet by facet, in the order of ObstacleFacets
-  std::vector<Point<dim>> at_points;  ///< t_h at the contact points of the form
-  double threshold_remainder = 0;     ///< largest |s - s_h| at the contact points of this rank
+  std::vector<double> thresholds;        ///< s_j, facet by facet, in the order of ObstacleFacets
+  std::vector<Point<dim>> coefficients;  ///< t_j
+  std::vector<Point<dim>> at_points;     ///< t_h at the contact points of the form
+  double threshold_remainder = 0;        ///< largest |s - s_h| at the contact points of this rank
 };
 
 /// The nearest to t, given at the contact points of the form, in L2 of each facet.

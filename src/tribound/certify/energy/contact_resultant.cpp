@@ -90,7 +90,7 @@ class Jumps
 
 /// The diagonal of the box around the facets of a resultant.
 template <int dim>
-double extent(const contact::NitscheForm<dim>& form, const ContactResultant<dim>& resultant)
+double diagonal_around(const contact::NitscheForm<dim>& form, const ContactResultant<dim>& resultant)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::array<double, 2 * dim> ends;  // the largest -x and x
@@ -152,7 +152,7 @@ ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
   const mesh::Mesh<dim>& mesh = space.mesh();
   const Jumps<dim> jumps(form, resultant);
   constexpr double share = 0.1;
-  const double width = ramp > 0 ? ramp : share * extent(form, resultant);
+  const double width = ramp > 0 ? ramp : share * diagonal_around(form, resultant);
   constexpr double rounding = 1e-10;  // of distances
   ContactWeight<dim> result{
       .at_nodes = std::vector<double>(space.n_dofs(), 0.0),

@@ -31,6 +31,7 @@ struct DualProducts
   std::vector<double> centre;  ///< 1/2 (zeta + sigma(z), tau - sigma(v))
   std::vector<double> square;  ///< ||zeta - sigma(z)||^2
   std::vector<double> work;    ///< (tau, sigma(z))
+  std::vector<double> energy;  ///< ||sigma(z)||^2
   double unbalanced = 0;  ///< largest part of the dual stress that a cell cannot balance, of its norm there
 };
 

@@ -53,6 +53,7 @@ class DualCell
       if (const double size = norm(sigma_h); size > 0) unbalanced = nearest.unbalanced / size;
     }
     products.work[cell_] = compliance_product(*material_, tau_, of_z);
+    products.energy[cell_] = compliance_product(*material_, of_z, of_z);
     PiecewiseStress<dim, q> sum = zeta;
     add_multiple(sum, 1, of_z);
     products.centre[cell_] = 0.5 * compliance_product(*material_, sum, error_);
@@ -87,7 +88,7 @@ std::vector<DualProducts> dual_products(const contact::NitscheForm<dim>& form, c
 {
   const auto n_cells = static_cast<std::size_t>(form.space().mesh().n_owned_cells());
   const std::vector<double> none(n_cells, 0.0);
-  std::vector<DualProducts> result(pairs.size(), DualProducts{none, none, none});
+  std::vector<DualProducts> result(pairs.size(), DualProducts{none, none, none, none});
   const int n_threads = max_threads();
   std::vector<std::vector<double>> unbalanced(n_threads, std::vector<double>(pairs.size(), 0.0));
   const auto on_thread = [&](int thread)

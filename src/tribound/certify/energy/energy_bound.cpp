@@ -265,7 +265,7 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
                                     { return problem::cone(segment.contact->law).coefficient > 0; })))
     best.target = EnergyTarget::computed_friction;
   if (best.reason.empty())
-    use(BoundedState<dim>(form, best.is_open ? *v.open : *v.closed, stress, t_h, best));
+    use(BoundedState<dim>(form, parts_->facets, best.is_open ? *v.open : *v.closed, stress, t_h, best));
   return best;
 }
 

@@ -36,8 +36,9 @@ void set_energy(const BoundedState<dim>& state, const DualPair<dim>& pair, const
   {
     const double of_tau =
         sums.square + 4 * sums.centre + 4 * quarter + 2 * state.remainder(pair.z, sums.work);
+    const double of_loads = 2 * state.unresolved * std::sqrt(sums.energy);
     const double beyond = 2 * bound.oscillation * bound.b_v;
-    intersect(lower, upper, of_tau - 2 * bound.gap, of_tau + beyond);
+    intersect(lower, upper, of_tau - 2 * bound.gap - of_loads, of_tau + beyond + of_loads);
     interval.basis = "duality gap";
   }
   constexpr double unit = 1e-13;

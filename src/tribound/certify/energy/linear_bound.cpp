@@ -9,22 +9,45 @@
 namespace tribound::certify
 {
 
+namespace
+{
+
+/// Of the loads.
 template <int dim>
-BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, std::span<const double> displacement,
-                                const Stress<dim>& equilibrated, const AdmissibleTraction<dim>& traction,
-                                const EnergyBound& energy)
+int largest_degree(const problem::Problem<dim>& problem)
+{
+  int degree = 0;
+  for (const problem::Region<dim>& region : problem.regions())
+    for (const problem::Field& f : region.body_force) degree = std::max(degree, f.degree());
+  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
+  {
+    for (const problem::Field& g : boundary.traction) degree = std::max(degree, g.degree());
+    if (boundary.pressure) degree = std::max(degree, boundary.pressure->degree());
+  }
+  return degree;
+}
+
+}  // namespace
+
+template <int dim>
+BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const ObstacleFacets<dim>& on,
+                                std::span<const double> displacement, const Stress<dim>& equilibrated,
+                                const AdmissibleTraction<dim>& traction, const EnergyBound& energy)
     : form(of),
+      facets(on),
       v(displacement),
       stress(equilibrated),
       t_h(traction),
       bound(energy),
       forces(of.load().begin(), of.load().end()),
-      is_projected(false)
+      is_projected(false),
+      unresolved(0)
 {
   double square = 0;
   for (const double coefficient : stress.dis) square += coefficient * coefficient;
   constexpr double rounding = 1e-10;  // of loads that are polynomials
   is_projected = energy.loads_remainder > rounding * std::sqrt(form.space().mesh().ranks().sum(square));
+  if (dim == 2 && largest_degree(form.problem()) > form.space().degree() + 2) unresolved = bound.oscillation;
   form.add_contact_load(t_h.at_points, forces);
 }
 
@@ -52,19 +75,21 @@ std::vector<DualProducts> dual_products(const BoundedState<dim>& state,
 
 DualSums::DualSums(const DualProducts& products, const Ranks& ranks)
 {
-  std::array<double, 4> sums{};
+  std::array<double, 5> sums{};
   for (std::size_t k = 0; k < products.centre.size(); ++k)
   {
     sums[0] += products.centre[k];
     sums[1] += products.square[k];
     sums[2] += products.work[k];
-    sums[3] += std::abs(products.centre[k]) + std::abs(products.work[k]);
+    sums[3] += products.energy[k];
+    sums[4] += std::abs(products.centre[k]) + std::abs(products.work[k]);
   }
   ranks.sum(std::span(sums));
   centre = sums[0];
   square = sums[1];
   work = sums[2];
-  absolute = sums[3];
+  energy = sums[3];
+  absolute = sums[4];
 }
 
 template <int dim>
@@ -77,7 +102,8 @@ LinearBound linear_bound(const BoundedState<dim>& state, double base, const Dual
   const bool is_second_order = eta < 2 * m * mid;
   constexpr double unit = 1e-13;
   LinearBound result{.centre = base + sums.centre + state.remainder(pair.z, sums.work),
-                     .radius = is_second_order ? m * mid * mid + sums.square / (4 * m) : eta * mid,
+                     .radius = (is_second_order ? m * mid * mid + sums.square / (4 * m) : eta * mid) +
+                               state.unresolved * std::sqrt(sums.energy),
                      .rounding = unit * (std::abs(base) + sums.absolute)};
   if (!is_second_order)
     result.cells = state.shares(result.radius);

@@ -18,6 +18,7 @@ template <int dim>
 struct BoundedState
 {
   const contact::NitscheForm<dim>& form;
+  const ObstacleFacets<dim>& facets;
   std::span<const double> v;
   const Stress<dim>& stress;  ///< equilibrated; tau is made from it
   const AdmissibleTraction<dim>& t_h;
@@ -25,9 +26,12 @@ struct BoundedState
   std::vector<double> forces;  ///< L(phi_i) + (t_h, phi_i)_C
   /// Whether the solution is one for other loads, the projected ones.
   bool is_projected;
+  /// |L(z) - what quadrature makes of it| <= unresolved ||z||_en.
+  double unresolved;
 
-  BoundedState(const contact::NitscheForm<dim>& form, std::span<const double> v, const Stress<dim>& stress,
-               const AdmissibleTraction<dim>& t_h, const EnergyBound& bound);
+  BoundedState(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
+               std::span<const double> v, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
+               const EnergyBound& bound);
 
   /// L(z) + (t_h, z)_C - (tau, eps(z)): what data that are no polynomials do, and rounding.
   [[nodiscard]] double remainder(std::span<const double> z, double work) const
@@ -49,6 +53,7 @@ struct DualSums
   double centre = 0;
   double square = 0;
   double work = 0;
+  double energy = 0;
   double absolute = 0;  ///< of the terms of centre and work: rounding is proportional to it
 
   DualSums(const DualProducts& products, const Ranks& ranks);

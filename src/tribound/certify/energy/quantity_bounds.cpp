@@ -73,6 +73,8 @@ template <int dim>
 void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
                                   const algebra::SolverOptions& solver, bool is_held, bool has_pairs)
 {
+  solver_ = solver;
+  is_held_ = is_held;
   systems_ = std::make_unique<DualSystems<dim>>(bounded, solver);
   is_homogeneous_ = is_homogeneous(bounded);
   work_is_energy_ = is_homogeneous_ && slides_freely(bounded);
@@ -180,19 +182,26 @@ std::vector<QuantityInterval> QuantityBounds<dim>::from_equilibrium(std::span<co
 
 template <int dim>
 QuantityInterval QuantityBounds<dim>::bounded(const Item& item, const LinearNumber<dim>& number,
-                                              const BoundedState<dim>& state,
-                                              const DualProducts& products) const
+                                              const BoundedState<dim>& state, const DualProducts& products,
+                                              const SecondOrder<dim>* second_order) const
 {
   if (number.known) return known_interval(*number.known);
-  LinearBound bound = linear_bound<dim>(state, number.base(state, item.parts), number.pair, products);
-  QuantityInterval result{.basis = "energy bound"};
-  if (item.kind() == QuantityKind::load_work) bound.radius += state.bound.oscillation * state.bound.b_v;
-  set_ends(result, bound.centre - bound.radius, bound.centre + bound.radius, bound.rounding);
-  result.cells = std::move(bound.cells);
-  if (item.kind() == QuantityKind::load_work && state.is_projected)
-    result.reason = "the loads are no polynomials";
   if (!(state.form.space().mesh().ranks().max(products.unbalanced) <= cell_balance_limit))
-    result.reason = "a cell does not balance its dual stress";
+    return {.reason = "a cell does not balance its dual stress"};
+  const bool is_work = item.kind() == QuantityKind::load_work;
+  if (is_work && (state.is_projected || state.unresolved > 0))
+    return {.reason = "the loads are no polynomials of low degree"};
+  const double base = number.base(state, item.parts);
+  const LinearBound first = linear_bound<dim>(state, base, number.pair, products);
+  const std::optional<LinearBound> second =
+      second_order ? (*second_order)(number, base, first) : std::nullopt;
+  const LinearBound& better = second ? *second : first;
+  double lower = first.centre - first.radius;
+  double upper = first.centre + first.radius;
+  if (second) intersect(lower, upper, second->centre - second->radius, second->centre + second->radius);
+  const double of_loads = is_work ? state.bound.oscillation * state.bound.b_v : 0;
+  QuantityInterval result{.basis = second ? "second order" : "energy bound", .cells = better.cells};
+  set_ends(result, lower - of_loads, upper + of_loads, std::max(first.rounding, better.rounding));
   return result;
 }
 
@@ -208,6 +217,8 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
     for (const LinearNumber<dim>& number : item.numbers)
       if (needs_pair(item, number)) pairs.push_back(&number.pair);
   const std::vector<DualProducts> products = dual_products<dim>(state, pairs);
+  std::optional<SecondOrder<dim>> second_order;
+  if (pairs.size() > 1 && is_held_) second_order.emplace(state, *systems_, solver_);
   std::size_t next = 1;
   for (std::size_t i = 0; i < items_.size(); ++i)
   {
@@ -222,7 +233,8 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
       std::vector<QuantityInterval> numbers;
       for (const LinearNumber<dim>& number : item.numbers)
       {
-        numbers.push_back(bounded(item, number, state, products[needs_pair(item, number) ? next++ : 0]));
+        numbers.push_back(bounded(item, number, state, products[needs_pair(item, number) ? next++ : 0],
+                                  second_order ? &*second_order : nullptr));
         if (number.weight) interval.note = number.weight->note;
       }
       combine(interval, item.parts.coefficient, numbers);

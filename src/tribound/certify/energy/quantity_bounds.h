@@ -10,6 +10,7 @@
 
 #include "tribound/certify/energy/linear_number.h"
 #include "tribound/certify/energy/quantity_interval.h"
+#include "tribound/certify/energy/second_order.h"
 
 namespace tribound::certify
 {
@@ -45,11 +46,14 @@ class QuantityBounds
   [[nodiscard]] double value(const Item& item, std::span<const double> u,
                              std::span<const Point<dim>> t) const;
   [[nodiscard]] QuantityInterval bounded(const Item& item, const LinearNumber<dim>& number,
-                                         const BoundedState<dim>& state, const DualProducts& products) const;
+                                         const BoundedState<dim>& state, const DualProducts& products,
+                                         const SecondOrder<dim>* second_order) const;
 
   const contact::NitscheForm<dim>& form_;
   std::vector<Item> items_;
+  algebra::SolverOptions solver_{};
   std::unique_ptr<DualSystems<dim>> systems_;
+  bool is_held_ = false;         ///< by displacement conditions alone
   bool is_homogeneous_ = false;  ///< u_D = 0 and g = 0
   bool work_is_energy_ = false;  ///< L(u) = a(u, u): there is no friction either
 };

@@ -1,0 +1,60 @@
+#pragma once
+
+/// @file contact_slack.h
+/// What dual pairs may do on the contact boundary where the state of contact is nearly known.
+
+#include <span>
+#include <vector>
+
+#include "tribound/certify/energy/linear_bound.h"
+
+namespace tribound::certify
+{
+
+/// How large |y^n|, |y^t|, |r^n| and |r^t| may be at one coefficient of a facet in Bernstein's basis, times
+/// m.
+struct Slack
+{
+  double normal_y = 0;
+  double tangential_y = 0;
+  double normal_r = 0;
+  double tangential_r = 0;
+};
+
+/// Of every facet, with m the factor of linear_bound():
+///     closed, v^n = g_h:   |r^n| <= m (-t^n);       open, t^n = 0:            |y^n| <= m (g_h - v^n);
+///     stick, v^t = 0:      |r^t| <= m (s - |t^t|);  slip, t^t = -s v^t/|v^t|: |y^t| <= m |v^t| (2D: v^t of
+///     one sign); without friction y^t is free;
+/// everything else is 0. What holds for coefficients holds at every point, since both sides are in the same
+/// basis, which is not negative.
+template <int dim>
+class ContactSlack
+{
+ public:
+  explicit ContactSlack(const BoundedState<dim>& state);
+
+  [[nodiscard]] const Slack& at(std::size_t k, std::size_t j) const { return slack_[k * n_ + j]; }
+  /// On the facets that are closed, or stick: where r^n, or r^t, need not vanish.
+  [[nodiscard]] bool is_pressed(std::size_t k) const { return is_pressed_[k] != 0; }
+  [[nodiscard]] bool is_held(std::size_t k) const { return is_held_[k] != 0; }
+
+  /// The coefficients of r on facet k, made small enough.
+  void limit_r(std::size_t k, double m, std::span<Point<dim>> r) const;
+  /// The same of y, by nodes, where facets share them. Where facets of different normals meet and where a
+  /// component is fixed y is 0. All ranks together.
+  void limit_y(double m, std::span<double> y) const;
+
+ private:
+  void set_normal(std::size_t k);
+  void set_tangential(std::size_t k);
+
+  const BoundedState<dim>& state_;
+  std::size_t n_;  ///< coefficients of a facet
+  double length_;  ///< rounding of displacements
+  double stress_;  ///< of tractions
+  std::vector<Slack> slack_;
+  std::vector<char> is_pressed_;
+  std::vector<char> is_held_;
+};
+
+}  // namespace tribound::certify
