@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -230,10 +231,17 @@ void try_random_block(unsigned seed, int p, Widths& widths)
   }
 }
 
+/// TRIBOUND_RANDOM_CASES times as many where that is set.
+unsigned n_cases(unsigned n)
+{
+  const char* const factor = std::getenv("TRIBOUND_RANDOM_CASES");
+  return factor == nullptr ? n : n * static_cast<unsigned>(std::atoi(factor));
+}
+
 TEST(QuantityRandom, NoIntervalFails)
 {
   Widths widths;
-  for (unsigned seed = 0; seed < 60; ++seed)
+  for (unsigned seed = 0; seed < n_cases(60); ++seed)
     try_random_block<2>(seed, 1 + static_cast<int>(seed % 4), widths);
   widths.print();
   EXPECT_GE(widths.n_narrow_failures, 20);
@@ -286,7 +294,8 @@ TEST(QuantityCoulomb, IntervalsHoldTheSolutionWithTheComputedThreshold)
 TEST(QuantityRandom, NoIntervalFails3D)
 {
   Widths widths;
-  for (unsigned seed = 0; seed < 8; ++seed) try_random_block<3>(seed, 1 + static_cast<int>(seed % 2), widths);
+  for (unsigned seed = 0; seed < n_cases(8); ++seed)
+    try_random_block<3>(seed, 1 + static_cast<int>(seed % 2), widths);
   widths.print();
 }
 
