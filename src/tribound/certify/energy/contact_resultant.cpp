@@ -114,7 +114,7 @@ double diagonal_around(const contact::NitscheForm<dim>& form, const ContactResul
 
 /// A field of degree 1 on a boundary facet.
 template <int dim>
-struct OnFacet
+struct WeightOnFacet
 {
   mesh::BoundaryFacet facet;
   std::array<Point<dim>, dim> at_vertices;
@@ -160,7 +160,7 @@ ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
   const std::vector<Point<dim>> nodes = space.basis().node_points();
   for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
-    OnFacet<dim> weight{.facet = form.segments()[k].slave.facet, .at_vertices = {}};
+    WeightOnFacet<dim> weight{.facet = form.segments()[k].slave.facet, .at_vertices = {}};
     if (!resultant.has(weight.facet)) continue;
     const auto vertices = mesh::facet_vertices(mesh.cell(weight.facet.cell), weight.facet.local);
     for (int j = 0; j < dim; ++j)

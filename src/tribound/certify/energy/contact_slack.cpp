@@ -73,6 +73,7 @@ void ContactSlack<dim>::set_tangential(std::size_t k)
   const auto tangential = [&](const Point<dim>& c) -> Point<dim> { return c - c.dot(normal) * normal; };
   const std::vector<Point<dim>> coefficients = state_.facets.coefficients(k, state_.v);
   std::vector<Point<dim>> v;
+  v.reserve(coefficients.size());
   for (const Point<dim>& c : coefficients) v.push_back(tangential(c));
   const std::span<const double> s = std::span(state_.t_h.thresholds).subspan(k * n_, n_);
   bool is_smooth = true;
