@@ -38,6 +38,13 @@ title = '${title}'
 degree = 2
 mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] } }
 ${pressedBlock}
+[[quantity]]
+name = "thrust & <lift>"
+kind = "contact_force"
+boundary = "bottom"
+direction = [0, 1]
+[certify]
+energy = "every"
 [adapt]
 tolerance = 0.04
 ` },
@@ -208,6 +215,9 @@ async function checkPrint(page, file) {
 
 /** Pictures and tables can be saved from the page alone, the tables as they are in the files. */
 async function checkSaved(page, directory) {
+  assert.match(await page.locator("#quantities table").textContent(), /thrust & <lift>0\.1.*(energy bound|second order)/);
+  assert.match((await saved(page, "#quantities", "CSV")).toString(), /^level,dofs,value,lower,upper\n0,/);
+  assert.match(await page.locator(".figures").textContent(), /thrust & <lift>between 0\.\d+ and 0\.1/);
   assert.match((await saved(page, "#convergence", "SVG")).toString(), /^<svg.*<path/s);
   assert.match((await saved(page, "#convergence", "CSV")).toString(), /^curve,level,dofs,value\nstr,0,/);
   for (const place of ["#contact", "#fields"]) assert.equal((await saved(page, place, "PNG")).subarray(1, 4).toString(), "PNG");
@@ -296,8 +306,8 @@ async function checkStudy(browser, directory) {
   assert.doesNotMatch(await page.locator("body").innerText(), /Infinity|NaN|undefined/);
   assert.match(await page.locator(".verdict:not(.warnings)").textContent(), /The bound holds.*is above the dual norm.*best rate.*Newton steps instead of.*Degree 2/);
   await page.screenshot({ path: `${results}/study.png`, fullPage: true });
-  for (const section of ["convergence", "effectivity", "components"]) {
-    assert.equal(await page.locator(`#${section} .chart`).count(), 2);
+  for (const [section, n] of [["convergence", 2], ["effectivity", 3], ["components", 2]]) {
+    assert.equal(await page.locator(`#${section} .chart`).count(), n);
     await checkCharts(page, [`#${section} .chart >> nth=0`, `#${section} .chart >> nth=1`]);
   }
   assert.match(await hover(page, "#convergence .chart"), /level \d.*%.*degrees of freedom/);
