@@ -105,9 +105,9 @@ std::vector<double> oscillation(const contact::NitscheForm<dim>& form, const Dat
 template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
-  explicit Parts(const contact::NitscheForm<dim>& given)
+  Parts(const contact::NitscheForm<dim>& given, PatchNorm norm)
       : form(given.space().degree() >= lowest_degree ? given : richer(given)),
-        equilibrator(form),
+        equilibrator(form, 0, norm),
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
@@ -137,12 +137,12 @@ struct EnergyEstimator<dim>::Parts
 template <int dim>
 EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
                                       const algebra::SolverOptions& solver,
-                                      const std::vector<problem::Quantity<dim>>& quantities)
+                                      const std::vector<problem::Quantity<dim>>& quantities, PatchNorm norm)
     : form_(form), solver_(solver), reason_(why_not(form))
 {
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
-  parts_ = std::make_unique<Parts>(form);
+  parts_ = std::make_unique<Parts>(form, norm);
   if (parts_->motions.size() > 0 && has_pairs(form))
     reason_ = "contact alone holds a body that touches another one";
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";

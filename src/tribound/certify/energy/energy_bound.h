@@ -10,6 +10,7 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/certify/energy/quantity_interval.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/problem/quantity.h"
 
@@ -68,10 +69,12 @@ template <int dim>
 class EnergyEstimator
 {
  public:
-  /// The form must outlive the object; `solver`: for u~, which is solved for to 1e-12. Throws InputError for
+  /// The form must outlive the object; `solver`: for u~, which is solved for to 1e-12. With the other norm
+  /// for its patches the bound is one, too, but not as sharp near incompressibility. Throws InputError for
   /// quantities that the problem does not have, and SolveError where their dual problems cannot be solved.
   EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver,
-                  const std::vector<problem::Quantity<dim>>& quantities = {});
+                  const std::vector<problem::Quantity<dim>>& quantities = {},
+                  PatchNorm norm = PatchNorm::compliance);
   ~EnergyEstimator();
   EnergyEstimator(const EnergyEstimator&) = delete;
   EnergyEstimator& operator=(const EnergyEstimator&) = delete;

@@ -90,7 +90,8 @@ struct CellSource
   std::span<const double> u;
   const BodyMoments<dim, p>& body;
   const RepeatedShapes<dim, p>& shapes;
-  std::span<const Tensor<dim>> turning = {};  ///< K_{T,a}, see Equilibrator::balanced(); empty: 0
+  std::span<const StressMetric> metrics = {};  ///< of the regions; empty: L2 everywhere
+  std::span<const Tensor<dim>> turning = {};   ///< K_{T,a}, see Equilibrator::balanced(); empty: 0
 
   /// The Schur complement is only made if `for_patches`.
   void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
@@ -120,7 +121,7 @@ struct CellSource
     cell.op = cell.shape ? &cell.shape->op : nullptr;
     if (cell.shape) return;
     if (!cell.own) cell.own = std::make_unique<CellOperator<dim, p>>();
-    cell.own->build(cell.sorted);
+    cell.own->build(cell.sorted, metrics.empty() ? StressMetric{} : metrics[form.space().mesh().region(c)]);
     if (for_patches) cell.own->condense(cell.sorted);
     cell.op = cell.own.get();
   }

@@ -13,6 +13,9 @@
 /// and C becomes C_U - B_U B_L^T C_L / 2, both of size dim * dim P^{p-1}; N N^T becomes N N^T - C_L^T C_L
 /// / 2. All of these are sums of a few reference matrices (certify/equilibrate/reference.h), and for the
 /// stress itself the rotations only mean that its truncation to P^{p-1} is symmetric, up to w (p = 1).
+///
+/// In the norm of C^{-1}, C tau = scale tau + trace tr(tau) I, it is B^T, N^T and B_L^T that C stands before:
+/// all products get the factor `scale`, and those of B_U^T and N^T a part more from the traces of these.
 
 #include <array>
 #include <span>
@@ -43,6 +46,16 @@ using StressCoefficients = std::array<double, dim * dim * Sizes<dim, p>::stress>
 template <int dim, int p>
 using DiscreteStress = std::array<double, dim * dim * Sizes<dim, p>::multiplier>;
 
+/// The norm of C^{-1} in which the stress of a cell is the nearest, C tau = scale tau + trace tr(tau) I; by
+/// default that of L2.
+struct StressMetric
+{
+  double scale = 1;
+  double trace = 0;
+
+  friend bool operator==(const StressMetric&, const StressMetric&) = default;
+};
+
 /// What an elimination leaves that does not depend on the data.
 template <int dim, int p>
 class CellOperator
@@ -56,7 +69,7 @@ class CellOperator
   static constexpr int all_facets = (dim + 1) * facet_stride;
 
   /// Factors A and forms the couplings C of all facets. Throws SolveError for a cell without volume.
-  void build(const SortedCell<dim>& cell);
+  void build(const SortedCell<dim>& cell, const StressMetric& metric = {});
   /// Forms S; build() has been called.
   void condense(const SortedCell<dim>& cell);
 
@@ -70,16 +83,19 @@ class CellOperator
   /// The moments of the divergence of a discrete stress on U.
   [[nodiscard]] UVector divergence(const SortedCell<dim>& cell, const DiscreteStress<dim, p>& sigma) const;
 
-  /// sigma - G = -B^T eta - N^T mu for the data r = (r_u, -2 w) and the multipliers mu, G being symmetric.
+  /// sigma - G = -C (B^T eta + N^T mu) for the data r = (r_u, -2 w) and the multipliers mu, G being
+  /// symmetric.
   [[nodiscard]] StressCoefficients<dim, p> correction(const SortedCell<dim>& cell, const UVector& r_u,
                                                       const Tensor<dim>& w, const FacetVectors& mu) const;
 
  private:
+  void apply_metric(StressCoefficients<dim, p>& stress) const;
   void factor(const SortedCell<dim>& cell);
   void couple(const SortedCell<dim>& cell);
   /// L^{-1} r_u with A = L L^T.
   [[nodiscard]] UVector reduce(const UVector& r_u) const;
 
+  StressMetric metric_;
   Dense<S::u, S::u> factor_;             ///< U with A = U^T U
   std::array<double, S::u> reciprocal_;  ///< of its diagonal
   Dense<S::u, all_facets> coupling_;     ///< U^{-T} C

@@ -12,23 +12,26 @@ namespace tribound::certify
 {
 
 template <int dim, int p>
-void CellOperator<dim, p>::build(const SortedCell<dim>& cell)
+void CellOperator<dim, p>::build(const SortedCell<dim>& cell, const StressMetric& metric)
 {
+  metric_ = metric;
   factor(cell);
   couple(cell);
 }
 
 /// A(r, s) = delta_rs (B_U B_U^T - D_c D_c^T / 2) + D_s D_r^T / 2 with D_c = sum_k J^{-1}(k, c) D_k: row r of
-/// a stress sees entry (r, c) of a skew tensor through d_c and row c through -d_r.
+/// a stress sees entry (r, c) of a skew tensor through d_c and row c through -d_r. The metric multiplies by
+/// its scale and adds trace D_r D_s^T, full products being the sums of what the reference has.
 template <int dim, int p>
 void CellOperator<dim, p>::factor(const SortedCell<dim>& cell)
 {
   const Reference<dim, p>& ref = reference<dim, p>();
   constexpr int m = S::multiplier;
   const Tensor<dim> metric = cell.inverse * cell.inverse.transpose();
+  const auto& [scale, trace] = metric_;
   Dense<m, m> diagonal;
   for (int k = 0; k < dim; ++k)
-    for (int l = 0; l < dim; ++l) add_multiple(diagonal, metric(k, l), ref.divergence[k][l]);
+    for (int l = 0; l < dim; ++l) add_multiple(diagonal, scale * metric(k, l), ref.divergence[k][l]);
   for (int r = 0; r < dim; ++r)
     for (int s = r; s < dim; ++s)
     {
@@ -37,14 +40,23 @@ void CellOperator<dim, p>::factor(const SortedCell<dim>& cell)
       if constexpr (p > 1)
         for (int k = 0; k < dim; ++k)
           for (int l = 0; l < dim; ++l)
-            add_multiple(block, cell.inverse(k, s) * cell.inverse(l, r), ref.truncated_divergence[k][l]);
+            add_multiple(block, scale * cell.inverse(k, s) * cell.inverse(l, r),
+                         ref.truncated_divergence[k][l]);
+      for (int k = 0; k < dim && trace != 0; ++k)
+        for (int l = 0; l < dim; ++l)
+        {
+          const double factor = trace * cell.inverse(k, r) * cell.inverse(l, s);
+          add_multiple(block, factor, ref.divergence[k][l]);
+          add_multiple(block, factor, ref.truncated_divergence[k][l]);
+        }
       for (int i = 0; i < m; ++i) std::copy_n(block.row(i), m, factor_.row(r * m + i) + s * m);
     }
   if (!cholesky<S::u>(factor_.data(), factor_.stride, reciprocal_.data()))
     throw no_equilibrated_stress<dim>(cell.origin, slenderness(cell));
 }
 
-/// C(a, b) = delta_ab (B_U N^T - ...) + grad_a lambda D_b E'^T / 2, times -|grad lambda|^{-1/2}.
+/// C(a, b) = delta_ab (B_U N^T - ...) + grad_a lambda D_b E'^T / 2, times -|grad lambda|^{-1/2}. The metric
+/// multiplies by its scale and adds trace D_a grad_b lambda E^T.
 template <int dim, int p>
 void CellOperator<dim, p>::couple(const SortedCell<dim>& cell)
 {
@@ -53,16 +65,23 @@ void CellOperator<dim, p>::couple(const SortedCell<dim>& cell)
   constexpr int n = S::facet;
   for (int f = 0; f <= dim; ++f)
   {
-    const double scale = -1 / std::sqrt(cell.grad_norm[f]);
+    const double unit = -1 / std::sqrt(cell.grad_norm[f]);
+    const double scale = metric_.scale * unit;
     const Point<dim> direction = scale * (cell.inverse * cell.grad[f]);
     Dense<m, n> diagonal;
     std::array<Dense<m, n>, dim> skew;
+    std::array<Dense<m, n>, dim> traces;
     for (int k = 0; k < dim; ++k)
     {
       add_multiple(diagonal, direction[k], ref.coupling[k][f]);
-      if constexpr (p > 1)
-        for (int b = 0; b < dim; ++b)
-          add_multiple(skew[b], scale * cell.inverse(k, b), ref.truncated_coupling[k][f]);
+      for (int b = 0; b < dim; ++b)
+      {
+        if constexpr (p > 1) add_multiple(skew[b], scale * cell.inverse(k, b), ref.truncated_coupling[k][f]);
+        if (metric_.trace == 0) continue;
+        const double factor = metric_.trace * unit * cell.inverse(k, b);
+        add_multiple(traces[b], factor, ref.coupling[k][f]);
+        add_multiple(traces[b], factor, ref.truncated_coupling[k][f]);
+      }
     }
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
@@ -70,7 +89,8 @@ void CellOperator<dim, p>::couple(const SortedCell<dim>& cell)
         {
           double* const target = coupling_.row(a * m + i) + f * facet_stride + b * n;
           for (int j = 0; j < n; ++j)
-            target[j] = cell.grad[f][a] * skew[b](i, j) + (a == b ? diagonal(i, j) : 0);
+            target[j] = cell.grad[f][a] * skew[b](i, j) + cell.grad[f][b] * traces[a](i, j) +
+                        (a == b ? diagonal(i, j) : 0);
         }
   }
   solve_transposed<S::u, all_facets>(factor_.data(), factor_.stride, reciprocal_.data(), coupling_.data(),
@@ -78,7 +98,8 @@ void CellOperator<dim, p>::couple(const SortedCell<dim>& cell)
 }
 
 /// N N^T - C_L^T C_L / 2 has the blocks (delta_st grad_f.grad_g (E_f E_g^T - E'_f E'_g^T / 2)
-/// + grad_f[t] grad_g[s] E'_f E'_g^T / 2) / (|grad_f| |grad_g|)^{1/2}.
+/// + grad_f[t] grad_g[s] E'_f E'_g^T / 2) / (|grad_f| |grad_g|)^{1/2}. The metric multiplies by its scale and
+/// adds trace grad_f[s] grad_g[t] E_f E_g^T.
 template <int dim, int p>
 void CellOperator<dim, p>::condense(const SortedCell<dim>& cell)
 {
@@ -87,18 +108,20 @@ void CellOperator<dim, p>::condense(const SortedCell<dim>& cell)
   for (int f = 0; f <= dim; ++f)
     for (int g = 0; g <= dim; ++g)
     {
-      const double scale = 1 / std::sqrt(cell.grad_norm[f] * cell.grad_norm[g]);
+      const double unit = 1 / std::sqrt(cell.grad_norm[f] * cell.grad_norm[g]);
+      const double scale = metric_.scale * unit;
       const double product = scale * cell.grad[f].dot(cell.grad[g]);
       for (int s = 0; s < dim; ++s)
         for (int t = 0; t < dim; ++t)
         {
-          const double skew = scale * cell.grad[f][t] * cell.grad[g][s];
+          const double traces = metric_.trace * unit * cell.grad[f][s] * cell.grad[g][t];
+          const double skew = scale * cell.grad[f][t] * cell.grad[g][s] + traces;
+          const double straight = (s == t ? product : 0) + traces;
           for (int i = 0; i < n; ++i)
           {
             double* const target = schur_.row(f * S::block + s * n + i) + g * facet_stride + t * n;
             for (int j = 0; j < n; ++j)
-              target[j] =
-                  skew * ref.truncated_schur[f][g](i, j) + (s == t ? product * ref.schur[f][g](i, j) : 0);
+              target[j] = skew * ref.truncated_schur[f][g](i, j) + straight * ref.schur[f][g](i, j);
           }
         }
     }
@@ -155,6 +178,21 @@ auto CellOperator<dim, p>::divergence(const SortedCell<dim>& cell, const Discret
   return result;
 }
 
+/// C tau.
+template <int dim, int p>
+void CellOperator<dim, p>::apply_metric(StressCoefficients<dim, p>& stress) const
+{
+  if (metric_ == StressMetric{}) return;
+  constexpr int n = S::stress;
+  for (int j = 0; j < n; ++j)
+  {
+    double trace = 0;
+    for (int r = 0; r < dim; ++r) trace += metric_.trace * stress[(dim * r + r) * n + j];
+    for (int entry = 0; entry < dim * dim; ++entry) stress[entry * n + j] *= metric_.scale;
+    for (int r = 0; r < dim; ++r) stress[(dim * r + r) * n + j] += trace;
+  }
+}
+
 template <int dim, int p>
 StressCoefficients<dim, p> CellOperator<dim, p>::correction(const SortedCell<dim>& cell, const UVector& r_u,
                                                             const Tensor<dim>& w,
@@ -191,6 +229,7 @@ StressCoefficients<dim, p> CellOperator<dim, p>::correction(const SortedCell<dim
       for (int c = 0; c < dim; ++c) add(r, c, scale * cell.grad[f][c], column);
     }
   }
+  apply_metric(result);
   for (const auto& [r, c] : skew_pairs<dim>)
   {
     for (int j = 0; j < m; ++j)

@@ -12,6 +12,13 @@
 namespace tribound::certify
 {
 
+/// The norm in which the stress of a patch is the nearest to its target.
+enum class PatchNorm
+{
+  l2,
+  compliance  ///< that of C^{-1}, C the elasticity tensor of each cell
+};
+
 /// Rebuilds the stress of the iterates on one mesh. What they share is made once: the order in which the
 /// patches are solved, the moments of f, the operators of repeated shapes.
 ///
@@ -25,7 +32,8 @@ class Equilibrator
 {
  public:
   /// The form must outlive the object.
-  explicit Equilibrator(const contact::NitscheForm<dim>& form, int n_threads = 0);
+  explicit Equilibrator(const contact::NitscheForm<dim>& form, int n_threads = 0,
+                        PatchNorm norm = PatchNorm::l2);
   ~Equilibrator();
   Equilibrator(const Equilibrator&) = delete;
   Equilibrator& operator=(const Equilibrator&) = delete;

@@ -5,7 +5,9 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "tribound/certify/equilibrate/cell_operator.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 
 namespace tribound::certify
@@ -23,10 +25,11 @@ class Equilibrator<dim>::Implementation
                           std::span<const Tensor<dim>> turning) = 0;
 };
 
-/// An Equilibrator of degree p; arguments are those of its constructor. Compiled for each dimension and
+/// An Equilibrator of degree p; arguments are those of its constructor, with the metrics of the regions in
+/// place of how they are chosen (empty: L2 everywhere). Compiled for each dimension and
 /// degree by certify/equilibrate/kernel.cpp.in.
 template <int dim, int p>
 [[nodiscard]] std::unique_ptr<typename Equilibrator<dim>::Implementation> make_mesh_equilibrator(
-    const contact::NitscheForm<dim>& form, int n_threads);
+    const contact::NitscheForm<dim>& form, int n_threads, std::vector<StressMetric> metrics);
 
 }  // namespace tribound::certify

@@ -166,12 +166,13 @@ template <int dim, int p>
 class MeshEquilibrator : public Equilibrator<dim>::Implementation
 {
  public:
-  MeshEquilibrator(const contact::NitscheForm<dim>& form, int n_threads)
+  MeshEquilibrator(const contact::NitscheForm<dim>& form, int n_threads, std::vector<StressMetric> metrics)
       : form_(form),
         mesh_(form.space().mesh()),
         n_threads_(n_threads > 0 ? n_threads : max_threads()),
+        metrics_(std::move(metrics)),
         body_(form),
-        shapes_(mesh_)
+        shapes_(mesh_, metrics_)
   {
   }
 
@@ -187,7 +188,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
         if (mesh_.has_patch(v) && (with_dis || data.on_contact(v))) vertices.push_back(v);
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
-    const CellSource<dim, p> source{form_, u, body_, shapes_, turning};
+    const CellSource<dim, p> source{form_, u, body_, shapes_, metrics_, turning};
     Stress<dim> stress = Equilibration<dim, p>(mesh_, data, source, *partition, with_dis).run();
     stress.tractions = data.tractions();
     return stress;
@@ -197,6 +198,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
   const contact::NitscheForm<dim>& form_;
   const mesh::Mesh<dim>& mesh_;
   int n_threads_;
+  std::vector<StressMetric> metrics_;  ///< of the regions; empty: L2 everywhere
   BodyMoments<dim, p> body_;
   RepeatedShapes<dim, p> shapes_;
   std::optional<VertexPartition> all_;         ///< of all vertices
@@ -207,9 +209,9 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
 
 template <int dim, int p>
 std::unique_ptr<typename Equilibrator<dim>::Implementation> make_mesh_equilibrator(
-    const contact::NitscheForm<dim>& form, int n_threads)
+    const contact::NitscheForm<dim>& form, int n_threads, std::vector<StressMetric> metrics)
 {
-  return std::make_unique<detail::MeshEquilibrator<dim, p>>(form, n_threads);
+  return std::make_unique<detail::MeshEquilibrator<dim, p>>(form, n_threads, std::move(metrics));
 }
 
 }  // namespace tribound::certify

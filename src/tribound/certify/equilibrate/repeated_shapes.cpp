@@ -16,11 +16,11 @@ namespace
 constexpr double exact = 1e-12;
 constexpr int table_size = 1 << 12;  // of the hash table: a shape whose entry is taken is given up
 
-/// Equal for most pairs of matrices that differ by much less than the quantum.
+/// Equal for most pairs of matrices of a kind that differ by much less than the quantum.
 template <int dim>
-std::size_t hash(const Tensor<dim>& jacobian, double quantum)
+std::size_t hash(const Tensor<dim>& jacobian, double quantum, int kind)
 {
-  std::uint64_t key = 0;
+  std::uint64_t key = static_cast<std::uint64_t>(kind) * 0x9e3779b97f4a7c15U;
   for (int r = 0; r < dim; ++r)
     for (int c = 0; c < dim; ++c)
       key = (key ^ static_cast<std::uint64_t>(std::llround(jacobian(r, c) / quantum))) * 0x9e3779b97f4a7c15U;
@@ -44,7 +44,7 @@ double largest_coordinate(const mesh::Mesh<dim>& mesh)
 }  // namespace
 
 template <int dim>
-ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh)
+ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh, bool by_region)
 {
   ShapeClasses result;
   result.number.assign(mesh.n_cells(), -1);
@@ -55,13 +55,15 @@ ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh)
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     const Tensor<dim> jacobian = jacobian_of(mesh, sorted_vertices<dim>(mesh.cell(c)));
-    int& shape = table[hash<dim>(jacobian, 1e3 * rounding)];
+    const int kind = by_region ? mesh.region(c) : 0;
+    int& shape = table[hash<dim>(jacobian, 1e3 * rounding, kind)];
     if (shape < 0)
     {
       shape = static_cast<int>(result.first.size());
       result.first.push_back(c);
       result.count.push_back(0);
     }
+    if (by_region && mesh.region(result.first[shape]) != kind) continue;
     const Tensor<dim> known = jacobian_of(mesh, sorted_vertices<dim>(mesh.cell(result.first[shape])));
     const double tolerance = std::min(rounding, exact * known.cwiseAbs().maxCoeff());
     if (!((jacobian - known).cwiseAbs().maxCoeff() <= tolerance)) continue;
@@ -71,7 +73,7 @@ ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh)
   return result;
 }
 
-template ShapeClasses classify_shapes<2>(const mesh::Mesh<2>&);
-template ShapeClasses classify_shapes<3>(const mesh::Mesh<3>&);
+template ShapeClasses classify_shapes<2>(const mesh::Mesh<2>&, bool);
+template ShapeClasses classify_shapes<3>(const mesh::Mesh<3>&, bool);
 
 }  // namespace tribound::certify

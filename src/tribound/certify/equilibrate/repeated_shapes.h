@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,9 +57,9 @@ struct RepeatedShape
 {
   using S = Sizes<dim, p>;
 
-  explicit RepeatedShape(const SortedCell<dim>& cell)
+  explicit RepeatedShape(const SortedCell<dim>& cell, const StressMetric& metric = {})
   {
-    op.build(cell);
+    op.build(cell, metric);
     op.condense(cell);
     for (int o = 0; o <= dim; ++o)
     {
@@ -84,24 +85,28 @@ struct ShapeClasses
 };
 
 /// Numbers the shapes by their first cell; the same on every run. Shapes are equal if the rounding of the
-/// coordinates explains the difference, and if the identities of the stress cannot feel it.
+/// coordinates explains the difference, and if the identities of the stress cannot feel it; `by_region`: of
+/// cells of one region alone.
 template <int dim>
-[[nodiscard]] ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh);
+[[nodiscard]] ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh, bool by_region = false);
 
 /// The shapes that come often in a mesh.
 template <int dim, int p>
 class RepeatedShapes
 {
  public:
-  explicit RepeatedShapes(const mesh::Mesh<dim>& mesh)
+  /// `metrics`: of the regions; empty: L2 everywhere.
+  explicit RepeatedShapes(const mesh::Mesh<dim>& mesh, std::span<const StressMetric> metrics = {})
   {
-    ShapeClasses classes = classify_shapes(mesh);
+    ShapeClasses classes = classify_shapes(mesh, !metrics.empty());
     std::vector<int> kept(classes.first.size(), -1);
     for (std::size_t i = 0; i < classes.first.size(); ++i)
     {
       if (classes.count[i] < often) continue;
       kept[i] = static_cast<int>(shapes_.size());
-      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(make_sorted_cell(mesh, classes.first[i])));
+      const Index first = classes.first[i];
+      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(
+          make_sorted_cell(mesh, first), metrics.empty() ? StressMetric{} : metrics[mesh.region(first)]));
     }
     number_ = std::move(classes.number);
     for (int& number : number_)
