@@ -23,6 +23,7 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
   result.coefficients.resize(form.segments().size() * n);
   result.at_points.resize(t.size());
   std::vector<double> remainders(form.segments().size(), 0.0);
+  constexpr double rounding = 1e-14;
   const auto on_facet = [&](std::size_t k)
   {
     const std::vector<TractionCone<dim>> cones = fit.cones(k);
@@ -33,8 +34,10 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
       result.at_points[k * n_points + q] = values.col(q);
       double s_h = 0;
       for (Eigen::Index j = 0; j < n; ++j) s_h += fit.at_points()(q, j) * cones[j].limit;
-      if (cones.front().coefficient == 0)
-        remainders[k] = std::max(remainders[k], std::abs(form.contact_points(k)[q].strength - s_h));
+      const double strength = form.contact_points(k)[q].strength;
+      const double rest = std::abs(strength - s_h);
+      if (cones.front().coefficient == 0 && rest > rounding * strength)
+        remainders[k] = std::max(remainders[k], rest);
     }
     for (Eigen::Index j = 0; j < n; ++j) result.coefficients[k * n + j] = b.col(j);
     for (Eigen::Index j = 0; j < n; ++j)

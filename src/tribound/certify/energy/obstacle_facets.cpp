@@ -111,6 +111,7 @@ double ObstacleFacets<dim>::gap_remainder() const
 {
   const auto& points = form_.facet_rule().points;
   const fem::Tabulation<dim - 1> table = basis_.tabulate(points);
+  constexpr double rounding = 1e-14;  // of coordinates, of which gaps are made
   double largest = 0;
   for (std::size_t k = 0; k < size(); ++k)
     for (int q = 0; q < table.n_points; ++q)
@@ -119,7 +120,8 @@ double ObstacleFacets<dim>::gap_remainder() const
       if (problem::cone(segment.contact->law).is_tied) continue;
       double rest = segment.gap(points[q], form_.contact_points(k)[q].x, segment.normal);
       for (std::size_t i = 0; i < n_; ++i) rest -= table.values_at(q)[i] * nodal_gaps_[k * n_ + i];
-      largest = std::max(largest, std::abs(rest));
+      if (std::abs(rest) > rounding * form_.contact_points(k)[q].x.norm())
+        largest = std::max(largest, std::abs(rest));
     }
   return largest;
 }
