@@ -25,7 +25,7 @@ function barChart(name, levels) {
     width, height: Math.max(240, 0.55 * width), marginLeft: 62, marginRight: 18, marginTop: 28, marginBottom: 44, style: chartStyle,
     x: dofAxis([{ points }], width), y: { label: unit("value"), grid: true, ticks: 6 },
     marks: [Plot.ruleX(points, { x: "x", y1: "low", y2: "high", stroke: colour, strokeWidth: 2 }),
-      Plot.tickY(points, { x: "x", y: "low", stroke: colour }), Plot.dot(points, { x: "x", y: "y", fill: colour, r: 3 }),
+      Plot.dot(points, { x: "x", y: "y", fill: colour, r: 3 }),
       Plot.tip(points, Plot.pointer({ x: "x", y: "y", title: tip }))],
   }), { share: 0.47, name: `quantity_${name.replaceAll(/\W+/g, "_")}`,
     rows: () => known.map(({ level, dofs, value, lower, upper }) => ({ level, dofs, value, lower, upper })) }));

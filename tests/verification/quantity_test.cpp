@@ -209,8 +209,8 @@ void expect_statics()
                -0.8);
   Quantity<dim> down{.name = "by its normal", .kind = QuantityKind::contact_force, .boundary = "bottom"};
   expect_known(interval_from_statics<dim>(on_rollers, down), -0.8);
-  EXPECT_EQ(interval_from_statics<dim>(on_rollers, contact_force<dim>("bottom", Point<dim>::Unit(0))).reason,
-            "contact alone holds a body");
+  EXPECT_FALSE(
+      interval_from_statics<dim>(on_rollers, contact_force<dim>("bottom", Point<dim>::Unit(0))).exact);
 
   const ProblemData<dim> pushed =
       resting_block<dim>(Coulomb(0.3), {loaded<dim>("right", formula("0.03*y^2"), 0.0)});
@@ -225,7 +225,7 @@ void expect_statics()
       resting_block<dim>(Frictionless(), {obstacle<dim>("left"), fixed<dim>("right", free, free, 0.0)});
   const Quantity<dim> all = contact_force<dim>("", Point<dim>(Point<dim>::Unit(1)));
   expect_known(interval_from_statics<dim>(wedged, all), 0.8);
-  EXPECT_NE(interval_from_statics<dim>(wedged, contact_force<dim>("left", Point<dim>::Unit(1))).reason, "");
+  EXPECT_FALSE(interval_from_statics<dim>(wedged, contact_force<dim>("left", Point<dim>::Unit(1))).exact);
 }
 
 /// What rests on another body is pressed by that, however that is held.

@@ -111,6 +111,7 @@ std::string Levels<dim>::try_to_advance(const StepObserver& observer, bool is_la
     return fmt::format("this is level {}, level {} failed: {}", number_, number_ + 1, verdict.reason);
   ++number_;
   level_ = std::move(*level);
+  has_stress_ = true;
   verdict_ = std::move(verdict);
   discrete_before_.reset();
   return {};
@@ -228,6 +229,7 @@ bool Levels<dim>::finish(const StepObserver& observer)
   if (verdict_.status == certify::RunStatus::certified && verdict.status != certify::RunStatus::certified)
     return false;
   level_ = std::move(*converged);
+  has_stress_ = true;
   verdict_ = std::move(verdict);
   return true;
 }
@@ -235,7 +237,8 @@ bool Levels<dim>::finish(const StepObserver& observer)
 template <int dim>
 bool Levels<dim>::bound_energy()
 {
-  if (bars_.levels == EnergyLevels::off || level_.energy || !certify::is_bound(verdict_.status)) return false;
+  const bool is_wanted = bars_.levels != EnergyLevels::off && certify::is_bound(verdict_.status);
+  if (!is_wanted || !has_stress_ || level_.energy) return false;
   const Clock::time_point begin = Clock::now();
   if (interrupted())
     level_.energy = certify::EnergyBound{.reason = "interrupted"};
@@ -298,6 +301,7 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
   seconds.transfer = lap();
   refinement_ = seconds;
   expected_ = level_.estimate.global.discretisation() * std::pow(is_next.growth, -1.0 * method_.degree / dim);
+  has_stress_ = false;
   level_.stress = {};
   level_.estimate = {};
   level_.equilibrium = {};

@@ -115,7 +115,7 @@ class Levels
   bool finish(const StepObserver& observer = {});
 
   /// Bounds the error of the last level in the energy norm, if it is asked for of any level and there is none
-  /// yet; whether it has changed anything.
+  /// yet; whether it has changed anything. Not of a level that has lost its stress to a mesh that was given up.
   bool bound_energy();
 
   /// Bisects the cells that `mark` names for the last level and carries the solution to the new mesh, which
@@ -156,6 +156,7 @@ class Levels
   int number_ = -1;  ///< of the last level
   std::shared_ptr<const Discretisation<dim>> current_;
   CertifiedLevel<dim> level_;
+  bool has_stress_ = false;  ///< whether it has its stress and estimate
   certify::Verdict verdict_{certify::RunStatus::failed, {}};
   double seconds_ = 0;  ///< spent on the last level
 

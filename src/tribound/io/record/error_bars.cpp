@@ -138,7 +138,7 @@ void add_energy_error(Json& object, const LevelRecord& level)
   {
     object["energy_reason"] = level.energy      ? level.energy->reason
                               : level.load_step ? "it is not bounded over load steps"
-                              : level.bound     ? "not asked for: certify.energy"
+                              : level.bound     ? "not computed on this mesh, see certify.energy"
                                                 : "there is no bound of the residual";
     return;
   }
