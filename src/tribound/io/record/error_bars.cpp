@@ -57,7 +57,7 @@ std::string words_of_guarantee(const LevelRecord& level)
 {
   if (!has_bound(level)) return {};
   return fmt::format(
-      "the error in the energy norm (energy_error): the distance of the computed displacement from {}{}",
+      "the error in the energy norm: the distance of the computed displacement from {}{}",
       words_of(level.energy->target), words_of_remainders(*level.energy));
 }
 
