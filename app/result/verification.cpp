@@ -40,7 +40,7 @@ std::string iterate_line(const VerifiedIterate& iterate)
 /// The distance from the richer solution, and the bound.
 std::string energy_text(const Verification& v)
 {
-  const std::string error = fmt::format("{:.6g}", v.richer->error->energy);
+  std::string error = fmt::format("{:.6g}", v.richer->error->energy);
   if (!v.energy) return error;
   if (!v.energy->reason.empty()) return error + "; no bound: " + v.energy->reason;
   const auto effectivity = v.energy_effectivity();

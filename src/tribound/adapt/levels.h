@@ -115,7 +115,8 @@ class Levels
   bool finish(const StepObserver& observer = {});
 
   /// Bounds the error of the last level in the energy norm, if it is asked for of any level and there is none
-  /// yet; whether it has changed anything. Not of a level that has lost its stress to a mesh that was given up.
+  /// yet; whether it has changed anything. Not of a level that has lost its stress to a mesh that was given
+  /// up.
   bool bound_energy();
 
   /// Bisects the cells that `mark` names for the last level and carries the solution to the new mesh, which

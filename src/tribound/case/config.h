@@ -77,7 +77,7 @@ struct QuantityConfig
   std::string boundary{};           ///< empty: none given
   std::vector<double> direction{};  ///< empty: the outward normal
   std::vector<double> point{};      ///< of a moment; empty: the origin
-  double ramp = 0;                ///< 0: none given
+  double ramp = 0;                  ///< 0: none given
   Where where;
 };
 

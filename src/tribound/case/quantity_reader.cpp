@@ -45,6 +45,7 @@ std::vector<double> read_direction(const Node& node)
 QuantityKind read_kind(const TableReader& table)
 {
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const KeyGroup& kind : kinds) names.emplace_back(kind.name);
   const std::size_t chosen =
       to_choice(table.require("kind", "what is wanted, such as kind = \"contact_force\""), names);

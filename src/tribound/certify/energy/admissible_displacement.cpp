@@ -71,7 +71,8 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   return state;
 }
 
-/// Those of the slaves of all facets; facets in transition are taken for what they are at all, or only everywhere.
+/// Those of the slaves of all facets; facets in transition are taken for what they are at all, or only
+/// everywhere.
 template <int dim>
 class ControlPoints
 {
@@ -188,8 +189,9 @@ double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& 
     const std::vector<Point<dim>> coefficients = facets.coefficients(k, v);
     const bool is_tied = problem::cone(form.segments()[k].contact->law).is_tied;
     for (std::size_t j = 0; j < coefficients.size(); ++j)
-      largest = std::max(largest, is_tied ? coefficients[j].norm()
-                                          : form.segments()[k].normal.dot(coefficients[j]) - facets.gap(k)[j]);
+      largest =
+          std::max(largest, is_tied ? coefficients[j].norm()
+                                    : form.segments()[k].normal.dot(coefficients[j]) - facets.gap(k)[j]);
   }
   return form.space().mesh().ranks().max(largest);
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file obstacle_facets.h
-/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles or facets of other
-/// bodies that match them.
+/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles or facets of
+/// other bodies that match them.
 
 #include <array>
 #include <span>

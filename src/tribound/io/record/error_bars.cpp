@@ -56,9 +56,8 @@ const char* words_of(certify::EnergyTarget target)
 std::string words_of_guarantee(const LevelRecord& level)
 {
   if (!has_bound(level)) return {};
-  return fmt::format(
-      "the error in the energy norm: the distance of the computed displacement from {}{}",
-      words_of(level.energy->target), words_of_remainders(*level.energy));
+  return fmt::format("the error in the energy norm: the distance of the computed displacement from {}{}",
+                     words_of(level.energy->target), words_of_remainders(*level.energy));
 }
 
 std::string words_of(const certify::QuantityInterval& quantity)
