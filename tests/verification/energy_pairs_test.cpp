@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "support/discrete_problem.h"
@@ -29,7 +30,7 @@ certify::EnergyBound energy_bound(const DiscreteProblem<dim>& c, std::span<const
 
 /// A block on another one whose mesh continues its own; names of the lower one end with "_below".
 template <int dim>
-mesh::MeshData<dim> matching_blocks()
+mesh::MeshData<dim> matching_blocks(int finer = 1)
 {
   Point<dim> lower = Point<dim>::Zero();
   Point<dim> upper = Point<dim>::Ones();
@@ -39,6 +40,7 @@ mesh::MeshData<dim> matching_blocks()
   std::array<int, dim> cells;
   cells.fill(dim == 2 ? 2 : 1);
   cells[0] = dim == 2 ? 4 : 2;
+  for (int& n : cells) n *= finer;
   Point<dim> middle = lower;
   middle[1] = 0;
   Point<dim> highest = upper;
@@ -117,6 +119,35 @@ TEST(EnergyPairs, IsNothingWhereTheStressIsConstant)
     const certify::EnergyBound eta = energy_bound(c, c.solve().u);
     ASSERT_EQ(eta.reason, "");
     EXPECT_LE(eta.bound, 1e-7) << p;
+  }
+}
+
+/// What is known where bodies touch is not where there is a gap between them, given or that of the meshes.
+TEST(EnergyPairs, TheIntervalOfTheEnergyHoldsWithAGap)
+{
+  for (const char* const gap : {"0", "0.02*x", ""})
+  {
+    ProblemData<2> data = two_pressed<2>(Tresca(0.03));
+    data.pairs[0].contact.gap.reset();
+    if (*gap != '\0') data.pairs[0].contact.gap = formula(gap);
+    const auto meshes = [&](int finer)
+    {
+      mesh::MeshData<2> blocks = matching_blocks<2>(finer);
+      if (*gap != '\0') return blocks;
+      for (std::size_t v = blocks.vertices.size() / 2; v < blocks.vertices.size(); ++v)
+        blocks.vertices[v] -= Point<2>(0, 0.01 * (1 + blocks.vertices[v][1]));
+      return blocks;
+    };
+    const DiscreteProblem<2> c(meshes(1), data, {.degree = 2, .newton = {.tolerance = 1e-12}});
+    const DiscreteProblem<2> rich(meshes(4), data, {.degree = 3, .newton = {.tolerance = 1e-11}});
+    const double truth = contact::stress_norms<2>(rich.problem, rich.space, rich.solve().u).energy;
+    const std::vector<problem::Quantity<2>> energy = {{.name = "energy"}};
+    const auto found = certify::EnergyEstimator<2>(c.form, {}, energy)(c.solve().u).quantities.front();
+    ASSERT_EQ(found.reason, "") << gap;
+    fmt::print("gap {}: {:.8f} in [{:.8f}, {:.8f}], {}\n", gap, truth, found.lower, found.upper, found.basis);
+    EXPECT_LE(found.lower, truth) << gap;
+    EXPECT_GE(found.upper, truth) << gap;
+    EXPECT_EQ(found.basis, std::string(gap) == "0" ? "duality gap" : "energy bound");
   }
 }
 

@@ -15,9 +15,16 @@ bool is_homogeneous(const contact::NitscheForm<dim>& form)
   {
     for (const std::optional<problem::Field>& component : boundary.displacement)
       result = result && (!component || is_zero(*component));
-    result = result && (!boundary.contact || is_zero(*boundary.contact->gap));
   }
-  return result;
+  for (const problem::Contact* contact : form.problem().contacts())
+    result = result && (!contact->gap || is_zero(*contact->gap));
+  const auto is_apart = [](const contact::ContactSegment<dim>& segment)
+  {
+    const bool is_of_meshes = !segment.contact->gap && !problem::cone(segment.contact->law).is_tied;
+    return is_of_meshes && std::ranges::any_of(segment.offset, [&](const Point<dim>& offset)
+                                               { return offset.dot(segment.normal) != 0; });
+  };
+  return result && !form.space().mesh().ranks().any(std::ranges::any_of(form.segments(), is_apart));
 }
 
 template <int dim>

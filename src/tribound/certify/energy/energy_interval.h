@@ -9,7 +9,7 @@
 namespace tribound::certify
 {
 
-/// Whether u_D = 0 and g = 0. All ranks together.
+/// Whether u_D = 0 and g = 0, between bodies too. All ranks together.
 template <int dim>
 [[nodiscard]] bool is_homogeneous(const contact::NitscheForm<dim>& form);
 
