@@ -94,7 +94,7 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   if (config.history)
     return run_history<dim>(config, problem, std::move(mesh), slides, stop, progress, std::move(whole),
                             restart, begin);
-  auto quantities = case_file::resolve_quantities<dim>(config, mesh.boundary_names());
+  auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const std::unique_ptr<adapt::Levels<dim>> levels =
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
   RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
@@ -147,7 +147,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   problem::Problem<dim> problem(case_file::resolve(config, mesh));
   if (config.history) problem = problem.at(config.history->program.targets.front());
   (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
-  (void)case_file::resolve_quantities<dim>(config, mesh.boundary_names());
+  (void)case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
   if (auto history = contact::history_at_first(form)) form.set_history(std::move(history));

@@ -59,7 +59,7 @@ class StudyCommand
       : config_(config),
         mesh_(std::move(mesh)),
         problem_(case_file::resolve(config, mesh_)),
-        quantities_(case_file::resolve_quantities<dim>(config, mesh_.boundary_names())),
+        quantities_(case_file::resolve_quantities<dim>(config, problem_, mesh_.boundary_names())),
         progress_(progress),
         stop_(stop_on_signals())
   {

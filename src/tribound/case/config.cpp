@@ -217,8 +217,7 @@ OutputConfig read_output(const Node& node, OutputConfig output)
   if (const Node* point = table.find("moment_about"))
   {
     output.moment_about_where = point->where;
-    for (const Node& item : to_components(*point, "one coordinate per dimension"))
-      output.moment_about.push_back(to_number(item));
+    output.moment_about = to_numbers(*point, "one coordinate per dimension");
   }
   return output;
 }

@@ -32,20 +32,16 @@ bool may_be(Kind kind, bool is_obstacle)
   return kind != (is_obstacle ? Kind::mesh : Kind::distance);
 }
 
+constexpr auto point_hint = "one number per dimension, such as [0, -1]";
+
 std::vector<double> read_point(const Node& node)
 {
-  std::vector<double> point;
-  for (const Node& item : to_components(node, "one number per dimension, such as [0, -1]"))
-    point.push_back(to_number(item));
-  return point;
+  return to_numbers(node, point_hint);
 }
 
 std::vector<double> read_vector(const Node& node)
 {
-  std::vector<double> vector = read_point(node);
-  if (std::ranges::count(vector, 0.0) == std::ssize(vector))
-    throw InputError(node.where, "has no length", "a direction, such as [0, 1]");
-  return vector;
+  return to_vector(node, point_hint, "a direction, such as [0, 1]");
 }
 
 void read_plane(const Node& node, SurfaceConfig& surface)

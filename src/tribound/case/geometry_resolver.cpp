@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "tribound/case/dimension.h"
 #include "tribound/case/quadratic_geometry.h"
 #include "tribound/case/surface_points.h"
 #include "tribound/problem/surface.h"
@@ -134,10 +135,7 @@ std::string words(const GeometryConfig& geometry)
 template <int dim>
 void check_direction(const GeometryConfig& geometry)
 {
-  if (geometry.direction.size() != dim)
-    throw InputError(geometry.normal_where,
-                     fmt::format("has {} components, but the mesh is {}D", geometry.direction.size(), dim),
-                     fmt::format("give {}", dim));
+  case_file::check_length<dim>(geometry.direction.size(), geometry.normal_where);
   for (const std::string& component : geometry.direction)
     if (dim == 2 && problem::Field(component, geometry.normal_where).uses_z())
       throw InputError(geometry.normal_where, "uses z in a 2D case", "only x and y vary");

@@ -138,19 +138,9 @@ std::optional<problem::Field> read_gap(const Node& node)
   return to_field(node);
 }
 
-/// Empty for "normal".
 std::vector<double> read_direction(const Node& node)
 {
-  const auto* text = std::get_if<std::string>(&node.value);
-  if (text != nullptr && *text == "normal") return {};
-  constexpr auto hint = "\"normal\", or a direction out of the slave, such as [0, -1]";
-  if (text != nullptr) throw InputError(node.where, fmt::format("is \"{}\"", *text), hint);
-  std::vector<double> direction;
-  for (const Node& item : to_components(node, "\"normal\" or one number per dimension"))
-    direction.push_back(to_number(item));
-  if (std::ranges::count(direction, 0.0) == std::ssize(direction))
-    throw InputError(node.where, "has no length", hint);
-  return direction;
+  return to_direction(node, "\"normal\", or a direction out of the slave, such as [0, -1]");
 }
 
 /// The sides: slave and master, or a joint.

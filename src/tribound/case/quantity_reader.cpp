@@ -6,6 +6,8 @@
 #include <array>
 #include <string_view>
 
+#include "tribound/case/dimension.h"
+
 namespace tribound::case_file
 {
 
@@ -25,21 +27,10 @@ const std::array kinds = {
 
 constexpr auto direction_hint = "\"normal\", the outward normal of the boundary, or a vector such as [0, 1]";
 
-std::vector<double> read_vector(const Node& node)
-{
-  std::vector<double> x;
-  for (const Node& item : to_components(node, "one number per dimension")) x.push_back(to_number(item));
-  return x;
-}
-
 /// Empty for "normal".
 std::vector<double> read_direction(const Node& node)
 {
-  if (const auto* text = std::get_if<std::string>(&node.value); text && *text == "normal") return {};
-  std::vector<double> direction = read_vector(node);
-  if (std::ranges::count(direction, 0.0) == std::ssize(direction))
-    throw InputError(node.where, "has no length", direction_hint);
-  return direction;
+  return to_direction(node, direction_hint);
 }
 
 QuantityKind read_kind(const TableReader& table)
@@ -73,7 +64,7 @@ QuantityConfig read_quantity(const Node& node)
   QuantityConfig quantity{.kind = read_kind(table), .where = node.where};
   table.read("boundary", quantity.boundary, to_text);
   table.read("direction", quantity.direction, read_direction);
-  table.read("point", quantity.point, read_vector);
+  table.read("point", quantity.point, [](const Node& value) { return to_numbers(value); });
   table.read("ramp", quantity.ramp,
              number_in(positive, "a distance, over which the weight of a force grows from 0 to 1"));
   require_keys(table, quantity);
@@ -85,49 +76,10 @@ QuantityConfig read_quantity(const Node& node)
   return quantity;
 }
 
-bool has_contact(const Config& config, const std::string& name)
-{
-  const auto is_slave = [&](const ContactConfig& contact)
-  { return contact.joint == name || std::ranges::find(contact.slave, name) != contact.slave.end(); };
-  return std::ranges::any_of(config.boundaries, [&](const BoundaryConfig& boundary)
-                             { return boundary.name == name && boundary.contact; }) ||
-         std::ranges::any_of(config.contacts, is_slave);
-}
-
-bool has_coulomb_friction(const Config& config, const std::string& name)
-{
-  return std::ranges::any_of(config.boundaries,
-                             [&](const BoundaryConfig& boundary)
-                             {
-                               return boundary.name == name && boundary.contact &&
-                                      problem::cone(boundary.contact->law).coefficient > 0;
-                             });
-}
-
-void check_boundary(const Config& config, const QuantityConfig& quantity,
-                    std::span<const std::string> boundary_names)
-{
-  if (quantity.boundary.empty()) return;
-  (void)problem::group_number(quantity.boundary, boundary_names, quantity.where, "boundary");
-  const bool is_of_contact =
-      quantity.kind == QuantityKind::contact_force || quantity.kind == QuantityKind::contact_moment;
-  if (is_of_contact && !has_contact(config, quantity.boundary))
-    throw InputError(quantity.where,
-                     fmt::format("is about \"{}\", where there is no contact", quantity.boundary),
-                     "the name of a boundary with contact, or none for all of them together");
-  if (quantity.kind == QuantityKind::safety_factor && !has_coulomb_friction(config, quantity.boundary))
-    throw InputError(quantity.where,
-                     fmt::format("is about \"{}\", which has no Coulomb friction", quantity.boundary),
-                     "a boundary with contact = { friction = \"coulomb\", coefficient = ... }");
-}
-
 template <int dim>
-Point<dim> in_dimension(const std::vector<double>& x, const char* key, const QuantityConfig& quantity)
+Point<dim> in_dimension(const std::vector<double>& x, std::string_view key, const QuantityConfig& quantity)
 {
-  if (x.size() != dim)
-    throw InputError(quantity.where,
-                     fmt::format("{} has {} components, but the mesh is {}D", key, x.size(), dim),
-                     fmt::format("give {}", dim));
+  check_length<dim>(x.size(), inside(quantity.where, key));
   return Eigen::Map<const Point<dim>>(x.data());
 }
 
@@ -205,12 +157,12 @@ void check_error_bars(const TableReader& root, Config& config)
 
 template <int dim>
 std::vector<problem::Quantity<dim>> resolve_quantities(const Config& config,
+                                                       const problem::Problem<dim>& problem,
                                                        std::span<const std::string> boundary_names)
 {
   std::vector<problem::Quantity<dim>> quantities;
   for (const QuantityConfig& given : config.quantities)
   {
-    check_boundary(config, given, boundary_names);
     problem::Quantity<dim> quantity{.name = given.name,
                                     .kind = given.kind,
                                     .boundary = given.boundary,
@@ -220,12 +172,15 @@ std::vector<problem::Quantity<dim>> resolve_quantities(const Config& config,
                                     .where = given.where};
     if (!given.direction.empty()) quantity.direction = in_dimension<dim>(given.direction, "direction", given);
     if (!given.point.empty()) quantity.point = in_dimension<dim>(given.point, "point", given);
+    (void)problem::boundary_number(quantity, problem, boundary_names);  // throws where it has none
     quantities.push_back(std::move(quantity));
   }
   return quantities;
 }
 
-template std::vector<problem::Quantity<2>> resolve_quantities(const Config&, std::span<const std::string>);
-template std::vector<problem::Quantity<3>> resolve_quantities(const Config&, std::span<const std::string>);
+template std::vector<problem::Quantity<2>> resolve_quantities(const Config&, const problem::Problem<2>&,
+                                                              std::span<const std::string>);
+template std::vector<problem::Quantity<3>> resolve_quantities(const Config&, const problem::Problem<3>&,
+                                                              std::span<const std::string>);
 
 }  // namespace tribound::case_file

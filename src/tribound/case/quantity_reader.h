@@ -22,10 +22,10 @@ namespace tribound::case_file
 /// less than that, and for a goal that is no quantity of it.
 void check_error_bars(const TableReader& root, Config& config);
 
-/// The quantities of the case on a mesh with these names of boundaries. Throws InputError for a boundary that
-/// does not exist or has no contact where one is needed, and for vectors of wrong length.
+/// The quantities of the case, of its problem on a mesh with these names of boundaries. Throws InputError as
+/// problem::boundary_number() does, and for vectors of wrong length.
 template <int dim>
 [[nodiscard]] std::vector<problem::Quantity<dim>> resolve_quantities(
-    const Config& config, std::span<const std::string> boundary_names);
+    const Config& config, const problem::Problem<dim>& problem, std::span<const std::string> boundary_names);
 
 }  // namespace tribound::case_file

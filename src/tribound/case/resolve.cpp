@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tribound/adapt/transfer.h"
+#include "tribound/case/dimension.h"
 #include "tribound/case/geometry_resolver.h"
 #include "tribound/case/node.h"
 
@@ -16,21 +17,6 @@ namespace tribound::case_file
 
 namespace
 {
-
-Where inside(const Where& table, std::string_view key)
-{
-  Where where = table;
-  where.key += fmt::format(".{}", key);
-  return where;
-}
-
-template <int dim>
-void check_length(std::size_t size, const Where& where)
-{
-  if (size != dim)
-    throw InputError(where, fmt::format("has {} components, but the mesh is {}D", size, dim),
-                     fmt::format("give {}", dim));
-}
 
 template <int dim>
 problem::Field in_dimension(const problem::Field& field)

@@ -147,6 +147,31 @@ std::vector<problem::Field> to_fields(const Node& node)
   return components;
 }
 
+std::vector<double> to_numbers(const Node& node, std::string_view what)
+{
+  std::vector<double> numbers;
+  for (const Node& item : to_components(node, what)) numbers.push_back(to_number(item));
+  return numbers;
+}
+
+std::vector<double> to_vector(const Node& node, std::string_view what, const std::string& hint)
+{
+  std::vector<double> vector = to_numbers(node, what);
+  if (std::ranges::count(vector, 0.0) == std::ssize(vector))
+    throw InputError(node.where, "has no length", hint);
+  return vector;
+}
+
+std::vector<double> to_direction(const Node& node, const std::string& hint)
+{
+  if (const auto* text = std::get_if<std::string>(&node.value))
+  {
+    if (*text == "normal") return {};
+    throw InputError(node.where, fmt::format("is \"{}\"", *text), hint);
+  }
+  return to_vector(node, "\"normal\" or one number per dimension", hint);
+}
+
 double to_number_in(const Node& node, const Interval& interval, const std::string& hint)
 {
   const double number = to_number(node);

@@ -90,6 +90,13 @@ void refuse_keys_of_others(const TableReader& table, std::string_view what, std:
 /// The items of an array of 2 or 3 (dim); `what` describes it, such as "one component per dimension".
 [[nodiscard]] const Node::Array& to_components(const Node& node, std::string_view what);
 [[nodiscard]] std::vector<problem::Field> to_fields(const Node& node);
+/// One number per dimension; `what` as above.
+[[nodiscard]] std::vector<double> to_numbers(const Node& node,
+                                             std::string_view what = "one number per dimension");
+/// The same of a vector that is not 0.
+[[nodiscard]] std::vector<double> to_vector(const Node& node, std::string_view what, const std::string& hint);
+/// "normal", for which it is empty, or a vector that is not 0.
+[[nodiscard]] std::vector<double> to_direction(const Node& node, const std::string& hint);
 
 /// The numbers a key takes.
 struct Interval

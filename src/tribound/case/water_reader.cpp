@@ -14,18 +14,11 @@ namespace
 
 constexpr auto line_hint = "two points of the base, upstream and downstream: heel = [0, 0], toe = [60, 0]";
 
-std::vector<double> read_point(const Node& node)
-{
-  std::vector<double> x;
-  for (const Node& item : to_components(node, "one number per dimension")) x.push_back(to_number(item));
-  return x;
-}
-
 problem::BaseLine read_line(const TableReader& table)
 {
   const Node& heel = table.require("heel", line_hint);
   const Node& toe = table.require("toe", line_hint);
-  problem::BaseLine line{read_point(heel), read_point(toe), heel.where};
+  problem::BaseLine line{to_numbers(heel), to_numbers(toe), heel.where};
   if (line.toe.size() != line.heel.size())
     throw InputError(toe.where,
                      fmt::format("has {} components, heel has {}", line.toe.size(), line.heel.size()),

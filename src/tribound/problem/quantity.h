@@ -4,11 +4,13 @@
 /// Numbers that are wanted of a solution: energies, forces, displacements.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "tribound/base/error.h"
 #include "tribound/base/types.h"
+#include "tribound/problem/problem.h"
 
 namespace tribound::problem
 {
@@ -61,5 +63,12 @@ struct Quantity
   double ramp = 0;
   Where where;  ///< for messages
 };
+
+/// The number of its boundary, -1 where it is one of all contact boundaries or of the whole. Throws
+/// InputError where there is no such boundary, no contact where a force or moment is wanted, and no Coulomb
+/// friction alone where a safety factor is.
+template <int dim>
+[[nodiscard]] int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
+                                  std::span<const std::string> boundary_names);
 
 }  // namespace tribound::problem

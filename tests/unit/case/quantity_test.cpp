@@ -10,6 +10,7 @@
 #include "support/input_error.h"
 #include "tribound/case/config.h"
 #include "tribound/case/quantity_reader.h"
+#include "tribound/case/resolve.h"
 
 namespace tribound::test
 {
@@ -37,10 +38,16 @@ std::string message(const std::string& text)
 
 const std::vector<std::string> sides = {"left", "right", "bottom", "top"};
 
+std::vector<problem::Quantity<2>> on_mesh(const case_file::Config& c)
+{
+  const std::vector<std::string> regions = {"box"};
+  return case_file::resolve_quantities<2>(c, case_file::resolve<2>(c, regions, sides), sides);
+}
+
 std::string message_on_mesh(const std::string& quantity)
 {
   const case_file::Config c = config("[[quantity]]\n" + quantity);
-  return message_of([&] { return case_file::resolve_quantities<2>(c, sides); });
+  return message_of([&] { return on_mesh(c); });
 }
 
 TEST(QuantityReader, ReadsWhatIsWanted)
@@ -61,7 +68,7 @@ point = [1, 0.5]
 kind = "mean_displacement"
 boundary = "right"
 )");
-  const auto quantities = case_file::resolve_quantities<2>(c, sides);
+  const auto quantities = on_mesh(c);
   ASSERT_EQ(quantities.size(), 4u);
   EXPECT_EQ(quantities[0].name, "energy");
   EXPECT_EQ(quantities[1].name, "thrust");

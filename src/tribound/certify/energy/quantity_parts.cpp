@@ -20,21 +20,6 @@ bool is_of_contact(QuantityKind kind)
          kind == QuantityKind::safety_factor;
 }
 
-/// The number of the boundary, -1 for none.
-template <int dim>
-int boundary_tag(const contact::NitscheForm<dim>& form, const problem::Quantity<dim>& quantity)
-{
-  const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const bool may_be_all =
-      quantity.kind != QuantityKind::mean_displacement && quantity.kind != QuantityKind::safety_factor;
-  if (quantity.boundary.empty() && may_be_all) return -1;
-  const int tag = problem::group_number(quantity.boundary, mesh.boundary_names(), quantity.where, "boundary");
-  if (is_of_contact(quantity.kind) && form.problem().contact(tag) == nullptr)
-    throw InputError(quantity.where, fmt::format("boundary \"{}\" touches nothing", quantity.boundary),
-                     "name a boundary with contact, of a pair the slave");
-  return tag;
-}
-
 /// The measure and the mean outward normal of a boundary; 0 where there is none.
 template <int dim>
 void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& parts)
@@ -92,13 +77,7 @@ std::array<Point<dim>, dim - 1> tangents(const Point<dim>& n)
 template <int dim>
 void set_safety_parts(const contact::NitscheForm<dim>& form, QuantityParts<dim>& parts)
 {
-  const problem::FrictionCone friction = problem::cone(form.problem().contact(parts.tag)->law);
-  const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
-  if (!coefficient_alone)
-    throw InputError(parts.quantity.where,
-                     fmt::format("boundary \"{}\" has no Coulomb friction", parts.quantity.boundary),
-                     "a safety factor is mu_F N / H");
-  parts.coefficient = friction.coefficient;
+  parts.coefficient = problem::cone(form.problem().contact(parts.tag)->law).coefficient;
   const Point<dim> n = parts.direction;
   if (!is_plane<dim>(form.space().mesh(), parts.tag, n))
   {
@@ -115,7 +94,10 @@ void set_safety_parts(const contact::NitscheForm<dim>& form, QuantityParts<dim>&
 template <int dim>
 QuantityParts<dim> parts_of(const contact::NitscheForm<dim>& form, const problem::Quantity<dim>& quantity)
 {
-  QuantityParts<dim> parts{.quantity = quantity, .tag = boundary_tag(form, quantity), .resultants = {}};
+  QuantityParts<dim> parts{
+      .quantity = quantity,
+      .tag = problem::boundary_number(quantity, form.problem(), form.space().mesh().boundary_names()),
+      .resultants = {}};
   if (quantity.direction && !(quantity.direction->norm() > 0))
     throw InputError(quantity.where, "the direction is 0", "a vector of any other length");
   if (quantity.kind == QuantityKind::energy || quantity.kind == QuantityKind::load_work) return parts;

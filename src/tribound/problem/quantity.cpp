@@ -1,0 +1,46 @@
+#include "tribound/problem/quantity.h"
+
+#include <fmt/format.h>
+
+namespace tribound::problem
+{
+
+namespace
+{
+
+bool has_coulomb_friction(const Contact* contact)
+{
+  if (contact == nullptr) return false;
+  const FrictionCone friction = cone(contact->law);
+  return friction.strength == nullptr && friction.coefficient > 0;
+}
+
+}  // namespace
+
+template <int dim>
+int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
+                    std::span<const std::string> boundary_names)
+{
+  const bool is_safety = quantity.kind == QuantityKind::safety_factor;
+  const bool is_of_contact =
+      quantity.kind == QuantityKind::contact_force || quantity.kind == QuantityKind::contact_moment;
+  const bool may_be_all = !is_safety && quantity.kind != QuantityKind::mean_displacement;
+  if (quantity.boundary.empty() && may_be_all) return -1;
+  const int tag = group_number(quantity.boundary, boundary_names, quantity.where, "boundary");
+  if (is_of_contact && problem.contact(tag) == nullptr)
+    throw InputError(
+        quantity.where, fmt::format("boundary \"{}\" touches nothing", quantity.boundary),
+        "there is no contact on it: name a boundary with contact, of a pair the slave, or none for all "
+        "of them together");
+  if (is_safety && !has_coulomb_friction(problem.contact(tag)))
+    throw InputError(
+        quantity.where, fmt::format("boundary \"{}\" has no Coulomb friction", quantity.boundary),
+        "a boundary with contact = { friction = \"coulomb\", coefficient = ... }: a safety factor is "
+        "mu_F N / H");
+  return tag;
+}
+
+template int boundary_number(const Quantity<2>&, const Problem<2>&, std::span<const std::string>);
+template int boundary_number(const Quantity<3>&, const Problem<3>&, std::span<const std::string>);
+
+}  // namespace tribound::problem
