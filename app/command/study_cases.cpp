@@ -39,7 +39,7 @@ case_file::Config reference_config(const case_file::Config& config, double requi
   reference.method.stopping.finish = false;
   reference.adapt.tolerance = required;
   reference.adapt.measure = adapt::ErrorMeasure::residual;
-  reference.adapt.bars.energy_tolerance.reset();
+  reference.adapt.bars = {};  // no demands
   if (config.adapt.bars.levels != adapt::EnergyLevels::off)
     reference.adapt.bars.levels = adapt::EnergyLevels::last;
   reference.adapt.max_levels = std::numeric_limits<int>::max();
