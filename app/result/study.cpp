@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "tribound/adapt/rate.h"
 #include "tribound/io/file/atomic_file.h"
@@ -172,11 +171,8 @@ std::optional<double> StudiedLevel::stress_effectivity() const
 
 std::optional<double> StudiedLevel::energy_effectivity() const
 {
-  const auto bound = io::energy_bound(record);
-  if (!bound || !error || record.energy->target != certify::EnergyTarget::solution) return std::nullopt;
-  constexpr double round_off = 1e-10;
-  if (error->energy <= round_off * std::sqrt(record.figures.energy)) return std::nullopt;
-  return *bound / error->energy;
+  if (!record.energy || !error) return std::nullopt;
+  return certify::energy_effectivity(*record.energy, error->energy, record.figures.energy);
 }
 
 const StudyVariant* find_variant(const Study& study, std::string_view name)
@@ -238,8 +234,8 @@ std::string interval_violation(const Study& study)
       if (level.intervals_agree == false)
         return fmt::format(
             "the guarantee is violated: in the variant {} on level {} the interval of a quantity has no "
-            "point in common "
-            "with that of the reference",
+            "point "
+            "in common with that of the reference",
             variant.name, level.record.level);
   return {};
 }
@@ -255,11 +251,11 @@ std::string energy_violation(const Study& study)
           *energy_error(level) > *io::energy_bound(level.record) + *of_reference)
         return fmt::format(
             "the guarantee is violated: in the variant {} on level {} the bound {:.9g} of the error in the "
-            "energy "
-            "norm and that of the reference, {:.3g}, are together below the distance {:.9g} between both",
+            "energy norm and that of the reference, {:.3g}, are together below the distance {:.9g} between "
+            "both",
             variant.name, level.record.level, *io::energy_bound(level.record), *of_reference,
             *energy_error(level));
-  return interval_violation(study);
+  return {};
 }
 
 }  // namespace
@@ -274,7 +270,8 @@ std::string violation(const Study& study)
             "norm "
             "of the residual, which is at least {:.9g} (effectivity {:.6f})",
             variant.name, level.record.level, *bound_of(level), *level.dual_norm, *e);
-  return energy_violation(study);
+  std::string problem = energy_violation(study);
+  return problem.empty() ? interval_violation(study) : problem;
 }
 
 std::string study_csv(const Study& study)

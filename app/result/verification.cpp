@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "app/console/text.h"
@@ -142,12 +141,8 @@ std::string refusal_of_a_solution(const Verification& v)
 
 std::optional<double> Verification::energy_effectivity() const
 {
-  if (!energy || !energy->reason.empty() || energy->target != certify::EnergyTarget::solution || !richer ||
-      !richer->error)
-    return std::nullopt;
-  constexpr double round_off = 1e-10;
-  if (richer->error->energy <= round_off * std::sqrt(iterates.back().norms.energy)) return std::nullopt;
-  return energy->bound / richer->error->energy;
+  if (!energy || !richer || !richer->error) return std::nullopt;
+  return certify::energy_effectivity(*energy, richer->error->energy, iterates.back().norms.energy);
 }
 
 std::string violation(const Verification& verification)

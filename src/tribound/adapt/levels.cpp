@@ -258,8 +258,7 @@ bool Levels<dim>::bound_energy()
 template <int dim>
 std::string Levels<dim>::refine(const Marker<dim>& mark, const MeshLimit& limit)
 {
-  assert(level_.estimate.total_sharp > 0 ||
-         !level_.estimate.cells.empty());  // of a level that was not given up
+  assert(has_stress_);
   const Clock::time_point begin = Clock::now();
   std::string why;
   try

@@ -40,14 +40,6 @@ std::string why_not(const contact::NitscheForm<dim>& form)
   return {};
 }
 
-template <int dim>
-bool has_pairs(const contact::NitscheForm<dim>& form)
-{
-  return form.space().mesh().ranks().any(std::ranges::any_of(form.segments(),
-                                                             [](const contact::ContactSegment<dim>& segment)
-                                                             { return segment.master.has_value(); }));
-}
-
 /// R(psi_a psi_b e_i) for each edge: a quarter of what the function of the node in its middle sees.
 template <int dim>
 std::vector<Point<dim>> edge_forces(const fem::LagrangeSpace<dim>& space, std::span<const double> residual)
@@ -143,12 +135,13 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
   parts_ = std::make_unique<Parts>(form, norm);
-  if (parts_->motions.size() > 0 && has_pairs(form))
+  const bool has_pairs = !form.problem().pairs().empty();
+  if (parts_->motions.size() > 0 && has_pairs)
     reason_ = "contact alone holds a body that touches another one";
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
   if (reason_.empty() && quantities_)
-    quantities_->prepare(parts_->form, solver, parts_->motions.size() == 0, has_pairs(form));
+    quantities_->prepare(parts_->form, solver, parts_->motions.size() == 0, has_pairs);
 }
 
 template <int dim>

@@ -209,6 +209,8 @@ template <int dim>
 void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
                                       std::vector<QuantityInterval>& intervals) const
 {
+  const auto is_open = [](const Item& item) { return item.reason.empty() && !item.is_known(); };
+  if (std::ranges::none_of(items_, is_open)) return;
   const DualPair<dim> of_energy{.z = {state.v.begin(), state.v.end()}};
   std::vector<const DualPair<dim>*> pairs{&of_energy};
   const auto needs_pair = [](const Item& item, const LinearNumber<dim>& number)
@@ -223,7 +225,7 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
   for (std::size_t i = 0; i < items_.size(); ++i)
   {
     const Item& item = items_[i];
-    if (!item.reason.empty() || item.is_known()) continue;
+    if (!is_open(item)) continue;
     QuantityInterval& interval = intervals[i];
     interval.reason = {};
     if (is_energy(item))

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tribound/fem/bernstein.h"
+#include "tribound/certify/energy/traction_fit.h"
 
 namespace tribound::certify
 {
@@ -41,6 +41,12 @@ algebra::Triplets SecondOrder<dim>::springs() const
   const contact::NitscheForm<dim>& form = state_.form;
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   const fem::Tabulation<dim - 1> table = basis_.tabulate(rule.points);
+  const auto n = static_cast<std::size_t>(basis_.n_nodes());
+  std::vector<double> products(n * n, 0.0);  // of the basis on the reference facet
+  for (int q = 0; q < rule.size(); ++q)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        products[i * n + j] += rule.weights[q] * table.values_at(q)[i] * table.values_at(q)[j];
   const std::vector<char>& fixed = form.constraints().fixed;
   algebra::Triplets entries;
   for (std::size_t k = 0; k < form.segments().size(); ++k)
@@ -48,18 +54,13 @@ algebra::Triplets SecondOrder<dim>::springs() const
     const Tensor<dim> stiffness = form.segments()[k].det() * holding(k);
     if (stiffness.isZero()) continue;
     const std::span<const Index> nodes = state_.facets.nodes(k);
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (std::size_t j = 0; j < nodes.size(); ++j)
-      {
-        double product = 0;
-        for (int q = 0; q < rule.size(); ++q)
-          product += rule.weights[q] * table.values_at(q)[i] * table.values_at(q)[j];
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
         for (int a = 0; a < dim; ++a)
           for (int b = 0; b < dim; ++b)
             if (const Index row = dim * nodes[i] + a, column = dim * nodes[j] + b;
                 fixed[row] == 0 && fixed[column] == 0)
-              entries.add(row, column, product * stiffness(a, b));
-      }
+              entries.add(row, column, products[i * n + j] * stiffness(a, b));
   }
   return entries;
 }
@@ -82,18 +83,14 @@ std::vector<Point<dim>> SecondOrder<dim>::exerted(std::span<const double> displa
 template <int dim>
 std::vector<Point<dim>> SecondOrder<dim>::at_points(std::span<const Point<dim>> coefficients) const
 {
-  const fem::Quadrature<dim - 1>& rule = state_.form.facet_rule();
-  const fem::Tabulation<dim - 1> table = basis_.tabulate(rule.points);
-  const std::vector<double> to_values = fem::values_from_bernstein(basis_);
-  const auto n = static_cast<std::size_t>(basis_.n_nodes());
+  const Eigen::MatrixXd basis = bernstein_at<dim>(basis_.degree(), state_.form.facet_rule().points);
   std::vector<Point<dim>> result;
+  result.reserve(state_.facets.size() * basis.rows());
   for (std::size_t k = 0; k < state_.facets.size(); ++k)
-    for (int q = 0; q < rule.size(); ++q)
+    for (Eigen::Index q = 0; q < basis.rows(); ++q)
     {
       Point<dim> sum = Point<dim>::Zero();
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j)
-          sum += table.values_at(q)[i] * to_values[i * n + j] * coefficients[k * n + j];
+      for (Eigen::Index j = 0; j < basis.cols(); ++j) sum += basis(q, j) * coefficients[k * basis.cols() + j];
       result.push_back(sum);
     }
   return result;

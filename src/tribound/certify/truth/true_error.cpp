@@ -26,6 +26,14 @@ std::optional<double> effectivity(double bound, double dual_norm, const contact:
   return bound / dual_norm;
 }
 
+std::optional<double> energy_effectivity(const EnergyBound& bound, double error, double energy)
+{
+  constexpr double round_off = 1e-10;
+  const bool is_known = bound.reason.empty() && bound.target == EnergyTarget::solution;
+  if (!is_known || error <= round_off * std::sqrt(energy)) return std::nullopt;
+  return bound.bound / error;
+}
+
 namespace
 {
 

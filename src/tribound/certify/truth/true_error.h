@@ -12,6 +12,7 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
+#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/truth/refined_segments.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
@@ -92,6 +93,10 @@ class DualNorm
 /// 1e-10 ||sigma(u)||, the size of the round-off to which the identities of the bound hold.
 [[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm,
                                                 const contact::StressNorms& norms);
+
+/// bound / error in the energy norm, `energy` = a(u_h, u_h); nothing where both are of different solutions
+/// (Coulomb), without a bound, and where the error is rounding, below 1e-10 ||u_h||_en.
+[[nodiscard]] std::optional<double> energy_effectivity(const EnergyBound& bound, double error, double energy);
 
 /// The distance of a discrete solution from a much richer one.
 struct SolutionError
