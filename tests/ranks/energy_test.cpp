@@ -101,6 +101,17 @@ ProblemData<dim> resting_block()
   return {.boundaries = {obstacle<dim>("bottom", Tresca(0.05)), loaded<dim>("top", 0.01, -0.1)}};
 }
 
+/// A function that is 0 where displacements are fixed.
+template <int dim>
+std::vector<double> wave(const contact::NitscheForm<dim>& form)
+{
+  std::vector<double> u;
+  for (const Point<dim>& x : form.space().node_points())
+    for (int a = 0; a < dim; ++a)
+      u.push_back(form.constraints().fixed[u.size()] ? 0 : 0.05 * std::sin(5 * x[0] + 3 * x[dim - 1] + a));
+  return u;
+}
+
 /// The parts of the bound of a wave.
 template <int dim>
 std::vector<double> energy_bound(const mesh::Mesh<dim>& mesh, const ProblemData<dim>& data, int degree)
@@ -108,10 +119,7 @@ std::vector<double> energy_bound(const mesh::Mesh<dim>& mesh, const ProblemData<
   const problem::Problem<dim> problem = data.on(mesh);
   const fem::LagrangeSpace<dim> space(mesh, degree);
   const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
-  std::vector<double> u;
-  for (const Point<dim>& x : space.node_points())
-    for (int a = 0; a < dim; ++a)
-      u.push_back(form.constraints().fixed[u.size()] ? 0 : 0.05 * std::sin(5 * x[0] + 3 * x[dim - 1] + a));
+  const std::vector<double> u = wave(form);
   const certify::EnergyBound eta =
       certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct})(u);
   EXPECT_EQ(eta.reason, "");
@@ -132,10 +140,7 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, int de
   const problem::Problem<dim> problem = data.on(mesh);
   const fem::LagrangeSpace<dim> space(mesh, degree);
   const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
-  std::vector<double> u;
-  for (const Point<dim>& x : space.node_points())
-    for (int a = 0; a < dim; ++a)
-      u.push_back(form.constraints().fixed[u.size()] ? 0 : 0.05 * std::sin(5 * x[0] + 3 * x[dim - 1] + a));
+  const std::vector<double> u = wave(form);
   const std::vector<problem::Quantity<dim>> quantities = {
       {.name = "energy"},
       {.name = "work", .kind = QuantityKind::load_work},

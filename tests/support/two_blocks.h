@@ -4,29 +4,36 @@
 /// A block on another one, for tests of contact between bodies.
 
 #include <array>
+#include <utility>
 
 #include "support/meshes.h"
 
 namespace tribound::test
 {
 
+/// A mesh of (0,2) x (0,1) (x (0,1)) on a block of cells below it, whose names end with "_below".
+template <int dim>
+mesh::MeshData<dim> on_block(mesh::MeshData<dim> upper, const std::array<int, dim>& cells)
+{
+  Point<dim> lowest = Point<dim>::Zero();
+  Point<dim> highest = Point<dim>::Ones();
+  lowest[1] = -1;
+  highest[1] = 0;
+  highest[0] = 2;
+  mesh::MeshData<dim> data = side_by_side(std::move(upper), box<dim>(lowest, highest, cells), "_below");
+  data.interfaces = {{{{{"bottom"}, {"top_below"}}}}};
+  return data;
+}
+
 /// Two blocks that touch, on meshes that do not match; names of the lower one end with "_below".
 template <int dim>
 mesh::MeshData<dim> two_blocks()
 {
-  Point<dim> lower = Point<dim>::Zero();
-  Point<dim> upper = Point<dim>::Ones();
-  lower[1] = -1;
-  upper[1] = 0;
-  upper[0] = 2;
-  std::array<int, dim> lower_cells;
-  lower_cells.fill(dim == 2 ? 2 : 1);
-  lower_cells[0] = 3;
-  lower_cells[dim - 1] = 2;
-  mesh::MeshData<dim> data =
-      side_by_side(block<dim>({4, 2}, {2, 1, 1}), box<dim>(lower, upper, lower_cells), "_below");
-  data.interfaces = {{{{{"bottom"}, {"top_below"}}}}};
-  return data;
+  std::array<int, dim> cells;
+  cells.fill(dim == 2 ? 2 : 1);
+  cells[0] = 3;
+  cells[dim - 1] = 2;
+  return on_block<dim>(block<dim>({4, 2}, {2, 1, 1}), cells);
 }
 
 }  // namespace tribound::test

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -91,9 +92,11 @@ template <int dim>
   return eta.bound / reference.distance(u);
 }
 
+/// Returns the bound.
 template <int dim>
-void expect_effectivity(const char* name, const ProblemData<dim>& data, mesh::MeshData<dim> mesh, int p,
-                        const certify::RicherSpace& richer, double largest)
+certify::EnergyBound expect_effectivity(const char* name, const ProblemData<dim>& data,
+                                        mesh::MeshData<dim> mesh, int p, const certify::RicherSpace& richer,
+                                        double largest)
 {
   const DiscreteProblem<dim> c(std::move(mesh), data, {.degree = p, .newton = {.tolerance = 1e-12}});
   const std::vector<double> u = c.solve().u;
@@ -103,6 +106,26 @@ void expect_effectivity(const char* name, const ProblemData<dim>& data, mesh::Me
              found, eta.bound, eta.correction, eta.contact, eta.oscillation);
   EXPECT_GE(found, 1) << name << p;
   EXPECT_LE(found, largest) << name << p;
+  return eta;
+}
+
+/// No bound of `n` random problems make(seed) fails.
+template <int dim, class Make>
+void expect_no_failure(const char* name, unsigned n, const Make& make)
+{
+  double smallest = HUGE_VAL;
+  double largest = 0;
+  for (unsigned seed = 0; seed < n; ++seed)
+  {
+    const DiscreteProblem<dim> c = make(seed);
+    const std::vector<double> u = c.solve().u;
+    const RicherReference<dim> reference(c, {.refinements = 2, .degree = c.space.degree() + 2});
+    const double found = effectivity<dim>(reference, u, energy_bound(c, u));
+    EXPECT_GE(found, 1) << seed;
+    smallest = std::min(smallest, found);
+    largest = std::max(largest, found);
+  }
+  fmt::print("{}: effectivity {:.3f} to {:.3f}\n", name, smallest, largest);
 }
 
 }  // namespace tribound::test
