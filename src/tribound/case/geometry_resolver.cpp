@@ -21,7 +21,7 @@ using Kind = SurfaceConfig::Kind;
 using Normal = GeometryConfig::Normal;
 
 template <int dim>
-void check_length(const std::vector<double>& vector, const SurfaceConfig& surface)
+void check_vector(const std::vector<double>& vector, const SurfaceConfig& surface)
 {
   if (vector.size() != dim)
     throw InputError(surface.kind_where,
@@ -44,8 +44,8 @@ void check_dimension(const SurfaceConfig& surface)
       throw InputError(surface.kind_where, "uses z in a 2D case", "only x and y vary");
   }
   else if (surface.kind != Kind::surface && surface.kind != Kind::mesh)
-    check_length<dim>(surface.point, surface);
-  if (!surface.direction.empty()) check_length<dim>(surface.direction, surface);
+    check_vector<dim>(surface.point, surface);
+  if (!surface.direction.empty()) check_vector<dim>(surface.direction, surface);
   if (!surface.translate.empty() && surface.translate.size() != dim)
     throw InputError(
         surface.where,
@@ -135,7 +135,7 @@ std::string words(const GeometryConfig& geometry)
 template <int dim>
 void check_direction(const GeometryConfig& geometry)
 {
-  case_file::check_length<dim>(geometry.direction.size(), geometry.normal_where);
+  check_length<dim>(geometry.direction.size(), geometry.normal_where);
   for (const std::string& component : geometry.direction)
     if (dim == 2 && problem::Field(component, geometry.normal_where).uses_z())
       throw InputError(geometry.normal_where, "uses z in a 2D case", "only x and y vary");
