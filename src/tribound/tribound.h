@@ -37,6 +37,7 @@
 #include "tribound/mesh/share_out.h"
 #include "tribound/mesh/shared_facets.h"
 #include "tribound/mesh/triangulated_surface.h"
+#include "tribound/mesh/twin_facets.h"
 
 // The discrete problem: P^p Lagrange elements and the Nitsche form.
 #include "tribound/contact/nitsche/contact_history.h"

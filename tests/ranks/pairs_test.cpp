@@ -41,6 +41,13 @@ TEST(Pairs, OfEveryDegreeAndLawIn2D)
   }
 }
 
+/// What matches stays so, whoever has the other side.
+TEST(Pairs, OnMeshesThatMatch)
+{
+  expect_same<2>(matching_blocks<2>(), pushed<2>(Tresca(0.03), 2), {.degree = 2}, {.max_levels = 5});
+  expect_same<3>(matching_blocks<3>(), pushed<3>(Frictionless(), 3), {.degree = 1}, {.max_levels = 3});
+}
+
 TEST(Pairs, In3D)
 {
   for (const int p : {1, 2})

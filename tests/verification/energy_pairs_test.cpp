@@ -18,19 +18,6 @@ namespace tribound::test
 namespace
 {
 
-/// A block on another one whose mesh continues its own; names of the lower one end with "_below".
-template <int dim>
-mesh::MeshData<dim> matching_blocks(int finer = 1)
-{
-  std::array<int, dim> cells;
-  cells.fill(dim == 2 ? 2 : 1);
-  cells[0] = dim == 2 ? 4 : 2;
-  for (int& n : cells) n *= finer;
-  Point<dim> corner = Point<dim>::Ones();
-  corner[0] = 2;
-  return on_block<dim>(box<dim>(Point<dim>::Zero(), corner, cells), cells);
-}
-
 /// Both held at their left sides; the upper one is pressed down and pulled to the right.
 template <int dim>
 ProblemData<dim> two_pressed(problem::ContactLaw law)

@@ -16,12 +16,14 @@ namespace
 {
 
 using Functions = std::vector<std::span<const double>>;
+template <int dim>
+using Twins = std::span<const mesh::TwinFacets<dim>>;
 
 template <int dim>
 Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functions,
-                    std::span<const Index> marked)
+                    std::span<const Index> marked, Twins<dim> twins)
 {
-  auto finer = std::make_shared<mesh::Bisected<dim>>(mesh::bisect<dim>(from.mesh(), marked));
+  auto finer = std::make_shared<mesh::Bisected<dim>>(mesh::bisect<dim>(from.mesh(), marked, dim, twins));
   return {finer->mesh.n_cells(), [finer] { return std::move(finer->mesh); },
           [finer, &from, functions](const fem::LagrangeSpace<dim>& space)
           {
@@ -35,9 +37,10 @@ Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functi
 /// The same of a mesh that is shared out: its cells take the values at their nodes with them.
 template <int dim>
 Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& functions,
-                         std::span<const Index> marked)
+                         std::span<const Index> marked, Twins<dim> twins)
 {
-  auto part = std::make_shared<mesh::BisectedPart<dim>>(mesh::bisect_part<dim>(from.mesh(), marked));
+  auto part =
+      std::make_shared<mesh::BisectedPart<dim>>(mesh::bisect_part<dim>(from.mesh(), marked, dim, twins));
   const std::int64_t n_cells = from.mesh().ranks().sum(static_cast<std::int64_t>(part->cells.size()));
   auto balanced = std::make_shared<std::optional<mesh::Balanced<dim>>>();
   const std::size_t n_each = static_cast<std::size_t>(dim) * from.basis().n_nodes();
@@ -71,15 +74,15 @@ Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& f
 
 template <int dim>
 Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space, std::vector<std::span<const double>> functions,
-                      std::span<const Index> marked)
+                      std::span<const Index> marked, std::span<const mesh::TwinFacets<dim>> twins)
 {
-  return space.mesh().partition() ? bisected_part<dim>(space, functions, marked)
-                                  : bisected<dim>(space, functions, marked);
+  return space.mesh().partition() ? bisected_part<dim>(space, functions, marked, twins)
+                                  : bisected<dim>(space, functions, marked, twins);
 }
 
 template Finer<2> finer_mesh(const fem::LagrangeSpace<2>&, std::vector<std::span<const double>>,
-                             std::span<const Index>);
+                             std::span<const Index>, std::span<const mesh::TwinFacets<2>>);
 template Finer<3> finer_mesh(const fem::LagrangeSpace<3>&, std::vector<std::span<const double>>,
-                             std::span<const Index>);
+                             std::span<const Index>, std::span<const mesh::TwinFacets<3>>);
 
 }  // namespace tribound::adapt

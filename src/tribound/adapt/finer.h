@@ -10,6 +10,7 @@
 
 #include "tribound/fem/space.h"
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/twin_facets.h"
 
 namespace tribound::adapt
 {
@@ -25,11 +26,13 @@ struct Finer
 };
 
 /// The mesh of `space` with the marked cells bisected (mesh/bisect.h), and functions of the space, such as u.
+/// `twins`, of contact::twin_facets(), stay such.
 /// On a mesh that is shared out all ranks call it and its members together; cells take the values at their
 /// nodes with them. Throws InputError as bisect() and balance() do.
 template <int dim>
 [[nodiscard]] Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space,
                                     std::vector<std::span<const double>> functions,
-                                    std::span<const Index> marked);
+                                    std::span<const Index> marked,
+                                    std::span<const mesh::TwinFacets<dim>> twins = {});
 
 }  // namespace tribound::adapt

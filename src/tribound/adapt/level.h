@@ -61,6 +61,12 @@ struct Discretisation
   Discretisation(const Discretisation&) = delete;
   Discretisation& operator=(const Discretisation&) = delete;
 
+  /// The facets of bodies in contact that match.
+  [[nodiscard]] std::vector<mesh::TwinFacets<dim>> twins() const
+  {
+    return contact::twin_facets<dim>(mesh, form.segments());
+  }
+
   std::shared_ptr<const Grid<dim>> grid;
   const mesh::Mesh<dim>& mesh;
   const fem::LagrangeSpace<dim>& space;

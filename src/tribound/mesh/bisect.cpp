@@ -24,14 +24,15 @@ template <int dim>
 class Forest
 {
  public:
-  explicit Forest(const Mesh<dim>& mesh)
+  Forest(const Mesh<dim>& mesh, std::span<const TwinFacets<dim>> twins)
       : mesh_(&mesh),
         points_(mesh.vertices().begin(), mesh.vertices().end()),
         ancestry_(mesh.ancestry()),
         middles_(mesh.n_vertices()),
+        opposite_(mesh, twins),
         queued_(mesh.n_owned_cells(), 0)
   {
-    if (mesh.partition()) shared_.emplace(*mesh.partition());
+    if (mesh.partition()) shared_.emplace(*mesh.partition(), twins);
     ancestry_.n_vertices.push_back(mesh.n_vertices());
     nodes_.reserve(mesh.n_owned_cells());
     for (Index c = 0; c < mesh.n_owned_cells(); ++c)
@@ -50,7 +51,8 @@ class Forest
       if (nodes_[root].due > 0) enqueue(root);
     const auto halve_as_told = [this](Index a, Index b)
     {
-      if (middles_.find(a, b) < 0) halve_edge(a, b, false);
+      const bool is_passed_on = !opposite_.of(a, b).empty();
+      if (middles_.find(a, b) < 0) halve_edge(a, b, is_passed_on);
     };
     do together([this] { refine_queued(); });
     while (shared_ && shared_->exchange(halve_as_told));
@@ -166,8 +168,8 @@ class Forest
       nodes_.push_back({.cell = child(node.cell, kept, middle), .due = std::max(node.due - 1, 0)});
   }
 
-  /// Makes the middle of an edge and queues the roots that contain the edge: those that contain both ends,
-  /// since they are convex. `is_news`: other ranks do not know.
+  /// Makes the middle of an edge, and those of the edges opposite, and queues the roots that contain it:
+  /// those that contain both ends, since they are convex. `is_news`: other ranks do not know.
   Index halve_edge(Index a, Index b, bool is_news)
   {
     if (shared_) shared_->add_middle(a, b, is_news);
@@ -179,7 +181,13 @@ class Forest
     roots_.insert(roots_.end(), common_.begin(), common_.end());
     roots_end_.push_back(roots_.size());
     for (const Index root : common_) enqueue(root);
-    return middles_.add(a, b);
+    const Index middle = middles_.add(a, b);
+    for (const auto& [c, d, side] : opposite_.of(a, b))
+      if (const Index there = middles_.find(c, d); there >= 0)
+        opposite_.link(middle, side, there);
+      else
+        halve_edge(c, d, true);  // links both
+    return middle;
   }
 
   /// The roots that contain the vertex, ascending.
@@ -272,6 +280,7 @@ class Forest
   Ancestry ancestry_;  ///< of the bisected mesh
   std::vector<Node> nodes_;
   Middles middles_;
+  OppositeEdges<dim> opposite_;
   std::vector<Index> roots_;                   ///< that contain each middle, one middle behind the other
   std::vector<std::size_t> roots_end_;         ///< per middle
   std::vector<Index> common_;                  ///< working space
@@ -282,10 +291,11 @@ class Forest
 
 /// Given as a value, so that it is gone when the mesh is built.
 template <int dim>
-Forest<dim> closed_forest(const Mesh<dim>& mesh, std::span<const Index> marked, int times)
+Forest<dim> closed_forest(const Mesh<dim>& mesh, std::span<const Index> marked, int times,
+                          std::span<const TwinFacets<dim>> twins)
 {
   assert(times >= 1);
-  Forest<dim> forest(mesh);
+  Forest<dim> forest(mesh, twins);
   for (const Index c : marked)
   {
     assert(c >= 0 && c < mesh.n_owned_cells());
@@ -298,26 +308,30 @@ Forest<dim> closed_forest(const Mesh<dim>& mesh, std::span<const Index> marked, 
 }  // namespace
 
 template <int dim>
-Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times)
+Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times,
+                     std::span<const TwinFacets<dim>> twins)
 {
   std::vector<Index> parent;
-  MeshData<dim> data = closed_forest(mesh, marked, times).leaves(parent);
+  MeshData<dim> data = closed_forest(mesh, marked, times, twins).leaves(parent);
   return {Mesh<dim>(std::move(data)), std::move(parent)};
 }
 
 template <int dim>
-BisectedPart<dim> bisect_part(const Mesh<dim>& mesh, std::span<const Index> marked, int times)
+BisectedPart<dim> bisect_part(const Mesh<dim>& mesh, std::span<const Index> marked, int times,
+                              std::span<const TwinFacets<dim>> twins)
 {
   assert(mesh.partition());
-  const Forest<dim> forest = closed_forest(mesh, marked, times);
+  const Forest<dim> forest = closed_forest(mesh, marked, times, twins);
   BisectedPart<dim> result;
   mesh.partition()->ranks.together([&] { result.cells = forest.records(result.parent); });
   return result;
 }
 
-template Bisected<2> bisect(const Mesh<2>&, std::span<const Index>, int);
-template Bisected<3> bisect(const Mesh<3>&, std::span<const Index>, int);
-template BisectedPart<2> bisect_part(const Mesh<2>&, std::span<const Index>, int);
-template BisectedPart<3> bisect_part(const Mesh<3>&, std::span<const Index>, int);
+template Bisected<2> bisect(const Mesh<2>&, std::span<const Index>, int, std::span<const TwinFacets<2>>);
+template Bisected<3> bisect(const Mesh<3>&, std::span<const Index>, int, std::span<const TwinFacets<3>>);
+template BisectedPart<2> bisect_part(const Mesh<2>&, std::span<const Index>, int,
+                                     std::span<const TwinFacets<2>>);
+template BisectedPart<3> bisect_part(const Mesh<3>&, std::span<const Index>, int,
+                                     std::span<const TwinFacets<3>>);
 
 }  // namespace tribound::mesh

@@ -8,6 +8,7 @@
 
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/partition.h"
+#include "tribound/mesh/twin_facets.h"
 
 namespace tribound::mesh
 {
@@ -29,9 +30,12 @@ struct Bisected
 /// of equal length are told apart by their coordinates: how the cells are cut depends neither on the
 /// numbering nor on the order of `marked`.
 ///
+/// `twins` stay such: what is halved on one of them is halved on the other, too (mesh/twin_facets.h).
+///
 /// Throws InputError when the cells outgrow 32-bit numbers.
 template <int dim>
-[[nodiscard]] Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times = dim);
+[[nodiscard]] Bisected<dim> bisect(const Mesh<dim>& mesh, std::span<const Index> marked, int times = dim,
+                                   std::span<const TwinFacets<dim>> twins = {});
 
 /// The own cells of a rank in the bisected mesh, by their names in ascending order.
 template <int dim>
@@ -41,12 +45,12 @@ struct BisectedPart
   std::vector<Index> parent;  ///< per cell: the own cell of the original mesh that contains it
 };
 
-/// The same of a mesh that is shared out between ranks, each of which marks some of its own cells. All call
-/// it together; the cells of all are those of bisect(), to the bit. Ghosts come from with_ghosts(), on this
-/// rank or wherever the cells are sent to. Throws InputError, on all ranks, when cells outgrow 32-bit numbers
-/// or CellName::max_depth.
+/// The same of a mesh that is shared out between ranks, each of which marks some of its own cells and knows
+/// the twins of facets of own cells, which may be ghosts'. All call it together; the cells of all are those
+/// of bisect(), to the bit. Ghosts come from with_ghosts(), on this rank or wherever the cells are sent to.
+/// Throws InputError, on all ranks, when cells outgrow 32-bit numbers or CellName::max_depth.
 template <int dim>
 [[nodiscard]] BisectedPart<dim> bisect_part(const Mesh<dim>& mesh, std::span<const Index> marked,
-                                            int times = dim);
+                                            int times = dim, std::span<const TwinFacets<dim>> twins = {});
 
 }  // namespace tribound::mesh

@@ -8,7 +8,7 @@ namespace tribound::mesh
 {
 
 template <int dim>
-SharedVertices<dim>::SharedVertices(const Partition<dim>& partition)
+SharedVertices<dim>::SharedVertices(const Partition<dim>& partition, std::span<const TwinFacets<dim>> twins)
     : ranks_(partition.ranks), names_(partition.vertices)
 {
   for (Index v = 0; v < static_cast<Index>(names_.size()); ++v)
@@ -18,6 +18,18 @@ SharedVertices<dim>::SharedVertices(const Partition<dim>& partition)
     sharers_[v].assign(others.begin(), others.end());
     shared_[names_[v]] = v;
   }
+  for (const TwinFacets<dim>& pair : twins)
+    for (int which = 0; which < 2; ++which)
+      for (const Index v : pair.vertices[which])
+      {
+        shared_[names_[v]] = v;
+        const Index ghost = pair.cells[which] - partition.n_owned_cells;
+        if (ghost < 0) continue;
+        std::vector<int>& ranks = sharers_[v];
+        const auto place = std::ranges::lower_bound(ranks, partition.ghost_owners[ghost]);
+        if (place == ranks.end() || *place != partition.ghost_owners[ghost])
+          ranks.insert(place, partition.ghost_owners[ghost]);
+      }
 }
 
 template <int dim>
@@ -34,9 +46,9 @@ void SharedVertices<dim>::add_middle(Index a, Index b, bool is_news)
   names_.push_back(middle(names_[a], names_[b]));
   std::vector<int> both;
   std::ranges::set_intersection(sharers_of(a), sharers_of(b), std::back_inserter(both));
+  if (shared_.contains(names_[a]) && shared_.contains(names_[b])) shared_[names_[m]] = m;
   if (both.empty()) return;
   sharers_[m] = std::move(both);
-  shared_[names_[m]] = m;
   if (is_news) news_.push_back({a, b, m});
 }
 

@@ -11,17 +11,19 @@
 #include <vector>
 
 #include "tribound/mesh/partition.h"
+#include "tribound/mesh/twin_facets.h"
 
 namespace tribound::mesh
 {
 
 /// The names of the vertices of a part and of the middles that bisection adds, and which other ranks have
-/// them: a middle those that have both ends. They know of it, or are told.
+/// them: a middle those that have both ends. They know of it, or are told. The owner of a ghost with one of
+/// the twins counts as having its vertices.
 template <int dim>
 class SharedVertices
 {
  public:
-  explicit SharedVertices(const Partition<dim>& partition);
+  SharedVertices(const Partition<dim>& partition, std::span<const TwinFacets<dim>> twins);
 
   [[nodiscard]] const VertexName<dim>& name(Index v) const { return names_[v]; }
   /// The next vertex is the middle of a and b. `is_news`: the other ranks that have it do not know.
@@ -36,7 +38,7 @@ class SharedVertices
   Ranks ranks_;
   std::vector<VertexName<dim>> names_;
   std::unordered_map<Index, std::vector<int>> sharers_;                 ///< of those that have any, ascending
-  std::unordered_map<VertexName<dim>, Index, VertexHash<dim>> shared_;  ///< the same by name
+  std::unordered_map<VertexName<dim>, Index, VertexHash<dim>> shared_;  ///< these and those of twins, by name
   std::vector<std::array<Index, 3>> news_;                              ///< ends of an edge, its middle
 };
 

@@ -28,20 +28,6 @@ Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& f
   return -1;
 }
 
-/// Whether a side of a segment is its whole facet.
-template <int dim>
-bool is_whole(const contact::SegmentSide<dim>& side)
-{
-  if (!side.part) return true;
-  const auto corners = fem::reference_simplex<dim - 1>();
-  const auto is_corner = [&](const Point<dim - 1>& x)
-  {
-    return std::ranges::any_of(
-        corners, [&](const Point<dim - 1>& corner) { return (x - corner).cwiseAbs().maxCoeff() <= same; });
-  };
-  return std::ranges::all_of(*side.part, is_corner);
-}
-
 }  // namespace
 
 template <int dim>
@@ -53,8 +39,8 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
   if (any(
           [](const Segment& segment)
           {
-            const bool matches =
-                segment.master && is_whole<dim>(segment.slave) && is_whole<dim>(*segment.master);
+            const bool matches = segment.master && contact::is_whole_facet<dim>(segment.slave) &&
+                                 contact::is_whole_facet<dim>(*segment.master);
             return !segment.is_obstacle_facet() && !matches;
           }))
     return "meshes of bodies in contact do not match";

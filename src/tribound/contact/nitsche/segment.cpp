@@ -64,6 +64,59 @@ void ContactSegment<dim>::directions_and_gaps(std::span<const Point<dim - 1>> s,
     for (std::size_t q = 0; q < g.size(); ++q) g[q] = gap(s[q], x[q], n[q]);
 }
 
+namespace
+{
+
+/// Coordinates on reference facets agree to this where they are meant to be the same.
+constexpr double same_corner = 1e-6;
+
+/// The corners of a side as numbers of those of its facet; -1: inside it.
+template <int dim>
+std::array<int, dim> corner_numbers(const SegmentSide<dim>& side)
+{
+  const fem::Part<dim - 1> corners = fem::reference_simplex<dim - 1>();
+  std::array<int, dim> numbers{};
+  for (int i = 0; i < dim; ++i)
+  {
+    const Point<dim - 1> x = side.on_facet(corners[i]);
+    const auto found = std::ranges::find_if(
+        corners, [&](const Point<dim - 1>& y) { return (x - y).cwiseAbs().maxCoeff() <= same_corner; });
+    numbers[i] = found == corners.end() ? -1 : static_cast<int>(found - corners.begin());
+  }
+  return numbers;
+}
+
+}  // namespace
+
+template <int dim>
+bool is_whole_facet(const SegmentSide<dim>& side)
+{
+  return std::ranges::min(corner_numbers<dim>(side)) >= 0;
+}
+
+template <int dim>
+std::vector<mesh::TwinFacets<dim>> twin_facets(const mesh::Mesh<dim>& mesh,
+                                               std::span<const ContactSegment<dim>> segments)
+{
+  std::vector<mesh::TwinFacets<dim>> result;
+  for (const ContactSegment<dim>& segment : segments)
+  {
+    if (!segment.master || !is_whole_facet<dim>(segment.slave) || !is_whole_facet<dim>(*segment.master))
+      continue;
+    mesh::TwinFacets<dim>& twins = result.emplace_back();
+    for (int which = 0; which < 2; ++which)
+    {
+      const SegmentSide<dim>& side = which == 0 ? segment.slave : *segment.master;
+      const std::array<Index, dim> of_facet =
+          mesh::facet_vertices(mesh.cell(side.facet.cell), side.facet.local);
+      const std::array<int, dim> numbers = corner_numbers<dim>(side);
+      twins.cells[which] = side.facet.cell;
+      for (int i = 0; i < dim; ++i) twins.vertices[which][i] = of_facet[numbers[i]];
+    }
+  }
+  return result;
+}
+
 template <int dim>
 SimplexMap<dim - 1, dim> simplex_map(const mesh::Mesh<dim>& mesh, const SegmentSide<dim>& side)
 {
@@ -145,6 +198,12 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
 
 template struct ContactSegment<2>;
 template struct ContactSegment<3>;
+template bool is_whole_facet(const SegmentSide<2>&);
+template bool is_whole_facet(const SegmentSide<3>&);
+template std::vector<mesh::TwinFacets<2>> twin_facets(const mesh::Mesh<2>&,
+                                                      std::span<const ContactSegment<2>>);
+template std::vector<mesh::TwinFacets<3>> twin_facets(const mesh::Mesh<3>&,
+                                                      std::span<const ContactSegment<3>>);
 template SimplexMap<1, 2> simplex_map(const mesh::Mesh<2>&, const SegmentSide<2>&);
 template SimplexMap<2, 3> simplex_map(const mesh::Mesh<3>&, const SegmentSide<3>&);
 template ContactSegment<2> make_segment(const problem::Problem<2>&, const mesh::Mesh<2>&, double,

@@ -14,6 +14,7 @@
 #include "tribound/contact/pairing/pairing.h"
 #include "tribound/fem/simplex_parts.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/twin_facets.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::contact
@@ -90,6 +91,15 @@ struct ContactSegment
   /// Whether it is a whole facet against a rigid obstacle.
   [[nodiscard]] bool is_obstacle_facet() const { return !master && !slave.part; }
 };
+
+/// Whether a side of a segment is its whole facet, up to rounding.
+template <int dim>
+[[nodiscard]] bool is_whole_facet(const SegmentSide<dim>& side);
+
+/// The facets that match: segments that are whole facets on both sides.
+template <int dim>
+[[nodiscard]] std::vector<mesh::TwinFacets<dim>> twin_facets(const mesh::Mesh<dim>& mesh,
+                                                             std::span<const ContactSegment<dim>> segments);
 
 /// The points of a segment on one of its sides, by their coordinates on the segment.
 template <int dim>
