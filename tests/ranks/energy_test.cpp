@@ -15,6 +15,9 @@
 
 #include "support/meshes.h"
 #include "support/problem_data.h"
+#include "support/two_blocks.h"
+#include "tribound/adapt/error_bars.h"
+#include "tribound/adapt/finer_contact.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/contact/nitsche/penalty.h"
@@ -202,6 +205,53 @@ TEST(EnergyBound, IsThatOfTheWhole)
     expect_same_bound.template operator()<2>(degree);
     expect_same_bound.template operator()<3>(degree);
   }
+}
+
+/// Where the state of contact changes on facets, of a body on obstacles and of two whose facets match.
+template <int dim>
+void expect_same_where_it_is_finer(const mesh::MeshData<dim>& mesh_data, const ProblemData<dim>& data,
+                                   int degree)
+{
+  const Ranks ranks = Ranks::world();
+  const mesh::Mesh<dim> whole(mesh_data);
+  const auto numbers = [&](const mesh::Mesh<dim>& mesh)
+  {
+    const problem::Problem<dim> problem = data.on(mesh);
+    const fem::LagrangeSpace<dim> space(mesh, degree);
+    const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
+    const std::vector<double> u = wave(form);
+    const auto finer = adapt::finer_contact<dim>(form, u);
+    EXPECT_TRUE(finer);
+    const certify::EnergyBound eta = adapt::energy_bound<dim>(form, {.degree = degree}, u);
+    EXPECT_EQ(eta.reason, "");
+    EXPECT_EQ(static_cast<Index>(eta.cells.size()), mesh.n_owned_cells());
+    std::vector<double> result{static_cast<double>(finer->grid->mesh.n_global_cells()), eta.bound,
+                               eta.contact, eta.correction, 0};
+    for (const double square : eta.cells) result.back() += square;
+    result.back() = mesh.ranks().sum(result.back());
+    return result;
+  };
+  const std::vector<double> expected = numbers(whole);
+  EXPECT_GT(expected.front(), whole.n_cells());
+  const std::vector<double> found = numbers(contact::with_partners<dim>(
+      mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr), data.pairs));
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], 1e-9 * expected[i]) << dim << "D, p = " << degree << ", " << i;
+}
+
+TEST(EnergyBound, IsThatOfTheWholeWhereFacetsAreCut)
+{
+  const auto expect_in = [&]<int dim>(int degree)
+  {
+    expect_same_where_it_is_finer<dim>(distorted(block<dim>({6, 4}, {4, 3, 2}), degree),
+                                       pressed_block<dim>(Coulomb(0.3)), degree);
+    const ProblemData<dim> pressed{
+        .boundaries = {clamped<dim>("left"), clamped<dim>("left_below"), loaded<dim>("top", 0, -0.1)},
+        .pairs = {pair<dim>("bottom", "top_below", Tresca(0.03))}};
+    expect_same_where_it_is_finer<dim>(renumbered(matching_blocks<dim>(2), degree), pressed, degree);
+  };
+  for (int degree = 1; degree <= 3; ++degree) expect_in.template operator()<2>(degree);
+  for (int degree = 1; degree <= 2; ++degree) expect_in.template operator()<3>(degree);
 }
 
 }  // namespace

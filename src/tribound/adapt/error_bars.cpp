@@ -4,23 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <new>
+#include <utility>
 
+#include "tribound/adapt/finer_contact.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
 
 namespace tribound::adapt
 {
 
-template <int dim>
-certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
-                                  std::span<const double> u,
-                                  const std::vector<problem::Quantity<dim>>& quantities)
+namespace
+{
+
+/// work(), or the reason why it fails.
+certify::EnergyBound attempt(const Ranks& ranks, const std::function<certify::EnergyBound()>& work)
 {
   std::string why;
   try
   {
-    return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u);
+    return work();
   }
   catch (const SolveError& error)
   {
@@ -34,8 +38,41 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
   {
     why = "out of memory";
   }
-  require_all_failed(form.space().mesh().ranks(), why);
+  require_all_failed(ranks, why);
   return {.reason = why};
+}
+
+/// Squares of cells by the cells that they come from.
+void add_up(std::vector<double>& cells, std::span<const Index> parent, Index n)
+{
+  if (cells.empty()) return;
+  std::vector<double> sums(n, 0.0);
+  for (std::size_t c = 0; c < parent.size(); ++c) sums[parent[c]] += cells[c];
+  cells = std::move(sums);
+}
+
+}  // namespace
+
+template <int dim>
+certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
+                                  std::span<const double> u,
+                                  const std::vector<problem::Quantity<dim>>& quantities)
+{
+  const Ranks& ranks = form.space().mesh().ranks();
+  const auto where_it_is_finer = [&]() -> certify::EnergyBound
+  {
+    const auto finer = finer_contact<dim>(form, u);
+    if (!finer) return {.reason = "the state changes nowhere"};
+    certify::EnergyBound bound =
+        certify::EnergyEstimator<dim>(*finer->form, method.solver, quantities)(finer->u);
+    const Index n = form.space().mesh().n_owned_cells();
+    add_up(bound.cells, finer->parent, n);
+    for (certify::QuantityInterval& quantity : bound.quantities) add_up(quantity.cells, finer->parent, n);
+    return bound;
+  };
+  certify::EnergyBound bound = attempt(ranks, where_it_is_finer);
+  if (bound.reason.empty()) return bound;
+  return attempt(ranks, [&] { return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u); });
 }
 
 const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound, const std::string& name)

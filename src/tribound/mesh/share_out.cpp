@@ -267,6 +267,13 @@ Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cell
 }
 
 template <int dim>
+Mesh<dim> in_place(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells)
+{
+  const Partition<dim>& partition = *before.partition();
+  return make_part<dim>(partition.ranks, partition.cube, std::move(cells), before.labels());
+}
+
+template <int dim>
 Balanced<dim> restore(const Ranks& ranks, const Mesh<dim>* first, std::vector<CellRecord<dim>> cells,
                       std::span<const double> values, int n_values)
 {
@@ -341,6 +348,8 @@ PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> 
 
 template Mesh<2> share_out(const Ranks&, const Mesh<2>*, Index);
 template Mesh<3> share_out(const Ranks&, const Mesh<3>*, Index);
+template Mesh<2> in_place(const Mesh<2>&, std::vector<CellRecord<2>>);
+template Mesh<3> in_place(const Mesh<3>&, std::vector<CellRecord<3>>);
 template Balanced<2> restore(const Ranks&, const Mesh<2>*, std::vector<CellRecord<2>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);

@@ -45,6 +45,10 @@ template <int dim>
 [[nodiscard]] Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
                                     std::span<const double> values, int n_values);
 
+/// A mesh of these cells, of which each rank keeps those that it has. All ranks call it together.
+template <int dim>
+[[nodiscard]] Mesh<dim> in_place(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells);
+
 /// A mesh of cells that a rank has from somewhere else, for example a file; `first`: the mesh they come from,
 /// on the first rank, elsewhere null. On one rank it is a whole mesh, that comes from bisect().
 template <int dim>

@@ -252,9 +252,23 @@ AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>
   return result;
 }
 
+template <int dim>
+std::vector<std::size_t> facets_in_transition(const contact::NitscheForm<dim>& form,
+                                              std::span<const Point<dim>> t)
+{
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+    if (facet_state<dim>(form, t, k).is_in_transition()) result.push_back(k);
+  return result;
+}
+
 template AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<2>&,
                                                           std::span<const double>, std::span<const Point<2>>);
 template AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<3>&,
                                                           std::span<const double>, std::span<const Point<3>>);
+template std::vector<std::size_t> facets_in_transition(const contact::NitscheForm<2>&,
+                                                       std::span<const Point<2>>);
+template std::vector<std::size_t> facets_in_transition(const contact::NitscheForm<3>&,
+                                                       std::span<const Point<3>>);
 
 }  // namespace tribound::certify

@@ -4,6 +4,7 @@
 /// Displacements that are kinematically admissible, from the discrete one: v = u_D on Gamma_D, v^n <= g on
 /// all of Gamma_C, not only at points.
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,5 +49,10 @@ template <int dim>
 [[nodiscard]] AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>& form,
                                                                std::span<const double> u,
                                                                std::span<const Point<dim>> t);
+
+/// The segments on which the state of contact changes, facets in transition; t as above.
+template <int dim>
+[[nodiscard]] std::vector<std::size_t> facets_in_transition(const contact::NitscheForm<dim>& form,
+                                                            std::span<const Point<dim>> t);
 
 }  // namespace tribound::certify

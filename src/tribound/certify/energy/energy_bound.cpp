@@ -31,15 +31,6 @@ namespace
 /// The stress of degree 2 is the lowest that can be symmetric and in equilibrium with any affine load.
 constexpr int lowest_degree = 2;
 
-template <int dim>
-std::string why_not(const contact::NitscheForm<dim>& form)
-{
-  if (std::string unfit = obstacles_unfit(form); !unfit.empty()) return unfit;
-  if (form.space().mesh().ranks().any(form.history() != nullptr && form.history()->states().size() > 0))
-    return "contact remembers earlier load steps";
-  return {};
-}
-
 /// R(psi_a psi_b e_i) for each edge: a quarter of what the function of the node in its middle sees.
 template <int dim>
 std::vector<Point<dim>> edge_forces(const fem::LagrangeSpace<dim>& space, std::span<const double> residual)
@@ -93,6 +84,15 @@ std::vector<double> oscillation(const contact::NitscheForm<dim>& form, const Dat
 
 }  // namespace
 
+template <int dim>
+std::string why_no_energy_bound(const contact::NitscheForm<dim>& form)
+{
+  if (std::string unfit = obstacles_unfit(form); !unfit.empty()) return unfit;
+  if (form.space().mesh().ranks().any(form.history() != nullptr && form.history()->states().size() > 0))
+    return "contact remembers earlier load steps";
+  return {};
+}
+
 /// What the functions on a mesh share. For p = 1 the form is that of degree 2.
 template <int dim>
 struct EnergyEstimator<dim>::Parts
@@ -130,7 +130,7 @@ template <int dim>
 EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
                                       const algebra::SolverOptions& solver,
                                       const std::vector<problem::Quantity<dim>>& quantities, PatchNorm norm)
-    : form_(form), solver_(solver), reason_(why_not(form))
+    : form_(form), solver_(solver), reason_(why_no_energy_bound(form))
 {
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
@@ -262,6 +262,8 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   return best;
 }
 
+template std::string why_no_energy_bound(const contact::NitscheForm<2>&);
+template std::string why_no_energy_bound(const contact::NitscheForm<3>&);
 template class EnergyEstimator<2>;
 template class EnergyEstimator<3>;
 

@@ -55,6 +55,11 @@ struct EnergyBound
 /// Above this share of the stress a cell does not balance: there is no bound.
 inline constexpr double cell_balance_limit = 1e-8;
 
+/// Why functions on the mesh of a form can have no bound, in words; empty: nothing of contact speaks against
+/// it. The same on all ranks, which call it together.
+template <int dim>
+[[nodiscard]] std::string why_no_energy_bound(const contact::NitscheForm<dim>& form);
+
 template <int dim>
 class QuantityBounds;
 
