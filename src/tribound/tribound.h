@@ -78,6 +78,7 @@
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/friedrichs.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/energy/interval_comparison.h"
 #include "tribound/certify/energy/quantity_interval.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/equilibrate/stress.h"

@@ -177,7 +177,7 @@ ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
   if (!jumps.empty())
     result.note = fmt::format(
         "weighted: from 0 to 1 within {:.3g} of where displacements are fixed or another contact boundary "
-        "begins",
+        "begins, linear on facets",
         width);
   return result;
 }

@@ -40,13 +40,9 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
       t_h(traction),
       bound(energy),
       forces(of.load().begin(), of.load().end()),
-      is_projected(false),
+      is_projected(energy.loads_remainder > 0),
       unresolved(0)
 {
-  double square = 0;
-  for (const double coefficient : stress.dis) square += coefficient * coefficient;
-  constexpr double rounding = 1e-10;  // of loads that are polynomials
-  is_projected = energy.loads_remainder > rounding * std::sqrt(form.space().mesh().ranks().sum(square));
   if (dim == 2 && largest_degree(form.problem()) > form.space().degree() + 2) unresolved = bound.oscillation;
   form.add_contact_load(t_h.at_points, forces);
 }

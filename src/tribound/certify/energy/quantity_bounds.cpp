@@ -237,7 +237,9 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
       {
         numbers.push_back(bounded(item, number, state, products[needs_pair(item, number) ? next++ : 0],
                                   second_order ? &*second_order : nullptr));
-        if (number.weight) interval.note = number.weight->note;
+        if (!number.weight || number.weight->note.empty()) continue;
+        interval.note = number.weight->note;
+        interval.is_weighted = true;
       }
       combine(interval, item.parts.coefficient, numbers);
     }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tribound/certify/energy/interval_comparison.h"
 #include "tribound/io/file/json.h"
 
 namespace tribound::io
@@ -96,14 +97,15 @@ std::optional<double> known(const Json& value)
 std::optional<bool> intervals_agree(const LevelRecord& level, const LevelRecord& better)
 {
   if (!level.energy || !better.energy) return std::nullopt;
-  const bool is_conditional = level.energy->target != certify::EnergyTarget::solution;
-  std::optional<bool> agree;
+  std::optional<bool> all;
   for (const certify::QuantityInterval& quantity : level.energy->quantities)
     for (const certify::QuantityInterval& other : better.energy->quantities)
-      if (quantity.name == other.name && quantity.reason.empty() && other.reason.empty() &&
-          (quantity.exact || !is_conditional))
-        agree = agree.value_or(true) && quantity.lower <= other.upper && other.lower <= quantity.upper;
-  return agree;
+    {
+      if (quantity.name != other.name) continue;
+      const auto agree = certify::compare_intervals(*level.energy, quantity, *better.energy, other).agree;
+      if (agree) all = all.value_or(true) && *agree;
+    }
+  return all;
 }
 
 std::string quantities_csv(const Json& levels)

@@ -28,8 +28,8 @@ namespace tribound::io
 [[nodiscard]] std::string words_of(const certify::QuantityInterval& quantity);
 
 /// Whether every interval of a level has a point in common with that of a better solution of the same
-/// problem, as both hold the number of the exact one; nothing where none can be compared, as with Coulomb's
-/// friction.
+/// problem, as both hold the number of the exact one; nothing where none can be compared
+/// (certify::compare_intervals), as with Coulomb's friction.
 [[nodiscard]] std::optional<bool> intervals_agree(const LevelRecord& level, const LevelRecord& better);
 
 /// A row for each quantity of each level, levels as `levels` of the certificate has them.
