@@ -12,6 +12,7 @@
 #include "tribound/adapt/path_program.h"
 #include "tribound/adapt/regularisation.h"
 #include "tribound/base/clock.h"
+#include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
@@ -102,13 +103,14 @@ VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
 
 template <int dim>
 certify::RicherSolution richer_solution(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                        const case_file::Config& config, int refinements)
+                                        const case_file::Config& config, int refinements,
+                                        const certify::UseOfRicher<dim>& use)
 {
   const certify::RicherSpace richer = solution_space(config, refinements);
   const double gamma0 = config.method.gamma0.value_or(contact::default_gamma0(richer.degree));
   solve::NewtonOptions newton = config.method.newton;
   newton.damping = true;  // undamped steps may cycle; they are not what is verified here
-  return certify::compare_with_richer<dim>(form, u, richer, gamma0, newton, config.method.solver);
+  return certify::compare_with_richer<dim>(form, u, richer, gamma0, newton, config.method.solver, use);
 }
 
 }  // namespace
@@ -116,11 +118,13 @@ certify::RicherSolution richer_solution(const contact::NitscheForm<dim>& form, s
 namespace
 {
 
-/// Newton's method on a form from `start`, each of its iterates verified and added to `result`.
+/// Newton's method on a form from `start`, each of its iterates verified and added to `result`, with the
+/// intervals of the quantities, if there are any.
 template <int dim>
 solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                          const solve::NewtonOptions& options, const case_file::Config& config,
-                                         Verification& result, const Progress& progress)
+                                         Verification& result, const Progress& progress,
+                                         const std::vector<problem::Quantity<dim>>& quantities = {})
 {
   certify::DualNorm<dim> dual_norm(form, dual_space(config, result.refinements));
   result.dual_space = {dual_norm.space().degree(), dual_norm.space().mesh().n_cells(),
@@ -135,6 +139,8 @@ solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, 
         certify::equilibrate<dim>(form, iterate.u(), iterate.traction, 0, iterate.step.delta);
     const certify::Estimate eta = estimator(iterate.u(), stress);
     result.iterates.push_back(verified_iterate(form, iterate, stress, eta, dual_norm));
+    if (!quantities.empty())
+      result.iterates.back().energy = adapt::energy_bound<dim>(form, config.method, iterate.u(), quantities);
     progress(iterate.step);
     if (!regularisation) return false;
     return regularisation->advise(form, iterate, eta.global, iterate.converged);
@@ -208,6 +214,26 @@ std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> me
   return why;
 }
 
+/// The richer solution, and the bound of the error of the solution in the energy norm.
+template <int dim>
+void verify_solution(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                     const case_file::Config& config, const std::vector<problem::Quantity<dim>>& quantities,
+                     Verification& result, Stages& stages)
+{
+  const auto bound_richer = [&](const contact::NitscheForm<dim>& richer, std::span<const double> richer_u)
+  {
+    if (!quantities.empty())
+      result.richer_energy = adapt::energy_bound<dim>(richer, config.method, richer_u, quantities);
+  };
+  result.richer =
+      stages.time("richer", fmt::format("solving with degree {} on the refined mesh", result.richer_degree),
+                  [&] { return richer_solution<dim>(form, u, config, result.refinements, bound_richer); });
+  result.energy = result.iterates.back().energy;
+  if (!result.energy && config.adapt.bars.levels != adapt::EnergyLevels::off)
+    result.energy = stages.time("energy", "bounding the error in the energy norm",
+                                [&] { return adapt::energy_bound<dim>(form, config.method, u); });
+}
+
 /// Not empty: why there is no solution.
 template <int dim>
 std::string verify_single(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
@@ -216,21 +242,17 @@ std::string verify_single(const problem::Problem<dim>& problem, const mesh::Mesh
 {
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
+  const auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   contact::check_rigid_motions(form);
   directory = begin<dim>(config, problem, space, form.constraints(), result);
   Stages stages(progress);
   const solve::NewtonResult<dim> newton = stages.time(
       "iterates", announcement,
-      [&] { return verify_iterates<dim>(form, {}, config.method.newton, config, result, progress); });
+      [&]
+      { return verify_iterates<dim>(form, {}, config.method.newton, config, result, progress, quantities); });
   result.converged = newton.status == solve::NewtonStatus::converged;
   result.richer_degree = solution_space(config, result.refinements).degree;
-  if (result.converged)
-    result.richer =
-        stages.time("richer", fmt::format("solving with degree {} on the refined mesh", result.richer_degree),
-                    [&] { return richer_solution<dim>(form, newton.u, config, result.refinements); });
-  if (result.converged && config.adapt.bars.levels != adapt::EnergyLevels::off)
-    result.energy = stages.time("energy", "bounding the error in the energy norm",
-                                [&] { return adapt::energy_bound<dim>(form, config.method, newton.u); });
+  if (result.converged) verify_solution<dim>(form, newton.u, config, quantities, result, stages);
   result.times = stages.times();
   return result.converged ? std::string() : newton.message;
 }

@@ -61,7 +61,8 @@ std::string richer_text(const Verification& v)
   std::string stress = fmt::format("{:.6g}", error);
   if (sigma_norm > 0) stress += fmt::format(", {:.3g} of ||sigma||", error / sigma_norm);
   if (error > 0) stress += fmt::format("; bound / error = {:.4g}", v.iterates.back().bound / error);
-  return line("richer", where) + line("energy error", energy_text(v)) + line("stress error", stress);
+  return line("richer", where) + line("energy error", energy_text(v)) + line("stress error", stress) +
+         quantities_text(v.quantities(v.iterates.back()));
 }
 
 std::string status_text(const Verification& v)
@@ -76,12 +77,15 @@ std::string status_text(const Verification& v)
       smallest = std::min(smallest, *e);
       largest = std::max(largest, *e);
     }
-  return largest == 0 ? std::string("bound and dual norm are both round-off")
-                      : fmt::format("the bound holds at every iterate, effectivity {:.4f} to {:.4f}",
-                                    smallest, largest);
+  const bool has_intervals = std::ranges::any_of(
+      v.iterates, [&](const VerifiedIterate& iterate) { return hold(v.quantities(iterate)).has_value(); });
+  return (largest == 0 ? std::string("bound and dual norm are both round-off")
+                       : fmt::format("the bound holds at every iterate, effectivity {:.4f} to {:.4f}",
+                                     smallest, largest)) +
+         (has_intervals ? "; so do the intervals that can be compared" : "");
 }
 
-io::Json json(const VerifiedIterate& iterate)
+io::Json json(const Verification& v, const VerifiedIterate& iterate)
 {
   io::Json object{{"step", iterate.step.step},
                   {"residual", iterate.step.residual},
@@ -94,6 +98,8 @@ io::Json json(const VerifiedIterate& iterate)
                   {"sigma_norm", iterate.norms.sigma},
                   {"identities", iterate.identities}};
   if (iterate.load_step > 0) object.update({{"load_step", iterate.load_step}, {"t", iterate.t}});
+  if (const auto quantities = v.quantities(iterate); !quantities.empty())
+    object["quantities"] = quantities_json(quantities);
   return object;
 }
 
@@ -145,6 +151,12 @@ std::optional<double> Verification::energy_effectivity() const
   return certify::energy_effectivity(*energy, richer->error->energy, iterates.back().norms.energy);
 }
 
+std::vector<VerifiedQuantity> Verification::quantities(const VerifiedIterate& iterate) const
+{
+  if (!iterate.energy) return {};
+  return verified_quantities(*iterate.energy, richer_energy);
+}
+
 std::string violation(const Verification& verification)
 {
   for (const VerifiedIterate& iterate : verification.iterates)
@@ -162,6 +174,9 @@ std::string violation(const Verification& verification)
         "{:.9g} "
         "from the richer solution",
         verification.energy->bound, verification.richer->error->energy);
+  for (const VerifiedIterate& iterate : verification.iterates)
+    if (const std::string wrong = violation(verification.quantities(iterate)); !wrong.empty())
+      return fmt::format("the guarantee is violated: after Newton step {} {}", iterate.step.step, wrong);
   return refusal_of_a_solution(verification);
 }
 
@@ -226,7 +241,9 @@ std::string verification_json(const Verification& v)
       {"richer_solution", richer_json(v)},
       {"iterates", io::Json::array()},
       {"times", io::Json::object()}};
-  for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(iterate));
+  if (const auto quantities = v.quantities(last); !quantities.empty())
+    object["quantities"] = quantities_json(quantities);
+  for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(v, iterate));
   for (const auto& [stage, seconds] : v.times) object["times"][stage] = seconds;
   return object.dump(2) + "\n";
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/result/verified_quantities.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/contact/nitsche/elasticity.h"
@@ -32,6 +33,7 @@ struct VerifiedIterate
   int load_step = 0;           ///< from 1, or 0: there are none
   double t = 0;                ///< of the load step
   double path_sigma = 0;       ///< the largest ||sigma|| of the path up to it: what rounding is relative to
+  std::optional<certify::EnergyBound> energy{};  ///< with the intervals of the quantities, if there are any
 
   [[nodiscard]] std::optional<double> effectivity() const
   {
@@ -63,16 +65,20 @@ struct Verification
   /// What the solution was measured against, if it is one and there are no load steps.
   std::optional<certify::RicherSolution> richer;
   std::optional<certify::EnergyBound> energy;         ///< of the same solution, where it is asked for
+  std::optional<certify::EnergyBound> richer_energy;  ///< of the richer one, for the intervals of quantities
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
 
   /// Bound of the error in the energy norm / that against the richer solution, where both are of the same
   /// solution and more than rounding.
   [[nodiscard]] std::optional<double> energy_effectivity() const;
+  /// Those of an iterate.
+  [[nodiscard]] std::vector<VerifiedQuantity> quantities(const VerifiedIterate& iterate) const;
 };
 
 /// What is wrong when an effectivity is below 1 although the identities hold, naming the iterate; then when
-/// the richer solution is farther in the energy norm than the bound allows; then when they do not hold for
-/// the last one of a load step, which `tribound run` would not certify; empty when the guarantee holds.
+/// the richer solution is farther in the energy norm than the bound allows; then when the interval of a
+/// quantity has no point in common with that of the richer solution; then when identities do not hold for the
+/// last iterate of a load step, which `tribound run` would not certify; empty when the guarantee holds.
 [[nodiscard]] std::string violation(const Verification& verification);
 
 /// The table of the iterates, the errors and where the file is.

@@ -5,161 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <functional>
 #include <map>
-#include <numbers>
-#include <random>
 #include <utility>
 
-#include "support/meshes.h"
 #include "tribound/certify/energy/admissible_traction.h"
-#include "tribound/fem/evaluation.h"
 #include "tribound/mesh/refine.h"
-#include "verification/quantities.h"
+#include "verification/random_quantities.h"
 
 namespace tribound::test
 {
 
 namespace
 {
-
-/// A block of random material, shape, mesh and loads on an obstacle with a gap, held at its left or its upper
-/// side, there sometimes moved.
-template <int dim>
-struct RandomCase
-{
-  std::mt19937 random;
-  bool is_held_above = false;
-  double between(double low, double high)
-  {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  }
-  bool happens(unsigned once_in) { return random() % once_in == 0; }
-
-  ProblemData<dim> data()
-  {
-    const std::array<double, 5> ratios = {-0.3, 0, 0.3, 0.45, 0.49};
-    is_held_above = happens(2);
-    const std::string held = is_held_above ? "top" : "left";
-    const double moved = happens(3) ? between(is_held_above ? -0.05 : 0, 0.05) : 0;
-    const problem::ContactLaw law =
-        happens(3) ? problem::ContactLaw(Frictionless()) : problem::ContactLaw(Tresca(between(0.001, 0.1)));
-    const problem::Field gap =
-        happens(2) ? problem::Field(0.0) : formula(fmt::format("{}*x", between(0, 0.01)));
-    // in 3D projected loads would have another solution
-    const std::string load = fmt::format(fmt::runtime(dim == 2 ? "{}*x^2*y" : "{}*x"), between(-0.3, 0.1));
-    ProblemData<dim> data{
-        .boundaries = {fixed<dim>(held, 0.5 * moved, moved), obstacle<dim>("bottom", law, gap),
-                       loaded<dim>(is_held_above ? "left" : "top", between(-0.05, 0.05), between(-0.2, 0.01),
-                                   between(-0.05, 0.05)),
-                       loaded<dim>("right", between(-0.1, 0.1), between(-0.1, 0.1))},
-        .body_force = components<dim, problem::Field>(formula(fmt::format("{}", between(-0.1, 0.1))),
-                                                      formula(load), 0.0)};
-    data.material = problem::lame(1, ratios[random() % ratios.size()]);
-    return data;
-  }
-
-  mesh::MeshData<dim> mesh()
-  {
-    const double phase = between(0, 6);
-    const double height = between(0.4, 2);
-    const auto map = [&](const Point<dim>& x) -> Point<dim>
-    {
-      Point<dim> y = x;
-      for (int a = 0; a < dim; ++a)
-        y[a] += 0.1 * std::sin(std::numbers::pi * x[a] / (a == 0 ? 2 : 1)) *
-                std::cos(2 * x[(a + 1) % dim] + a + phase);
-      y[1] *= height;
-      return y;
-    };
-    const int n = 3 + static_cast<int>(random() % 3);
-    return renumbered(mapped<dim>(block<dim>({n, 2}, {2, 1, 1}), map), 11);
-  }
-};
-
-/// The resultant of T(u) on the bottom with the weight min(1, x/2), or 1.
-template <int dim>
-double force_on_bottom(const DiscreteProblem<dim>& c, std::span<const double> u, const Point<dim>& direction,
-                       bool is_weighted)
-{
-  const std::vector<Point<dim>> t = c.form.traction(u);
-  double sum = 0;
-  for (std::size_t i = 0; i < t.size(); ++i)
-  {
-    const contact::ContactPoint<dim>& point = c.form.contact_points()[i];
-    sum += point.weight * t[i].dot(direction) * (is_weighted ? point.x[0] / 2 : 1);
-  }
-  return sum;
-}
-
-/// The mean of u . direction over a boundary.
-template <int dim>
-double mean_over(const DiscreteProblem<dim>& c, std::span<const double> u, const std::string& name,
-                 const Point<dim>& direction)
-{
-  double sum = 0;
-  double measure = 0;
-  for (const mesh::BoundaryFacet& facet : c.mesh.boundary())
-  {
-    if (facet.tag < 0 || c.mesh.boundary_names()[facet.tag] != name) continue;
-    const auto table =
-        c.space.basis().tabulate(fem::points_on_facet<dim>(facet.local, c.form.facet_rule().points));
-    for (const auto& [q, x, dx] : fem::facet_points(c.mesh, facet.cell, facet.local, c.form.facet_rule()))
-    {
-      sum += dx * direction.dot(fem::value_at<dim>(c.space.cell_nodes(facet.cell), u, table.values_at(q)));
-      measure += dx;
-    }
-  }
-  return sum / measure;
-}
-
-/// Quantities of a random block and their values for a discrete solution, by other code.
-template <int dim>
-struct Asked
-{
-  Quantities<dim> quantities;
-  std::vector<std::function<double(const DiscreteProblem<dim>&, std::span<const double>)>> values;
-
-  explicit Asked(bool is_held_above)
-  {
-    using U = std::span<const double>;
-    using C = DiscreteProblem<dim>;
-    quantities.push_back({.name = "energy"});
-    values.push_back([](const C& c, U u)
-                     { return contact::stress_norms<dim>(c.problem, c.space, u).energy; });
-    quantities.push_back({.name = "work", .kind = QuantityKind::load_work});
-    values.push_back([](const C& c, U u) { return c.space.dot(c.form.load(), u); });
-    for (const Point<dim>& e : {Point<dim>(Point<dim>::Unit(1)), Point<dim>(Point<dim>::Unit(0))})
-    {
-      quantities.push_back(contact_force<dim>("bottom", e, is_held_above ? 0 : 2));
-      values.push_back([=](const C& c, U u) { return force_on_bottom<dim>(c, u, e, !is_held_above); });
-    }
-    for (const char* const name : {"right", "bottom"})
-    {
-      const Point<dim> e = Point<dim>::Ones().normalized();
-      quantities.push_back(mean_displacement<dim>(name, e));
-      values.push_back([=](const C& c, U u) { return mean_over<dim>(c, u, name, e); });
-    }
-    if (!is_held_above) return;
-    Quantity<dim> moment{.name = "moment", .kind = QuantityKind::contact_moment, .boundary = "bottom"};
-    moment.point = Point<dim>(2.5 * Point<dim>::Unit(0));
-    moment.direction = Point<dim>(Point<dim>::Unit(dim - 1));
-    quantities.push_back(moment);
-    values.push_back(
-        [](const C& c, U u)
-        {
-          const std::vector<Point<dim>> t = c.form.traction(u);
-          double sum = 0;
-          for (std::size_t i = 0; i < t.size(); ++i)
-          {
-            const auto& point = c.form.contact_points()[i];
-            sum += point.weight * ((point.x[0] - 2.5) * t[i][1] - point.x[1] * t[i][0]);
-          }
-          return sum;
-        });
-  }
-};
 
 /// How much wider intervals are than they have to be, by name: half the width over the distance of u_h.
 struct Widths
@@ -229,13 +86,6 @@ void try_random_block(unsigned seed, int p, Widths& widths)
       widths.add(bound.quantities[i], value);
     }
   }
-}
-
-/// TRIBOUND_RANDOM_CASES times as many where that is set.
-unsigned n_cases(unsigned n)
-{
-  const char* const factor = std::getenv("TRIBOUND_RANDOM_CASES");
-  return factor == nullptr ? n : n * static_cast<unsigned>(std::atoi(factor));
 }
 
 TEST(QuantityRandom, NoIntervalFails)

@@ -78,6 +78,107 @@ TEST(Verification, RoundOffHasNoEffectivity)
   EXPECT_TRUE(nlohmann::json::parse(app::verification_json(v))["effectivity"].is_null());
 }
 
+/// The bound of an iterate with one quantity, in [lower, upper].
+certify::EnergyBound with_interval(double value, double lower, double upper)
+{
+  certify::EnergyBound bound{.bound = 0.03};
+  bound.quantities = {
+      {.name = "thrust", .value = value, .lower = lower, .upper = upper, .basis = "energy bound"}};
+  return bound;
+}
+
+/// Intervals of both iterates, the richer solution being in a narrow one.
+app::Verification example_with_quantity()
+{
+  app::Verification v = example();
+  v.iterates[0].energy = with_interval(0.5, 0, 2);
+  v.energy = v.iterates[1].energy = with_interval(0.9, 0.75, 1.25);
+  v.richer_energy = with_interval(1, 0.96875, 1.03125);
+  return v;
+}
+
+TEST(Verification, IntervalsThatHoldTheRicherSolution)
+{
+  const app::Verification v = example_with_quantity();
+  EXPECT_EQ(app::violation(v), "");
+  EXPECT_THAT(app::verification_text(v, ""),
+              AllOf(HasSubstr("quantities    thrust: 1, guaranteed between 0.75 and 1.25 (energy bound): "
+                              "holds, at 50 % of it\n"),
+                    HasSubstr("; so do the intervals that can be compared\n")));
+  const auto json = nlohmann::json::parse(app::verification_json(v));
+  EXPECT_EQ(json["guarantee"], "holds");
+  const auto of_solution =
+      nlohmann::json::parse(R"([{"name": "thrust", "value": 0.9, "lower": 0.75, "upper": 1.25,
+    "exact": false, "richer_value": 1.0, "richer_lower": 0.96875, "richer_upper": 1.03125, "holds": true,
+    "position": 0.5, "reason": null}])");
+  EXPECT_EQ(json["quantities"], of_solution);
+  EXPECT_EQ(json["iterates"][1]["quantities"], of_solution);
+  EXPECT_EQ(json["iterates"][0]["quantities"][0]["position"], 0.5);
+  EXPECT_EQ(json["iterates"][0]["quantities"][0]["value"], 0.5);
+}
+
+TEST(Verification, AWrongIntervalOfAnyIterateViolatesTheGuarantee)
+{
+  app::Verification v = example_with_quantity();
+  v.iterates[0].energy = with_interval(0.5, 0.25, 0.9375);
+  EXPECT_THAT(
+      app::violation(v),
+      AllOf(HasSubstr("guarantee is violated: after Newton step 1 the interval [0.25, 0.9375] of \"thrust\""),
+            HasSubstr("[0.96875, 1.03125]")));
+  v = example_with_quantity();
+  v.iterates[1].energy = with_interval(0.9, 1.0625, 1.25);
+  EXPECT_THAT(app::violation(v), HasSubstr("after Newton step 2"));
+  EXPECT_THAT(app::verification_text(v, ""),
+              AllOf(HasSubstr("violated: the richer solution is in [0.96875, 1.03125]"),
+                    Not(HasSubstr("so do the intervals"))));
+  const auto json = nlohmann::json::parse(app::verification_json(v));
+  EXPECT_EQ(json["guarantee"], "violated");
+  EXPECT_EQ(json["quantities"][0]["holds"], false);
+}
+
+TEST(Verification, TheRicherSolutionHasAnIntervalItself)
+{
+  app::Verification v = example_with_quantity();
+  v.iterates[1].energy = with_interval(0.9, 0.75, 0.984375);  // its value is outside, its interval is not
+  EXPECT_EQ(app::violation(v), "");
+  EXPECT_THAT(
+      app::verification_text(v, ""),
+      HasSubstr(
+          "holds a part of [0.96875, 1.03125], that of the richer solution, whose value is at 107 % of it"));
+}
+
+TEST(Verification, WhatCannotBeComparedIsNoViolation)
+{
+  app::Verification v = example_with_quantity();
+  for (app::VerifiedIterate& iterate : v.iterates)
+  {
+    iterate.energy = with_interval(0.5, 0.25, 0.75);
+    iterate.energy->target = certify::EnergyTarget::computed_friction;
+  }
+  EXPECT_EQ(app::violation(v), "");
+  EXPECT_THAT(app::verification_text(v, ""),
+              AllOf(HasSubstr("not compared: both are of their computed friction"),
+                    Not(HasSubstr("so do the intervals"))));
+  auto json = nlohmann::json::parse(app::verification_json(v))["quantities"][0];
+  EXPECT_TRUE(json["holds"].is_null());
+  EXPECT_EQ(json["position"], 1.5);
+
+  v.iterates[1].energy->quantities[0].reason = "contact alone holds a body";
+  EXPECT_THAT(app::verification_text(v, ""), HasSubstr("thrust: 0.5, without error bar: contact alone"));
+  json = nlohmann::json::parse(app::verification_json(v))["quantities"][0];
+  EXPECT_TRUE(json["lower"].is_null() && json["position"].is_null());
+  EXPECT_EQ(json["reason"], "contact alone holds a body");
+  EXPECT_EQ(json["richer_value"], 1);
+
+  v.richer_energy = certify::EnergyBound{.reason = "out of memory"};
+  json = nlohmann::json::parse(app::verification_json(v))["iterates"][0]["quantities"][0];
+  EXPECT_EQ(json["reason"], "out of memory");
+  EXPECT_TRUE(json["richer_value"].is_null());
+  v.richer_energy.reset();
+  json = nlohmann::json::parse(app::verification_json(v))["iterates"][0]["quantities"][0];
+  EXPECT_EQ(json["reason"], "there is no richer solution");
+}
+
 TEST(Verification, Json)
 {
   app::Verification v = example();

@@ -61,7 +61,8 @@ solve::NewtonResult<dim> solve_richer(const contact::NitscheForm<dim>& form, std
 template <int dim>
 RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                    const RicherSpace& richer, double gamma0,
-                                   const solve::NewtonOptions& newton, const algebra::SolverOptions& solver)
+                                   const solve::NewtonOptions& newton, const algebra::SolverOptions& solver,
+                                   const UseOfRicher<dim>& use)
 {
   const mesh::Refined<dim> refined = mesh::refine_uniformly(form.space().mesh(), richer.refinements);
   const fem::LagrangeSpace<dim> space(refined.mesh, richer.degree);
@@ -78,6 +79,7 @@ RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form, std::s
   for (std::size_t i = 0; i < error.size(); ++i) error[i] -= solution.u[i];
   const contact::StressNorms norms = contact::stress_norms<dim>(form.problem(), space, error);
   result.error = SolutionError{std::sqrt(norms.energy), norms.sigma};
+  if (use) use(richer_form, solution.u);
   return result;
 }
 
@@ -85,9 +87,9 @@ template double count_dofs(const mesh::Mesh<2>&, const RicherSpace&);
 template double count_dofs(const mesh::Mesh<3>&, const RicherSpace&);
 template RicherSolution compare_with_richer(const contact::NitscheForm<2>&, std::span<const double>,
                                             const RicherSpace&, double, const solve::NewtonOptions&,
-                                            const algebra::SolverOptions&);
+                                            const algebra::SolverOptions&, const UseOfRicher<2>&);
 template RicherSolution compare_with_richer(const contact::NitscheForm<3>&, std::span<const double>,
                                             const RicherSpace&, double, const solve::NewtonOptions&,
-                                            const algebra::SolverOptions&);
+                                            const algebra::SolverOptions&, const UseOfRicher<3>&);
 
 }  // namespace tribound::certify

@@ -4,6 +4,7 @@
 /// What the bound bounds, computed: the dual norm of the residual from below, and errors against a much
 /// richer solution; method section 9. Far more expensive than the bound: for verification.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -115,12 +116,17 @@ struct RicherSolution
   std::optional<SolutionError> error;  ///< absent where the richer problem was not solved
 };
 
+/// What else is done with a richer solution, of this form.
+template <int dim>
+using UseOfRicher = std::function<void(const contact::NitscheForm<dim>&, std::span<const double>)>;
+
 /// Solves the form's problem in the richer space with Nitsche's parameter gamma0, data evaluated anew,
-/// starting from u, and measures u against the result.
+/// starting from u, and measures u against the result, which `use` gets, too, if there is one.
 template <int dim>
 [[nodiscard]] RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form,
                                                  std::span<const double> u, const RicherSpace& richer,
                                                  double gamma0, const solve::NewtonOptions& newton,
-                                                 const algebra::SolverOptions& solver);
+                                                 const algebra::SolverOptions& solver,
+                                                 const UseOfRicher<dim>& use = {});
 
 }  // namespace tribound::certify
