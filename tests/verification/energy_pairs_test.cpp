@@ -61,7 +61,51 @@ TEST_P(EnergyPairs, AGapMayBeGivenAndClose)
   expect_pair<2>("gap", data, GetParam(), {.refinements = 3, .degree = GetParam() + 1}, 1.7);
 }
 
+/// The upper block lies on the lower one, which is clamped or lies on a floor itself.
+template <int dim>
+ProblemData<dim> resting(problem::ContactLaw law, bool on_floor, double pull = 0.01)
+{
+  const bool slides = std::holds_alternative<Frictionless>(law);
+  ProblemData<dim> data{
+      .boundaries = {loaded<dim>("top", pull, formula("-0.1 - 0.03*x"), 0.01),
+                     on_floor ? obstacle<dim>("bottom_below", Tresca(0.04)) : clamped<dim>("bottom_below")},
+      .pairs = {pair<dim>("bottom", "top_below", std::move(law))}};
+  if (slides) data.boundaries.push_back(fixed<dim>("left", 0.0, free, free));
+  if (slides && dim == 3) data.boundaries.push_back(fixed<dim>("back", free, free, 0.0));
+  return data;
+}
+
+TEST_P(EnergyPairs, ContactMayBeAllThatHoldsABody)
+{
+  const int p = GetParam();
+  const certify::RicherSpace in_2d{.refinements = 3, .degree = p + 1};
+  const certify::RicherSpace in_3d{.refinements = p > 2 ? 1 : 2, .degree = p + 1};
+  for (const bool on_floor : {false, true})
+    for (const auto& [name, law] :
+         {std::pair("on another, frictionless", problem::ContactLaw(Frictionless())),
+          std::pair("on another, Tresca", problem::ContactLaw(Tresca(0.06)))})
+    {
+      expect_pair<2>(name, resting<2>(law, on_floor), p, in_2d, 1.8);
+      if (p <= 2 && on_floor) expect_pair<3>(name, resting<3>(law, on_floor), p, in_3d, 2.5);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Degrees, EnergyPairs, ::testing::Range(1, 4));
+
+/// What friction cannot hold, alone or below.
+TEST(EnergyPairs, NoTractionHoldsTheBody)
+{
+  const auto reason = [](const problem::ContactLaw& law, bool on_floor, double pull)
+  {
+    const DiscreteProblem<2> c(matching_blocks<2>(), resting<2>(law, on_floor, pull), {.degree = 2});
+    return energy_bound(c, std::vector<double>(c.space.n_dofs(), 0.0)).reason;
+  };
+  const std::string nothing = "no contact traction was found that obeys the law and holds a body";
+  EXPECT_EQ(reason(Tresca(0.03), true, 0.027), "");
+  EXPECT_EQ(reason(Tresca(0.03), true, 0.033), nothing);
+  EXPECT_EQ(reason(Tresca(0.06), false, 0.05), "");
+  EXPECT_EQ(reason(Tresca(0.06), true, 0.05), nothing);  // slides on the floor
+}
 
 /// Uniform pressure through frictionless sides.
 TEST(EnergyPairs, IsNothingWhereTheStressIsConstant)

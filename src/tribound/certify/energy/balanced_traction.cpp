@@ -18,7 +18,7 @@ namespace
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// The conditions on lambda: rest(lambda) = L(z_i) + (t_h(lambda), z_i)_C = 0.
+/// The conditions on lambda: rest(lambda) = L(z_i) + (t_h(lambda), [z_i])_C = 0.
 template <int dim>
 class BalanceConditions
 {
@@ -46,36 +46,37 @@ class BalanceConditions
     for (Index c = 0; c < space.mesh().n_cells(); ++c)
       for (const Index node : space.cell_nodes(c))
         if (std::exchange(is_owned[node], 0) != 0)
-          add_work(motions.of_cell(c), points[node], Point<dim>(&form.load()[dim * node]), load_);
+          for (int i = motions.of_cell(c).begin; i < motions.of_cell(c).end; ++i)
+            add_work(i, motions(i, points[node]), Point<dim>(&form.load()[dim * node]), load_);
   }
 
   [[nodiscard]] State at(Vector lambda) const;
-  /// -(J + shift G)^{-1} rest body by body: J the derivative of rest, G = ((z_i, z_j)_C).
+  /// -(J + shift G)^{-1} rest: J the derivative of rest, G = (([z_i], [z_j])_C).
   [[nodiscard]] Vector step(const State& state) const;
 
  private:
   static constexpr double rounding = 1e-13;
 
   [[nodiscard]] Eigen::Index n() const { return static_cast<Eigen::Index>(motions_.size()); }
-  [[nodiscard]] auto motions_at(std::size_t k) const
+  using Columns = typename TractionFit<dim>::Columns;
+  /// [z_i] at the contact points of a segment.
+  struct Jump
   {
-    return motions_.of_cell(form_.segments()[k].slave.facet.cell);
-  }
-  /// t + sum_i lambda_i z_i at the contact points.
+    int motion;
+    Columns values;
+  };
+  /// Those of the motions of the bodies on its sides; twice where both are one.
+  [[nodiscard]] std::vector<Jump> jumps(std::size_t k) const;
+  /// t + sum_i lambda_i [z_i] at the contact points.
   [[nodiscard]] std::vector<Point<dim>> shifted(const Vector& lambda) const;
-  /// J and G of the bodies, one after the other, block after block.
-  [[nodiscard]] Vector tangents(const State& state) const;
+  /// J and G side by side.
+  [[nodiscard]] Matrix tangents(const State& state) const;
 
-  /// force . z_i, and from n() on |force| |z_i|.
-  void add_work(typename FreeMotions<dim>::Range range, const Point<dim>& x, const Point<dim>& force,
-                Vector& sums) const
+  /// force . z, and from n() on |force| |z|.
+  void add_work(int i, const Point<dim>& z, const Point<dim>& force, Vector& sums) const
   {
-    for (int i = range.begin; i < range.end; ++i)
-    {
-      const Point<dim> z = motions_(i, x);
-      sums[i] += force.dot(z);
-      sums[n() + i] += force.norm() * z.norm();
-    }
+    sums[i] += force.dot(z);
+    sums[n() + i] += force.norm() * z.norm();
   }
 
   const contact::NitscheForm<dim>& form_;
@@ -86,15 +87,33 @@ class BalanceConditions
 };
 
 template <int dim>
+auto BalanceConditions<dim>::jumps(std::size_t k) const -> std::vector<Jump>
+{
+  const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
+  std::vector<Jump> result;
+  const auto add_side = [&](const contact::SegmentSide<dim>& side)
+  {
+    const auto map = contact::simplex_map(form_.space().mesh(), side);
+    const auto [begin, end] = motions_.of_cell(side.facet.cell);
+    for (int i = begin; i < end; ++i)
+    {
+      Columns& values = result.emplace_back(Jump{i, Columns(dim, rule.size())}).values;
+      for (int q = 0; q < rule.size(); ++q) values.col(q) = side.sign * motions_(i, map(rule.points[q]));
+    }
+  };
+  form_.segments()[k].for_each_side(add_side);
+  return result;
+}
+
+template <int dim>
 std::vector<Point<dim>> BalanceConditions<dim>::shifted(const Vector& lambda) const
 {
   std::vector<Point<dim>> result(t_.begin(), t_.end());
   const auto on_facet = [&](std::size_t k)
   {
-    const auto [begin, end] = motions_at(k);
-    for (int q = 0; q < form_.n_segment_points(); ++q)
-      for (int i = begin; i < end; ++i)
-        result[k * form_.n_segment_points() + q] += lambda[i] * motions_(i, form_.contact_points(k)[q].x);
+    for (const auto& [i, values] : jumps(k))
+      for (int q = 0; q < form_.n_segment_points(); ++q)
+        result[k * form_.n_segment_points() + q] += lambda[i] * values.col(q);
   };
   parallel_for(form_.segments().size(), on_facet);
   return result;
@@ -106,43 +125,41 @@ auto BalanceConditions<dim>::at(Vector lambda) const -> State
   AdmissibleTraction<dim> t_h = admissible_traction<dim>(form_, shifted(lambda));
   Vector sums = load_;
   for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
-    for (int q = 0; q < form_.n_segment_points(); ++q)
-    {
-      const contact::ContactPoint<dim>& point = form_.contact_points(k)[q];
-      add_work(motions_at(k), point.x, point.weight * t_h.at_points[k * form_.n_segment_points() + q], sums);
-    }
+    for (const auto& [i, values] : jumps(k))
+      for (int q = 0; q < form_.n_segment_points(); ++q)
+        add_work(i, values.col(q),
+                 form_.contact_points(k)[q].weight * t_h.at_points[k * form_.n_segment_points() + q], sums);
   form_.space().mesh().ranks().sum(std::span(sums.data(), sums.size()));
   return {std::move(lambda), std::move(t_h), sums.head(n()), sums.tail(n())};
 }
 
 template <int dim>
-Vector BalanceConditions<dim>::tangents(const State& state) const
+Matrix BalanceConditions<dim>::tangents(const State& state) const
 {
-  constexpr int most = contact::RigidModes<dim>::n_modes;
   const std::vector<Point<dim>> t = shifted(state.lambda);
   std::vector<Matrix> of_facets(form_.n_owned_segments());
   const auto on_facet = [&](std::size_t k)
   {
-    const auto [begin, end] = motions_at(k);
-    std::vector<typename TractionFit<dim>::Columns> z;
-    for (int i = begin; i < end; ++i)
-    {
-      z.emplace_back(dim, form_.n_segment_points());
-      for (int q = 0; q < form_.n_segment_points(); ++q)
-        z.back().col(q) = motions_(i, form_.contact_points(k)[q].x);
-    }
+    std::vector<Columns> z;
+    for (Jump& jump : jumps(k)) z.push_back(std::move(jump.values));
     if (z.empty()) return;
     const double det = form_.segments()[k].det();
-    of_facets[k].resize(end - begin, 2 * (end - begin));
+    const auto m = static_cast<Eigen::Index>(z.size());
+    of_facets[k].resize(m, 2 * m);
     of_facets[k] << det * fit_.tangent(fit_.columns(k, t), fit_.cones(k), z), det * fit_.gram(z);
   };
   parallel_for(of_facets.size(), on_facet);
-  Vector sums = Vector::Zero(static_cast<Eigen::Index>(motions_.n_bodies()) * 2 * most * most);
+  Matrix sums = Matrix::Zero(n(), 2 * n());
   for (std::size_t k = 0; k < of_facets.size(); ++k)
   {
-    const int body = motions_.body_of(form_.segments()[k].slave.facet.cell);
-    Eigen::Map<Matrix>(&sums[body * 2 * most * most], of_facets[k].rows(), of_facets[k].cols()) +=
-        of_facets[k];
+    const Matrix& of_facet = of_facets[k];
+    const std::vector<Jump> seen = jumps(k);
+    for (Eigen::Index i = 0; i < of_facet.rows(); ++i)
+      for (Eigen::Index j = 0; j < of_facet.rows(); ++j)
+      {
+        sums(seen[i].motion, seen[j].motion) += of_facet(i, j);
+        sums(seen[i].motion, n() + seen[j].motion) += of_facet(i, of_facet.rows() + j);
+      }
   }
   form_.space().mesh().ranks().sum(std::span(sums.data(), sums.size()));
   return sums;
@@ -151,24 +168,13 @@ Vector BalanceConditions<dim>::tangents(const State& state) const
 template <int dim>
 Vector BalanceConditions<dim>::step(const State& state) const
 {
-  constexpr int most = contact::RigidModes<dim>::n_modes;
   constexpr double share = 1e-2;  // of the rest in the shift
-  const Vector sums = tangents(state);
-  Vector d = Vector::Zero(n());
-  for (int body = 0; body < motions_.n_bodies(); ++body)
-  {
-    const auto range = motions_.of_body(body);
-    const int m = range.size();
-    const auto rest = state.rest.segment(range.begin, m);
-    const double size = state.size.segment(range.begin, m).sum();
-    if (m == 0 || size == 0) continue;
-    const Eigen::Map<const Matrix> tangent(&sums[body * 2 * most * most], m, m);
-    const Eigen::Map<const Matrix> gram(&sums[body * 2 * most * most + m * m], m, m);
-    const double shift = std::max(1e-14, share * rest.template lpNorm<1>() / size);
-    const Eigen::LLT<Matrix> factors(tangent + shift * gram);
-    if (factors.info() == Eigen::Success) d.segment(range.begin, m) = -factors.solve(rest);
-  }
-  return d;
+  const Matrix sums = tangents(state);
+  const double shift =
+      std::max(1e-14, share * state.rest.template lpNorm<1>() / std::max(state.size.sum(), 1e-300));
+  const Eigen::LLT<Matrix> factors(sums.leftCols(n()) + shift * sums.rightCols(n()));
+  if (factors.info() != Eigen::Success) return Vector::Zero(n());
+  return -factors.solve(state.rest);
 }
 
 /// Goes along d to where the slope of the convex function, rest . d, which grows, has lost half of its size;

@@ -136,8 +136,6 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!reason_.empty()) return;
   parts_ = std::make_unique<Parts>(form, norm);
   const bool has_pairs = !form.problem().pairs().empty();
-  if (parts_->motions.size() > 0 && has_pairs)
-    reason_ = "contact alone holds a body that touches another one";
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
   if (reason_.empty() && quantities_)
