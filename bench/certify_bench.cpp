@@ -16,11 +16,15 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/algebra/petsc.h"
+#include "tribound/base/clock.h"
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/transfer.h"
 #include "tribound/certify/bound/transfer_terms.h"
 #include "tribound/certify/energy/admissible_stress.h"
+#include "tribound/certify/energy/balanced_solution.h"
+#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/penalty.h"
@@ -45,12 +49,11 @@ int cells_across(int degree)
 /// How far two bodies are apart, so that a point tells on which of them it is; the gap is given as 0.
 constexpr double apart = 0.01;
 
-/// The block (0, 2) x (0, 1) [x (0, 1)]; or with about as many cells in all two of its size, one below the
-/// other, with n and n - 1 squares or cubes across.
+/// The block (0, 2) x (0, 1) [x (0, 1)] with n squares or cubes across; or with about as many cells in all
+/// two of its size, one below the other, the lower one with a square or cube less across.
 template <int dim>
-mesh::Boxes blocks(int degree, int bodies)
+mesh::Boxes blocks(int n, int bodies)
 {
-  int n = cells_across<dim>(degree);
   if (bodies == 2) n = static_cast<int>(std::lround(n / std::pow(2.0, 1.0 / dim)));
   mesh::BoxMesh block{{0, 0}, {2, 1}, {2 * n, n}, {}};
   if constexpr (dim == 3) block = {{0, 0, 0}, {2, 1, 1}, {2 * n, n, n}, {}};
@@ -87,9 +90,9 @@ void distort(mesh::MeshData<dim>& data, const mesh::Boxes& boxes)
 }
 
 template <int dim>
-mesh::Mesh<dim> block_mesh(int degree, bool distorted, int bodies)
+mesh::Mesh<dim> block_mesh(int n, bool distorted, int bodies)
 {
-  const mesh::Boxes boxes = blocks<dim>(degree, bodies);
+  const mesh::Boxes boxes = blocks<dim>(n, bodies);
   mesh::MeshData<dim> data = mesh::box_meshes<dim>(boxes);
   if (distorted) distort<dim>(data, boxes);
   return mesh::Mesh<dim>(std::move(data));
@@ -123,8 +126,11 @@ problem::Problem<dim> block_problem(const mesh::Mesh<dim>& mesh, int bodies)
 template <int dim>
 struct Block
 {
-  Block(int degree, bool distorted, int bodies)
-      : mesh(block_mesh<dim>(degree, distorted, bodies)),
+  Block(int degree, bool distorted, int bodies) : Block(degree, distorted, bodies, cells_across<dim>(degree))
+  {
+  }
+  Block(int degree, bool distorted, int bodies, int across)
+      : mesh(block_mesh<dim>(across, distorted, bodies)),
         problem(block_problem(mesh, bodies)),
         space(mesh, degree),
         form(problem, space, contact::default_gamma0(degree))
@@ -254,6 +260,79 @@ void admissible_stress(benchmark::State& state)
   count_per_cell(state, b.mesh.n_cells());
 }
 
+/// CPU seconds of the work.
+template <class Work>
+double cpu_seconds_of(const Work& work)
+{
+  const double before = cpu_seconds();
+  work();
+  return cpu_seconds() - before;
+}
+
+/// u~ of the block, as the bound of the error in the energy norm needs it. For p = 1 the loads are those of
+/// degree 2.
+template <int dim>
+class BalancedBlock
+{
+ public:
+  explicit BalancedBlock(const Block<dim>& block)
+      : block_(block),
+        space_(block.mesh, std::max(block.space.degree(), 2)),
+        form_(block.problem, space_, block.form.gamma0()),
+        t_(form_.traction(certify::raised(block.space, block.u, space_))),
+        motions_(block.problem, block.mesh)
+  {
+  }
+
+  [[nodiscard]] std::vector<double> solve() const
+  {
+    const bool is_raised = block_.space.degree() < space_.degree();
+    return certify::balanced_solution<dim>(form_, is_raised ? block_.space : space_, block_.u, t_, motions_,
+                                           {});
+  }
+
+ private:
+  const Block<dim>& block_;
+  fem::LagrangeSpace<dim> space_;
+  contact::NitscheForm<dim> form_;
+  std::vector<Point<dim>> t_;
+  certify::FreeMotions<dim> motions_;
+};
+
+/// The bound of the error in the energy norm with all that is made once for a mesh, without quantities;
+/// beside it, in turn, its linear system alone, the equilibration of the same form, and the bound of the
+/// residual. On a small block, where the system does not hide the rest.
+template <int dim>
+void energy_bound(benchmark::State& state)
+{
+  const Block<dim> b(static_cast<int>(state.range(0)), true, 1, static_cast<int>(state.range(1)));
+  const BalancedBlock<dim> balanced(b);
+  std::array<double, 4> seconds{};
+  for (auto _ : state)
+  {
+    seconds[0] += cpu_seconds_of(
+        [&]
+        {
+          const certify::EnergyBound bound = certify::EnergyEstimator<dim>(b.form, {})(b.u);
+          if (!bound.reason.empty()) state.SkipWithError(bound.reason.c_str());
+        });
+    seconds[1] += cpu_seconds_of([&] { benchmark::DoNotOptimize(balanced.solve()); });
+    seconds[2] +=
+        cpu_seconds_of([&] { benchmark::DoNotOptimize(certify::equilibrate<dim>(b.form, b.u, b.t, 1)); });
+    seconds[3] += cpu_seconds_of(
+        [&]
+        {
+          benchmark::DoNotOptimize(
+              certify::estimate<dim>(b.form, b.u, certify::equilibrate<dim>(b.form, b.u, b.t, 1)));
+        });
+  }
+  const std::array names = {"bound", "system", "equilibration", "residual"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    state.counters[names[i]] = seconds[i] / (static_cast<double>(state.iterations()) * b.mesh.n_cells());
+  state.counters["ratio"] = (seconds[0] - seconds[1]) / seconds[2];
+  state.counters["cells"] = b.mesh.n_cells();
+}
+
 /// Of the segments of Gamma_C.
 template <int dim>
 void count_per_segment(benchmark::State& state, const Block<dim>& b)
@@ -345,6 +424,14 @@ BENCHMARK(admissible_stress<3>)
     ->ArgNames({"p", "distorted", "bodies"})
     ->ArgsProduct({{2, 3, 4}, {1}, {1}})
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(energy_bound<2>)
+    ->ArgNames({"p", "across"})
+    ->ArgsProduct({{1, 2, 3, 4}, {32}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(energy_bound<3>)
+    ->ArgNames({"p", "across"})
+    ->ArgsProduct({{1, 2, 3}, {6}})
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(contact_terms<2>)
     ->ArgNames({"p", "distorted", "bodies"})
     ->ArgsProduct({{1, 2, 3, 4}, {1}, {1, 2}})
@@ -362,4 +449,11 @@ BENCHMARK(transfer<3>)
     ->ArgsProduct({{1, 2, 3}, {1}, {2}})
     ->Unit(benchmark::kMillisecond);
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv)
+{
+  const tribound::algebra::Environment petsc;
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
