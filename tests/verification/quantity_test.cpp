@@ -54,6 +54,8 @@ TEST_P(QuantityT2D, IsAsSharpAsThatOfAnIndependentProgram)
   expect_contains(found[0], 0.016804338613842063);
   expect_contains(found[1], -0.096161343);
   expect_contains(found[2], -0.041322732);
+  const auto is_weighted = [](const QuantityInterval& interval) { return interval.is_weighted; };
+  EXPECT_EQ(std::ranges::count_if(found, is_weighted), 2);  // the forces, beside the clamped side
   const auto half_width = [](const QuantityInterval& interval)
   { return (interval.upper - interval.lower) / 2; };
   if (normal > 0)
