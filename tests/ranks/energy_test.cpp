@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -219,9 +220,15 @@ void expect_same_where_it_is_finer(const mesh::MeshData<dim>& mesh_data, const P
     const problem::Problem<dim> problem = data.on(mesh);
     const fem::LagrangeSpace<dim> space(mesh, degree);
     const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
-    const std::vector<double> u = wave(form);
+    std::vector<double> u = wave(form);
+    std::vector<char> is_below(space.n_nodes(), 0);
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+      for (const Index node : space.cell_nodes(c)) is_below[node] = mesh.region(c) == 1 ? 1 : 0;
+    for (std::size_t i = 0; i < u.size(); ++i)
+      if (is_below[i / dim]) u[i] /= 2;
     const auto finer = adapt::finer_contact<dim>(form, u);
-    EXPECT_TRUE(finer);
+    EXPECT_TRUE(finer) << dim << "D, p = " << degree;
+    if (!finer) return std::vector<double>{};
     const certify::EnergyBound eta = adapt::energy_bound<dim>(form, {.degree = degree}, u);
     EXPECT_EQ(eta.reason, "");
     EXPECT_EQ(static_cast<Index>(eta.cells.size()), mesh.n_owned_cells());
@@ -232,11 +239,15 @@ void expect_same_where_it_is_finer(const mesh::MeshData<dim>& mesh_data, const P
     return result;
   };
   const std::vector<double> expected = numbers(whole);
+  ASSERT_FALSE(expected.empty());
   EXPECT_GT(expected.front(), whole.n_cells());
   const std::vector<double> found = numbers(contact::with_partners<dim>(
       mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr), data.pairs));
+  ASSERT_EQ(found.size(), expected.size());
+  const double square = expected[1] * expected[1];  // what contact contributes may be rounding
   for (std::size_t i = 0; i < found.size(); ++i)
-    EXPECT_NEAR(found[i], expected[i], 1e-9 * expected[i]) << dim << "D, p = " << degree << ", " << i;
+    EXPECT_NEAR(found[i], expected[i], 1e-9 * std::max(expected[i], square))
+        << dim << "D, p = " << degree << ", " << i;
 }
 
 TEST(EnergyBound, IsThatOfTheWholeWhereFacetsAreCut)
