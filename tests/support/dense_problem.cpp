@@ -1,5 +1,6 @@
 #include "support/dense_problem.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace tribound::test
@@ -11,49 +12,66 @@ namespace
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A basis of the rigid motions of the wanted kinds whose fixed components vanish on the Dirichlet facets at
-/// the vertex: the null space of their values at the vertices of these facets.
 template <int dim>
-std::vector<Motion<dim>> admissible(const DenseData<dim>& given, const DensePatch<dim>& patch,
-                                    bool translations, bool rotations)
+std::vector<Motion<dim>> rotations_about(const Point<dim>& a)
 {
-  const Point<dim>& a = given.mesh.vertex(patch.vertex);
-  const double size = mesh::cell_diameter(given.mesh, patch.cells[0]);
   std::vector<Motion<dim>> all;
-  for (int i = 0; i < dim && translations; ++i) all.push_back({Point<dim>::Unit(i), Tensor<dim>::Zero(), a});
-  for (int r = 0; r < dim && rotations; ++r)
+  for (int r = 0; r < dim; ++r)
     for (int c = 0; c < r; ++c)
     {
       Tensor<dim> spin = Tensor<dim>::Zero();
-      spin(r, c) = 1 / size;
-      spin(c, r) = -1 / size;
+      spin(r, c) = 1;
+      spin(c, r) = -1;
       all.push_back({Point<dim>::Zero(), spin, a});
     }
-  std::vector<VectorXd> conditions;
-  for (const int f : patch.facets)
-    for (int c = 0; c < dim && given.facets[f].condition; ++c)
-      for (const Index v : given.facets[f].vertices)
-      {
-        if (!given.facets[f].condition->fixes(c)) continue;
-        VectorXd& row = conditions.emplace_back(all.size());
-        for (std::size_t i = 0; i < all.size(); ++i) row[i] = all[i](given.mesh.vertex(v))[c];
-      }
-  if (conditions.empty()) return all;
-  MatrixXd matrix(conditions.size(), all.size());
-  for (std::size_t i = 0; i < conditions.size(); ++i) matrix.row(i) = conditions[i].transpose();
-  Eigen::FullPivLU<MatrixXd> lu(matrix);
-  lu.setThreshold(1e-9);
-  if (lu.dimensionOfKernel() == 0) return {};
-  const MatrixXd kernel = lu.kernel();
+  return all;
+}
+
+/// The translations in the components that no facet at the vertex fixes.
+template <int dim>
+std::vector<Motion<dim>> free_translations(const DenseData<dim>& given, const DensePatch<dim>& patch)
+{
   std::vector<Motion<dim>> result;
-  for (int k = 0; k < kernel.cols(); ++k)
+  for (int c = 0; c < dim; ++c)
+    if (std::ranges::none_of(
+            patch.facets, [&](int f)
+            { return given.facets[f].condition != nullptr && given.facets[f].condition->fixes(c); }))
+      result.push_back({Point<dim>::Unit(c), Tensor<dim>::Zero(), given.mesh.vertex(patch.vertex)});
+  return result;
+}
+
+/// The rotations about the vertex that are admissible or almost so: with fixed components below 0.35 of their
+/// values, in the mean square over the vertices of the Dirichlet facets. A basis orthogonal in both.
+template <int dim>
+std::vector<Motion<dim>> hardly_stopped(const DenseData<dim>& given, const DensePatch<dim>& patch)
+{
+  const std::vector<Motion<dim>> all = rotations_about<dim>(given.mesh.vertex(patch.vertex));
+  const auto n = static_cast<Eigen::Index>(all.size());
+  MatrixXd values = MatrixXd::Zero(n, n);
+  MatrixXd fixed = MatrixXd::Zero(n, n);
+  for (const int f : patch.facets)
   {
-    Motion<dim>& z = result.emplace_back(Motion<dim>{Point<dim>::Zero(), Tensor<dim>::Zero(), a});
-    for (std::size_t i = 0; i < all.size(); ++i)
-    {
-      z.translation += kernel(i, k) * all[i].translation;
-      z.spin += kernel(i, k) * all[i].spin;
-    }
+    const problem::BoundaryCondition<dim>* condition = given.facets[f].condition;
+    bool fixes_any = false;
+    for (int c = 0; c < dim && condition; ++c) fixes_any = fixes_any || condition->fixes(c);
+    if (!fixes_any) continue;
+    for (const Index v : given.facets[f].vertices)
+      for (int c = 0; c < dim; ++c)
+      {
+        VectorXd row(n);
+        for (int i = 0; i < n; ++i) row[i] = all[i](given.mesh.vertex(v))[c];
+        values += row * row.transpose();
+        if (condition->fixes(c)) fixed += row * row.transpose();
+      }
+  }
+  if (values.isZero(0)) return all;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(fixed, values);
+  std::vector<Motion<dim>> result;
+  for (int k = 0; k < n && eigen.eigenvalues()[k] < 0.35 * 0.35; ++k)
+  {
+    Motion<dim>& z = result.emplace_back(all[0]);
+    z.spin.setZero();
+    for (int i = 0; i < n; ++i) z.spin += eigen.eigenvectors()(i, k) * all[i].spin;
   }
   return result;
 }
@@ -89,18 +107,33 @@ double residual(const DenseData<dim>& given, const DensePatch<dim>& patch, const
   return sum;
 }
 
-/// y_a in Z_a with (y_a, z) = -<R, psi_a z>, the same for dis and lin.
+/// (t^k - T(u^k), psi_a z)_C.
+template <int dim>
+double linearisation_work(const DenseData<dim>& given, const DensePatch<dim>& patch, const Motion<dim>& z)
+{
+  double sum = 0;
+  for (const int f : patch.facets)
+    for (const DataPoint<dim>& point : given.facets[f].data)
+      sum += point.at.weight * patch_traction(given, patch, given.facets[f], point, 1).dot(z(point.at.x));
+  return sum;
+}
+
+/// y_a, the same for dis and lin, with (y_a, z) = -<R, psi_a z> for the translations and, p > 1,
+/// (t^k - T(u^k), psi_a z)_C for the rotations that Gamma_D hardly stops.
 template <int dim>
 void find_y(const DenseData<dim>& given, DensePatch<dim>& patch)
 {
   patch.y.fill({Point<dim>::Zero(), Tensor<dim>::Zero(), given.mesh.vertex(patch.vertex)});
-  const std::vector<Motion<dim>> z = admissible(given, patch, true, given.p > 1);
+  std::vector<Motion<dim>> z = free_translations(given, patch);
+  const std::size_t n_translations = z.size();
+  if (given.p > 1)
+    for (const Motion<dim>& rotation : hardly_stopped(given, patch)) z.push_back(rotation);
   if (z.empty() || given.mutation == Mutation::no_y) return;
   MatrixXd gram = MatrixXd::Zero(z.size(), z.size());
   VectorXd rhs(z.size());
   for (std::size_t i = 0; i < z.size(); ++i)
   {
-    rhs[i] = -residual(given, patch, z[i]);
+    rhs[i] = i < n_translations ? -residual(given, patch, z[i]) : linearisation_work(given, patch, z[i]);
     for (std::size_t j = 0; j < z.size(); ++j)
       for (const Index c : patch.cells)
         for (std::size_t q = 0; q < given.cells[c].x.size(); ++q)
@@ -115,13 +148,32 @@ void find_y(const DenseData<dim>& given, DensePatch<dim>& patch)
     }
 }
 
-/// p = 1: w_a in the span of the gradients of the admissible rotations z about a, with
-/// (w_a, grad z) = (t, z)_{N, C} - (Pi^0 b, z), for dis and for lin.
+/// (psi_a sigma(u) n, z) in the fixed components of the Dirichlet facets at the vertex.
+template <int dim>
+double reaction(const DenseData<dim>& given, const DensePatch<dim>& patch, const Motion<dim>& z)
+{
+  double sum = 0;
+  for (const int f : patch.facets)
+  {
+    const DenseFacet<dim>& facet = given.facets[f];
+    const DenseCell<dim>& cell = given.cells[facet.cells[0]];
+    for (int c = 0; c < dim && facet.condition; ++c)
+      for (std::size_t q = 0; q < facet.points.size() && facet.condition->fixes(c); ++q)
+      {
+        const auto& [x, weight, theta] = facet.points[q];
+        sum += weight * cell.hat(cell.find(patch.vertex), x) * (cell.sigma[0] * facet.normal)[c] * z(x)[c];
+      }
+  }
+  return sum;
+}
+
+/// p = 1: w_a in the span of the gradients of these rotations z, with (w_a, grad z) = (t, z)_{N, C} -
+/// (Pi^0 b, z) for lin and (psi_a sigma(u) n, z)_D more for dis.
 template <int dim>
 void find_w(const DenseData<dim>& given, DensePatch<dim>& patch)
 {
   patch.w.fill(Tensor<dim>::Zero());
-  const std::vector<Motion<dim>> z = admissible(given, patch, false, true);
+  const std::vector<Motion<dim>> z = hardly_stopped(given, patch);
   if (given.p > 1 || z.empty()) return;
   double volume = 0;
   for (const Index c : patch.cells)
@@ -131,6 +183,7 @@ void find_w(const DenseData<dim>& given, DensePatch<dim>& patch)
   for (std::size_t i = 0; i < z.size(); ++i)
   {
     for (std::size_t j = 0; j < z.size(); ++j) gram(i, j) = volume * z[i].spin.cwiseProduct(z[j].spin).sum();
+    rhs(i, 0) = reaction(given, patch, z[i]);
     for (int column = 0; column < 2; ++column)
     {
       for (const Index c : patch.cells)

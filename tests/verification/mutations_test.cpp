@@ -26,9 +26,8 @@ namespace tribound::test
 namespace
 {
 
-/// The block with no side along an axis, cells of all shapes, numbered at random. (On facets that are almost,
-/// but not quite, along a fixed component the patch problem is almost incompatible: its stress grows like the
-/// inverse of the angle, and rounding with it.)
+/// The block with no side along an axis, cells of all shapes, numbered at random. (Facets that are almost,
+/// but not quite, along a fixed component are in almost_along_test.cpp.)
 template <int dim>
 mesh::MeshData<dim> skewed(mesh::MeshData<dim> data)
 {

@@ -77,6 +77,18 @@ class BlockCholesky
     for (int k = begin; k < begin + count; ++k) diagonal(k, k) = scale;
   }
 
+  /// y -= A x, of the matrix as it is before factor().
+  void subtract_product(std::span<const Vector> x, std::span<Vector> y) const
+  {
+    for (int i = 0; i < n_; ++i)
+      for (int e = row_begin_[i]; e < row_begin_[i + 1]; ++e)
+      {
+        const int j = columns_[e];
+        subtract_times<n, stride>(y[i].data(), pool_[e].data(), stride, x[j].data());
+        if (j > i) subtract_transposed_times<n, stride>(y[j].data(), pool_[e].data(), stride, x[i].data());
+      }
+  }
+
   /// A = U^T U. Returns false if a pivot is not positive definite.
   [[nodiscard]] bool factor()
   {

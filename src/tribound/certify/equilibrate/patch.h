@@ -76,18 +76,25 @@ class Patch
   void make_compatible();
   void find_rigid_motions();
   [[nodiscard]] Moments integrate() const;
+  [[nodiscard]] Dense<S::rigid, S::rigid> motion_gram(const Moments& moments, int n) const;
   void find_divergence_part(const Moments& moments);
   void find_skew_part(const Moments& moments);
   void assemble();
   void condense(CellPart& part);
   void assemble_load(CellPart& part, int problem);
   void decouple_fixed_components(int facet);
-  void fix_rigid_motions(int facet);
+  void fix_rigid_motions();
   void recover(CellPart& part, int problem);
   [[nodiscard]] UVector raw_load(const CellPart& part) const;
+  /// In patch_almost_rigid.templates.h: motions that Gamma_D hardly stops.
+  void load_almost_rigid();
+  void balance_almost_rigid();
+  [[nodiscard]] FacetVector trace(int facet, int motion, bool fixed) const;
+  [[nodiscard]] int holding_facet(int motion) const;
   [[nodiscard]] FacetVector moments_on_facet(int facet, int motion) const;
   [[nodiscard]] int local_vertex(Index facet) const;
   [[nodiscard]] double traction_work(int problem, int motion) const;
+  [[nodiscard]] double reaction_work(int motion) const;
   [[nodiscard]] const typename FacetData<dim, p>::FacetVector* traction(Index facet, int problem) const;
 
   const mesh::Mesh<dim>& mesh_;
@@ -105,6 +112,8 @@ class Patch
   std::array<Tensor<dim>, max_problems> w_;
   BlockCholesky<S::block> matrix_;
   std::array<std::vector<FacetVector>, max_problems> x_;
+  std::array<std::vector<FacetVector>, S::pairs> fixed_trace_;  ///< of the almost admissible rotations
+  std::array<std::vector<FacetVector>, S::pairs> almost_rigid_;
 };
 
 }  // namespace tribound::certify

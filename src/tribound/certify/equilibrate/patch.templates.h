@@ -54,13 +54,13 @@ void Patch<dim, p>::solve()
   order_facets();
   make_compatible();
   assemble();
-  fix_rigid_motions(static_cast<int>(facets_.size()) - 1);
+  fix_rigid_motions();
   if (!matrix_.factor()) throw failure();
   for (int problem = 0; problem < n_problems_; ++problem)
-  {
     matrix_.solve(std::span(x_[problem]).first(facets_.size()));
+  if (motions_.n_almost() > 0) balance_almost_rigid();
+  for (int problem = 0; problem < n_problems_; ++problem)
     for (int k = 0; k < n_cells_; ++k) recover(cells_[k], problem);
-  }
 }
 
 template <int dim, int p>
@@ -133,6 +133,7 @@ void Patch<dim, p>::assemble()
     condense(cells_[k]);
     for (int problem = 0; problem < n_problems_; ++problem) assemble_load(cells_[k], problem);
   }
+  if (motions_.n_almost() > 0) load_almost_rigid();
   for (std::size_t i = 0; i < facets_.size(); ++i)
   {
     if (!data_.is_boundary(facets_[i].number)) continue;
@@ -217,27 +218,27 @@ void Patch<dim, p>::decouple_fixed_components(int facet)
     matrix_.template decouple<S::facet>(facet, c * S::facet);
     for (int problem = 0; problem < n_problems_; ++problem)
       std::fill_n(x_[problem][facet].data() + c * S::facet, S::facet, 0.0);
+    for (int i = 0; i < motions_.n_almost(); ++i)
+      std::fill_n(almost_rigid_[i][facet].data() + c * S::facet, S::facet, 0.0);
   }
 }
 
 /// Multipliers that are the trace of an admissible rigid motion change nothing: makes the matrix definite by
-/// a term on one facet, which the solution, the data being compatible, does not feel.
+/// a term on one facet, which the solution, the data being compatible, does not feel. The same for motions
+/// that are almost admissible, whose multiples balance_almost_rigid() finds.
 template <int dim, int p>
-void Patch<dim, p>::fix_rigid_motions(int facet)
+void Patch<dim, p>::fix_rigid_motions()
 {
-  auto& diagonal = matrix_.block(facet, facet);
-  double scale = 0;
-  for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
-  for (int motion = 0; motion < motions_.size(); ++motion)
+  for (int motion = 0; motion < motions_.size() + motions_.n_almost(); ++motion)
   {
-    FacetVector trace = moments_on_facet(facet, motion);
-    if (data_.is_boundary(facets_[facet].number))
-      for (int c = 0; c < dim; ++c)
-        if (data_.fixes(facets_[facet].number, c)) std::fill_n(trace.data() + c * S::facet, S::facet, 0.0);
-    double square = 0;
-    for (int i = 0; i < S::block; ++i) square += trace[i] * trace[i];
+    const int facet = motion < motions_.size() ? static_cast<int>(facets_.size()) - 1 : holding_facet(motion);
+    auto& diagonal = matrix_.block(facet, facet);
+    double scale = 0;
+    for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
+    const FacetVector free = trace(facet, motion, false);
+    const double square = dot(free, free);
     for (int i = 0; i < S::block; ++i)
-      for (int j = 0; j < S::block; ++j) diagonal(i, j) += scale / square * trace[i] * trace[j];
+      for (int j = 0; j < S::block; ++j) diagonal(i, j) += scale / square * free[i] * free[j];
   }
 }
 

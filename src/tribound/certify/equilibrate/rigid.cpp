@@ -1,12 +1,20 @@
 #include "tribound/certify/equilibrate/rigid.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <algorithm>
 
 namespace tribound::certify
 {
 
 namespace
 {
+
+template <int dim>
+inline constexpr int n_spins = dim*(dim - 1) / 2;
+
+constexpr double admissible_share = 1e-8;
+constexpr double almost_admissible_share = 0.35;
 
 /// The skew tensor of pair i.
 template <int dim>
@@ -19,27 +27,46 @@ Tensor<dim> unit_spin(int i)
   return spin;
 }
 
-/// An orthonormal basis of the null space of a symmetric positive semidefinite matrix of entries of size 1:
-/// the first `nullity` columns.
-template <int n>
-struct NullSpace
+/// Rotations about the centre that are orthogonal in their values at the vertices of the fixed facets and in
+/// the fixed components of these, the least fixed first.
+template <int dim>
+struct SortedSpins
 {
-  explicit NullSpace(const Eigen::Matrix<double, n, n>& gram)
-  {
-    constexpr double threshold = 1e-10;  // the rows are of size 1 on the patch: this is an angle of 1e-5
-    if (gram.isZero(0))                  // inside Omega: spares the eigenvalues
-    {
-      nullity = n;
-      return;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> eigen(gram);
-    while (nullity < n && eigen.eigenvalues()[nullity] < threshold) ++nullity;  // they ascend
-    basis = eigen.eigenvectors();
-  }
+  using Gram = Eigen::Matrix<double, n_spins<dim>, n_spins<dim>>;
 
-  Eigen::Matrix<double, n, n> basis = Eigen::Matrix<double, n, n>::Identity();
-  int nullity = 0;
+  SortedSpins(const Point<dim>& centre, double size, std::span<const FixedFacet<dim>> facets);
+
+  Gram spins = Gram::Identity();  ///< columns: coefficients of the unit spins
+  Eigen::Matrix<double, n_spins<dim>, 1> shares =
+      Eigen::Matrix<double, n_spins<dim>, 1>::Zero();  ///< |z_fixed| / |z|
 };
+
+template <int dim>
+SortedSpins<dim>::SortedSpins(const Point<dim>& centre, double size, std::span<const FixedFacet<dim>> facets)
+{
+  constexpr int n = n_spins<dim>;
+  if (facets.empty()) return;
+  Eigen::Matrix<double, Eigen::Dynamic, n> fixed(static_cast<Eigen::Index>(dim * dim * facets.size()), n);
+  Eigen::Index n_fixed = 0;
+  Gram all = Gram::Zero();
+  for (const FixedFacet<dim>& facet : facets)
+    for (const Point<dim>& x : facet.vertices)
+    {
+      Eigen::Matrix<double, dim, n> values;
+      for (int i = 0; i < n; ++i) values.col(i) = unit_spin<dim>(i) * (x - centre) / size;
+      all += values.transpose() * values;
+      for (int a = 0; a < dim; ++a)
+        if (facet.fixed[a]) fixed.row(n_fixed++) = values.row(a);
+    }
+  // In coordinates y with |z| = |y|. Singular values, not eigenvalues of the Gram matrix, which would square
+  // the shares and lose those below 1e-8.
+  const Eigen::LLT<Gram> factor(all);
+  const Eigen::Matrix<double, Eigen::Dynamic, n> scaled =
+      factor.matrixL().solve(fixed.topRows(n_fixed).transpose()).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, n>> svd(scaled, Eigen::ComputeFullV);
+  for (int i = 0; i < svd.singularValues().size(); ++i) shares[n - 1 - i] = svd.singularValues()[i];
+  spins = factor.matrixU().solve(svd.matrixV()).rowwise().reverse();
+}
 
 }  // namespace
 
@@ -48,31 +75,18 @@ RigidMotions<dim>::RigidMotions(const Point<dim>& centre, double size,
                                 std::span<const FixedFacet<dim>> facets)
     : centre_(centre)
 {
-  constexpr int n_spins = dim * (dim - 1) / 2;
-  Tensor<dim> translations = Tensor<dim>::Zero();  // Gram matrices of the conditions
-  Eigen::Matrix<double, n_spins, n_spins> rotations = Eigen::Matrix<double, n_spins, n_spins>::Zero();
-  for (const FixedFacet<dim>& facet : facets)
-    for (int a = 0; a < dim; ++a)
-    {
-      if (!facet.fixed[a]) continue;
-      translations(a, a) += 1;
-      for (const Point<dim>& x : facet.vertices)
-      {
-        Eigen::Matrix<double, n_spins, 1> row;
-        for (int i = 0; i < n_spins; ++i) row[i] = (unit_spin<dim>(i) * (x - centre) / size)[a];
-        rotations += row * row.transpose();
-      }
-    }
-
-  const NullSpace<dim> t(translations);
-  const NullSpace<n_spins> r(rotations);
-  n_translations_ = t.nullity;
-  n_rotations_ = r.nullity;
   for (RigidField<dim>& motion : motions_) motion = {Point<dim>::Zero(), Tensor<dim>::Zero()};
-  for (int i = 0; i < n_translations_; ++i) motions_[i].translation = t.basis.col(i);
-  for (int i = 0; i < n_rotations_; ++i)
-    for (int k = 0; k < n_spins; ++k)
-      motions_[n_translations_ + i].gradient += r.basis(k, i) / size * unit_spin<dim>(k);
+  for (int a = 0; a < dim; ++a)
+    if (std::ranges::none_of(facets, [&](const FixedFacet<dim>& facet) { return facet.fixed[a]; }))
+      motions_[n_translations_++].translation[a] = 1;
+
+  const SortedSpins<dim> rotations(centre, size, facets);
+  for (int i = 0; i < n_spins<dim> && rotations.shares[i] < almost_admissible_share; ++i)
+  {
+    ++(rotations.shares[i] <= admissible_share ? n_rotations_ : n_almost_);
+    for (int k = 0; k < n_spins<dim>; ++k)
+      motions_[n_translations_ + i].gradient += rotations.spins(k, i) / size * unit_spin<dim>(k);
+  }
 }
 
 template class RigidMotions<2>;

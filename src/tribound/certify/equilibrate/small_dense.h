@@ -65,6 +65,14 @@ void add_multiple(Dense<rows, cols>& y, double a, const Dense<rows, cols>& x)
     lanes_at(y.data() + i) += a * lanes_at(x.data() + i);
 }
 
+template <int n>
+[[nodiscard]] double dot(const DenseVector<n>& x, const DenseVector<n>& y)
+{
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += x[i] * y[i];
+  return sum;
+}
+
 /// A B^T.
 template <int rows, int cols, int inner>
 [[nodiscard]] Dense<rows, cols> times_transposed(const Dense<rows, inner>& a, const Dense<cols, inner>& b)
