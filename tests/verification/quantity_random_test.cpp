@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "tribound/adapt/error_bars.h"
 #include "tribound/certify/energy/admissible_traction.h"
 #include "tribound/mesh/refine.h"
 #include "verification/random_quantities.h"
@@ -76,13 +77,19 @@ void try_random_block(unsigned seed, int p, Widths& widths)
     iterates.push_back(c.solve().u);
   for (const std::vector<double>& u : iterates)
   {
-    const EnergyBound bound = estimator(u);
+    // As runs have it, with facets cut where the state changes, and on the mesh itself.
+    const bool is_cut = seed % 2 != 0;
+    const EnergyBound bound =
+        is_cut ? adapt::energy_bound<dim>(c.form, c.method, u, asked.quantities) : estimator(u);
     ASSERT_EQ(bound.reason, "");
     for (std::size_t i = 0; i < asked.values.size(); ++i)
     {
       const double value = asked.values[i](rich, truth.u);
       expect_contains(bound.quantities[i], value, fmt::format(", seed {}", seed));
-      EXPECT_NEAR(bound.quantities[i].value, asked.values[i](c, u), 1e-12) << bound.quantities[i].name;
+      if (!is_cut)  // there tractions have other points
+      {
+        EXPECT_NEAR(bound.quantities[i].value, asked.values[i](c, u), 1e-12) << bound.quantities[i].name;
+      }
       widths.add(bound.quantities[i], value);
     }
   }
