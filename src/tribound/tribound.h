@@ -77,6 +77,7 @@
 #include "tribound/certify/bound/data_terms.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/friedrichs.h"
+#include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/energy/interval_comparison.h"
 #include "tribound/certify/energy/quantity_interval.h"
