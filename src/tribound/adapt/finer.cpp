@@ -16,14 +16,13 @@ namespace
 {
 
 using Functions = std::vector<std::span<const double>>;
-template <int dim>
-using Twins = std::span<const mesh::TwinFacets<dim>>;
 
 template <int dim>
 Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functions,
-                    std::span<const Index> marked, Twins<dim> twins)
+                    std::span<const Index> marked, const Refinement<dim>& refinement)
 {
-  auto finer = std::make_shared<mesh::Bisected<dim>>(mesh::bisect<dim>(from.mesh(), marked, dim, twins));
+  auto finer = std::make_shared<mesh::Bisected<dim>>(
+      mesh::bisect<dim>(from.mesh(), marked, refinement.times, refinement.twins));
   return {finer->mesh.n_cells(), [finer] { return std::move(finer->mesh); },
           [finer, &from, functions](const fem::LagrangeSpace<dim>& space)
           {
@@ -31,20 +30,22 @@ Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functi
             for (const std::span<const double> u : functions)
               carried.push_back(fem::nested_interpolant<dim>(from, u, finer->parent, space));
             return carried;
-          }};
+          },
+          finer->parent};
 }
 
 /// The same of a mesh that is shared out: its cells take the values at their nodes with them.
 template <int dim>
 Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& functions,
-                         std::span<const Index> marked, Twins<dim> twins)
+                         std::span<const Index> marked, const Refinement<dim>& refinement)
 {
-  auto part =
-      std::make_shared<mesh::BisectedPart<dim>>(mesh::bisect_part<dim>(from.mesh(), marked, dim, twins));
+  auto part = std::make_shared<mesh::BisectedPart<dim>>(
+      mesh::bisect_part<dim>(from.mesh(), marked, refinement.times, refinement.twins));
   const std::int64_t n_cells = from.mesh().ranks().sum(static_cast<std::int64_t>(part->cells.size()));
   auto balanced = std::make_shared<std::optional<mesh::Balanced<dim>>>();
   const std::size_t n_each = static_cast<std::size_t>(dim) * from.basis().n_nodes();
   const std::size_t n_functions = functions.size();
+  const mesh::Move move = refinement.move;
   return {n_cells,
           [=, &from]
           {
@@ -56,7 +57,7 @@ Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& f
             for (const std::vector<double>& row : rows) columns.push_back({row, n_each});
             const std::vector<double> values = fem::beside_each_other(columns, part->cells.size());
             *balanced = mesh::balance<dim>(from.mesh(), std::move(part->cells), values,
-                                           static_cast<int>(n_functions * n_each));
+                                           static_cast<int>(n_functions * n_each), move);
             return std::move((*balanced)->mesh);
           },
           [=](const fem::LagrangeSpace<dim>& space)
@@ -67,22 +68,23 @@ Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& f
                   space, (*balanced)->cells,
                   fem::cell_column((*balanced)->values, n_functions * n_each, k * n_each, n_each)));
             return carried;
-          }};
+          },
+          part->parent};
 }
 
 }  // namespace
 
 template <int dim>
 Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space, std::vector<std::span<const double>> functions,
-                      std::span<const Index> marked, std::span<const mesh::TwinFacets<dim>> twins)
+                      std::span<const Index> marked, const Refinement<dim>& refinement)
 {
-  return space.mesh().partition() ? bisected_part<dim>(space, functions, marked, twins)
-                                  : bisected<dim>(space, functions, marked, twins);
+  return space.mesh().partition() ? bisected_part<dim>(space, functions, marked, refinement)
+                                  : bisected<dim>(space, functions, marked, refinement);
 }
 
 template Finer<2> finer_mesh(const fem::LagrangeSpace<2>&, std::vector<std::span<const double>>,
-                             std::span<const Index>, std::span<const mesh::TwinFacets<2>>);
+                             std::span<const Index>, const Refinement<2>&);
 template Finer<3> finer_mesh(const fem::LagrangeSpace<3>&, std::vector<std::span<const double>>,
-                             std::span<const Index>, std::span<const mesh::TwinFacets<3>>);
+                             std::span<const Index>, const Refinement<3>&);
 
 }  // namespace tribound::adapt

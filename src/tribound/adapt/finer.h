@@ -10,10 +10,20 @@
 
 #include "tribound/fem/space.h"
 #include "tribound/mesh/mesh.h"
+#include "tribound/mesh/share_out.h"
 #include "tribound/mesh/twin_facets.h"
 
 namespace tribound::adapt
 {
+
+/// How cells are bisected, and where they go.
+template <int dim>
+struct Refinement
+{
+  std::span<const mesh::TwinFacets<dim>> twins{};  ///< of contact::twin_facets(); they stay such
+  int times = dim;
+  mesh::Move move = mesh::Move::where_unbalanced;
+};
 
 /// The next mesh, and how functions get there. Refers to the space and the values that it was made from.
 template <int dim>
@@ -23,16 +33,16 @@ struct Finer
   std::function<mesh::Mesh<dim>()> mesh;  ///< makes it, once
   /// The functions onto a space on it.
   std::function<std::vector<std::vector<double>>(const fem::LagrangeSpace<dim>&)> carry;
+  /// Per own cell, where cells do not move: the own cell of the mesh before that contains it.
+  std::span<const Index> parent;
 };
 
 /// The mesh of `space` with the marked cells bisected (mesh/bisect.h), and functions of the space, such as u.
-/// `twins`, of contact::twin_facets(), stay such.
 /// On a mesh that is shared out all ranks call it and its members together; cells take the values at their
 /// nodes with them. Throws InputError as bisect() and balance() do.
 template <int dim>
 [[nodiscard]] Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space,
                                     std::vector<std::span<const double>> functions,
-                                    std::span<const Index> marked,
-                                    std::span<const mesh::TwinFacets<dim>> twins = {});
+                                    std::span<const Index> marked, const Refinement<dim>& refinement = {});
 
 }  // namespace tribound::adapt

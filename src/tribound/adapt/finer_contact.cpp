@@ -1,58 +1,17 @@
 #include "tribound/adapt/finer_contact.h"
 
-#include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "tribound/adapt/finer.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/fem/nested.h"
-#include "tribound/mesh/bisect.h"
-#include "tribound/mesh/share_out.h"
 
 namespace tribound::adapt
 {
 
 namespace
 {
-
-/// A grid with the function that it is made for.
-template <int dim>
-struct Carried
-{
-  std::unique_ptr<const Grid<dim>> grid;
-  std::vector<double> u;
-  std::vector<Index> parent;
-};
-
-template <int dim>
-Carried<dim> bisected(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                      std::span<const Index> marked)
-{
-  constexpr int times = dim == 2 ? 6 : 3;
-  const fem::LagrangeSpace<dim>& space = form.space();
-  const std::vector<mesh::TwinFacets<dim>> twins = contact::twin_facets<dim>(space.mesh(), form.segments());
-  Carried<dim> result;
-  if (!space.mesh().partition())
-  {
-    mesh::Bisected<dim> finer = mesh::bisect<dim>(space.mesh(), marked, times, twins);
-    result.grid = std::make_unique<const Grid<dim>>(std::move(finer.mesh), space.degree());
-    result.u = fem::nested_interpolant<dim>(space, u, finer.parent, result.grid->space);
-    result.parent = std::move(finer.parent);
-    return result;
-  }
-  mesh::BisectedPart<dim> finer = mesh::bisect_part<dim>(space.mesh(), marked, times, twins);
-  const std::vector<double> values = fem::nested_values<dim>(space, u, finer.cells, finer.parent);
-  result.grid = std::make_unique<const Grid<dim>>(
-      contact::with_partners<dim>(mesh::in_place<dim>(space.mesh(), std::move(finer.cells)),
-                                  form.problem().pairs()),
-      space.degree());
-  std::vector<Index> cells(finer.parent.size());
-  std::iota(cells.begin(), cells.end(), 0);
-  result.u = fem::from_cell_values<dim>(result.grid->space, cells, values);
-  result.parent = std::move(finer.parent);
-  return result;
-}
 
 /// The local facet of a cell that contains a facet inside it; -1: none.
 template <int dim>
@@ -68,7 +27,7 @@ int facet_around(const mesh::CellMap<dim>& cell, const Point<dim>& centre)
 
 /// gamma of the slave of each segment, from the facet that it lies on.
 template <int dim>
-void inherit_gamma(const contact::NitscheForm<dim>& from, const Carried<dim>& to,
+void inherit_gamma(const contact::NitscheForm<dim>& from, const FinerContact<dim>& to,
                    std::span<contact::ContactSegment<dim>> segments)
 {
   constexpr int n = dim + 1;
@@ -91,7 +50,11 @@ void inherit_gamma(const contact::NitscheForm<dim>& from, const Carried<dim>& to
     const int around = facet_around<dim>(mesh::cell_map(coarse, parent), centre);
     gamma[static_cast<std::size_t>(n) * cell + local] = before[static_cast<std::size_t>(n) * parent + around];
   }
-  if (fine.partition()) mesh::cell_update<dim> (*fine.partition())(std::span(gamma), n);
+  if (fine.partition())
+  {
+    const GhostUpdate from_owners = mesh::cell_update<dim>(*fine.partition());
+    from_owners(std::span(gamma), n);
+  }
   for (contact::ContactSegment<dim>& segment : segments)
     segment.gamma = gamma[static_cast<std::size_t>(n) * segment.slave.facet.cell + segment.slave.facet.local];
 }
@@ -102,21 +65,27 @@ template <int dim>
 std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>& form,
                                                  std::span<const double> u)
 {
+  constexpr int times = dim == 2 ? 6 : 3;
   if (!certify::why_no_energy_bound(form).empty()) return nullptr;
+  const fem::LagrangeSpace<dim>& space = form.space();
   std::vector<Index> marked;
   for (const std::size_t k : certify::facets_in_transition<dim>(form, form.traction(u)))
     if (k < form.n_owned_segments()) marked.push_back(form.segments()[k].slave.facet.cell);
-  if (!form.space().mesh().ranks().any(!marked.empty())) return nullptr;
-  Carried<dim> carried = bisected<dim>(form, u, marked);
-  std::vector<contact::ContactSegment<dim>> segments =
-      contact::contact_segments<dim>(form.problem(), carried.grid->mesh, form.gamma0());
-  inherit_gamma<dim>(form, carried, segments);
+  if (!space.mesh().ranks().any(!marked.empty())) return nullptr;
+  const Finer<dim> finer = finer_mesh<dim>(space, {u}, marked,
+                                           {.twins = contact::twin_facets<dim>(space.mesh(), form.segments()),
+                                            .times = times,
+                                            .move = mesh::Move::never});
   auto result = std::make_unique<FinerContact<dim>>();
-  result->grid = std::move(carried.grid);
+  result->grid = std::make_unique<const Grid<dim>>(
+      contact::with_partners<dim>(finer.mesh(), form.problem().pairs()), space.degree());
+  result->u = std::move(finer.carry(result->grid->space).front());
+  result->parent.assign(finer.parent.begin(), finer.parent.end());
+  std::vector<contact::ContactSegment<dim>> segments =
+      contact::contact_segments<dim>(form.problem(), result->grid->mesh, form.gamma0());
+  inherit_gamma<dim>(form, *result, segments);
   result->form = std::make_unique<const contact::NitscheForm<dim>>(form.problem(), result->grid->space,
                                                                    form.gamma0(), std::move(segments));
-  result->u = std::move(carried.u);
-  result->parent = std::move(carried.parent);
   return result;
 }
 

@@ -280,7 +280,7 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
   Clock::time_point begin = Clock::now();
   const auto lap = [&] { return seconds_since(std::exchange(begin, Clock::now())); };
   const std::vector<Index> marked = mark(view());
-  const Finer<dim> finer = finer_mesh<dim>(current_->space, {level_.u}, marked, current_->twins());
+  const Finer<dim> finer = finer_mesh<dim>(current_->space, {level_.u}, marked, {.twins = current_->twins()});
   RefinementSeconds seconds{.bisect = lap()};
   NextMesh is_next{.cells = finer.n_cells, .ranks = current_->mesh.ranks()};
   if (limit)

@@ -93,7 +93,7 @@ std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& v
 {
   const fem::LagrangeSpace<dim>& space = path->grid().space;
   const std::vector<Index> marked = strategy.mark(view);
-  const Finer<dim> finer = finer_mesh<dim>(space, {}, marked, view.discrete.twins());
+  const Finer<dim> finer = finer_mesh<dim>(space, {}, marked, {.twins = view.discrete.twins()});
   NextMesh next{.cells = finer.n_cells, .ranks = space.mesh().ranks()};
   if (strategy.limit)
     if (std::string why = strategy.limit(next); !why.empty()) return why;

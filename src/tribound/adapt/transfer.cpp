@@ -210,8 +210,8 @@ class Transfer
     std::vector<std::span<const double>> functions = {step.level.u};
     Carrier<dim>::append(before_, functions);
     for (const Position<dim>& position : kept) Carrier<dim>::append(position, functions);
-    const Finer<dim> finer =
-        finer_mesh<dim>(level.discrete.space, functions, strategy_.mark(level), level.discrete.twins());
+    const Finer<dim> finer = finer_mesh<dim>(level.discrete.space, functions, strategy_.mark(level),
+                                             {.twins = level.discrete.twins()});
     std::shared_ptr<const Grid<dim>> grid;
     if (end_ = limit(finer, level.discrete.space, step.at->problem, grid); !end_.empty()) return end_;
     std::vector<std::vector<double>> carried = finer.carry(grid->space);

@@ -80,13 +80,6 @@ void copy_labels(const Ranks& ranks, MeshLabels& labels)
   copy_quadratic_facets(ranks, labels.quadratic_facets);
 }
 
-/// Cells that are many on one rank, or that are not along the curve.
-enum class Move
-{
-  where_unbalanced,
-  always
-};
-
 /// Where each cell is to be.
 template <int dim>
 std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
@@ -94,6 +87,7 @@ std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
 {
   constexpr double much = 1.05;  // of the mean: what goes on a rank for itself is too short to gain more
   const auto n = static_cast<double>(cells.size());
+  if (move == Move::never) return std::vector<int>(cells.size(), ranks.rank());
   if (move == Move::where_unbalanced && ranks.max(n) * ranks.size() <= much * ranks.sum(n))
     return std::vector<int>(cells.size(), ranks.rank());
   return balanced_ranks(ranks, centre_keys<dim>(cube, cells), std::vector<std::int64_t>(cells.size(), 1));
@@ -259,18 +253,11 @@ Mesh<dim> share_out(const Ranks& ranks, const Boxes& boxes)
 
 template <int dim>
 Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
-                      std::span<const double> values, int n_values)
+                      std::span<const double> values, int n_values, Move move)
 {
   const Partition<dim>& partition = *before.partition();
   return balance_cells<dim>(partition.ranks, {partition.cube, before.labels()}, std::move(cells), values,
-                            n_values, Move::where_unbalanced);
-}
-
-template <int dim>
-Mesh<dim> in_place(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells)
-{
-  const Partition<dim>& partition = *before.partition();
-  return make_part<dim>(partition.ranks, partition.cube, std::move(cells), before.labels());
+                            n_values, move);
 }
 
 template <int dim>
@@ -348,8 +335,6 @@ PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> 
 
 template Mesh<2> share_out(const Ranks&, const Mesh<2>*, Index);
 template Mesh<3> share_out(const Ranks&, const Mesh<3>*, Index);
-template Mesh<2> in_place(const Mesh<2>&, std::vector<CellRecord<2>>);
-template Mesh<3> in_place(const Mesh<3>&, std::vector<CellRecord<3>>);
 template Balanced<2> restore(const Ranks&, const Mesh<2>*, std::vector<CellRecord<2>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
@@ -357,7 +342,7 @@ template Mesh<2> with_more_ghosts(Mesh<2>, std::vector<Ghost<2>>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>, std::span<const int>);
 template Mesh<2> share_out(const Ranks&, const BoxMesh&);
 template Mesh<2> share_out(const Ranks&, const Boxes&);
-template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int);
+template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int, Move);
 template Balanced<3> restore(const Ranks&, const Mesh<3>*, std::vector<CellRecord<3>>,
                              std::span<const double>, int);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
@@ -365,6 +350,6 @@ template Mesh<3> with_more_ghosts(Mesh<3>, std::vector<Ghost<3>>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>, std::span<const int>);
 template Mesh<3> share_out(const Ranks&, const BoxMesh&);
 template Mesh<3> share_out(const Ranks&, const Boxes&);
-template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int);
+template Balanced<3> balance(const Mesh<3>&, std::vector<CellRecord<3>>, std::span<const double>, int, Move);
 
 }  // namespace tribound::mesh

@@ -28,6 +28,14 @@ template <int dim>
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const Boxes& boxes);
 
+/// When cells go where all ranks have as many, along the curve.
+enum class Move
+{
+  never,
+  where_unbalanced,  ///< if they are many on one rank
+  always
+};
+
 /// The part of a rank, and values that have come with the cells.
 template <int dim>
 struct Balanced
@@ -38,16 +46,12 @@ struct Balanced
 };
 
 /// A mesh of these cells, on each rank those that it has now, with `n_values` values each, which may be 0.
-/// Cells go where all ranks have as many, unless none has much more than the mean already. `before`: an
-/// earlier mesh that they come from. All ranks call it together. Throws InputError, on all ranks, where the
-/// cells do not make a mesh.
+/// `before`: an earlier mesh that they come from. All ranks call it together. Throws InputError, on all
+/// ranks, where the cells do not make a mesh.
 template <int dim>
 [[nodiscard]] Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
-                                    std::span<const double> values, int n_values);
-
-/// A mesh of these cells, of which each rank keeps those that it has. All ranks call it together.
-template <int dim>
-[[nodiscard]] Mesh<dim> in_place(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells);
+                                    std::span<const double> values, int n_values,
+                                    Move move = Move::where_unbalanced);
 
 /// A mesh of cells that a rank has from somewhere else, for example a file; `first`: the mesh they come from,
 /// on the first rank, elsewhere null. On one rank it is a whole mesh, that comes from bisect().
