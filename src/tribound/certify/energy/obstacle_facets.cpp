@@ -36,13 +36,9 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;
-  if (any(
-          [](const Segment& segment)
-          {
-            const bool matches = segment.master && contact::is_whole_facet<dim>(segment.slave) &&
-                                 contact::is_whole_facet<dim>(*segment.master);
-            return !segment.is_obstacle_facet() && !matches;
-          }))
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  if (any([&](const Segment& segment)
+          { return !segment.is_obstacle_facet() && !contact::matching_facets(mesh, segment); }))
     return "meshes of bodies in contact do not match";
   if (any([](const Segment& segment) { return segment.varying_normal != nullptr; }))
     return "a direction of contact varies along facets";

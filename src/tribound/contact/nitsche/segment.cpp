@@ -70,28 +70,36 @@ namespace
 /// Coordinates on reference facets agree to this where they are meant to be the same.
 constexpr double same_corner = 1e-6;
 
-/// The corners of a side as numbers of those of its facet; -1: inside it.
+/// The vertices of the facet of a side in the order of the side's corners; absent where one is inside it.
 template <int dim>
-std::array<int, dim> corner_numbers(const SegmentSide<dim>& side)
+std::optional<std::array<Index, dim>> vertices_at_corners(const mesh::Mesh<dim>& mesh,
+                                                          const SegmentSide<dim>& side)
 {
   const fem::Part<dim - 1> corners = fem::reference_simplex<dim - 1>();
-  std::array<int, dim> numbers{};
+  const std::array<Index, dim> of_facet = mesh::facet_vertices(mesh.cell(side.facet.cell), side.facet.local);
+  std::array<Index, dim> result{};
   for (int i = 0; i < dim; ++i)
   {
     const Point<dim - 1> x = side.on_facet(corners[i]);
     const auto found = std::ranges::find_if(
         corners, [&](const Point<dim - 1>& y) { return (x - y).cwiseAbs().maxCoeff() <= same_corner; });
-    numbers[i] = found == corners.end() ? -1 : static_cast<int>(found - corners.begin());
+    if (found == corners.end()) return std::nullopt;
+    result[i] = of_facet[found - corners.begin()];
   }
-  return numbers;
+  return result;
 }
 
 }  // namespace
 
 template <int dim>
-bool is_whole_facet(const SegmentSide<dim>& side)
+std::optional<mesh::TwinFacets<dim>> matching_facets(const mesh::Mesh<dim>& mesh,
+                                                     const ContactSegment<dim>& segment)
 {
-  return std::ranges::min(corner_numbers<dim>(side)) >= 0;
+  if (!segment.master) return std::nullopt;
+  const auto slave = vertices_at_corners(mesh, segment.slave);
+  const auto master = vertices_at_corners(mesh, *segment.master);
+  if (!slave || !master) return std::nullopt;
+  return mesh::TwinFacets<dim>{{segment.slave.facet.cell, segment.master->facet.cell}, {*slave, *master}};
 }
 
 template <int dim>
@@ -100,20 +108,7 @@ std::vector<mesh::TwinFacets<dim>> twin_facets(const mesh::Mesh<dim>& mesh,
 {
   std::vector<mesh::TwinFacets<dim>> result;
   for (const ContactSegment<dim>& segment : segments)
-  {
-    if (!segment.master || !is_whole_facet<dim>(segment.slave) || !is_whole_facet<dim>(*segment.master))
-      continue;
-    mesh::TwinFacets<dim>& twins = result.emplace_back();
-    for (int which = 0; which < 2; ++which)
-    {
-      const SegmentSide<dim>& side = which == 0 ? segment.slave : *segment.master;
-      const std::array<Index, dim> of_facet =
-          mesh::facet_vertices(mesh.cell(side.facet.cell), side.facet.local);
-      const std::array<int, dim> numbers = corner_numbers<dim>(side);
-      twins.cells[which] = side.facet.cell;
-      for (int i = 0; i < dim; ++i) twins.vertices[which][i] = of_facet[numbers[i]];
-    }
-  }
+    if (const auto twins = matching_facets(mesh, segment)) result.push_back(*twins);
   return result;
 }
 
@@ -198,8 +193,8 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
 
 template struct ContactSegment<2>;
 template struct ContactSegment<3>;
-template bool is_whole_facet(const SegmentSide<2>&);
-template bool is_whole_facet(const SegmentSide<3>&);
+template std::optional<mesh::TwinFacets<2>> matching_facets(const mesh::Mesh<2>&, const ContactSegment<2>&);
+template std::optional<mesh::TwinFacets<3>> matching_facets(const mesh::Mesh<3>&, const ContactSegment<3>&);
 template std::vector<mesh::TwinFacets<2>> twin_facets(const mesh::Mesh<2>&,
                                                       std::span<const ContactSegment<2>>);
 template std::vector<mesh::TwinFacets<3>> twin_facets(const mesh::Mesh<3>&,

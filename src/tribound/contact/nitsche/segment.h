@@ -92,11 +92,11 @@ struct ContactSegment
   [[nodiscard]] bool is_obstacle_facet() const { return !master && !slave.part; }
 };
 
-/// Whether a side of a segment is its whole facet, up to rounding.
+/// The facets of a segment, if it is all of both up to rounding: they match.
 template <int dim>
-[[nodiscard]] bool is_whole_facet(const SegmentSide<dim>& side);
-
-/// The facets that match: segments that are whole facets on both sides.
+[[nodiscard]] std::optional<mesh::TwinFacets<dim>> matching_facets(const mesh::Mesh<dim>& mesh,
+                                                                   const ContactSegment<dim>& segment);
+/// Those of all segments.
 template <int dim>
 [[nodiscard]] std::vector<mesh::TwinFacets<dim>> twin_facets(const mesh::Mesh<dim>& mesh,
                                                              std::span<const ContactSegment<dim>> segments);
