@@ -137,30 +137,36 @@ template <int dim>
 Matrix BalanceConditions<dim>::tangents(const State& state) const
 {
   const std::vector<Point<dim>> t = shifted(state.lambda);
-  std::vector<Matrix> of_facets(form_.n_owned_segments());
+  struct OfFacet
+  {
+    std::vector<int> motions;
+    Matrix tangent;
+    Matrix gram;
+  };
+  std::vector<OfFacet> of_facets(form_.n_owned_segments());
   const auto on_facet = [&](std::size_t k)
   {
+    auto& [motions, tangent, gram] = of_facets[k];
     std::vector<Columns> z;
-    for (Jump& jump : jumps(k)) z.push_back(std::move(jump.values));
+    for (Jump& jump : jumps(k))
+    {
+      motions.push_back(jump.motion);
+      z.push_back(std::move(jump.values));
+    }
     if (z.empty()) return;
     const double det = form_.segments()[k].det();
-    const auto m = static_cast<Eigen::Index>(z.size());
-    of_facets[k].resize(m, 2 * m);
-    of_facets[k] << det * fit_.tangent(fit_.columns(k, t), fit_.cones(k), z), det * fit_.gram(z);
+    tangent = det * fit_.tangent(fit_.columns(k, t), fit_.cones(k), z);
+    gram = det * fit_.gram(z);
   };
   parallel_for(of_facets.size(), on_facet);
   Matrix sums = Matrix::Zero(n(), 2 * n());
-  for (std::size_t k = 0; k < of_facets.size(); ++k)
-  {
-    const Matrix& of_facet = of_facets[k];
-    const std::vector<Jump> seen = jumps(k);
-    for (Eigen::Index i = 0; i < of_facet.rows(); ++i)
-      for (Eigen::Index j = 0; j < of_facet.rows(); ++j)
+  for (const auto& [motions, tangent, gram] : of_facets)
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      for (std::size_t j = 0; j < motions.size(); ++j)
       {
-        sums(seen[i].motion, seen[j].motion) += of_facet(i, j);
-        sums(seen[i].motion, n() + seen[j].motion) += of_facet(i, of_facet.rows() + j);
+        sums(motions[i], motions[j]) += tangent(i, j);
+        sums(motions[i], n() + motions[j]) += gram(i, j);
       }
-  }
   form_.space().mesh().ranks().sum(std::span(sums.data(), sums.size()));
   return sums;
 }
