@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "tribound/certify/equilibrate/sorted_cell.h"
+#include "tribound/certify/equilibrate/rigid.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -13,8 +13,6 @@ namespace tribound::certify
 namespace
 {
 
-template <int dim>
-inline constexpr int n_spins = dim*(dim - 1) / 2;
 template <int dim>
 using Spin = Eigen::Matrix<double, n_spins<dim>, 1>;
 template <int dim>

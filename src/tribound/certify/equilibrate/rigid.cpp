@@ -10,9 +10,6 @@ namespace tribound::certify
 namespace
 {
 
-template <int dim>
-inline constexpr int n_spins = dim*(dim - 1) / 2;
-
 constexpr double admissible_share = 1e-8;
 constexpr double almost_admissible_share = 0.35;
 

@@ -12,6 +12,10 @@
 namespace tribound::certify
 {
 
+/// Of a basis of the skew tensors.
+template <int dim>
+inline constexpr int n_spins = dim*(dim - 1) / 2;
+
 /// A Dirichlet facet at the vertex: its vertices and the components fixed there.
 template <int dim>
 struct FixedFacet
@@ -37,7 +41,7 @@ template <int dim>
 class RigidMotions
 {
  public:
-  static constexpr int n_all = dim + dim * (dim - 1) / 2;
+  static constexpr int n_all = dim + n_spins<dim>;
 
   /// First the admissible translations, then the admissible rotations (s <= 1e-8, an angle that rounding
   /// explains), then those that are almost admissible (s < 0.35). (A motion that vanishes at the centre in
