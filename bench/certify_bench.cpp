@@ -5,153 +5,27 @@
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <memory>
-#include <optional>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tribound/algebra/petsc.h"
-#include "tribound/base/clock.h"
+#include "bench/block.h"
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/bound/transfer.h"
 #include "tribound/certify/bound/transfer_terms.h"
 #include "tribound/certify/energy/admissible_stress.h"
-#include "tribound/certify/energy/balanced_solution.h"
-#include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
-#include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/contact/nitsche/penalty.h"
 #include "tribound/fem/degree.h"
-#include "tribound/mesh/box.h"
 
 namespace
 {
 
 using namespace tribound;
-
-/// Squares or cubes across the height of the box, such that it has 100k triangles or tetrahedra; fewer
-/// tetrahedra at higher degrees.
-template <int dim>
-int cells_across(int degree)
-{
-  if constexpr (dim == 2) return 158;                 // 99 856 triangles
-  constexpr std::array tetrahedra = {20, 16, 11, 7};  // 96 000, 49 152, 15 972, 4 116
-  return tetrahedra[degree - 1];
-}
-
-/// How far two bodies are apart, so that a point tells on which of them it is; the gap is given as 0.
-constexpr double apart = 0.01;
-
-/// The block (0, 2) x (0, 1) [x (0, 1)] with n squares or cubes across; or with about as many cells in all
-/// two of its size, one below the other, the lower one with a square or cube less across.
-template <int dim>
-mesh::Boxes blocks(int n, int bodies)
-{
-  if (bodies == 2) n = static_cast<int>(std::lround(n / std::pow(2.0, 1.0 / dim)));
-  mesh::BoxMesh block{{0, 0}, {2, 1}, {2 * n, n}, {}};
-  if constexpr (dim == 3) block = {{0, 0, 0}, {2, 1, 1}, {2 * n, n, n}, {}};
-  mesh::Boxes result = {{"upper", block}};
-  if (bodies == 1) return result;
-  block.lower[1] = -1 - apart;
-  block.upper[1] = -apart;
-  block.cells = {2 * (n - 1), n - 1};
-  if constexpr (dim == 3) block.cells.push_back(n - 1);
-  result.push_back({"lower", block});
-  return result;
-}
-
-/// Moves the vertices inside the boxes by up to a fifth of the mesh size: no two cells keep the same shape.
-template <int dim>
-void distort(mesh::MeshData<dim>& data, const mesh::Boxes& boxes)
-{
-  std::mt19937 generator(1);
-  const double most = 0.2 / boxes[0].box.cells[1];
-  std::uniform_real_distribution<double> shift(-most, most);
-  for (Point<dim>& x : data.vertices)
-  {
-    const bool inside =
-        std::ranges::any_of(boxes,
-                            [&](const mesh::NamedBox& named)
-                            {
-                              const Eigen::Map<const Point<dim>> lower(named.box.lower.data());
-                              const Eigen::Map<const Point<dim>> upper(named.box.upper.data());
-                              return ((x - lower).array() > 1e-9).all() && ((upper - x).array() > 1e-9).all();
-                            });
-    for (int c = 0; c < dim; ++c)
-      if (inside) x[c] += shift(generator);
-  }
-}
-
-template <int dim>
-mesh::Mesh<dim> block_mesh(int n, bool distorted, int bodies)
-{
-  const mesh::Boxes boxes = blocks<dim>(n, bodies);
-  mesh::MeshData<dim> data = mesh::box_meshes<dim>(boxes);
-  if (distorted) distort<dim>(data, boxes);
-  return mesh::Mesh<dim>(std::move(data));
-}
-
-/// Clamped on the left, pressed with friction on a floor or on a second block that is clamped below.
-template <int dim>
-problem::Problem<dim> block_problem(const mesh::Mesh<dim>& mesh, int bodies)
-{
-  std::array<std::optional<problem::Field>, dim> zero;
-  zero.fill(0.0);
-  std::vector<problem::BoundaryCondition<dim>> conditions = {
-      problem::with_displacement<dim>("upper.left", zero),
-      problem::with_traction<dim>("upper.top", {0.0, -0.1})};
-  std::vector<problem::ContactPair<dim>> pairs;
-  const problem::Contact contact(problem::Tresca(0.03));
-  if (bodies == 1)
-    conditions.push_back(problem::with_contact<dim>("upper.bottom", contact.law));
-  else
-  {
-    conditions.push_back(problem::with_displacement<dim>("lower.bottom", zero));
-    pairs.push_back({.slave = {"upper.bottom"}, .master = {"lower.top"}, .contact = contact});
-  }
-  return problem::Problem<dim>(mesh, {{.name = {}, .material = problem::lame(1.0, 0.3)}}, conditions,
-                               std::move(pairs));
-}
-
-/// A smooth displacement of the upper block and a traction that is not its own: what equilibrate() costs does
-/// not depend on them, and the patch problems are solvable for any. The lower block stays where it is, so
-/// that contact is that with the floor.
-template <int dim>
-struct Block
-{
-  Block(int degree, bool distorted, int bodies) : Block(degree, distorted, bodies, cells_across<dim>(degree))
-  {
-  }
-  Block(int degree, bool distorted, int bodies, int across)
-      : mesh(block_mesh<dim>(across, distorted, bodies)),
-        problem(block_problem(mesh, bodies)),
-        space(mesh, degree),
-        form(problem, space, contact::default_gamma0(degree))
-  {
-    for (const Point<dim>& x : space.node_points())
-      for (int c = 0; c < dim; ++c)
-        u.push_back(x[1] < -apart / 2 ? 0
-                                      : x[0] * (0.02 * std::sin(3 * x[0] + x[dim - 1] + c) - 0.03 * x[1]));
-    t = form.traction(u);
-    for (Point<dim>& traction : t) traction *= 1.1;
-  }
-  Block(const Block&) = delete;
-  Block& operator=(const Block&) = delete;
-
-  mesh::Mesh<dim> mesh;
-  problem::Problem<dim> problem;
-  fem::LagrangeSpace<dim> space;
-  contact::NitscheForm<dim> form;
-  std::vector<double> u;
-  std::vector<Point<dim>> t;
-};
+using bench::Block;
 
 /// The block of these arguments, kept until another one is asked for.
 template <int dim>
@@ -260,79 +134,6 @@ void admissible_stress(benchmark::State& state)
   count_per_cell(state, b.mesh.n_cells());
 }
 
-/// CPU seconds of the work.
-template <class Work>
-double cpu_seconds_of(const Work& work)
-{
-  const double before = cpu_seconds();
-  work();
-  return cpu_seconds() - before;
-}
-
-/// u~ of the block, as the bound of the error in the energy norm needs it. For p = 1 the loads are those of
-/// degree 2.
-template <int dim>
-class BalancedBlock
-{
- public:
-  explicit BalancedBlock(const Block<dim>& block)
-      : block_(block),
-        space_(block.mesh, std::max(block.space.degree(), 2)),
-        form_(block.problem, space_, block.form.gamma0()),
-        t_(form_.traction(certify::raised(block.space, block.u, space_))),
-        motions_(block.problem, block.mesh)
-  {
-  }
-
-  [[nodiscard]] std::vector<double> solve() const
-  {
-    const bool is_raised = block_.space.degree() < space_.degree();
-    return certify::balanced_solution<dim>(form_, is_raised ? block_.space : space_, block_.u, t_, motions_,
-                                           {});
-  }
-
- private:
-  const Block<dim>& block_;
-  fem::LagrangeSpace<dim> space_;
-  contact::NitscheForm<dim> form_;
-  std::vector<Point<dim>> t_;
-  certify::FreeMotions<dim> motions_;
-};
-
-/// The bound of the error in the energy norm with all that is made once for a mesh, without quantities;
-/// beside it, in turn, its linear system alone, the equilibration of the same form, and the bound of the
-/// residual. On a small block, where the system does not hide the rest.
-template <int dim>
-void energy_bound(benchmark::State& state)
-{
-  const Block<dim> b(static_cast<int>(state.range(0)), true, 1, static_cast<int>(state.range(1)));
-  const BalancedBlock<dim> balanced(b);
-  std::array<double, 4> seconds{};
-  for (auto _ : state)
-  {
-    seconds[0] += cpu_seconds_of(
-        [&]
-        {
-          const certify::EnergyBound bound = certify::EnergyEstimator<dim>(b.form, {})(b.u);
-          if (!bound.reason.empty()) state.SkipWithError(bound.reason.c_str());
-        });
-    seconds[1] += cpu_seconds_of([&] { benchmark::DoNotOptimize(balanced.solve()); });
-    seconds[2] +=
-        cpu_seconds_of([&] { benchmark::DoNotOptimize(certify::equilibrate<dim>(b.form, b.u, b.t, 1)); });
-    seconds[3] += cpu_seconds_of(
-        [&]
-        {
-          benchmark::DoNotOptimize(
-              certify::estimate<dim>(b.form, b.u, certify::equilibrate<dim>(b.form, b.u, b.t, 1)));
-        });
-  }
-  const std::array names = {"bound", "system", "equilibration", "residual"};
-  for (std::size_t i = 0; i < names.size(); ++i)
-    state.counters[names[i]] = seconds[i] / (static_cast<double>(state.iterations()) * b.mesh.n_cells());
-  state.counters["ratio"] = (seconds[0] - seconds[1]) / seconds[2];
-  state.counters["cells"] = b.mesh.n_cells();
-}
-
 /// Of the segments of Gamma_C.
 template <int dim>
 void count_per_segment(benchmark::State& state, const Block<dim>& b)
@@ -424,14 +225,6 @@ BENCHMARK(admissible_stress<3>)
     ->ArgNames({"p", "distorted", "bodies"})
     ->ArgsProduct({{2, 3, 4}, {1}, {1}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(energy_bound<2>)
-    ->ArgNames({"p", "across"})
-    ->ArgsProduct({{1, 2, 3, 4}, {32}})
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(energy_bound<3>)
-    ->ArgNames({"p", "across"})
-    ->ArgsProduct({{1, 2, 3}, {6}})
-    ->Unit(benchmark::kMillisecond);
 BENCHMARK(contact_terms<2>)
     ->ArgNames({"p", "distorted", "bodies"})
     ->ArgsProduct({{1, 2, 3, 4}, {1}, {1, 2}})
@@ -449,11 +242,4 @@ BENCHMARK(transfer<3>)
     ->ArgsProduct({{1, 2, 3}, {1}, {2}})
     ->Unit(benchmark::kMillisecond);
 
-int main(int argc, char** argv)
-{
-  const tribound::algebra::Environment petsc;
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
-}
+BENCHMARK_MAIN();
