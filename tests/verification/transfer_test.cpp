@@ -7,75 +7,25 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
-#include <memory>
-#include <numeric>
 #include <vector>
 
-#include "support/bonded_path.h"
 #include "support/input_error.h"
 #include "tribound/adapt/contact_functions.h"
 #include "tribound/adapt/finer.h"
-#include "tribound/adapt/transfer.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/simplex_map.h"
-#include "tribound/io/record/load_step_record.h"
-#include "tribound/mesh/bisect.h"
+#include "verification/transfer_paths.h"
 
 namespace tribound::transfers
 {
 namespace
 {
 
-using test::bonded_laws;
-using test::path_of_t;
-using test::peeled;
-using test::peeled_mesh;
-using test::ProblemData;
-
-adapt::Method method_of(int degree)
-{
-  adapt::Method method{.degree = degree, .newton = {.tolerance = 1e-12}};
-  method.stopping.criterion = adapt::Stopping::last_bounded;
-  return method;
-}
-
-/// Problem and path of bonded_path.h.
-template <int dim>
-struct Peeled
-{
-  Peeled(const problem::ContactLaw& law, bool pairs, int degree, const adapt::PathOptions& options = {})
-      : mesh(peeled_mesh<dim>(pairs)),
-        problem(peeled<dim>(law, pairs).on(mesh)),
-        method(method_of(degree)),
-        path(problem, method, options, mesh::Mesh<dim>(peeled_mesh<dim>(pairs)))
-  {
-  }
-
-  mesh::Mesh<dim> mesh;
-  problem::Problem<dim> problem;
-  adapt::Method method;
-  adapt::LoadPath<dim> path;
-};
-
-template <int dim>
-mesh::Mesh<dim> refined(const mesh::Mesh<dim>& mesh)
-{
-  std::vector<Index> all(mesh.n_cells());
-  std::iota(all.begin(), all.end(), 0);
-  return std::move(mesh::bisect<dim>(mesh, all).mesh);
-}
-
 /// Bisects all cells, `times` in all.
 template <int dim>
 adapt::Strategy<dim> everywhere(int times)
 {
   return adapt::make_strategy<dim>({.marking = {.strategy = adapt::Marking::uniform}, .max_levels = times});
-}
-
-adapt::PathProgram through(std::vector<double> t)
-{
-  return {.targets = std::move(t)};
 }
 
 /// The segment that x lies in; the last has no other.
@@ -202,47 +152,6 @@ TEST(Transfer, OtherPathsDifferByLessThanTheirBounds)
   }
 }
 
-struct Followed
-{
-  certify::Verdict verdict{certify::RunStatus::failed, {}};
-  std::vector<double> t;
-  std::vector<double> bound;  ///< over the largest stress so far
-  std::vector<std::int64_t> cells;
-  std::vector<std::int64_t> meshes;  ///< cells of each, after the first
-  int left = 0;
-  std::optional<io::LoadStepRecord> record;
-  adapt::PathEnd end;
-};
-
-template <int dim>
-Followed followed(Peeled<dim>& run, const adapt::PathProgram& program, const adapt::Strategy<dim>& strategy)
-{
-  Followed result;
-  const adapt::ReplayObserver<dim> observer{
-      .begins = [&](int number, const adapt::Grid<dim>&) { EXPECT_EQ(number, 0); },
-      .step =
-          [&](const adapt::LoadStep<dim>& step)
-      {
-        result.t.push_back(step.t);
-        result.bound.push_back(step.level.estimate.total_sharp / step.largest_sigma);
-        result.cells.push_back(step.at->discrete.mesh.n_cells());
-        result.record = io::load_step_record<dim>(step, result.record ? &*result.record : nullptr);
-        EXPECT_EQ(step.number, static_cast<int>(result.t.size()));
-        EXPECT_EQ(step.level.u.size(), run.path.grid().space.n_dofs());
-      },
-      .path_end = [&](const adapt::PathEnd& end) { result.end = end; },
-      .complete = [&](const adapt::PassView<dim>& mesh)
-      { EXPECT_EQ(mesh.number, static_cast<int>(result.meshes.size())); },
-      .finer =
-          [&](const adapt::PassView<dim>& left, const adapt::Grid<dim>& grid)
-      {
-        EXPECT_EQ(left.number, result.left++);
-        result.meshes.push_back(grid.mesh.n_cells());
-      }};
-  result.verdict = adapt::transfer<dim>(run.path, program, strategy, observer);
-  return result;
-}
-
 TEST(Transfer, RefinesUntilEveryStepHasTheTolerance)
 {
   for (const bool pairs : {false, true})
@@ -303,104 +212,6 @@ TEST(Transfer, PairsIn3DAreRefused)
   EXPECT_THAT(
       test::message_of([&] { (void)adapt::transfer<3>(run.path, through({1}), everywhere<3>(1), {}); }),
       testing::HasSubstr("which between bodies in 3D cannot be done"));
-}
-
-/// Along a path that goes by damage t stays where the step on the coarser mesh has found it, and the next
-/// steps and the search for the peak go on from functions of the finer mesh.
-TEST(Transfer, PathsUnderControl)
-{
-  const problem::ContactLaw law = problem::JointLaw({.tension = {0.05, 0.003}, .coefficient = 0.5});
-  for (const bool by_displacement : {false, true})
-  {
-    const double tolerance = by_displacement ? 0.047 : 0.05;
-    Peeled<2> run(law, false, 2, {.tolerance = tolerance});
-    adapt::PathProgram program{.targets = {0.2, 0.4},
-                               .following = adapt::Following::damage,
-                               .damage_step = 0.15,
-                               .enough_damage = 0.7};
-    if (by_displacement)
-    {
-      program.following = adapt::Following::displacement;
-      program.displacement = {.gauges = {{.boundary = "right", .component = 1}}, .step = 0.01, .until = 0.12};
-    }
-    const Followed path = followed<2>(run, program, adapt::make_strategy<2>({.tolerance = tolerance}));
-    EXPECT_EQ(path.end.failure, "");
-    EXPECT_THAT(path.end.notes, testing::IsEmpty());
-    EXPECT_EQ(path.verdict.status, certify::RunStatus::certified) << path.verdict.reason;
-    EXPECT_GT(path.t.size(), 5U);
-    EXPECT_GT(path.cells.back(), path.cells.front());
-    EXPECT_EQ(run.path.last()->control, by_displacement ? "displacement" : "damage");
-  }
-}
-
-/// A block on a bond that is broken from x = 1.2 on, lifted at its top by 0.04 t: t has a peak and falls
-/// back.
-ProblemData<2> torn()
-{
-  ProblemData<2> data{
-      .boundaries = {problem::with_displacement<2>("top", {problem::Field(0.0), test::formula("0.04*t")}),
-                     test::obstacle<2>("bottom", problem::JointLaw({.tension = {0.05, 0.0005}}))}};
-  data.boundaries.back().contact->broken = test::formula("x > 1.2");
-  return data;
-}
-
-adapt::PathProgram beyond_the_peak()
-{
-  return {.targets = {0.2, 0.4},
-          .following = adapt::Following::damage,
-          .damage_step = 0.1,
-          .enough_damage = 0.95};
-}
-
-/// Its peak is nearer than a hundredth to that of a mesh that is fine from the beginning.
-TEST(Transfer, APeakIsThatOfAFineMesh)
-{
-  const adapt::PathProgram program = beyond_the_peak();
-  const adapt::Method method = method_of(2);
-  const mesh::Mesh<2> coarse(peeled_mesh<2>(false));
-  const problem::Problem<2> problem = torn().on(coarse);
-  adapt::LoadPath<2> on_fine(problem, method, {}, refined<2>(refined<2>(coarse)));
-  const adapt::PathEnd fine = adapt::follow<2>(on_fine, program, {}, {});
-  ASSERT_TRUE(fine.peak);
-
-  adapt::LoadPath<2> path(problem, method, {.tolerance = 0.06}, mesh::Mesh<2>(peeled_mesh<2>(false)));
-  adapt::PathEnd end;
-  const certify::Verdict verdict =
-      adapt::transfer<2>(path, program, adapt::make_strategy<2>({.tolerance = 0.06, .max_levels = 12}),
-                         {.path_end = [&](const adapt::PathEnd& e) { end = e; }});
-  EXPECT_EQ(end.failure, "");
-  EXPECT_TRUE(certify::is_bound(verdict.status)) << verdict.reason;
-  EXPECT_THAT(end.notes, testing::IsEmpty());
-  ASSERT_TRUE(end.peak);
-  EXPECT_NEAR(end.peak->t, fine.peak->t, 0.01 * fine.peak->t);
-}
-
-/// The peak of the finer mesh may be below the t that the coarser one has found, so that there is no solution
-/// on it, or one on another branch: the step then stays on the coarser one.
-TEST(Transfer, AStepBeyondThePeakOfTheFinerMeshStays)
-{
-  const adapt::Method method = method_of(1);
-  const problem::Problem<2> problem = torn().on(mesh::Mesh<2>(peeled_mesh<2>(false)));
-  const auto notes = [&](double tolerance)
-  {
-    adapt::LoadPath<2> path(problem, method, {.tolerance = tolerance}, mesh::Mesh<2>(peeled_mesh<2>(false)));
-    adapt::PathEnd end;
-    const certify::Verdict verdict =
-        adapt::transfer<2>(path, beyond_the_peak(), adapt::make_strategy<2>({.tolerance = tolerance}),
-                           {.path_end = [&](const adapt::PathEnd& e) { end = e; }});
-    EXPECT_EQ(end.failure, "");
-    EXPECT_EQ(verdict.status, end.notes.empty() ? certify::RunStatus::certified : certify::RunStatus::budget);
-    EXPECT_GT(path.last()->number, 10);
-    EXPECT_NEAR(end.peak.value_or(adapt::Peak()).t, 0.74, 0.01);
-    return end.notes;
-  };
-  // On which meshes a step is beyond the peak depends on the tolerance.
-  std::vector<std::string> all;
-  for (const double tolerance : {0.07, 0.1, 0.12, 0.18, 0.25})
-    std::ranges::move(notes(tolerance), std::back_inserter(all));
-  EXPECT_THAT(all, testing::Each(testing::HasSubstr("stays on the coarser mesh: ")));
-  EXPECT_THAT(all, testing::Contains(testing::HasSubstr("the solution is on another branch")));
-  EXPECT_THAT(all, testing::Contains(testing::HasSubstr("above newton.tolerance")));
 }
 
 /// Work is made from forces of two steps, the earlier of which have been carried.
