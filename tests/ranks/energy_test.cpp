@@ -133,14 +133,30 @@ std::vector<double> energy_bound(const mesh::Mesh<dim>& mesh, const ProblemData<
           eta.gap,   eta.correction, eta.contact, mesh.ranks().sum(cells)};
 }
 
-/// Ends and values of the intervals of a wave, with their sizes for rounding.
+/// A block pressed on obstacles.
 template <int dim>
-std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, int degree)
+ProblemData<dim> on_obstacles()
 {
-  using problem::QuantityKind;
   ProblemData<dim> data = pressed_block<dim>(Coulomb(0.3));
   data.boundaries.push_back(obstacle<dim>(dim == 2 ? "right" : "front", Tresca(0.1), 0.02));
   if (dim == 2) std::erase_if(data.boundaries, [](const auto& b) { return b.name == "right" && !b.contact; });
+  return data;
+}
+
+/// A block pressed on another one, which is free where it is fixed.
+template <int dim>
+ProblemData<dim> on_another()
+{
+  return {.boundaries = {clamped<dim>("left"), clamped<dim>("bottom_below"), loaded<dim>("top", 0.01, -0.1)},
+          .pairs = {pair<dim>("bottom", "top_below", Coulomb(0.3))}};
+}
+
+/// Ends and values of the intervals of a wave, with their sizes for rounding.
+template <int dim>
+std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const ProblemData<dim>& data,
+                                             int degree)
+{
+  using problem::QuantityKind;
   const problem::Problem<dim> problem = data.on(mesh);
   const fem::LagrangeSpace<dim> space(mesh, degree);
   const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
@@ -153,6 +169,7 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, int de
       {.name = "safety", .kind = QuantityKind::safety_factor, .boundary = "bottom"},
       {.name = "u", .kind = QuantityKind::mean_displacement, .boundary = "top"},
       {.name = "u of contact", .kind = QuantityKind::mean_displacement, .boundary = "bottom"}};
+  EXPECT_EQ(certify::why_no_energy_bound(form), "");
   const certify::EnergyBound bound =
       certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct}, quantities)(u);
   EXPECT_EQ(bound.reason, "");
@@ -173,14 +190,20 @@ TEST(Quantities, HaveTheIntervalsOfTheWhole)
   const Ranks ranks = Ranks::world();
   const auto expect_same_intervals = [&]<int dim>(int degree)
   {
-    const mesh::Mesh<dim> whole(distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
-    const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr);
-    const auto expected = intervals<dim>(whole, degree);
-    const auto found = intervals<dim>(part, degree);
-    ASSERT_EQ(found.size(), expected.size());
-    for (std::size_t i = 0; i < found.size(); ++i)
-      EXPECT_NEAR(found[i][0], expected[i][0], 1e-9 * (expected[i][1] + std::abs(expected[i][0])))
-          << dim << "D, p = " << degree << ", " << i;
+    for (const bool is_on_another : {false, true})
+    {
+      const ProblemData<dim> data = is_on_another ? on_another<dim>() : on_obstacles<dim>();
+      const mesh::Mesh<dim> whole(is_on_another ? renumbered(matching_blocks<dim>(2), degree)
+                                                : distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
+      const mesh::Mesh<dim> part = contact::with_partners<dim>(
+          mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr), data.pairs);
+      const auto expected = intervals<dim>(whole, data, degree);
+      const auto found = intervals<dim>(part, data, degree);
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i][0], expected[i][0], 1e-9 * (expected[i][1] + std::abs(expected[i][0])))
+            << dim << "D, p = " << degree << ", " << i;
+    }
   };
   for (int degree = 1; degree <= 3; ++degree) expect_same_intervals.template operator()<2>(degree);
   for (int degree = 1; degree <= 2; ++degree) expect_same_intervals.template operator()<3>(degree);

@@ -38,6 +38,24 @@ mesh::MeshData<dim> matching_blocks(int finer = 1)
   return on_block<dim>(box<dim>(Point<dim>::Zero(), corner, cells), cells);
 }
 
+/// Two blocks side by side, (0,1) x (0,1) and (1,2) x (0,1) (x (0,1)), whose names end with "_b", on a third
+/// one, as above, all meshes matching.
+template <int dim>
+mesh::MeshData<dim> three_blocks(int finer = 1)
+{
+  std::array<int, dim> cells;
+  cells.fill(dim == 2 ? 2 * finer : finer);
+  Point<dim> corner = Point<dim>::Zero();
+  corner[0] = 1;
+  const mesh::MeshData<dim> left = box<dim>(Point<dim>::Zero(), Point<dim>::Ones(), cells);
+  const mesh::MeshData<dim> right = box<dim>(corner, Point<dim>(corner + Point<dim>::Ones()), cells);
+  cells[0] *= 2;
+  mesh::MeshData<dim> data = on_block<dim>(side_by_side(left, right, "_b"), cells);
+  data.interfaces[0].sides[0].emplace_back("bottom_b");
+  data.interfaces.push_back({{{{"right"}, {"left_b"}}}});
+  return data;
+}
+
 /// Two blocks that touch, on meshes that do not match; names of the lower one end with "_below".
 template <int dim>
 mesh::MeshData<dim> two_blocks()

@@ -52,7 +52,7 @@ std::vector<QuantityInterval> intervals(const DiscreteProblem<dim>& c, const Qua
 
 inline void expect_contains(const QuantityInterval& interval, double truth, const std::string& what = {})
 {
-  EXPECT_EQ(interval.reason, "") << interval.name << what;
+  EXPECT_EQ(interval.reason, "") << interval.name << what << interval.note;
   EXPECT_LE(interval.lower, truth) << interval.name << what;
   EXPECT_GE(interval.upper, truth) << interval.name << what;
 }

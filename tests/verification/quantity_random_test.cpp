@@ -53,16 +53,16 @@ struct Widths
 
 /// Every interval of every iterate holds what a much richer solution has.
 template <int dim>
-void try_random_block(unsigned seed, int p, Widths& widths)
+void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
 {
-  RandomCase<dim> block_of{std::mt19937(seed)};
+  RandomCase<dim> block_of{std::mt19937(seed), is_on_another};
   const ProblemData<dim> data = block_of.data();
   DiscreteProblem<dim> c(block_of.mesh(), data, {.degree = p, .newton = {.tolerance = 1e-11}});
   const int refinements = dim == 2 ? 2 : 1;
   const DiscreteProblem<dim> rich(std::move(mesh::refine_uniformly(c.mesh, refinements).mesh), data,
                                   {.degree = std::min(p + 1, 4), .newton = {.tolerance = 1e-11}});
   const solve::NewtonResult<dim> truth = rich.solve();
-  const Asked<dim> asked(block_of.is_held_above);
+  const Asked<dim> asked(block_of.is_held_above, is_on_another);
   const EnergyEstimator<dim> estimator(c.form, c.method.solver, asked.quantities);
   std::vector<std::vector<double>> iterates;
   const auto keep = [&](const solve::NewtonIterate<dim>& iterate)
@@ -99,7 +99,7 @@ TEST(QuantityRandom, NoIntervalFails)
 {
   Widths widths;
   for (unsigned seed = 0; seed < n_cases(60); ++seed)
-    try_random_block<2>(seed, 1 + static_cast<int>(seed % 4), widths);
+    try_random_block<2>(seed, 1 + static_cast<int>(seed % 4), false, widths);
   widths.print();
   EXPECT_GE(widths.n_narrow_failures, 20);
 }
@@ -152,7 +152,17 @@ TEST(QuantityRandom, NoIntervalFails3D)
 {
   Widths widths;
   for (unsigned seed = 0; seed < n_cases(8); ++seed)
-    try_random_block<3>(seed, 1 + static_cast<int>(seed % 2), widths);
+    try_random_block<3>(seed, 1 + static_cast<int>(seed % 2), false, widths);
+  widths.print();
+}
+
+TEST(QuantityRandom, NoIntervalFailsBetweenBodies)
+{
+  Widths widths;
+  for (unsigned seed = 0; seed < n_cases(24); ++seed)
+    try_random_block<2>(seed, 1 + static_cast<int>(seed % 4), true, widths);
+  for (unsigned seed = 0; seed < n_cases(4); ++seed)
+    try_random_block<3>(seed, 1 + static_cast<int>(seed % 2), true, widths);
   widths.print();
 }
 

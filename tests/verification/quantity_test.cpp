@@ -230,6 +230,44 @@ void expect_statics()
   EXPECT_FALSE(interval_from_statics<dim>(wedged, contact_force<dim>("left", Point<dim>::Unit(1))).exact);
 }
 
+/// Three blocks, which meet where two of them stand side by side on the third.
+template <int dim>
+void expect_intervals_of_three(const problem::ContactLaw& law, int p)
+{
+  ProblemData<dim> data{
+      .boundaries = {clamped<dim>("bottom_below"), clamped<dim>("left"), fixed<dim>("top_b", 0.0, -0.02, 0.0),
+                     loaded<dim>("top", 0.02, -0.1), loaded<dim>("right_b", -0.05, 0.03)},
+      .pairs = {pair<dim>("bottom", "top_below", law), pair<dim>("right", "left_b", law)}};
+  data.pairs[0].slave.emplace_back("bottom_b");
+  const DiscreteProblem<dim> c(three_blocks<dim>(dim - 1), data,
+                               {.degree = p, .newton = {.tolerance = 1e-11}});
+  const DiscreteProblem<dim> rich(three_blocks<dim>(4), data,
+                                  {.degree = p + 1, .newton = {.tolerance = 1e-11}});
+  const Point<dim> along = Point<dim>::Ones().normalized();
+  Quantities<dim> quantities = {{.name = "energy"}, {.name = "work", .kind = QuantityKind::load_work}};
+  for (const char* const name : {"", "bottom", "bottom_b", "right"})
+    quantities.push_back(contact_force<dim>(name, along, 1));
+  for (const char* const name : {"top", "bottom_b", "left_b", "top_below"})
+    quantities.push_back(mean_displacement<dim>(name, along));
+  const auto found = intervals<dim>(c, quantities, c.solve().u);
+  const std::vector<double> truth_u = rich.solve().u;
+  const auto truth = intervals<dim>(rich, quantities, truth_u);
+  for (std::size_t i = 0; i < found.size(); ++i)
+  {
+    expect_contains(found[i], truth[i].value, fmt::format(", {}D, p = {}", dim, p));
+    expect_contains(truth[i], truth[i].value);
+    EXPECT_LE(truth[i].upper - truth[i].lower, found[i].upper - found[i].lower) << found[i].name;
+  }
+}
+
+TEST(QuantityJunction, IntervalsHoldWhereThreeBodiesMeet)
+{
+  const problem::ContactLaw tresca = Tresca(0.02);
+  for (const problem::ContactLaw& law : {problem::ContactLaw(Frictionless()), tresca, {problem::Tied()}})
+    for (const int p : {1, 2, 3}) expect_intervals_of_three<2>(law, p);
+  expect_intervals_of_three<3>(tresca, 1);
+}
+
 /// What rests on another body is pressed by that, however that is held.
 template <int dim>
 void expect_statics_of_two()

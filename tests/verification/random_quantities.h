@@ -14,21 +14,24 @@
 #include <random>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/meshes.h"
+#include "support/two_blocks.h"
 #include "tribound/fem/evaluation.h"
 #include "verification/quantities.h"
 
 namespace tribound::test
 {
 
-/// A block of random material, shape, mesh and loads on an obstacle with a gap, held at its left or its upper
-/// side, there sometimes moved.
+/// A block of random material, shape, mesh and loads, held at its left or its upper side, there sometimes
+/// moved, on an obstacle with a gap or on another block, held below, whose mesh matches.
 template <int dim>
 struct RandomCase
 {
   std::mt19937 random;
+  bool is_on_another = false;
   bool is_held_above = false;
   double between(double low, double high)
   {
@@ -48,14 +51,23 @@ struct RandomCase
         happens(2) ? problem::Field(0.0) : formula(fmt::format("{}*x", between(0, 0.01)));
     // in 3D projected loads would have another solution
     const std::string load = fmt::format(fmt::runtime(dim == 2 ? "{}*x^2*y" : "{}*x"), between(-0.3, 0.1));
-    ProblemData<dim> data{
-        .boundaries = {fixed<dim>(held, 0.5 * moved, moved), obstacle<dim>("bottom", law, gap),
-                       loaded<dim>(is_held_above ? "left" : "top", between(-0.05, 0.05), between(-0.2, 0.01),
-                                   between(-0.05, 0.05)),
-                       loaded<dim>("right", between(-0.1, 0.1), between(-0.1, 0.1))},
-        .body_force = components<dim, problem::Field>(formula(fmt::format("{}", between(-0.1, 0.1))),
-                                                      formula(load), 0.0)};
+    ProblemData<dim> data{.boundaries = {fixed<dim>(held, 0.5 * moved, moved),
+                                         loaded<dim>(is_held_above ? "left" : "top", between(-0.05, 0.05),
+                                                     between(-0.2, 0.01), between(-0.05, 0.05)),
+                                         loaded<dim>("right", between(-0.1, 0.1), between(-0.1, 0.1))},
+                          .body_force = components<dim, problem::Field>(
+                              formula(fmt::format("{}", between(-0.1, 0.1))), formula(load), 0.0)};
     data.material = problem::lame(1, ratios[random() % ratios.size()]);
+    if (!is_on_another)
+    {
+      data.boundaries.push_back(obstacle<dim>("bottom", law, gap));
+      return data;
+    }
+    const bool is_tied = happens(3);
+    data.pairs = {pair<dim>("bottom", "top_below", is_tied ? problem::ContactLaw(problem::Tied()) : law)};
+    if (!is_tied) data.pairs[0].contact.gap = gap;
+    data.boundaries.push_back(clamped<dim>("bottom_below"));
+    data.boundaries.push_back(loaded<dim>("right_below", between(-0.1, 0.1), between(-0.1, 0.1)));
     return data;
   }
 
@@ -73,7 +85,8 @@ struct RandomCase
       return y;
     };
     const int n = 3 + static_cast<int>(random() % 3);
-    return renumbered(mapped<dim>(block<dim>({n, 2}, {2, 1, 1}), map), 11);
+    return renumbered(
+        mapped<dim>(is_on_another ? matching_blocks<dim>() : block<dim>({n, 2}, {2, 1, 1}), map), 11);
   }
 };
 
@@ -120,7 +133,7 @@ struct Asked
   Quantities<dim> quantities;
   std::vector<std::function<double(const DiscreteProblem<dim>&, std::span<const double>)>> values;
 
-  explicit Asked(bool is_held_above)
+  explicit Asked(bool is_held_above, bool is_on_another = false)
   {
     using U = std::span<const double>;
     using C = DiscreteProblem<dim>;
@@ -134,8 +147,9 @@ struct Asked
       quantities.push_back(contact_force<dim>("bottom", e, is_held_above ? 0 : 2));
       values.push_back([=](const C& c, U u) { return force_on_bottom<dim>(c, u, e, !is_held_above); });
     }
-    for (const char* const name : {"right", "bottom"})
+    for (const char* const name : {"right", "bottom", "top_below"})
     {
+      if (!is_on_another && std::string_view(name) == "top_below") continue;
       const Point<dim> e = Point<dim>::Ones().normalized();
       quantities.push_back(mean_displacement<dim>(name, e));
       values.push_back([=](const C& c, U u) { return mean_over<dim>(c, u, name, e); });

@@ -85,24 +85,32 @@ class ControlPoints
     {
       const std::vector<Point<dim>> on_slave = facets.on_slave(k, u);
       const std::vector<Point<dim>> on_master = facets.on_master(k, u);
+      const std::span<const Index> masters = facets.master_nodes(k);
       for (std::size_t j = 0; j < on_slave.size(); ++j)
-        points_.try_emplace(facets.nodes(k)[j]).first->second.add(on_slave[j], {k, j, on_master[j]});
+        points_.try_emplace(facets.nodes(k)[j])
+            .first->second.add(on_slave[j], {k, j, masters.empty() ? -1 : masters[j], on_master[j]});
     }
   }
 
-  /// By node what is to be added to the control points, at ghosts what their owners say.
+  /// By node what is to be added to the control points, at ghosts what their owners say. Masters move where
+  /// slaves are fixed.
   [[nodiscard]] std::vector<double> corrections(bool transition_is_closed) const
   {
     const fem::LagrangeSpace<dim>& space = form_.space();
     std::vector<double> result(space.n_dofs(), 0.0);
     for (const auto& [node, at] : points_)
     {
+      const Index master = at.places.front().master;
       std::array<bool, dim> fixed;
-      for (int a = 0; a < dim; ++a) fixed[a] = form_.constraints().fixed[dim * node + a] != 0;
+      for (int a = 0; a < dim; ++a) fixed[a] = is_fixed(node, a) && (master < 0 || is_fixed(master, a));
       const Point<dim> from_opposite = at.position - at.places.front().opposite;
       const Point<dim> step =
           moved<dim>(from_opposite, fixed, conditions(at, transition_is_closed)) - from_opposite;
-      std::copy_n(step.data(), dim, &result[dim * node]);
+      for (int a = 0; a < dim; ++a)
+        if (!is_fixed(node, a))
+          result[dim * node + a] += step[a];
+        else if (master >= 0)
+          result[dim * master + a] -= step[a];
     }
     space.update(std::span(result));
     return result;
@@ -113,7 +121,8 @@ class ControlPoints
   {
     std::size_t facet;
     std::size_t coefficient;
-    Point<dim> opposite;  ///< the control point of the master; 0 against an obstacle
+    Index master;         ///< its node; -1 against an obstacle
+    Point<dim> opposite;  ///< its control point; 0 against an obstacle
   };
   struct ControlPoint
   {
@@ -128,6 +137,10 @@ class ControlPoints
     }
   };
 
+  [[nodiscard]] bool is_fixed(Index node, int a) const
+  {
+    return form_.constraints().fixed[dim * node + a] != 0;
+  }
   /// On the distance from the control point opposite on the first facet. Facets of the same normal together.
   [[nodiscard]] std::vector<ControlCondition<dim>> conditions(const ControlPoint& at,
                                                               bool transition_is_closed) const
@@ -136,7 +149,7 @@ class ControlPoints
     { return extent == Extent::everywhere || (transition_is_closed && extent == Extent::somewhere); };
     constexpr double same = 1e-12;
     std::vector<ControlCondition<dim>> result;
-    for (const auto& [k, j, opposite] : at.places)
+    for (const auto& [k, j, master, opposite] : at.places)
     {
       const Point<dim>& normal = form_.segments()[k].normal;
       const double gap = facets_.gap(k)[j] + normal.dot(opposite - at.places.front().opposite);
@@ -165,15 +178,16 @@ std::vector<double> with_corrections(const fem::LagrangeSpace<dim>& space, const
 {
   std::vector<double> v(u.begin(), u.end());
   for (std::size_t k = 0; k < facets.size(); ++k)
-  {
-    const std::vector<Point<dim>> change = facets.values(k, corrections);
-    for (std::size_t i = 0; i < change.size(); ++i)
-      for (int a = 0; a < dim; ++a)
-      {
-        const Index dof = dim * facets.nodes(k)[i] + a;
-        v[dof] = u[dof] + change[i][a];
-      }
-  }
+    for (const std::span<const Index> nodes : {facets.nodes(k), facets.master_nodes(k)})
+    {
+      const std::vector<Point<dim>> change = facets.values(nodes, corrections);
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        for (int a = 0; a < dim; ++a)
+        {
+          const Index dof = dim * nodes[i] + a;
+          v[dof] = u[dof] + change[i][a];
+        }
+    }
   space.update(std::span(v));
   return v;
 }

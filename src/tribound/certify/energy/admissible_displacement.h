@@ -39,12 +39,12 @@ struct AdmissibleDisplacements
 /// others share,
 ///     v^n = g_h if it or, at shared ones, one of the facets is closed, else v^n <= g_h;
 ///     v^t = 0 if it or one of the facets sticks, else as in u;
-/// never along axes that Gamma_D fixes. Where facets of different normals meet:
-/// certify/energy/control_point.h. The basis is nonnegative and adds up to 1, so that what holds for
-/// coefficients holds for v.
+/// never along axes that Gamma_D fixes; between bodies [v] in the place of v, the slaves being moved, or
+/// masters where these are fixed. Where facets of different normals meet: certify/energy/control_point.h. The
+/// basis is nonnegative and adds up to 1, so that what holds for coefficients holds for v.
 ///
-/// t is T(u) at the contact points of the form. Against rigid obstacles along constant directions, without
-/// bond and water; else `reason` says what there is. All ranks together.
+/// t is T(u) at the contact points of the form. Of contact along constant directions, between bodies on
+/// meshes that match, without bond and water; else `reason` says what there is. All ranks together.
 template <int dim>
 [[nodiscard]] AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>& form,
                                                                std::span<const double> u,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "tribound/certify/energy/obstacle_facets.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -34,7 +35,9 @@ class Jumps
   Jumps(const contact::NitscheForm<dim>& form, const ContactResultant<dim>& resultant)
   {
     const mesh::Mesh<dim>& mesh = form.space().mesh();
+    const std::vector<char> junctions = ObstacleFacets<dim>(form).junctions();
     std::vector<char> jumps(mesh.n_vertices(), 0);
+    for (Index v = 0; v < mesh.n_vertices(); ++v) jumps[v] = junctions[dim * v];
     for (const mesh::BoundaryFacet& facet : mesh.boundary())
     {
       const bool is_other = form.problem().contact(facet.tag) != nullptr && !resultant.has(facet);
@@ -160,7 +163,8 @@ ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
   const std::vector<Point<dim>> nodes = space.basis().node_points();
   for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
-    WeightOnFacet<dim> weight{.facet = form.segments()[k].slave.facet, .at_vertices = {}};
+    const contact::SegmentSide<dim>& slave = form.segments()[k].slave;
+    WeightOnFacet<dim> weight{.facet = slave.facet, .at_vertices = {}};
     if (!resultant.has(weight.facet)) continue;
     const auto vertices = mesh::facet_vertices(mesh.cell(weight.facet.cell), weight.facet.local);
     for (int j = 0; j < dim; ++j)
@@ -170,7 +174,7 @@ ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
       weight.at_vertices[j] = (d <= rounding ? 0 : std::min(1.0, d)) * resultant.motion(x);
     }
     for (int q = 0; q < form.n_segment_points(); ++q)
-      result.at_points[k * form.n_segment_points() + q] = weight(form.facet_rule().points[q]);
+      result.at_points[k * form.n_segment_points() + q] = weight(slave.on_facet(form.facet_rule().points[q]));
     weight.interpolate(form, nodes, result.at_nodes);
   }
   space.update(std::span(result.at_nodes));

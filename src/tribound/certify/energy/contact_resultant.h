@@ -55,18 +55,19 @@ template <int dim>
 [[nodiscard]] std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                                           const ContactResultant<dim>& resultant);
 
-/// The motion as a weight of degree 1 on the facets of the resultant that is a trace from H^1_D: 0 on other
-/// contact facets and along directions that Gamma_D fixes.
+/// The motion as a weight of degree 1 on the facets of the resultant that is a jump of functions in H^1_D: 0
+/// on other contact facets, along directions that Gamma_D fixes and where three bodies meet.
 template <int dim>
 struct ContactWeight
 {
-  std::vector<double> at_nodes;       ///< degrees of freedom of the space; 0 off these facets
+  std::vector<double> at_nodes;       ///< degrees of freedom of the slaves; 0 off these facets
   std::vector<Point<dim>> at_points;  ///< at the contact points of the form
   std::string note{};                 ///< where the weight is not the motion itself
 };
 
 /// The motion times min(1, d / ramp) at the vertices, d the distance from where it would jump; ramp = 0: a
-/// tenth of the diagonal of the box around the boundary. Against obstacles alone. All ranks together.
+/// tenth of the diagonal of the box around the boundary. obstacles_unfit() says nothing of the form. All
+/// ranks together.
 template <int dim>
 [[nodiscard]] ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
                                                 const ContactResultant<dim>& resultant, double ramp);

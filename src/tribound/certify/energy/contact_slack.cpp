@@ -21,6 +21,12 @@ Point<dim> limited(const Point<dim>& c, const Point<dim>& n, double normal, doub
   return std::clamp(along, -normal, normal) * n + (length > tangential ? tangential / length : 1.0) * across;
 }
 
+/// What `slack` allows with m.
+double times(double m, double slack)
+{
+  return std::isinf(slack) ? slack : m * slack;
+}
+
 }  // namespace
 
 template <int dim>
@@ -40,9 +46,21 @@ ContactSlack<dim>::ContactSlack(const BoundedState<dim>& state)
   stress_ = rounding * largest[1];
   for (std::size_t k = 0; k < state.facets.size(); ++k)
   {
+    if (problem::cone(state.form.segments()[k].contact->law).is_tied)
+    {
+      set_tied(k);
+      continue;
+    }
     set_normal(k);
     set_tangential(k);
   }
+}
+
+template <int dim>
+void ContactSlack<dim>::set_tied(std::size_t k)
+{
+  is_pressed_[k] = is_held_[k] = 1;
+  std::fill_n(slack_.begin() + k * n_, n_, Slack{.normal_r = HUGE_VAL, .tangential_r = HUGE_VAL});
 }
 
 template <int dim>
@@ -105,7 +123,7 @@ void ContactSlack<dim>::limit_r(std::size_t k, double m, std::span<Point<dim>> r
 {
   const Point<dim>& normal = state_.form.segments()[k].normal;
   for (std::size_t j = 0; j < n_; ++j)
-    r[j] = limited<dim>(r[j], normal, m * at(k, j).normal_r, m * at(k, j).tangential_r);
+    r[j] = limited<dim>(r[j], normal, times(m, at(k, j).normal_r), times(m, at(k, j).tangential_r));
 }
 
 template <int dim>
@@ -117,6 +135,7 @@ void ContactSlack<dim>::limit_y(double m, std::span<double> y) const
     double along;
     double across;
   };
+  const std::vector<char> junctions = state_.facets.junctions();
   constexpr double same = 1e-12;
   std::map<Index, Condition> conditions;  // by node
   for (std::size_t k = 0; k < state_.facets.size(); ++k)
@@ -133,11 +152,11 @@ void ContactSlack<dim>::limit_y(double m, std::span<double> y) const
     }
   for (const auto& [node, condition] : conditions)
   {
-    bool is_fixed = false;
+    bool is_fixed = junctions[dim * node] != 0;
     for (int a = 0; a < dim; ++a) is_fixed = is_fixed || state_.form.constraints().fixed[dim * node + a] != 0;
     Point<dim> c(&y[dim * node]);
     c = is_fixed ? Point<dim>::Zero()
-                 : limited<dim>(c, condition.normal, m * condition.along, m * condition.across);
+                 : limited<dim>(c, condition.normal, times(m, condition.along), times(m, condition.across));
     std::ranges::copy(c, &y[dim * node]);
   }
   state_.form.space().update(y);

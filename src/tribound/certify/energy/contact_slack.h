@@ -12,7 +12,7 @@ namespace tribound::certify
 {
 
 /// How large |y^n|, |y^t|, |r^n| and |r^t| may be at one coefficient of a facet in Bernstein's basis, times
-/// m.
+/// m; infinite: they may be anything.
 struct Slack
 {
   double normal_y = 0;
@@ -24,9 +24,9 @@ struct Slack
 /// Of every facet, with m the factor of linear_bound():
 ///     closed, v^n = g_h:   |r^n| <= m (-t^n);       open, t^n = 0:            |y^n| <= m (g_h - v^n);
 ///     stick, v^t = 0:      |r^t| <= m (s - |t^t|);  slip, t^t = -s v^t/|v^t|: |y^t| <= m |v^t| (2D: v^t of
-///     one sign); without friction y^t is free;
-/// everything else is 0. What holds for coefficients holds at every point, since both sides are in the same
-/// basis, which is not negative.
+///     one sign); without friction y^t is free, where bodies are tied r;
+/// everything else is 0, [v] between bodies in the place of v. What holds for coefficients holds at every
+/// point, since both sides are in the same basis, which is not negative.
 template <int dim>
 class ContactSlack
 {
@@ -40,11 +40,12 @@ class ContactSlack
 
   /// The coefficients of r on facet k, made small enough.
   void limit_r(std::size_t k, double m, std::span<Point<dim>> r) const;
-  /// The same of y, by nodes, where facets share them. Where facets of different normals meet and where a
-  /// component is fixed y is 0. All ranks together.
+  /// The same of y, by nodes of the slaves, where facets share them. Where facets of different normals or
+  /// three bodies meet and where a component is fixed y is 0. All ranks together.
   void limit_y(double m, std::span<double> y) const;
 
  private:
+  void set_tied(std::size_t k);
   void set_normal(std::size_t k);
   void set_tangential(std::size_t k);
 

@@ -38,7 +38,7 @@ Stress<dim> DualProblem<dim>::balanced(std::span<const double> z, std::span<cons
 namespace
 {
 
-/// The problem with u_D = 0, its boundaries and regions changed further.
+/// The problem with u_D = 0 and without contact, its boundaries and regions changed further.
 template <int dim, class ChangeBoundary, class ChangeRegion>
 problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                               const ChangeBoundary& change_boundary, const ChangeRegion& change_region)
@@ -51,6 +51,7 @@ problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::
   {
     for (std::optional<problem::Field>& component : boundaries[tag].displacement)
       if (component) component = problem::Field(0.0);
+    boundaries[tag].contact.reset();
     change_boundary(static_cast<int>(tag), boundaries[tag]);
   }
   return {mesh, regions, boundaries};
@@ -107,13 +108,14 @@ const ElasticSystem<dim>& DualSystems<dim>::with_held_contact()
   if (held_) return *held_;
   std::vector<char> fixed = form_.constraints().fixed;
   const fem::LagrangeSpace<dim>& space = form_.space();
-  for (const contact::ContactSegment<dim>& segment : form_.segments())
+  const auto hold = [&](const contact::SegmentSide<dim>& side)
   {
-    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    const mesh::BoundaryFacet& facet = side.facet;
     for (int i = 0; i < space.basis().n_nodes(); ++i)
       for (int a = 0; a < dim && space.basis().node(i)[facet.local] == 0; ++a)
         fixed[dim * space.cell_nodes(facet.cell)[i] + a] = 1;
-  }
+  };
+  for (const contact::ContactSegment<dim>& segment : form_.segments()) segment.for_each_side(hold);
   space.update(std::span(fixed));
   held_ = std::make_unique<ElasticSystem<dim>>(form_.problem(), space, std::move(fixed), solver_);
   return *held_;

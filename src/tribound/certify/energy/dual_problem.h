@@ -18,9 +18,9 @@
 namespace tribound::certify
 {
 
-/// The body of a problem with u_D = 0 and other loads; what contact exerts is given. Its form has the space
-/// and the segments of the given one, to which it keeps references, and is one for tractions alone. All ranks
-/// construct and call it together.
+/// The bodies of a problem with u_D = 0 and other loads, also on contact boundaries; what contact exerts is
+/// given. Its form has the space and the segments of the given one, to which it keeps references, and is one
+/// for tractions alone. All ranks construct and call it together.
 template <int dim>
 class DualProblem
 {
@@ -30,7 +30,7 @@ class DualProblem
   DualProblem& operator=(const DualProblem&) = delete;
 
   [[nodiscard]] const contact::NitscheForm<dim>& form() const { return form_; }
-  /// (load, phi_i) + (t, phi_i)_C, t at the contact points.
+  /// (load, phi_i) + (t, [phi_i])_C, t at the contact points.
   [[nodiscard]] std::vector<double> load(std::span<const Point<dim>> t) const;
   /// Of z, which is in equilibrium with these loads; `reason` says what is wrong with it, if anything.
   [[nodiscard]] Stress<dim> balanced(std::span<const double> z, std::span<const Point<dim>> t,
@@ -42,7 +42,7 @@ class DualProblem
   std::unique_ptr<Equilibrator<dim>> equilibrator_;
 };
 
-/// Without loads, with those of the problem, or with the traction q on one boundary.
+/// Without loads, with those of the problem, or with the traction q on one boundary; without contact.
 template <int dim>
 [[nodiscard]] problem::Problem<dim> without_loads(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh);
@@ -53,7 +53,7 @@ template <int dim>
 [[nodiscard]] problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem,
                                                  const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q);
 
-/// a(z, w) = ... with Gamma_C free, or held as well as Gamma_D; made when first needed.
+/// a(z, w) = ... with Gamma_C free, or held on both sides as well as Gamma_D; made when first needed.
 template <int dim>
 class DualSystems
 {

@@ -37,8 +37,7 @@ struct DualProducts
 
 /// `stress` and v as for cell_distances(); stresses of the form's degree.
 template <int dim, int q>
-[[nodiscard]] std::vector<DualProducts> dual_products(const contact::NitscheForm<dim>& form,
-                                                      const Stress<dim>& stress, std::span<const double> v,
-                                                      std::span<const DualPair<dim>* const> pairs);
+[[nodiscard]] DualProducts dual_products(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                                         std::span<const double> v, const DualPair<dim>& pair);
 
 }  // namespace tribound::certify

@@ -82,29 +82,25 @@ class DualCell
 }  // namespace detail
 
 template <int dim, int q>
-std::vector<DualProducts> dual_products(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
-                                        std::span<const double> v,
-                                        std::span<const DualPair<dim>* const> pairs)
+DualProducts dual_products(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                           std::span<const double> v, const DualPair<dim>& pair)
 {
   const auto n_cells = static_cast<std::size_t>(form.space().mesh().n_owned_cells());
   const std::vector<double> none(n_cells, 0.0);
-  std::vector<DualProducts> result(pairs.size(), DualProducts{none, none, none, none});
+  DualProducts result{none, none, none, none};
   const int n_threads = max_threads();
-  std::vector<std::vector<double>> unbalanced(n_threads, std::vector<double>(pairs.size(), 0.0));
+  std::vector<double> unbalanced(n_threads, 0.0);
   const auto on_thread = [&](int thread)
   {
     const auto cell = std::make_unique<detail::DualCell<dim, q>>(form, stress, v);
     for (std::size_t k = n_cells * thread / n_threads; k < n_cells * (thread + 1) / n_threads; ++k)
     {
       cell->move_to(static_cast<Index>(k));
-      for (std::size_t i = 0; i < pairs.size(); ++i)
-        unbalanced[thread][i] = std::max(unbalanced[thread][i], cell->add(*pairs[i], result[i]));
+      unbalanced[thread] = std::max(unbalanced[thread], cell->add(pair, result));
     }
   };
   in_threads(n_threads, on_thread);
-  for (const std::vector<double>& of_thread : unbalanced)
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      result[i].unbalanced = std::max(result[i].unbalanced, of_thread[i]);
+  result.unbalanced = *std::ranges::max_element(unbalanced);
   return result;
 }
 

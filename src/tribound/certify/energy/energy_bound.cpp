@@ -135,11 +135,9 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
   parts_ = std::make_unique<Parts>(form, norm);
-  const bool has_pairs = !form.problem().pairs().empty();
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
-  if (reason_.empty() && quantities_)
-    quantities_->prepare(parts_->form, solver, parts_->motions.size() == 0, has_pairs);
+  if (reason_.empty() && quantities_) quantities_->prepare(parts_->form, solver, parts_->motions.size() == 0);
 }
 
 template <int dim>

@@ -28,10 +28,11 @@ bool is_homogeneous(const contact::NitscheForm<dim>& form)
 }
 
 template <int dim>
-void set_energy(const BoundedState<dim>& state, const DualPair<dim>& pair, const DualProducts& products,
-                bool is_homogeneous, QuantityInterval& interval)
+void set_energy(const BoundedState<dim>& state, bool is_homogeneous, QuantityInterval& interval)
 {
   const EnergyBound& bound = state.bound;
+  const DualPair<dim> pair{.z = {state.v.begin(), state.v.end()}};
+  const DualProducts products = dual_products<dim>(state, pair);
   const DualSums sums(products, state.form.space().mesh().ranks());
   const double quarter = bound.gap - bound.mid * bound.mid;        // ||tau - sigma(v)||^2 / 4
   const double of_mean = sums.square + 2 * sums.centre + quarter;  // ||(tau + sigma(v))/2||^2
@@ -55,9 +56,7 @@ void set_energy(const BoundedState<dim>& state, const DualPair<dim>& pair, const
 
 template bool is_homogeneous(const contact::NitscheForm<2>&);
 template bool is_homogeneous(const contact::NitscheForm<3>&);
-template void set_energy(const BoundedState<2>&, const DualPair<2>&, const DualProducts&, bool,
-                         QuantityInterval&);
-template void set_energy(const BoundedState<3>&, const DualPair<3>&, const DualProducts&, bool,
-                         QuantityInterval&);
+template void set_energy(const BoundedState<2>&, bool, QuantityInterval&);
+template void set_energy(const BoundedState<3>&, bool, QuantityInterval&);
 
 }  // namespace tribound::certify

@@ -13,11 +13,10 @@ namespace tribound::certify
 template <int dim>
 [[nodiscard]] bool is_homogeneous(const contact::NitscheForm<dim>& form);
 
-/// Sets the interval of a(u, u) from the dual products of z = v, zeta = 0: with m = (tau + sigma(v))/2
+/// Sets the interval of a(u, u): with m = (tau + sigma(v))/2
 ///     | ||u||_en - ||m|| | <= mid,
-/// and for a homogeneous problem ||tau||^2 + 2 remainder(v) + [-2E, 2 ||O|| B_v].
+/// and for a homogeneous problem ||tau||^2 + 2 remainder(v) + [-2E, 2 ||O|| B_v]. All ranks together.
 template <int dim>
-void set_energy(const BoundedState<dim>& state, const DualPair<dim>& pair, const DualProducts& products,
-                bool is_homogeneous, QuantityInterval& interval);
+void set_energy(const BoundedState<dim>& state, bool is_homogeneous, QuantityInterval& interval);
 
 }  // namespace tribound::certify

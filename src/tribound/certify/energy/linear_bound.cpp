@@ -59,13 +59,12 @@ std::vector<double> BoundedState<dim>::shares(double half_width) const
 }
 
 template <int dim>
-std::vector<DualProducts> dual_products(const BoundedState<dim>& state,
-                                        std::span<const DualPair<dim>* const> pairs)
+DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair)
 {
-  std::vector<DualProducts> result;
+  DualProducts result;
   constexpr int lowest = 2;
   fem::with_degree<lowest>(state.form.space().degree(), [&](auto q)
-                           { result = dual_products<dim, q>(state.form, state.stress, state.v, pairs); });
+                           { result = dual_products<dim, q>(state.form, state.stress, state.v, pair); });
   return result;
 }
 
@@ -111,8 +110,8 @@ LinearBound linear_bound(const BoundedState<dim>& state, double base, const Dual
 
 template struct BoundedState<2>;
 template struct BoundedState<3>;
-template std::vector<DualProducts> dual_products(const BoundedState<2>&, std::span<const DualPair<2>* const>);
-template std::vector<DualProducts> dual_products(const BoundedState<3>&, std::span<const DualPair<3>* const>);
+template DualProducts dual_products(const BoundedState<2>&, const DualPair<2>&);
+template DualProducts dual_products(const BoundedState<3>&, const DualPair<3>&);
 template LinearBound linear_bound(const BoundedState<2>&, double, const DualPair<2>&, const DualProducts&,
                                   double);
 template LinearBound linear_bound(const BoundedState<3>&, double, const DualPair<3>&, const DualProducts&,

@@ -44,8 +44,7 @@ struct BoundedState
 
 /// dual_products() of the degree of the form.
 template <int dim>
-[[nodiscard]] std::vector<DualProducts> dual_products(const BoundedState<dim>& state,
-                                                      std::span<const DualPair<dim>* const> pairs);
+[[nodiscard]] DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair);
 
 /// Sums of dual products over all ranks.
 struct DualSums

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "tribound/certify/energy/dual_problem.h"
@@ -20,15 +19,11 @@ namespace tribound::certify
 template <int dim>
 struct LinearNumber
 {
-  std::optional<KnownNumber> known{};         ///< from equilibrium: then there is nothing else
-  std::vector<Point<dim>> phi{};              ///< at the contact points of the form of u
-  std::optional<ContactWeight<dim>> weight;   ///< phi on the form of the bounds
-  std::unique_ptr<DualProblem<dim>> loads{};  ///< with the loads l; null: none
-  std::vector<Point<dim>> on_contact{};       ///< what is left of l, on Gamma_C at its contact points
-  DualPair<dim> pair{};                       ///< with y = 0 and r = 0
+  std::optional<KnownNumber> known{};          ///< from equilibrium: then there is nothing else
+  std::vector<Point<dim>> phi{};               ///< at the contact points of the form of u
+  std::optional<ContactWeight<dim>> weight{};  ///< phi on the form of the bounds
+  std::unique_ptr<DualProblem<dim>> loads{};   ///< with the loads l; null: none
 
-  /// Returns what is wrong with the pair, if anything. All ranks together.
-  [[nodiscard]] std::string make_pair(const contact::NitscheForm<dim>& form, DualSystems<dim>& systems);
   /// l(v) + (t_h, phi)_C. All ranks together.
   [[nodiscard]] double base(const BoundedState<dim>& state, const QuantityParts<dim>& parts) const;
 };

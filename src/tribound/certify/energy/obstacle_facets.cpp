@@ -114,8 +114,8 @@ std::vector<Point<dim>> ObstacleFacets<dim>::transformed(std::span<const Index> 
                                                          std::span<const double> by_node) const
 {
   std::vector<Point<dim>> result(n_, Point<dim>::Zero());
-  for (std::size_t i = 0; i < n_; ++i)
-    for (std::size_t j = 0; j < n_; ++j)
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (std::size_t j = 0; j < nodes.size(); ++j)
       result[i] += matrix[i * n_ + j] * Eigen::Map<const Point<dim>>(&by_node[dim * nodes[j]]);
   return result;
 }
@@ -123,8 +123,27 @@ std::vector<Point<dim>> ObstacleFacets<dim>::transformed(std::span<const Index> 
 template <int dim>
 std::vector<Point<dim>> ObstacleFacets<dim>::on_master(std::size_t k, std::span<const double> u) const
 {
-  if (!form_.segments()[k].master) return std::vector<Point<dim>>(n_, Point<dim>::Zero());
-  return transformed(std::span(master_nodes_).subspan(k * n_, n_), from_values_, u);
+  return transformed(master_nodes(k), from_values_, u);
+}
+
+template <int dim>
+std::vector<char> ObstacleFacets<dim>::junctions() const
+{
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  constexpr Index unknown = -2;
+  std::vector<Index> opposite(space.n_dofs() / dim, unknown);
+  std::vector<char> result(space.n_dofs(), 0);
+  const auto mark = [&](Index node) { std::fill_n(&result[dim * node], dim, 1); };
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+  {
+    Index& known = opposite[nodes_[i]];
+    if (known != unknown && known != master_nodes_[i]) mark(nodes_[i]);
+    known = master_nodes_[i];
+  }
+  for (const Index node : master_nodes_)
+    if (node >= 0 && opposite[node] != unknown) mark(node);
+  space.update(std::span(result));
+  return result;
 }
 
 template <int dim>

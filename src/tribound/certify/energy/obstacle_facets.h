@@ -36,6 +36,14 @@ class ObstacleFacets
   {
     return std::span(nodes_).subspan(k * n_, n_);
   }
+  /// The nodes of the master opposite to these; none against an obstacle.
+  [[nodiscard]] std::span<const Index> master_nodes(std::size_t k) const
+  {
+    return std::span(master_nodes_).subspan(k * n_, form_.segments()[k].master ? n_ : 0);
+  }
+  /// Degrees of freedom of the slaves' nodes that lie opposite more than one thing or are masters as well.
+  /// All ranks together.
+  [[nodiscard]] std::vector<char> junctions() const;
   /// Coefficients of g_h, the interpolant of g of degree p.
   [[nodiscard]] std::span<const double> gap(std::size_t k) const
   {
@@ -49,10 +57,11 @@ class ObstacleFacets
     return transformed(nodes(k), from_values_, u);
   }
   [[nodiscard]] std::vector<Point<dim>> on_master(std::size_t k, std::span<const double> u) const;
-  /// Values at the nodes of the slave, from coefficients by node, as degrees of freedom.
-  [[nodiscard]] std::vector<Point<dim>> values(std::size_t k, std::span<const double> coefficients) const
+  /// Values at the nodes of the slave or of the master, from coefficients by node, as degrees of freedom.
+  [[nodiscard]] std::vector<Point<dim>> values(std::span<const Index> nodes,
+                                               std::span<const double> coefficients) const
   {
-    return transformed(nodes(k), to_values_, coefficients);
+    return transformed(nodes, to_values_, coefficients);
   }
   /// Largest |g - g_h| at the contact points of this rank.
   [[nodiscard]] double gap_remainder() const;

@@ -71,7 +71,7 @@ bool slides_freely(const contact::NitscheForm<dim>& form)
 
 template <int dim>
 void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
-                                  const algebra::SolverOptions& solver, bool is_held, bool has_pairs)
+                                  const algebra::SolverOptions& solver, bool is_held)
 {
   solver_ = solver;
   is_held_ = is_held;
@@ -81,11 +81,6 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
   for (Item& item : items_)
   {
     if (is_energy(item) || !item.reason.empty()) continue;
-    if (has_pairs && !item.is_known())
-    {
-      item.reason = "there is contact between bodies";  // whose dual problems would be coupled
-      continue;
-    }
     if (item.parts.resultants.empty() && !is_held)
     {
       item.reason = "contact alone holds a body";  // without it the load of the dual problem moves it
@@ -95,8 +90,6 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
     for (std::size_t i = 0; i < item.parts.resultants.size(); ++i)
       if (!item.numbers[i].known)
         set_weight(item.numbers[i], form_, bounded, item.parts.resultants[i], item.parts.quantity.ramp);
-    for (LinearNumber<dim>& number : item.numbers)
-      if (!number.known && item.reason.empty()) item.reason = number.make_pair(bounded, *systems_);
   }
 }
 
@@ -182,26 +175,19 @@ std::vector<QuantityInterval> QuantityBounds<dim>::from_equilibrium(std::span<co
 
 template <int dim>
 QuantityInterval QuantityBounds<dim>::bounded(const Item& item, const LinearNumber<dim>& number,
-                                              const BoundedState<dim>& state, const DualProducts& products,
-                                              const SecondOrder<dim>* second_order) const
+                                              const BoundedState<dim>& state,
+                                              const LinearIntervals<dim>& intervals) const
 {
   if (number.known) return known_interval(*number.known);
-  if (!(state.form.space().mesh().ranks().max(products.unbalanced) <= cell_balance_limit))
-    return {.reason = "a cell does not balance its dual stress"};
   const bool is_work = item.kind() == QuantityKind::load_work;
   if (is_work && (state.is_projected || state.unresolved > 0))
     return {.reason = "the loads are no polynomials of low degree"};
-  const double base = number.base(state, item.parts);
-  const LinearBound first = linear_bound<dim>(state, base, number.pair, products);
-  const std::optional<LinearBound> second =
-      second_order ? (*second_order)(number, base, first) : std::nullopt;
-  const LinearBound& better = second ? *second : first;
-  double lower = first.centre - first.radius;
-  double upper = first.centre + first.radius;
-  if (second) intersect(lower, upper, second->centre - second->radius, second->centre + second->radius);
+  const LinearInterval of_number = intervals(number, number.base(state, item.parts));
+  if (!of_number.reason.empty()) return {.reason = of_number.reason};
   const double of_loads = is_work ? state.bound.oscillation * state.bound.b_v : 0;
-  QuantityInterval result{.basis = second ? "second order" : "energy bound", .cells = better.cells};
-  set_ends(result, lower - of_loads, upper + of_loads, std::max(first.rounding, better.rounding));
+  QuantityInterval result{.basis = of_number.is_second_order ? "second order" : "energy bound",
+                          .cells = of_number.cells};
+  set_ends(result, of_number.lower - of_loads, of_number.upper + of_loads, of_number.rounding);
   return result;
 }
 
@@ -209,34 +195,22 @@ template <int dim>
 void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
                                       std::vector<QuantityInterval>& intervals) const
 {
-  const auto is_open = [](const Item& item) { return item.reason.empty() && !item.is_known(); };
-  if (std::ranges::none_of(items_, is_open)) return;
-  const DualPair<dim> of_energy{.z = {state.v.begin(), state.v.end()}};
-  std::vector<const DualPair<dim>*> pairs{&of_energy};
-  const auto needs_pair = [](const Item& item, const LinearNumber<dim>& number)
-  { return item.reason.empty() && !number.known; };
-  for (const Item& item : items_)
-    for (const LinearNumber<dim>& number : item.numbers)
-      if (needs_pair(item, number)) pairs.push_back(&number.pair);
-  const std::vector<DualProducts> products = dual_products<dim>(state, pairs);
-  std::optional<SecondOrder<dim>> second_order;
-  if (pairs.size() > 1 && is_held_) second_order.emplace(state, *systems_, solver_);
-  std::size_t next = 1;
+  std::optional<LinearIntervals<dim>> of_numbers;
   for (std::size_t i = 0; i < items_.size(); ++i)
   {
     const Item& item = items_[i];
-    if (!is_open(item)) continue;
+    if (!item.reason.empty() || item.is_known()) continue;
     QuantityInterval& interval = intervals[i];
     interval.reason = {};
     if (is_energy(item))
-      set_energy<dim>(state, of_energy, products.front(), is_homogeneous_, interval);
+      set_energy<dim>(state, is_homogeneous_, interval);
     else
     {
+      if (!of_numbers) of_numbers.emplace(state, *systems_, solver_, is_held_);
       std::vector<QuantityInterval> numbers;
       for (const LinearNumber<dim>& number : item.numbers)
       {
-        numbers.push_back(bounded(item, number, state, products[needs_pair(item, number) ? next++ : 0],
-                                  second_order ? &*second_order : nullptr));
+        numbers.push_back(bounded(item, number, state, *of_numbers));
         if (!number.weight || number.weight->note.empty()) continue;
         interval.note = number.weight->note;
         interval.is_weighted = true;

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tribound/certify/energy/linear_number.h"
+#include "tribound/certify/energy/linear_intervals.h"
 #include "tribound/certify/energy/quantity_interval.h"
-#include "tribound/certify/energy/second_order.h"
 
 namespace tribound::certify
 {
@@ -27,10 +26,8 @@ class QuantityBounds
   QuantityBounds& operator=(const QuantityBounds&) = delete;
 
   /// Makes what energy bounds of this form, on the same mesh and of no lower degree, need; `is_held`: whether
-  /// displacement conditions hold every body by themselves, `has_pairs`: whether bodies touch each other.
-  /// Throws SolveError.
-  void prepare(const contact::NitscheForm<dim>& bounded, const algebra::SolverOptions& solver, bool is_held,
-               bool has_pairs);
+  /// displacement conditions hold every body by themselves. Throws SolveError.
+  void prepare(const contact::NitscheForm<dim>& bounded, const algebra::SolverOptions& solver, bool is_held);
   /// The values of u and the intervals that follow from equilibrium alone; `reason` says why there are no
   /// others.
   [[nodiscard]] std::vector<QuantityInterval> from_equilibrium(std::span<const double> u,
@@ -46,8 +43,8 @@ class QuantityBounds
   [[nodiscard]] double value(const Item& item, std::span<const double> u,
                              std::span<const Point<dim>> t) const;
   [[nodiscard]] QuantityInterval bounded(const Item& item, const LinearNumber<dim>& number,
-                                         const BoundedState<dim>& state, const DualProducts& products,
-                                         const SecondOrder<dim>* second_order) const;
+                                         const BoundedState<dim>& state,
+                                         const LinearIntervals<dim>& intervals) const;
 
   const contact::NitscheForm<dim>& form_;
   std::vector<Item> items_;

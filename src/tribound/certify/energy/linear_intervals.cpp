@@ -1,0 +1,273 @@
+#include "tribound/certify/energy/linear_intervals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "tribound/certify/energy/traction_fit.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+LinearIntervals<dim>::LinearIntervals(const BoundedState<dim>& state, DualSystems<dim>& systems,
+                                      const algebra::SolverOptions& solver, bool is_held)
+    : state_(state), systems_(systems), slack_(state), basis_(state.form.space().degree())
+{
+  if (!is_held) return;
+  double stiffest = 0;
+  for (const contact::ContactSegment<dim>& segment : state.form.segments())
+    stiffest = std::max(stiffest, segment.gamma);
+  constexpr double stiff = 10;  // so that springs hold as conditions do, but for a share that does not matter
+  stiffness_ = stiff * state.form.space().mesh().ranks().max(stiffest);
+  held_ = std::make_unique<ElasticSystem<dim>>(state.form.problem(), state.form.space(),
+                                               state.form.constraints().fixed, solver, springs());
+}
+
+template <int dim>
+Tensor<dim> LinearIntervals<dim>::holding(std::size_t k) const
+{
+  const Point<dim>& n = state_.form.segments()[k].normal;
+  const Tensor<dim> along = n * n.transpose();
+  Tensor<dim> result = Tensor<dim>::Zero();
+  if (slack_.is_pressed(k)) result += along;
+  if (slack_.is_held(k)) result += Tensor<dim>::Identity() - along;
+  return stiffness_ * result;
+}
+
+/// (S [phi_j], [phi_i])_C, S the stiffness of the springs.
+template <int dim>
+algebra::Triplets LinearIntervals<dim>::springs() const
+{
+  const contact::NitscheForm<dim>& form = state_.form;
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
+  const fem::Tabulation<dim - 1> table = basis_.tabulate(rule.points);
+  const auto n = static_cast<std::size_t>(basis_.n_nodes());
+  std::vector<double> products(n * n, 0.0);  // of the basis on the reference facet
+  for (int q = 0; q < rule.size(); ++q)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        products[i * n + j] += rule.weights[q] * table.values_at(q)[i] * table.values_at(q)[j];
+  const std::vector<char>& fixed = form.constraints().fixed;
+  algebra::Triplets entries;
+  const auto add = [&](Index row, Index column, double value)
+  {
+    if (fixed[row] == 0 && fixed[column] == 0) entries.add(row, column, value);
+  };
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+  {
+    const Tensor<dim> stiffness = form.segments()[k].det() * holding(k);
+    if (stiffness.isZero()) continue;
+    const std::array sides = {state_.facets.nodes(k), state_.facets.master_nodes(k)};
+    for (const std::span<const Index> rows : sides)
+      for (const std::span<const Index> columns : sides)
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          for (std::size_t j = 0; j < columns.size(); ++j)
+            for (int a = 0; a < dim; ++a)
+              for (int b = 0; b < dim; ++b)
+                add(dim * rows[i] + a, dim * columns[j] + b,
+                    (rows.data() == columns.data() ? 1 : -1) * products[i * n + j] * stiffness(a, b));
+  }
+  return entries;
+}
+
+/// What the springs exert on slaves where Gamma_C is displaced so: coefficients in Bernstein's basis.
+template <int dim>
+std::vector<Point<dim>> LinearIntervals<dim>::exerted(std::span<const double> displacement) const
+{
+  std::vector<Point<dim>> result;
+  for (std::size_t k = 0; k < state_.facets.size(); ++k)
+  {
+    const Tensor<dim> stiffness = holding(k);
+    for (const Point<dim>& c : state_.facets.coefficients(k, displacement))
+      result.push_back(-(stiffness * c));
+  }
+  return result;
+}
+
+/// At the contact points, from coefficients in Bernstein's basis.
+template <int dim>
+std::vector<Point<dim>> LinearIntervals<dim>::at_points(std::span<const Point<dim>> coefficients) const
+{
+  const Eigen::MatrixXd basis = bernstein_at<dim>(basis_.degree(), state_.form.facet_rule().points);
+  std::vector<Point<dim>> result;
+  result.reserve(state_.facets.size() * basis.rows());
+  for (std::size_t k = 0; k < state_.facets.size(); ++k)
+    for (Eigen::Index q = 0; q < basis.rows(); ++q)
+    {
+      Point<dim> sum = Point<dim>::Zero();
+      for (Eigen::Index j = 0; j < basis.cols(); ++j) sum += basis(q, j) * coefficients[k * basis.cols() + j];
+      result.push_back(sum);
+    }
+  return result;
+}
+
+template <int dim>
+auto LinearIntervals<dim>::natural(const LinearNumber<dim>& number) const -> Natural
+{
+  const fem::LagrangeSpace<dim>& space = state_.form.space();
+  const std::vector<double> none(space.n_dofs(), 0.0);
+  if (!held_)
+    return {none, none, std::vector<Point<dim>>(state_.t_h.coefficients.size(), Point<dim>::Zero())};
+  const DualProblem<dim>& dual = number.loads ? *number.loads : systems_.unloaded();
+  std::vector<Point<dim>> t(state_.form.n_contact_points(), Point<dim>::Zero());
+  if (number.weight) t = at_points(exerted(number.weight->at_nodes));
+  constexpr double near = 1e-8;
+  const std::vector<double> z = held_->solve(dual.load(t), none, near);
+  std::vector<double> y = z;
+  if (number.weight)
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += number.weight->at_nodes[i];
+  Natural result{.y = none, .opposite = none, .r = exerted(y)};
+  for (std::size_t k = 0; k < state_.facets.size(); ++k)
+  {
+    const std::vector<Point<dim>> coefficients = state_.facets.coefficients(k, y);
+    for (std::size_t j = 0; j < coefficients.size(); ++j)
+      std::ranges::copy(coefficients[j], &result.y[dim * state_.facets.nodes(k)[j]]);
+  }
+  set_opposite(z, result);
+  return result;
+}
+
+/// Opposite slaves that cannot follow masters are at rest: fixed ones, and those that several masters share.
+template <int dim>
+void LinearIntervals<dim>::set_opposite(std::span<const double> z, Natural& natural) const
+{
+  const fem::LagrangeSpace<dim>& space = state_.form.space();
+  const std::vector<char> junctions = state_.facets.junctions();
+  std::vector<char> at_rest = junctions;
+  const auto for_each_master = [&](const auto& visit)
+  {
+    for (std::size_t k = 0; k < state_.facets.size(); ++k)
+      for (std::size_t j = 0; j < state_.facets.master_nodes(k).size(); ++j)
+        for (int a = 0; a < dim; ++a)
+          visit(dim * state_.facets.nodes(k)[j], dim * state_.facets.master_nodes(k)[j] + a);
+  };
+  for_each_master(
+      [&](Index slave, Index master)
+      {
+        const auto is_set = [](char flag) { return flag != 0; };
+        if (junctions[slave] != 0 ||
+            std::ranges::any_of(std::span(&state_.form.constraints().fixed[slave], dim), is_set))
+          at_rest[master] = 1;
+      });
+  space.update(std::span(at_rest));
+  for_each_master([&](Index, Index master)
+                  { natural.opposite[master] = at_rest[master] != 0 ? 0 : z[master]; });
+}
+
+template <int dim>
+std::vector<double> LinearIntervals<dim>::trace(const LinearNumber<dim>& number, const Natural& natural) const
+{
+  const fem::LagrangeSpace<dim>& space = state_.form.space();
+  std::vector<double> result = natural.opposite;
+  for (std::size_t k = 0; k < state_.facets.size(); ++k)
+  {
+    const std::span<const Index> masters = state_.facets.master_nodes(k);
+    const std::vector<Point<dim>> jumps = state_.facets.values(state_.facets.nodes(k), natural.y);
+    for (std::size_t i = 0; i < jumps.size(); ++i)
+      for (int a = 0; a < dim; ++a)
+      {
+        const Index slave = dim * state_.facets.nodes(k)[i] + a;
+        result[slave] = jumps[i][a] - (number.weight ? number.weight->at_nodes[slave] : 0) +
+                        (masters.empty() ? 0 : natural.opposite[dim * masters[i] + a]);
+      }
+  }
+  space.update(std::span(result));
+  return result;
+}
+
+template <int dim>
+bool LinearIntervals<dim>::fits(const LinearNumber<dim>& number, const Natural& natural,
+                                std::span<const double> z) const
+{
+  const std::vector<char>& fixed = state_.form.constraints().fixed;
+  std::vector<double> y(z.begin(), z.end());
+  std::array<double, 2> largest{};  // of what should be 0, of all
+  for (std::size_t i = 0; i < y.size(); ++i)
+  {
+    if (number.weight) y[i] += number.weight->at_nodes[i];
+    if (fixed[i] != 0) largest[0] = std::max(largest[0], std::abs(y[i]));
+    largest[1] = std::max({largest[1], std::abs(y[i]), std::abs(z[i])});
+  }
+  for (std::size_t k = 0; k < state_.facets.size(); ++k)
+  {
+    const std::vector<Point<dim>> found = state_.facets.coefficients(k, y);
+    for (std::size_t j = 0; j < found.size(); ++j)
+    {
+      const Eigen::Map<const Point<dim>> wanted(&natural.y[dim * state_.facets.nodes(k)[j]]);
+      largest[0] = std::max(largest[0], (found[j] - wanted).norm());
+    }
+  }
+  state_.form.space().mesh().ranks().max(std::span(largest));
+  constexpr double rounding = 1e-12;
+  return largest[0] <= rounding * largest[1];
+}
+
+template <int dim>
+DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natural natural, double m,
+                                         std::string& reason) const
+{
+  const fem::LagrangeSpace<dim>& space = state_.form.space();
+  const DualProblem<dim>& dual = number.loads ? *number.loads : systems_.unloaded();
+  constexpr double near = 1e-8;  // any z will do
+  constexpr double tight = 1e-12;
+  slack_.limit_y(m, natural.y);
+  const auto n = static_cast<std::size_t>(basis_.n_nodes());
+  for (std::size_t k = 0; k < state_.facets.size(); ++k)
+    slack_.limit_r(k, m, std::span(natural.r).subspan(k * n, n));
+  const std::vector<Point<dim>> t = at_points(natural.r);
+  const std::vector<double> load = dual.load(t);
+  DualPair<dim> result{.z = systems_.with_held_contact().solve(load, trace(number, natural), near)};
+  if (!fits(number, natural, result.z)) reason = "a dual displacement does not fit at the contact boundary";
+  if (!(space.norm(load) > 0)) return result;
+  result.target = systems_.with_free_contact().solve(load, std::vector<double>(space.n_dofs(), 0.0), tight);
+  result.stress = dual.balanced(result.target, t, reason);
+  return result;
+}
+
+template <int dim>
+LinearBound LinearIntervals<dim>::bound(const LinearNumber<dim>& number, const Natural& natural, double base,
+                                        double m, std::string& reason) const
+{
+  const DualPair<dim> pair = this->pair(number, natural, m, reason);
+  const DualProducts products = dual_products<dim>(state_, pair);
+  if (!(state_.form.space().mesh().ranks().max(products.unbalanced) <= cell_balance_limit))
+    reason = "a cell does not balance its dual stress";
+  return linear_bound<dim>(state_, base, pair, products, m);
+}
+
+template <int dim>
+LinearInterval LinearIntervals<dim>::operator()(const LinearNumber<dim>& number, double base) const
+{
+  const double mid = state_.bound.mid;
+  const Natural natural = this->natural(number);
+  LinearInterval result;
+  const LinearBound first = bound(number, natural, base, 0, result.reason);
+  result.lower = first.centre - first.radius;
+  result.upper = first.centre + first.radius;
+  result.rounding = first.rounding;
+  result.cells = first.cells;
+  if (!held_ || !result.reason.empty() || !(first.radius > 0 && mid > 0)) return result;
+  double smallest = first.radius;
+  double m = first.radius / (mid * mid);  // with this m the radius cannot be smaller
+  constexpr int most_attempts = 3;
+  for (int attempt = 0; attempt < most_attempts; ++attempt)
+  {
+    m /= 4;
+    std::string reason;
+    const LinearBound sharper = bound(number, natural, base, m, reason);
+    if (!reason.empty() || !(sharper.radius < smallest)) break;
+    smallest = sharper.radius;
+    intersect(result.lower, result.upper, sharper.centre - sharper.radius, sharper.centre + sharper.radius);
+    result.rounding = std::max(result.rounding, sharper.rounding);
+    result.is_second_order = true;
+    result.cells = sharper.cells;
+  }
+  return result;
+}
+
+template class LinearIntervals<2>;
+template class LinearIntervals<3>;
+
+}  // namespace tribound::certify

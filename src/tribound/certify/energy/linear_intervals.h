@@ -1,0 +1,75 @@
+#pragma once
+
+/// @file linear_intervals.h
+/// Intervals of linear numbers from dual pairs that follow the state of contact: where it is nearly known
+/// their width is of the order of the energy, not of its root.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tribound/certify/energy/contact_slack.h"
+#include "tribound/certify/energy/linear_number.h"
+
+namespace tribound::certify
+{
+
+/// The number is in [lower, upper], up to rounding.
+struct LinearInterval
+{
+  std::string reason{};  ///< why there is none
+  double lower = 0;
+  double upper = 0;
+  double rounding = 0;
+  bool is_second_order = false;  ///< m > 0
+  std::vector<double> cells{};   ///< own cells' shares in half the width
+};
+
+/// Of numbers from one energy bound. All ranks construct and call it together.
+template <int dim>
+class LinearIntervals
+{
+ public:
+  /// Keeps references. `is_held`: displacement conditions hold every body by themselves; else there are no
+  /// intervals of numbers with loads, and for others m = 0 and zeta = 0.
+  LinearIntervals(const BoundedState<dim>& state, DualSystems<dim>& systems,
+                  const algebra::SolverOptions& solver, bool is_held);
+
+  /// Of m = 0, then with m > 0 as long as the width falls. `base`: as for linear_bound().
+  [[nodiscard]] LinearInterval operator()(const LinearNumber<dim>& number, double base) const;
+
+ private:
+  /// z with [z] + phi held where contact holds, by stiff springs, and free elsewhere.
+  struct Natural
+  {
+    std::vector<double> y;         ///< [z] + phi on Gamma_C, coefficients in Bernstein's basis by node
+    std::vector<double> opposite;  ///< z at the nodes of masters
+    std::vector<Point<dim>> r;     ///< what the springs exert, coefficients facet by facet
+  };
+  [[nodiscard]] Natural natural(const LinearNumber<dim>& number) const;
+  void set_opposite(std::span<const double> z, Natural& natural) const;
+  /// The trace of z on Gamma_C.
+  [[nodiscard]] std::vector<double> trace(const LinearNumber<dim>& number, const Natural& natural) const;
+  /// Whether z vanishes where displacements are fixed and [z] + phi is y, up to rounding.
+  [[nodiscard]] bool fits(const LinearNumber<dim>& number, const Natural& natural,
+                          std::span<const double> z) const;
+  [[nodiscard]] DualPair<dim> pair(const LinearNumber<dim>& number, Natural natural, double m,
+                                   std::string& reason) const;
+  [[nodiscard]] LinearBound bound(const LinearNumber<dim>& number, const Natural& natural, double base,
+                                  double m, std::string& reason) const;
+  /// The springs of facet k.
+  [[nodiscard]] Tensor<dim> holding(std::size_t k) const;
+  [[nodiscard]] algebra::Triplets springs() const;
+  [[nodiscard]] std::vector<Point<dim>> exerted(std::span<const double> displacement) const;
+  [[nodiscard]] std::vector<Point<dim>> at_points(std::span<const Point<dim>> coefficients) const;
+
+  const BoundedState<dim>& state_;
+  DualSystems<dim>& systems_;
+  ContactSlack<dim> slack_;
+  fem::LagrangeBasis<dim - 1> basis_;
+  double stiffness_ = 0;                      ///< of the springs
+  std::unique_ptr<ElasticSystem<dim>> held_;  ///< null: displacement conditions do not hold every body
+};
+
+}  // namespace tribound::certify
