@@ -26,12 +26,13 @@ namespace tribound::test
 {
 
 /// A block of random material, shape, mesh and loads, held at its left or its upper side, there sometimes
-/// moved, on an obstacle with a gap or on another block, held below, whose mesh matches.
+/// moved, on an obstacle with a gap or on another block, held below, whose mesh matches or not.
 template <int dim>
 struct RandomCase
 {
   std::mt19937 random;
   bool is_on_another = false;
+  bool matches = true;
   bool is_held_above = false;
   double between(double low, double high)
   {
@@ -85,8 +86,11 @@ struct RandomCase
       return y;
     };
     const int n = 3 + static_cast<int>(random() % 3);
-    return renumbered(
-        mapped<dim>(is_on_another ? matching_blocks<dim>() : block<dim>({n, 2}, {2, 1, 1}), map), 11);
+    return renumbered(mapped<dim>(!is_on_another ? block<dim>({n, 2}, {2, 1, 1})
+                                  : matches      ? matching_blocks<dim>()
+                                                 : two_blocks<dim>(),
+                                  map),
+                      11);
   }
 };
 

@@ -42,13 +42,21 @@ certify::EnergyBound attempt(const Ranks& ranks, const std::function<certify::En
   return {.reason = why};
 }
 
-/// Squares of cells by the cells that they come from.
+/// Squares of cells by the n cells that they come from.
 void add_up(std::vector<double>& cells, std::span<const Index> parent, Index n)
 {
   if (cells.empty()) return;
   std::vector<double> sums(n, 0.0);
   for (std::size_t c = 0; c < parent.size(); ++c) sums[parent[c]] += cells[c];
   cells = std::move(sums);
+}
+
+/// The bound on a mesh that has such parents, for the mesh of these.
+certify::EnergyBound added_up(certify::EnergyBound bound, std::span<const Index> parent, Index n)
+{
+  add_up(bound.cells, parent, n);
+  for (certify::QuantityInterval& quantity : bound.quantities) add_up(quantity.cells, parent, n);
+  return bound;
 }
 
 }  // namespace
@@ -59,20 +67,23 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
                                   const std::vector<problem::Quantity<dim>>& quantities)
 {
   const Ranks& ranks = form.space().mesh().ranks();
+  const auto on_this_mesh = [&] { return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u); };
   const auto where_it_is_finer = [&]() -> certify::EnergyBound
   {
     const auto finer = finer_contact<dim>(form, u);
     if (!finer) return {.reason = "the state changes nowhere"};
-    certify::EnergyBound bound =
-        certify::EnergyEstimator<dim>(*finer->form, method.solver, quantities)(finer->u);
-    const Index n = form.space().mesh().n_owned_cells();
-    add_up(bound.cells, finer->parent, n);
-    for (certify::QuantityInterval& quantity : bound.quantities) add_up(quantity.cells, finer->parent, n);
-    return bound;
+    return added_up(certify::EnergyEstimator<dim>(*finer->form, method.solver, quantities)(finer->u),
+                    finer->parent, form.space().mesh().n_owned_cells());
+  };
+  const auto where_it_matches = [&]
+  {
+    const auto matching = matching_contact<dim>(form, u);
+    if (!matching) return on_this_mesh();
+    return added_up(energy_bound<dim>(*matching->form, method, matching->u, quantities), matching->parent,
+                    form.space().mesh().n_owned_cells());
   };
   certify::EnergyBound bound = attempt(ranks, where_it_is_finer);
-  if (bound.reason.empty()) return bound;
-  return attempt(ranks, [&] { return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u); });
+  return bound.reason.empty() ? bound : attempt(ranks, where_it_matches);
 }
 
 const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound, const std::string& name)

@@ -18,11 +18,28 @@ namespace
 using Functions = std::vector<std::span<const double>>;
 
 template <int dim>
+mesh::Bisected<dim> pieces(const mesh::Mesh<dim>& mesh, std::span<const Index> marked,
+                           const Refinement<dim>& refinement)
+{
+  if constexpr (dim == 2)
+    if (refinement.cuts) return mesh::cut_facets(mesh, *refinement.cuts);
+  return mesh::bisect<dim>(mesh, marked, refinement.times, refinement.twins);
+}
+
+template <int dim>
+mesh::BisectedPart<dim> pieces_of_part(const mesh::Mesh<dim>& mesh, std::span<const Index> marked,
+                                       const Refinement<dim>& refinement)
+{
+  if constexpr (dim == 2)
+    if (refinement.cuts) return mesh::cut_facets_part(mesh, *refinement.cuts);
+  return mesh::bisect_part<dim>(mesh, marked, refinement.times, refinement.twins);
+}
+
+template <int dim>
 Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functions,
                     std::span<const Index> marked, const Refinement<dim>& refinement)
 {
-  auto finer = std::make_shared<mesh::Bisected<dim>>(
-      mesh::bisect<dim>(from.mesh(), marked, refinement.times, refinement.twins));
+  auto finer = std::make_shared<mesh::Bisected<dim>>(pieces<dim>(from.mesh(), marked, refinement));
   return {finer->mesh.n_cells(), [finer] { return std::move(finer->mesh); },
           [finer, &from, functions](const fem::LagrangeSpace<dim>& space)
           {
@@ -39,8 +56,7 @@ template <int dim>
 Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& functions,
                          std::span<const Index> marked, const Refinement<dim>& refinement)
 {
-  auto part = std::make_shared<mesh::BisectedPart<dim>>(
-      mesh::bisect_part<dim>(from.mesh(), marked, refinement.times, refinement.twins));
+  auto part = std::make_shared<mesh::BisectedPart<dim>>(pieces_of_part<dim>(from.mesh(), marked, refinement));
   const std::int64_t n_cells = from.mesh().ranks().sum(static_cast<std::int64_t>(part->cells.size()));
   auto balanced = std::make_shared<std::optional<mesh::Balanced<dim>>>();
   const std::size_t n_each = static_cast<std::size_t>(dim) * from.basis().n_nodes();

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "tribound/fem/space.h"
+#include "tribound/mesh/cut_facets.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/share_out.h"
 #include "tribound/mesh/twin_facets.h"
@@ -16,10 +18,12 @@
 namespace tribound::adapt
 {
 
-/// How cells are bisected, and where they go.
+/// How cells are bisected or cut, and where they go.
 template <int dim>
 struct Refinement
 {
+  /// 2D: cells are cut in fans here (mesh/cut_facets.h), and none is bisected.
+  std::optional<std::span<const mesh::FacetCuts>> cuts{};
   std::span<const mesh::TwinFacets<dim>> twins{};  ///< of contact::twin_facets(); they stay such
   int times = dim;
   mesh::Move move = mesh::Move::where_unbalanced;
@@ -37,9 +41,9 @@ struct Finer
   std::span<const Index> parent;
 };
 
-/// The mesh of `space` with the marked cells bisected (mesh/bisect.h), and functions of the space, such as u.
-/// On a mesh that is shared out all ranks call it and its members together; cells take the values at their
-/// nodes with them. Throws InputError as bisect() and balance() do.
+/// The mesh of `space` with the marked cells bisected (mesh/bisect.h), or with cells cut, and functions of
+/// the space, such as u. On a mesh that is shared out all ranks call it and its members together; cells take
+/// the values at their nodes with them. Throws InputError as bisect() and balance() do.
 template <int dim>
 [[nodiscard]] Finer<dim> finer_mesh(const fem::LagrangeSpace<dim>& space,
                                     std::vector<std::span<const double>> functions,

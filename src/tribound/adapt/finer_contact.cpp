@@ -1,10 +1,13 @@
 #include "tribound/adapt/finer_contact.h"
 
+#include <algorithm>
+#include <map>
 #include <utility>
 
 #include "tribound/adapt/finer.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/contact/nitsche/facet_cuts.h"
 #include "tribound/fem/nested.h"
 
 namespace tribound::adapt
@@ -25,41 +28,101 @@ int facet_around(const mesh::CellMap<dim>& cell, const Point<dim>& centre)
   return -1;
 }
 
-/// gamma of the slave of each segment, from the facet that it lies on.
+/// The one of these, parts of a facet of a slave, that contains the point.
 template <int dim>
-void inherit_gamma(const contact::NitscheForm<dim>& from, const FinerContact<dim>& to,
-                   std::span<contact::ContactSegment<dim>> segments)
+const contact::ContactSegment<dim>& around_point(
+    const mesh::Mesh<dim>& mesh, std::span<const contact::ContactSegment<dim>* const> segments,
+    const Point<dim>& x)
 {
-  constexpr int n = dim + 1;
+  const auto distance = [&](const contact::ContactSegment<dim>* segment)
+  {
+    const auto map = contact::simplex_map(mesh, segment->slave);
+    return (map(Point<dim - 1>::Constant(1.0 / dim)) - x).norm() / segment->measure;
+  };
+  return **std::ranges::min_element(segments, {}, distance);
+}
+
+/// gamma and the weights of the sides in {sigma} of each segment, from the one that contains it.
+template <int dim>
+void inherit(const contact::NitscheForm<dim>& from, const FinerContact<dim>& to,
+             std::span<contact::ContactSegment<dim>> segments)
+{
   const mesh::Mesh<dim>& coarse = from.space().mesh();
   const mesh::Mesh<dim>& fine = to.grid->mesh;
-  std::vector<double> before(static_cast<std::size_t>(n) * coarse.n_owned_cells(), 0.0);
-  for (std::size_t k = 0; k < from.n_owned_segments(); ++k)
+  std::map<std::pair<Index, int>, std::vector<const contact::ContactSegment<dim>*>> before;  // by facet
+  for (const contact::ContactSegment<dim>& segment : from.segments().first(from.n_owned_segments()))
+    before[{segment.slave.facet.cell, segment.slave.facet.local}].push_back(&segment);
+  constexpr int n_each = 3 * (dim + 1);
+  std::vector<double> inherited(static_cast<std::size_t>(n_each) * fine.n_cells(), 0.0);
+  const auto of_facet = [&](const mesh::BoundaryFacet& facet)
   {
-    const auto& [cell, local, tag] = from.segments()[k].slave.facet;
-    before[static_cast<std::size_t>(n) * cell + local] = from.segments()[k].gamma;
-  }
-  std::vector<double> gamma(static_cast<std::size_t>(n) * fine.n_cells(), 0.0);
+    return &inherited[static_cast<std::size_t>(n_each) * facet.cell +
+                      3 * static_cast<std::size_t>(facet.local)];
+  };
   for (const contact::ContactSegment<dim>& segment : segments)
   {
-    const auto& [cell, local, tag] = segment.slave.facet;
-    if (cell >= fine.n_owned_cells()) continue;
-    Point<dim> centre = Point<dim>::Zero();
-    for (const Index v : mesh::facet_vertices(fine.cell(cell), local)) centre += fine.vertex(v) / dim;
-    const Index parent = to.parent[cell];
-    const int around = facet_around<dim>(mesh::cell_map(coarse, parent), centre);
-    gamma[static_cast<std::size_t>(n) * cell + local] = before[static_cast<std::size_t>(n) * parent + around];
+    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    if (facet.cell >= fine.n_owned_cells()) continue;
+    const Point<dim> centre = contact::simplex_map(fine, segment.slave)(Point<dim - 1>::Constant(1.0 / dim));
+    const Index parent = to.parent[facet.cell];
+    const contact::ContactSegment<dim>& origin = around_point<dim>(
+        coarse, before.at({parent, facet_around<dim>(mesh::cell_map(coarse, parent), centre)}), centre);
+    double* const values = of_facet(facet);
+    values[0] = origin.gamma;
+    values[1] = origin.slave.stress_direction.norm();
+    if (origin.master) values[2] = origin.master->stress_direction.norm();
   }
   if (fine.partition())
   {
     const GhostUpdate from_owners = mesh::cell_update<dim>(*fine.partition());
-    from_owners(std::span(gamma), n);
+    from_owners(std::span(inherited), n_each);
   }
   for (contact::ContactSegment<dim>& segment : segments)
-    segment.gamma = gamma[static_cast<std::size_t>(n) * segment.slave.facet.cell + segment.slave.facet.local];
+  {
+    const double* const values = of_facet(segment.slave.facet);
+    segment.gamma = values[0];
+    segment.slave.stress_direction = values[1] * segment.slave.stress_direction.normalized();
+    if (segment.master)
+      segment.master->stress_direction = values[2] * segment.master->stress_direction.normalized();
+  }
+}
+
+/// u and the form on a finer mesh.
+template <int dim>
+std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form, const Finer<dim>& finer)
+{
+  auto result = std::make_unique<FinerContact<dim>>();
+  result->grid = std::make_unique<const Grid<dim>>(
+      contact::with_partners<dim>(finer.mesh(), form.problem().pairs()), form.space().degree());
+  result->u = std::move(finer.carry(result->grid->space).front());
+  result->parent.assign(finer.parent.begin(), finer.parent.end());
+  const mesh::Mesh<dim>& mesh = result->grid->mesh;
+  std::vector<contact::ContactSegment<dim>> segments =
+      contact::contact_segments<dim>(form.problem(), mesh, form.gamma0());
+  contact::erase_slivers(mesh, segments);
+  inherit<dim>(form, *result, segments);
+  result->form = std::make_unique<const contact::NitscheForm<dim>>(form.problem(), result->grid->space,
+                                                                   form.gamma0(), std::move(segments));
+  return result;
 }
 
 }  // namespace
+
+template <int dim>
+std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<dim>& form,
+                                                    std::span<const double> u)
+{
+  if constexpr (dim == 2)
+  {
+    const mesh::Mesh<2>& mesh = form.space().mesh();
+    if (contact::facets_match(mesh, form.segments())) return nullptr;
+    const std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
+    auto result =
+        carried<2>(form, finer_mesh<2>(form.space(), {u}, {}, {.cuts = cuts, .move = mesh::Move::never}));
+    if (contact::facets_match(result->grid->mesh, result->form->segments())) return result;
+  }
+  return nullptr;
+}
 
 template <int dim>
 std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>& form,
@@ -67,28 +130,21 @@ std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>
 {
   constexpr int times = dim == 2 ? 6 : 3;
   if (!certify::why_no_energy_bound(form).empty()) return nullptr;
-  const fem::LagrangeSpace<dim>& space = form.space();
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::vector<Index> marked;
   for (const std::size_t k : certify::facets_in_transition<dim>(form, form.traction(u)))
     if (k < form.n_owned_segments()) marked.push_back(form.segments()[k].slave.facet.cell);
-  if (!space.mesh().ranks().any(!marked.empty())) return nullptr;
-  const Finer<dim> finer = finer_mesh<dim>(space, {u}, marked,
-                                           {.twins = contact::twin_facets<dim>(space.mesh(), form.segments()),
-                                            .times = times,
-                                            .move = mesh::Move::never});
-  auto result = std::make_unique<FinerContact<dim>>();
-  result->grid = std::make_unique<const Grid<dim>>(
-      contact::with_partners<dim>(finer.mesh(), form.problem().pairs()), space.degree());
-  result->u = std::move(finer.carry(result->grid->space).front());
-  result->parent.assign(finer.parent.begin(), finer.parent.end());
-  std::vector<contact::ContactSegment<dim>> segments =
-      contact::contact_segments<dim>(form.problem(), result->grid->mesh, form.gamma0());
-  inherit_gamma<dim>(form, *result, segments);
-  result->form = std::make_unique<const contact::NitscheForm<dim>>(form.problem(), result->grid->space,
-                                                                   form.gamma0(), std::move(segments));
-  return result;
+  if (!mesh.ranks().any(!marked.empty())) return nullptr;
+  return carried<dim>(form, finer_mesh<dim>(form.space(), {u}, marked,
+                                            {.twins = contact::twin_facets<dim>(mesh, form.segments()),
+                                             .times = times,
+                                             .move = mesh::Move::never}));
 }
 
+template std::unique_ptr<FinerContact<2>> matching_contact(const contact::NitscheForm<2>&,
+                                                           std::span<const double>);
+template std::unique_ptr<FinerContact<3>> matching_contact(const contact::NitscheForm<3>&,
+                                                           std::span<const double>);
 template std::unique_ptr<FinerContact<2>> finer_contact(const contact::NitscheForm<2>&,
                                                         std::span<const double>);
 template std::unique_ptr<FinerContact<3>> finer_contact(const contact::NitscheForm<3>&,

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file finer_contact.h
-/// A solution on a mesh whose facets are cut up where the state of contact changes, for sharper error bars.
+/// A solution on a mesh whose facets match and are cut up where the state of contact changes, for error bars.
 
 #include <memory>
 #include <span>
@@ -12,20 +12,29 @@
 namespace tribound::adapt
 {
 
-/// The same function u on a bisected mesh. Its parts refer to each other: it stays where it is made.
+/// The same function u on a mesh that is bisected, or cut otherwise. Its parts refer to each other: it stays
+/// where it is made.
 template <int dim>
 struct FinerContact
 {
   std::unique_ptr<const Grid<dim>> grid;
-  std::unique_ptr<const contact::NitscheForm<dim>> form;  ///< with gamma of the form that it comes from
+  /// With gamma and {sigma} of the form that it comes from: T(u) is the same function.
+  std::unique_ptr<const contact::NitscheForm<dim>> form;
   std::vector<double> u;
   std::vector<Index> parent;  ///< per own cell: the own cell of the mesh before that contains it
 };
 
+/// 2D: on a mesh whose cells in contact are cut in fans where segments end, so that facets of bodies match.
+/// Null where they do anyhow, where rounding does not let them, and in 3D. All ranks call it together. Throws
+/// InputError where that is no mesh.
+template <int dim>
+[[nodiscard]] std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<dim>& form,
+                                                                  std::span<const double> u);
+
 /// Polynomials cannot be complementary on a facet where the state changes, the less so the higher their
-/// degree: there the cells are bisected until edges are an eighth in 2D, halved in 3D. T(u) is the same
-/// function: it would not be with gamma of smaller facets. Null where the state changes on no facet of any
-/// rank, or the form has no bound of the error in the energy norm. All ranks call it together.
+/// degree: there the cells are bisected until edges are an eighth in 2D, halved in 3D. Null where the state
+/// changes on no facet of any rank, or the form has no bound of the error in the energy norm. All ranks call
+/// it together.
 template <int dim>
 [[nodiscard]] std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>& form,
                                                                std::span<const double> u);

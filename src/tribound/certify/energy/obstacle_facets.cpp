@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tribound/contact/nitsche/facet_cuts.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/fem/bernstein.h"
 #include "tribound/mesh/geometry.h"
@@ -36,10 +37,6 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;
-  const mesh::Mesh<dim>& mesh = form.space().mesh();
-  if (any([&](const Segment& segment)
-          { return !segment.is_obstacle_facet() && !contact::matching_facets(mesh, segment); }))
-    return "meshes of bodies in contact do not match";
   if (any([](const Segment& segment) { return segment.varying_normal != nullptr; }))
     return "a direction of contact varies along facets";
   if (any([](const Segment& segment) { return segment.contact->water.has_value(); }))
@@ -51,6 +48,8 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
             return cone.is_bonded;
           }))
     return "a contact law has a bond";
+  if (!contact::facets_match(form.space().mesh(), form.segments()))
+    return "meshes of bodies in contact do not match";
   return {};
 }
 

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file cut_facets.h
+/// Cells cut in fans, so that boundary facets end where something else wants them to, in 2D.
+
+#include <span>
+#include <vector>
+
+#include "tribound/mesh/bisect.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound::mesh
+{
+
+/// Where a boundary facet of a cell is to be cut.
+struct FacetCuts
+{
+  Index cell;
+  int local;               ///< of the facet
+  std::vector<double> at;  ///< ascending in (0, 1), from the first vertex of facet_vertices() to the second
+};
+
+/// The mesh with new vertices at the cuts and the cells there cut from them to the vertex opposite: what lies
+/// beside these cells stays as it is. A cell may have cuts on several facets. Regions, tags and names are
+/// inherited; bisection starts anew with the longest edges. Throws InputError where that is no mesh.
+[[nodiscard]] Bisected<2> cut_facets(const Mesh<2>& mesh, std::span<const FacetCuts> cuts);
+
+/// Own cells of a rank likewise; `cuts` are of own cells. Throws InputError, on all ranks, where cells
+/// outgrow CellName::max_depth.
+[[nodiscard]] BisectedPart<2> cut_facets_part(const Mesh<2>& mesh, std::span<const FacetCuts> cuts);
+
+}  // namespace tribound::mesh
