@@ -1,6 +1,7 @@
 #include "tribound/adapt/finer_contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -65,8 +66,9 @@ void inherit(const contact::NitscheForm<dim>& from, const FinerContact<dim>& to,
     if (facet.cell >= fine.n_owned_cells()) continue;
     const Point<dim> centre = contact::simplex_map(fine, segment.slave)(Point<dim - 1>::Constant(1.0 / dim));
     const Index parent = to.parent[facet.cell];
-    const contact::ContactSegment<dim>& origin = around_point<dim>(
-        coarse, before.at({parent, facet_around<dim>(mesh::cell_map(coarse, parent), centre)}), centre);
+    const auto found = before.find({parent, facet_around<dim>(mesh::cell_map(coarse, parent), centre)});
+    const contact::ContactSegment<dim>& origin =
+        found == before.end() ? segment : around_point<dim>(coarse, found->second, centre);
     double* const values = of_facet(facet);
     values[0] = origin.gamma;
     values[1] = origin.slave.stress_direction.norm();
@@ -87,7 +89,17 @@ void inherit(const contact::NitscheForm<dim>& from, const FinerContact<dim>& to,
   }
 }
 
-/// u and the form on a finer mesh.
+/// The measure of Gamma_C on slaves. All ranks together.
+template <int dim>
+double contact_measure(const contact::NitscheForm<dim>& form)
+{
+  double sum = 0;
+  for (const contact::ContactSegment<dim>& segment : form.segments().first(form.n_owned_segments()))
+    sum += segment.measure;
+  return form.space().mesh().ranks().sum(sum);
+}
+
+/// u and the form on a finer mesh; null where Gamma_C would not be the same.
 template <int dim>
 std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form, const Finer<dim>& finer)
 {
@@ -103,6 +115,9 @@ std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form
   inherit<dim>(form, *result, segments);
   result->form = std::make_unique<const contact::NitscheForm<dim>>(form.problem(), result->grid->space,
                                                                    form.gamma0(), std::move(segments));
+  constexpr double rounding = 1e-8;
+  const double measure = contact_measure(form);
+  if (!(std::abs(contact_measure(*result->form) - measure) <= rounding * measure)) return nullptr;
   return result;
 }
 
@@ -119,7 +134,7 @@ std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<d
     const std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
     auto result =
         carried<2>(form, finer_mesh<2>(form.space(), {u}, {}, {.cuts = cuts, .move = mesh::Move::never}));
-    if (contact::facets_match(result->grid->mesh, result->form->segments())) return result;
+    if (result && contact::facets_match(result->grid->mesh, result->form->segments())) return result;
   }
   return nullptr;
 }

@@ -18,11 +18,14 @@ bool is_homogeneous(const contact::NitscheForm<dim>& form)
   }
   for (const problem::Contact* contact : form.problem().contacts())
     result = result && (!contact->gap || is_zero(*contact->gap));
-  const auto is_apart = [](const contact::ContactSegment<dim>& segment)
+  constexpr double rounding = 1e-14;  // of coordinates
+  const auto is_apart = [&](const contact::ContactSegment<dim>& segment)
   {
-    const bool is_of_meshes = !segment.contact->gap && !problem::cone(segment.contact->law).is_tied;
-    return is_of_meshes && std::ranges::any_of(segment.offset, [&](const Point<dim>& offset)
-                                               { return offset.dot(segment.normal) != 0; });
+    if (segment.contact->gap || problem::cone(segment.contact->law).is_tied) return false;
+    const auto map = contact::simplex_map(form.space().mesh(), segment.slave);
+    const double size = rounding * (map.origin.norm() + map.jacobian.norm());
+    return std::ranges::any_of(segment.offset, [&](const Point<dim>& offset)
+                               { return std::abs(offset.dot(segment.normal)) > size; });
   };
   return result && !form.space().mesh().ranks().any(std::ranges::any_of(form.segments(), is_apart));
 }
