@@ -105,10 +105,11 @@ class Pieces
   /// Cuts the piece that has the facet, and of what is left of it the part that has the next cut.
   void cut(const FacetCuts& facet, std::vector<Piece>& pieces)
   {
-    const auto [first, last] = facet_vertices(mesh_.cell(facet.cell), facet.local);
-    const Point<2> a = mesh_.vertex(first);
+    const std::array<Index, 2> ends = facet_vertices(mesh_.cell(facet.cell), facet.local);
+    const Index last = ends[1];
+    const Point<2> a = mesh_.vertex(ends[0]);
     const Point<2> b = mesh_.vertex(last);
-    Index left = first;
+    Index left = ends[0];
     for (const double at : facet.at)
     {
       const Index middle = static_cast<Index>(points_.size());
