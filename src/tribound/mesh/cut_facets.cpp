@@ -52,7 +52,7 @@ class Pieces
     for (std::size_t k = 0; k < pieces_.size(); ++k)
     {
       const Piece& piece = pieces_[k];
-      const MarkedCell<2> marked = longest_edges_marked<2>(points_, piece.vertices);
+      const MarkedCell<2> marked = this->marked(k);
       data.cells.push_back(marked.vertices);
       data.bisection_types.push_back(marked.type);
       data.regions.push_back(mesh_.region(parent_[k]));
@@ -69,7 +69,7 @@ class Pieces
     for (std::size_t k = 0; k < pieces_.size(); ++k)
     {
       const Piece& piece = pieces_[k];
-      const MarkedCell<2> marked = longest_edges_marked<2>(points_, piece.vertices);
+      const MarkedCell<2> marked = this->marked(k);
       CellRecord<2>& record = result.cells.emplace_back();
       record.name = piece.name;
       record.region = mesh_.region(parent_[k]);
@@ -85,6 +85,14 @@ class Pieces
   }
 
  private:
+  /// Piece k as bisection goes on with it: cells that are whole as before.
+  [[nodiscard]] MarkedCell<2> marked(std::size_t k) const
+  {
+    const Cell<2>& vertices = pieces_[k].vertices;
+    return vertices == mesh_.cell(parent_[k])
+               ? marked_cell<2>(points_, mesh_.cells(), mesh_.bisection_types(), parent_[k])
+               : longest_edges_marked<2>(points_, vertices);
+  }
   /// The number of a vertex in a piece; 3: it is none of it.
   [[nodiscard]] static std::size_t local(const Piece& piece, Index v)
   {

@@ -22,7 +22,8 @@ struct FacetCuts
 
 /// The mesh with new vertices at the cuts and the cells there cut from them to the vertex opposite: what lies
 /// beside these cells stays as it is. A cell may have cuts on several facets. Regions, tags and names are
-/// inherited; bisection starts anew with the longest edges. Throws InputError where that is no mesh.
+/// inherited; bisection starts anew with the longest edges of the pieces. Throws InputError where that is no
+/// mesh.
 [[nodiscard]] Bisected<2> cut_facets(const Mesh<2>& mesh, std::span<const FacetCuts> cuts);
 
 /// Own cells of a rank likewise; `cuts` are of own cells. Throws InputError, on all ranks, where cells
