@@ -42,15 +42,6 @@ bool has_run_away(const std::vector<CertifiedStep>& steps, const Method& method)
 }  // namespace
 
 template <int dim>
-std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                              std::span<const double> contact_load)
-{
-  std::vector<double> forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
-  for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= contact_load[i];
-  return forces;
-}
-
-template <int dim>
 DiscreteAtTime<dim>::DiscreteAtTime(const problem::Problem<dim>& general, double load_factor,
                                     std::shared_ptr<const Grid<dim>> grid, const Method& method,
                                     std::shared_ptr<const contact::ContactHistory<dim>> history)
@@ -198,74 +189,6 @@ void LoadPath<dim>::check(const DiscreteAtTime<dim>& at)
   whole_.reset();
 }
 
-/// A cycle comes back to no stress at all: bound and identities are relative to the stress of the path,
-/// ||sigma_h|| being at most ||sigma(u_h)|| and the bound.
-template <int dim>
-certify::Verdict LoadPath<dim>::judge(const CertifiedLevel<dim>& level) const
-{
-  contact::StressNorms norms = level.norms;
-  norms.sigma = position_.largest_sigma;
-  certify::IdentityDefects identities = level.identities;
-  const double share = (level.norms.sigma + level.estimate.total) / position_.largest_sigma;
-  if (share < 1)
-    for (double* defect : {&identities.divergence, &identities.jump, &identities.neumann, &identities.contact,
-                           &identities.symmetry})
-      *defect *= share;
-  return certify::judge(level.estimate, identities, method_.degree, norms, options_.tolerance);
-}
-
-template <int dim>
-void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
-{
-  const CertifiedLevel<dim>& level = step->level;
-  position_.largest_sigma = std::max(position_.largest_sigma, level.norms.sigma);
-  step->largest_sigma = position_.largest_sigma;
-  step->verdict = options_.certifies ? judge(level) : certify::Verdict{certify::RunStatus::uncertified, {}};
-  for (std::size_t i = 0; i < position_.tips.size(); ++i) position_.tips[i] = step->crack_tips[i].distance;
-
-  position_.history = history_after(*step);
-  account(*step);
-  step->seconds = seconds_since(begin_);
-  begin_ = Clock::now();
-  if (last()) position_.before_last = {last()->t, last()->level.u};
-  position_.last = std::move(step);
-}
-
-template <int dim>
-std::shared_ptr<const contact::ContactHistory<dim>> LoadPath<dim>::history_after(
-    const LoadStep<dim>& step) const
-{
-  std::vector<problem::InterfaceState<dim>> states;
-  states.reserve(step.responses.size());
-  for (const auto& response : step.responses) states.push_back(response.state);
-  return std::make_shared<const contact::ContactHistory<dim>>(
-      std::move(states), step.at->discrete.form.facet_rule(), method_.degree + 2);
-}
-
-template <int dim>
-void LoadPath<dim>::account(LoadStep<dim>& step)
-{
-  const contact::NitscheForm<dim>& form = step.at->discrete.form;
-  const fem::LagrangeSpace<dim>& space = form.space();
-  const std::vector<double>& u = step.level.u;
-  std::vector<double> contact_load(space.n_dofs(), 0.0);
-  form.add_contact_load(step.level.traction, contact_load);
-  position_.reference_force =
-      std::max(position_.reference_force, solve::external_forces(form).scale + space.norm(contact_load));
-
-  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
-  step.forces = forces_on<dim>(form, u, contact_load);
-  std::vector<double> mean = step.forces;
-  std::vector<double> moved = u;
-  if (last())
-    for (std::size_t i = 0; i < u.size(); ++i)
-    {
-      mean[i] += last()->forces[i];
-      moved[i] -= last()->level.u[i];
-    }
-  step.work = space.dot(mean, moved) / 2;
-}
-
 template <int dim>
 void LoadPath<dim>::go_back(Position position, std::shared_ptr<const Grid<dim>> grid)
 {
@@ -368,10 +291,6 @@ std::shared_ptr<const DiscreteAtTime<dim>> LoadPath<dim>::at_time(double t,
                                                      position_.history);
 }
 
-template std::vector<double> forces_on(const contact::NitscheForm<2>&, std::span<const double>,
-                                       std::span<const double>);
-template std::vector<double> forces_on(const contact::NitscheForm<3>&, std::span<const double>,
-                                       std::span<const double>);
 template struct DiscreteAtTime<2>;
 template struct DiscreteAtTime<3>;
 template class LoadPath<2>;
