@@ -120,6 +120,7 @@
 #include "tribound/io/record/level_record.h"
 #include "tribound/io/record/load_step_record.h"
 #include "tribound/io/record/report.h"
+#include "tribound/io/record/run_statements.h"
 #include "tribound/io/record/solution_figures.h"
 #include "tribound/io/record/tables.h"
 #include "tribound/io/state/checkpoint.h"

@@ -167,13 +167,14 @@ bool LoadPath<dim>::crack_grows(LoadStep<dim>& step, std::vector<double>& tips) 
 }
 
 template <int dim>
-void LoadPath<dim>::prepare(double t)
+const Discretisation<dim>& LoadPath<dim>::prepare(double t)
 {
   prepared_ = std::make_shared<DiscreteAtTime<dim>>(problem_, t, grid_, method_, nullptr);
   contact::NitscheForm<dim>& form = prepared_->discrete.form;
   position_.history = contact::history_at_first(form);
   if (position_.history) form.set_history(position_.history);
   check(*prepared_);
+  return prepared_->discrete;
 }
 
 template <int dim>

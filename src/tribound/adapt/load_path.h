@@ -120,8 +120,9 @@ class LoadPath
   /// The same path on a refinement of the mesh of `coarser`, where the problem is known to be well posed.
   LoadPath(const LoadPath& coarser, mesh::Mesh<dim> mesh);
 
-  /// What the first step, at t, does before anything is solved; throws what it would of bad input.
-  void prepare(double t);
+  /// What the first step, at t, does before anything is solved, and its discretisation; throws what it would
+  /// of bad input.
+  const Discretisation<dim>& prepare(double t);
 
   using Observer = std::function<void(const LoadStep<dim>&)>;
 

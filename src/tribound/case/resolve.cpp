@@ -11,6 +11,7 @@
 #include "tribound/case/dimension.h"
 #include "tribound/case/geometry_resolver.h"
 #include "tribound/case/node.h"
+#include "tribound/certify/bound/balance.h"
 
 namespace tribound::case_file
 {
@@ -200,6 +201,17 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
   return problem;
 }
 
+template <int dim>
+Point<dim> moment_point(const OutputConfig& output, const mesh::Mesh<dim>& mesh)
+{
+  if (output.moment_about.empty()) return certify::centroid<dim>(mesh);
+  if (output.moment_about.size() != dim)
+    throw InputError(output.moment_about_where,
+                     fmt::format("has {} numbers, the mesh is {}D", output.moment_about.size(), dim),
+                     fmt::format("{} coordinates of a point", dim));
+  return Point<dim>(output.moment_about.data());
+}
+
 io::CaseFacts case_facts(const Config& config, int dimension)
 {
   return {config.title,         config.file,           dimension,
@@ -210,5 +222,7 @@ template problem::Problem<2> resolve(const Config&, std::span<const std::string>
                                      std::span<const std::string>, const mesh::QuadraticFacets*);
 template problem::Problem<3> resolve(const Config&, std::span<const std::string>,
                                      std::span<const std::string>, const mesh::QuadraticFacets*);
+template Point<2> moment_point(const OutputConfig&, const mesh::Mesh<2>&);
+template Point<3> moment_point(const OutputConfig&, const mesh::Mesh<3>&);
 
 }  // namespace tribound::case_file

@@ -30,6 +30,10 @@ template <int dim>
                       mesh.labels().quadratic_facets.get());
 }
 
+/// output.moment_about, by default the centroid. Throws InputError where it has not one number per dimension.
+template <int dim>
+[[nodiscard]] Point<dim> moment_point(const OutputConfig& output, const mesh::Mesh<dim>& mesh);
+
 /// What the case is, for reports.
 [[nodiscard]] io::CaseFacts case_facts(const Config& config, int dimension);
 

@@ -233,6 +233,13 @@ std::int64_t n_box_cells(const Boxes& boxes)
   return n;
 }
 
+std::optional<std::int64_t> n_box_cells(const MeshSource& source)
+{
+  if (const auto* box = std::get_if<BoxMesh>(&source)) return n_box_cells(*box);
+  if (const auto* boxes = std::get_if<Boxes>(&source)) return n_box_cells(*boxes);
+  return std::nullopt;
+}
+
 BoxMesh coarser_box(BoxMesh box, std::int64_t most_cells)
 {
   while (n_box_cells(box) > most_cells)
@@ -286,6 +293,13 @@ Boxes coarser_box(Boxes boxes, std::int64_t most_cells)
     named.box = coarser_box(named.box, std::max(least, most));
   }
   return boxes;
+}
+
+MeshSource coarser_box(MeshSource source, std::int64_t most_cells)
+{
+  if (const auto* box = std::get_if<BoxMesh>(&source)) return coarser_box(*box, most_cells);
+  if (const auto* boxes = std::get_if<Boxes>(&source)) return coarser_box(*boxes, most_cells);
+  return source;
 }
 
 template <int dim>

@@ -4,6 +4,7 @@
 /// Structured meshes of a rectangle or a cuboid.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tribound/mesh/mesh.h"
@@ -40,12 +41,16 @@ template <int dim>
 /// How many cells it has, or they have.
 [[nodiscard]] std::int64_t n_box_cells(const BoxMesh& box);
 [[nodiscard]] std::int64_t n_box_cells(const Boxes& boxes);
+/// Nothing of a file.
+[[nodiscard]] std::optional<std::int64_t> n_box_cells(const MeshSource& source);
 
 /// One of the same sides with half as many cells in each direction, again and again, until there are at most
 /// so many.
 [[nodiscard]] BoxMesh coarser_box(BoxMesh box, std::int64_t most_cells);
 /// Each with its share of so many.
 [[nodiscard]] Boxes coarser_box(Boxes boxes, std::int64_t most_cells);
+/// A file stays as it is.
+[[nodiscard]] MeshSource coarser_box(MeshSource source, std::int64_t most_cells);
 
 /// Its cells number first, ..., last - 1 as first_records() gives them, without the others.
 template <int dim>

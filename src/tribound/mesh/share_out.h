@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "tribound/base/ranks.h"
@@ -27,6 +28,14 @@ template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box);
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const Boxes& boxes);
+/// The same of boxes, or of a mesh of another source, which is `whole`.
+template <int dim>
+[[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const MeshSource& source, const Mesh<dim>* whole)
+{
+  if (const auto* box = std::get_if<BoxMesh>(&source)) return share_out<dim>(ranks, *box);
+  if (const auto* boxes = std::get_if<Boxes>(&source)) return share_out<dim>(ranks, *boxes);
+  return share_out<dim>(ranks, whole);
+}
 
 /// When cells go where all ranks have as many, along the curve.
 enum class Move

@@ -2,10 +2,14 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace tribound::io
 {
@@ -18,6 +22,17 @@ constexpr std::size_t buffer_size = 1 << 20;
 std::string reason(int error)
 {
   return std::generic_category().message(error);
+}
+
+/// Whether the name is ".NAME.PID.part", a file that AtomicFile has not finished.
+bool is_unfinished(std::string_view name)
+{
+  constexpr std::string_view ending = ".part";
+  if (!name.starts_with('.') || !name.ends_with(ending)) return false;
+  name.remove_suffix(ending.size());
+  const std::string_view number = name.substr(name.rfind('.') + 1);
+  return number.size() + 1 < name.size() && !number.empty() &&
+         std::ranges::all_of(number, [](char c) { return '0' <= c && c <= '9'; });
 }
 
 }  // namespace
@@ -111,6 +126,23 @@ void write_file(const std::filesystem::path& path, std::string_view text)
   AtomicFile file(path);
   file.write(text);
   file.commit();
+}
+
+void remove_unfinished(const std::filesystem::path& directory)
+{
+  std::error_code ignored;
+  std::vector<std::filesystem::path> unfinished;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, ignored))
+    if (is_unfinished(entry.path().filename().string())) unfinished.push_back(entry.path());
+  for (const std::filesystem::path& file : unfinished) std::filesystem::remove(file, ignored);
+}
+
+std::string read_text(const std::filesystem::path& path)
+{
+  const std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
 }
 
 }  // namespace tribound::io

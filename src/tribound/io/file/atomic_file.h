@@ -78,4 +78,10 @@ class AtomicFile
 /// Writes `text` to the file at `path`, completely or not at all. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
+/// Removes what programs that were killed have not finished there.
+void remove_unfinished(const std::filesystem::path& directory);
+
+/// The text of a file; empty where it cannot be read.
+[[nodiscard]] std::string read_text(const std::filesystem::path& path);
+
 }  // namespace tribound::io
