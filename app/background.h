@@ -5,6 +5,9 @@
 
 #include <functional>
 #include <future>
+#include <utility>
+
+#include "tribound/base/parallel.h"
 
 namespace tribound::app
 {
@@ -16,9 +19,19 @@ class Background
 {
  public:
   /// Waits for the job before; throws what that has thrown, and does not start this one then.
-  void start(std::function<void()> job);
+  void start(std::function<void()> job)
+  {
+    wait();
+    if (max_threads() > 1)
+      job_ = std::async(std::launch::async, std::move(job));
+    else
+      job();
+  }
   /// Waits for the job, if there is one, and throws what it has thrown.
-  void wait();
+  void wait()
+  {
+    if (job_.valid()) job_.get();
+  }
 
  private:
   std::future<void> job_;

@@ -1,40 +1,21 @@
 /// @file main.cpp
-/// The program: parse the command line, dispatch on the dimension of the mesh, translate errors to exit
-/// codes.
+/// The program: parse the command line, carry out the command, translate errors to exit codes.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include <cstdlib>
 #include <exception>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <variant>
 #include <vector>
 
-#include "app/command/init.h"
-#include "app/command/interrupt.h"
-#include "app/command/run.h"
-#include "app/command/run_on_ranks.h"
-#include "app/command/run_report.h"
-#include "app/command/study.h"
-#include "app/command/sweep.h"
-#include "app/command/verify.h"
-#include "app/console/console.h"
-#include "app/program_facts.h"
+#include "app/command/commands.h"
 #include "app/shared_file.h"
-#include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
 #include "tribound/base/memory.h"
-#include "tribound/base/ranks.h"
 #include "tribound/base/version.h"
-#include "tribound/mesh/gmsh.h"
 
 namespace
 {
@@ -42,30 +23,14 @@ namespace
 using namespace tribound;
 using namespace tribound::app;
 
-struct Arguments
+struct Arguments : SweepRequest
 {
-  std::string case_file;
-  std::vector<std::string> overrides;
-  bool quiet = false;
-  int refinements = 2;             ///< of verify
-  std::vector<std::string> swept;  ///< of sweep: key=values
-  std::string table;               ///< of sweep: a file with a row for each run
-  int jobs = 1;                    ///< of sweep
-  bool resume = false;             ///< of sweep
-  bool json = false;               ///< of check
-  std::string start = "block";     ///< of init: the case to start from
-  std::string directory;           ///< of init
-  std::string restart;             ///< of run: the results of another one, or a checkpoint there
+  int refinements = 2;          ///< of verify
+  bool json = false;            ///< of check
+  std::string start = "block";  ///< of init: the case to start from
+  std::string directory;        ///< of init
+  std::string restart;          ///< of run: the results of another one, or a checkpoint there
 };
-
-/// The text of a file that the user names.
-std::string read_input_file(const std::string& name)
-{
-  std::ifstream stream(name, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(name))
-    throw InputError({.file = name}, "cannot be read", "the path of a file");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 void add_set_option(CLI::App& command, Arguments& arguments)
 {
@@ -81,68 +46,6 @@ CLI::Option* add_case_arguments(CLI::App& command, Arguments& arguments)
   add_set_option(command, arguments);
   command.add_flag("-q,--quiet", arguments.quiet, "No progress; of a run only warnings and status");
   return file;
-}
-
-ExitCode run_command(const Arguments& arguments)
-{
-  if (arguments.case_file.empty() == arguments.restart.empty())
-    throw InputError({}, "tribound run takes either a case file or --restart with a directory",
-                     "tribound run case.toml, or tribound run --restart out/case");
-  if (n_processes() > 1 || !arguments.restart.empty())
-    return run_on_ranks({arguments.case_file, arguments.restart, arguments.overrides, arguments.quiet});
-  const Progress progress(arguments.quiet);
-  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config), &stop_on_signals());
-  const algebra::Environment environment;  // behind the input: bad input then fails at once
-  if (Ranks::world().size() > 1)
-    throw InputError(
-        {}, fmt::format("{} processes were started by a launcher that is not known", Ranks::world().size()),
-        "start them by mpirun");
-  return std::visit([&](auto& m) { return run(config, std::move(m), progress); }, mesh);
-}
-
-void check_command(const Arguments& arguments)
-{
-  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  const mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config));
-  std::visit([&](const auto& m) { app::check(config, m, arguments.json); }, mesh);
-}
-
-ExitCode verify_command(const Arguments& arguments)
-{
-  const Progress progress(arguments.quiet);
-  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config));
-  const algebra::Environment environment;
-  return std::visit([&](auto& m) { return verify(config, std::move(m), arguments.refinements, progress); },
-                    mesh);
-}
-
-ExitCode study_command(const Arguments& arguments)
-{
-  const Progress progress(arguments.quiet);
-  const case_file::Config config = case_file::read_config(arguments.case_file, arguments.overrides);
-  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config), &stop_on_signals());
-  const algebra::Environment environment;
-  return std::visit([&](auto& m) { return study(config, std::move(m), progress); }, mesh);
-}
-
-ExitCode sweep_command(const Arguments& arguments)
-{
-  if (arguments.swept.empty() == arguments.table.empty())
-    throw InputError({}, "tribound sweep takes either keys with values or a table",
-                     "tribound sweep case.toml 'degree=[1, 2]', or --table runs.csv");
-  const case_file::SweepTable table =
-      arguments.table.empty() ? case_file::sweep_grid(arguments.swept)
-                              : case_file::sweep_rows(read_input_file(arguments.table), arguments.table);
-  return sweep({arguments.case_file, arguments.overrides, arguments.jobs, arguments.resume}, table);
-}
-
-/// MPI starts on all processes; the first one prints.
-void info_command(bool prints)
-{
-  const algebra::Environment environment;
-  if (prints) print_info(library_facts());
 }
 
 constexpr const char* case_commands = "Working on a case";
@@ -170,7 +73,7 @@ void describe_sweep(CLI::App& sweep, Arguments& arguments)
   sweep.add_option("case", arguments.case_file, "The case file (TOML)")->required();
   sweep
       .add_option(
-          "values", arguments.swept,
+          "values", arguments.values,
           "Keys with values: key=0.1:0.8:8 (first, last, how many), key=[1, 2], key=value; all combinations, "
           "the first key varying slowest")
       ->type_name("KEY=VALUES");
@@ -241,24 +144,23 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
 {
   require_address_space();
   const std::string command = app.get_subcommands().front()->get_name();
+  if (command == "run") return run(arguments, arguments.restart);
   if (n_processes() > 1)
   {
-    if (command == "run") return run_command(arguments);
     const bool needs_one = command == "verify" || command == "study" || command == "sweep";
-    if (!is_first_process() && command == "info") info_command(false);
+    if (!is_first_process() && command == "info") info(false);
     if (!is_first_process()) return needs_one ? ExitCode::bad_input : ExitCode::success;
     if (needs_one)
       throw InputError(
           {}, fmt::format("tribound {} runs as one process, but was started as {}", command, n_processes()),
           "start it without mpirun, or with -n 1; tribound run takes any number of processes");
   }
-  if (command == "run") return run_command(arguments);
-  if (command == "verify") return verify_command(arguments);
-  if (command == "study") return study_command(arguments);
-  if (command == "sweep") return sweep_command(arguments);
-  if (command == "check") check_command(arguments);
+  if (command == "verify") return verify(arguments, arguments.refinements);
+  if (command == "study") return study(arguments);
+  if (command == "sweep") return sweep(arguments);
+  if (command == "check") check(arguments, arguments.json);
   if (command == "init") init(arguments.start, arguments.directory);
-  if (command == "info") info_command(true);
+  if (command == "info") info(true);
   return ExitCode::success;
 }
 

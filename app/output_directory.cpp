@@ -1,192 +1,16 @@
 #include "app/output_directory.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <string>
+#include <filesystem>
 #include <system_error>
 #include <variant>
-#include <vector>
 
-#include "app/page/page_template.h"
 #include "tribound/base/error.h"
+#include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/state/checkpoint.h"
 
 namespace tribound::app
 {
-
-namespace
-{
-
-constexpr std::string_view lock_name = ".tribound.lock";
-
-Where place(const std::filesystem::path& directory)
-{
-  return {.file = directory.string(), .key = "output.directory"};
-}
-
-/// The directory and those above it that do not exist, innermost first.
-std::vector<std::filesystem::path> missing_directories(std::filesystem::path directory)
-{
-  std::vector<std::filesystem::path> missing;
-  std::error_code error;
-  for (; !directory.empty() && !std::filesystem::exists(directory, error);
-       directory = directory.parent_path())
-    missing.push_back(directory);
-  return missing;
-}
-
-void remove_all_of(const std::vector<std::filesystem::path>& directories)
-{
-  std::error_code ignored;
-  for (const std::filesystem::path& directory : directories) std::filesystem::remove(directory, ignored);
-}
-
-/// Creates the directory and writes a file there, which is removed again. Throws InputError, and leaves
-/// nothing behind then.
-void create_and_try(const std::filesystem::path& directory)
-{
-  std::error_code error;
-  if (std::filesystem::exists(directory, error) && !std::filesystem::is_directory(directory, error))
-    throw InputError(place(directory), "exists and is not a directory", "choose another output.directory");
-  const std::vector<std::filesystem::path> missing = missing_directories(directory);
-  std::filesystem::create_directories(directory, error);
-  if (error)
-  {
-    remove_all_of(missing);
-    throw InputError(place(directory), "cannot create this directory: " + error.message(),
-                     io::hint_for_writing(error.value()));
-  }
-  try
-  {
-    io::AtomicFile probe(directory / "probe");
-    probe.write("probe");
-    probe.flush();
-  }
-  catch (const io::WriteError& failure)
-  {
-    remove_all_of(missing);
-    throw InputError(place(directory), "cannot write to this directory: " + failure.problem(),
-                     failure.hint());
-  }
-}
-
-/// Whether the name is ".NAME.PID.part", a file that AtomicFile has not finished.
-bool is_unfinished(std::string_view name)
-{
-  constexpr std::string_view ending = ".part";
-  if (!name.starts_with('.') || !name.ends_with(ending)) return false;
-  name.remove_suffix(ending.size());
-  const std::string_view number = name.substr(name.rfind('.') + 1);
-  return number.size() + 1 < name.size() && !number.empty() &&
-         std::ranges::all_of(number, [](char c) { return '0' <= c && c <= '9'; });
-}
-
-void remove_unfinished(const std::filesystem::path& directory)
-{
-  std::error_code ignored;
-  std::vector<std::filesystem::path> unfinished;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, ignored))
-    if (is_unfinished(entry.path().filename().string())) unfinished.push_back(entry.path());
-  for (const std::filesystem::path& file : unfinished) std::filesystem::remove(file, ignored);
-}
-
-std::string host_name()
-{
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
-/// Whether the file that is open still has this name.
-bool is_current(int file, const std::filesystem::path& path)
-{
-  struct stat opened
-  {
-  };
-  struct stat named
-  {
-  };
-  return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
-         opened.st_dev == named.st_dev;
-}
-
-[[noreturn]] void throw_in_use(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
-{
-  std::string owner;
-  std::ifstream file(lock_file);
-  std::getline(file, owner);
-  throw InputError(place(directory),
-                   fmt::format("another run is writing to it{}", owner.empty() ? "" : ": " + owner),
-                   "wait for its end, or choose another output.directory");
-}
-
-/// The lock of another user cannot be written to, but locked.
-int open_lock(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
-{
-  int file = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (file < 0 && errno == EACCES) file = ::open(lock_file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file >= 0) return file;
-  const int error = errno;
-  throw InputError(place(directory), fmt::format("cannot lock this directory: {}", std::strerror(error)),
-                   io::hint_for_writing(error));
-}
-
-/// Locks the file and writes into it who has done so; -1 where the file system has no locks.
-int lock(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
-{
-  for (;;)
-  {
-    const int file = open_lock(directory, lock_file);
-    if (::flock(file, LOCK_EX | LOCK_NB) != 0)
-    {
-      const int reason = errno;
-      ::close(file);
-      if (reason == EWOULDBLOCK) throw_in_use(directory, lock_file);
-      return -1;
-    }
-    if (!is_current(file, lock_file))  // its owner has removed it in between
-    {
-      ::close(file);
-      continue;
-    }
-    const std::string owner = fmt::format("process {} on {}\n", ::getpid(), host_name());
-    // For a message only: the lock holds without it.
-    (void)!(::ftruncate(file, 0) == 0 && ::write(file, owner.data(), owner.size()) > 0);
-    return file;
-  }
-}
-
-}  // namespace
-
-OutputDirectory::OutputDirectory(const std::filesystem::path& path) : lock_file_(path / lock_name)
-{
-  create_and_try(path);
-  lock_ = lock(path, lock_file_);
-  if (lock_ >= 0) remove_unfinished(path);
-}
-
-OutputDirectory::~OutputDirectory()
-{
-  if (lock_ < 0) return;
-  std::error_code ignored;
-  std::filesystem::remove(lock_file_, ignored);
-  ::close(lock_);
-}
-
-void try_output_directory(const std::filesystem::path& path)
-{
-  const std::vector<std::filesystem::path> missing = missing_directories(path);
-  create_and_try(path);
-  remove_all_of(missing);
-}
 
 void require_mesh_elsewhere(const case_file::Config& config)
 {
@@ -198,19 +22,16 @@ void require_mesh_elsewhere(const case_file::Config& config)
                      "choose another output.directory, or copy the mesh");
 }
 
-void remove_results(const std::filesystem::path& directory, std::initializer_list<std::string_view> names)
+std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& config, bool keeps_results)
 {
-  for (const std::string_view name : names)
-  {
-    const std::filesystem::path file = directory / name;
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) continue;
-    std::filesystem::remove(file, error);
-    if (error)
-      throw InputError({.file = file.string()},
-                       "cannot remove this file of an earlier run: " + error.message(),
-                       "choose another output.directory, or remove the file");
-  }
+  require_mesh_elsewhere(config);
+  const std::filesystem::path& path = config.output.directory;
+  auto directory = std::make_unique<io::OutputDirectory>(path);
+  if (keeps_results) return directory;
+  io::remove_results(path, {"certificate.json", "report.html", "convergence.csv", "quantities.csv",
+                            "history.csv", "newton.csv", "contact.csv", "adapted.msh", io::checkpoint_name});
+  io::remove_series(path);
+  return directory;
 }
 
 std::string effective_file_name(const case_file::Config& config)
@@ -218,7 +39,7 @@ std::string effective_file_name(const case_file::Config& config)
   const std::filesystem::path file = config.output.directory / "case.toml";
   std::error_code none;
   if (!std::filesystem::equivalent(file, config.file, none)) return "case.toml";
-  return read_text(file) == config.effective.text ? "case.toml" : "case_effective.toml";
+  return io::read_text(file) == config.effective.text ? "case.toml" : "case_effective.toml";
 }
 
 }  // namespace tribound::app

@@ -1,44 +1,24 @@
 #pragma once
 
 /// @file output_directory.h
-/// The directory of results: one program at a time writes to it, and what it holds is of one run.
+/// The directory of results of a case.
 
-#include <filesystem>
-#include <initializer_list>
-#include <string_view>
+#include <memory>
+#include <string>
 
 #include "tribound/case/config.h"
+#include "tribound/io/file/output_directory.h"
 
 namespace tribound::app
 {
 
-/// A directory that belongs to this process until destroyed.
-class OutputDirectory
-{
- public:
-  /// Creates it with its parents, verifies that files can be written there, so that a long run does not fail
-  /// at its end, locks it and removes the temporary files of programs that were killed. Throws InputError
-  /// naming the directory and the system's reason, or the process that is writing there.
-  explicit OutputDirectory(const std::filesystem::path& path);
-  ~OutputDirectory();
-  OutputDirectory(const OutputDirectory&) = delete;
-  OutputDirectory& operator=(const OutputDirectory&) = delete;
-
- private:
-  std::filesystem::path lock_file_;
-  int lock_ = -1;  ///< -1 where the file system has no locks
-};
-
-/// Throws the InputError that OutputDirectory would for a directory that cannot be written to; leaves
-/// everything as it was.
-void try_output_directory(const std::filesystem::path& path);
-
 /// Throws InputError where the mesh of the case is adapted.msh in output.directory, which a run removes.
 void require_mesh_elsewhere(const case_file::Config& config);
 
-/// Removes the named files of an earlier run, in this order; those that do not exist are no error. Throws
-/// InputError when one cannot be removed.
-void remove_results(const std::filesystem::path& directory, std::initializer_list<std::string_view> names);
+/// Takes the directory of results of a run, and removes what an earlier one has left there, the certificate
+/// first, unless its results are kept. Throws InputError where nothing can be written.
+[[nodiscard]] std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& config,
+                                                                  bool keeps_results);
 
 /// case.toml; case_effective.toml where the former is the file that was read and holds something else:
 /// it is not replaced.

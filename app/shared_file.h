@@ -1,10 +1,13 @@
 #pragma once
 
 /// @file shared_file.h
-/// Files that the program needs beside itself: scripts that it runs, the template of the report page.
+/// Files that the program needs beside itself: scripts that it runs, the template of the report page; and
+/// those that are a part of it.
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace tribound::app
 {
@@ -17,5 +20,14 @@ namespace tribound::app
 /// The folder of the guide, found in the same way: in the documentation of the installation, or in the
 /// sources.
 [[nodiscard]] std::filesystem::path guide_directory();
+
+struct EmbeddedFile
+{
+  std::string_view name;
+  std::string_view text;
+};
+
+/// The files of app/templates, see cmake/embed.cmake.
+[[nodiscard]] std::span<const EmbeddedFile> embedded_files();
 
 }  // namespace tribound::app

@@ -1,4 +1,4 @@
-# tribound_embed(<target> <file>...): compiles text files into a target; app/embedded_files.h gives access to them.
+# tribound_embed(<target> <file>...): compiles text files into a target; app/shared_file.h gives access to them.
 function(tribound_embed target)
   set(TRIBOUND_EMBEDDED "")
   foreach(file ${ARGN})

@@ -17,7 +17,7 @@ if(TARGET tribound_app)
   install(FILES ${PROJECT_SOURCE_DIR}/app/completions/_tribound DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 
-# What the program runs: app/result/figures.h.
+# What the program runs: app/result/figures.cpp.
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/study_figures DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
 foreach(module result_files study_bodies study_charts study_fields)
   install(FILES ${PROJECT_SOURCE_DIR}/scripts/${module}.py DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)

@@ -1,13 +1,12 @@
-#include "app/command/init.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <system_error>
 
+#include "app/command/commands.h"
 #include "app/console/text.h"
-#include "app/embedded_files.h"
+#include "app/shared_file.h"
 #include "tribound/base/error.h"
 #include "tribound/io/file/atomic_file.h"
 

@@ -1,12 +1,14 @@
-#include "app/command/interrupt.h"
+/// @file interrupt.cpp
+/// Signals: Ctrl-C ends a run in order, a closed pipe does not, a crash ends it with a message.
 
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <string_view>
 
-#include "app/command/run.h"
+#include "app/command/commands.h"
 
 namespace tribound::app
 {

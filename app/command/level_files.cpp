@@ -1,9 +1,15 @@
 #include "app/command/level_files.h"
 
+#include <algorithm>
 #include <array>
-#include <string>
-#include <utility>
+#include <cstdint>
+#include <iterator>
 #include <vector>
+
+#include "app/page/page_surface.h"
+#include "tribound/io/fields/contact_line.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/mesh/gmsh_text.h"
 
 namespace tribound::app
 {
@@ -11,59 +17,82 @@ namespace tribound::app
 namespace
 {
 
+/// Cells of several ranks that are gathered on one.
+constexpr std::int64_t most_in_one = 1'000'000;
+
 /// eta_tot and the components cell by cell, for the VTU file.
-class CellComponents
+std::vector<std::pair<std::string, std::vector<double>>> cell_components(const certify::Estimate& estimate,
+                                                                         const certify::RunKind& kind)
 {
- public:
-  CellComponents(const certify::Estimate& estimate, const certify::RunKind& kind)
+  std::vector<std::pair<std::string, std::vector<double>>> columns;
+  const auto add = [&](std::string name, auto value)
   {
-    add("eta_tot", estimate, [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
-    for (const certify::Component& c : certify::components_of_run(kind))
-      if (c.is_of_cells())
-        add(std::string("eta_") + c.name, estimate,
-            [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
-  }
+    std::vector<double>& column = columns.emplace_back(std::move(name), std::vector<double>{}).second;
+    std::ranges::transform(estimate.cells, std::back_inserter(column), value);
+  };
+  add("eta_tot", &certify::BoundComponents::total_sharp);
+  for (const certify::Component& c : certify::components_of_run(kind))
+    if (c.is_of_cells()) add(std::string("eta_") + c.name, c.value);
+  return columns;
+}
 
-  [[nodiscard]] std::vector<io::CellField> fields() const
-  {
-    std::vector<io::CellField> result;
-    for (const auto& [name, values] : columns_) result.push_back({name, values});
-    return result;
-  }
-
- private:
-  template <typename Value>
-  void add(std::string name, const certify::Estimate& estimate, const Value& value)
-  {
-    std::vector<double>& column = columns_.emplace_back(std::move(name), std::vector<double>{}).second;
-    column.reserve(estimate.cells.size());
-    for (const certify::BoundComponents& cell : estimate.cells) column.push_back(value(cell));
-  }
-
-  std::vector<std::pair<std::string, std::vector<double>>> columns_;
-};
+/// The boundaries of the mesh that the case does not mention: they are free.
+std::vector<std::string> free_sides(const case_file::Config& config,
+                                    std::span<const std::string> boundary_names)
+{
+  std::vector<std::string> sides;
+  for (const std::string& name : boundary_names)
+    if (std::ranges::count(config.boundaries, name, &case_file::BoundaryConfig::name) == 0)
+      sides.push_back(name);
+  return sides;
+}
 
 }  // namespace
 
 template <int dim>
-void write_level_fields(const std::filesystem::path& directory, const io::SeriesPlace& place,
-                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
-                        std::span<const io::CellField> further)
+std::shared_ptr<const KeptLevel<dim>> KeptLevel<dim>::gathered(const adapt::LevelView<dim>& view,
+                                                               std::shared_ptr<const KeptLevel> kept,
+                                                               const case_file::OutputConfig& output,
+                                                               const adapt::Method& method)
 {
-  const CellComponents components(level.estimate, {.regularised = level.delta_updates.has_value(),
-                                                   .paired = !discrete.form.problem().pairs().empty()});
-  std::vector<io::CellField> fields = components.fields();
-  fields.insert(fields.end(), further.begin(), further.end());
-  const std::array tensors = {io::equilibrated_stress_field(discrete.space, level.stress)};
-  io::write_level_vtu<dim>(io::level_files(directory, place, discrete.mesh.ranks()), place,
-                           discrete.form.problem(), discrete.space, level.u, fields, tensors);
+  if (!view.discrete.mesh.partition()) return kept;
+  // In 3D the page shows the surface, and of few cells the inside.
+  const std::int64_t most =
+      dim == 2 || output.mesh ? most_in_one : static_cast<std::int64_t>(PageLimits().volume);
+  const bool is_small = view.discrete.mesh.n_global_cells() <= most;
+  std::optional<adapt::Excerpt<dim>> excerpt = is_small || (dim == 2 && !kept->t)
+                                                   ? adapt::excerpt<dim>(view, method, most)
+                                                   : adapt::boundary_excerpt<dim>(view, method);
+  if (!excerpt) return nullptr;
+  return std::make_shared<const KeptLevel>(view.number, kept->t, *std::move(excerpt));
 }
 
-template void write_level_fields(const std::filesystem::path&, const io::SeriesPlace&,
-                                 const adapt::Discretisation<2>&, const adapt::CertifiedLevel<2>&,
-                                 std::span<const io::CellField>);
-template void write_level_fields(const std::filesystem::path&, const io::SeriesPlace&,
-                                 const adapt::Discretisation<3>&, const adapt::CertifiedLevel<3>&,
-                                 std::span<const io::CellField>);
+template <int dim>
+void KeptLevel<dim>::write_fields(const std::filesystem::path& directory,
+                                  std::span<const io::CellField> further) const
+{
+  const auto components = cell_components(
+      level.estimate,
+      {.regularised = level.delta_updates.has_value(), .paired = !discrete->form.problem().pairs().empty()});
+  std::vector<io::CellField> fields;
+  for (const auto& [name, values] : components) fields.push_back({name, values});
+  fields.insert(fields.end(), further.begin(), further.end());
+  const std::array tensors = {io::equilibrated_stress_field(discrete->space, level.stress)};
+  io::write_level_vtu<dim>(io::level_files(directory, place(), discrete->mesh.ranks()), place(),
+                           discrete->form.problem(), discrete->space, level.u, fields, tensors);
+}
+
+template <int dim>
+void KeptLevel<dim>::write_contact_and_mesh(const case_file::Config& config) const
+{
+  const case_file::OutputConfig& output = config.output;
+  if (output.mesh && is_complete())
+    io::write_file(output.directory / "adapted.msh",
+                   mesh::gmsh_text(discrete->mesh, free_sides(config, discrete->mesh.boundary_names())));
+  io::write_contact_csv(output.directory / "contact.csv", discrete->form, level.u, place());
+}
+
+template struct KeptLevel<2>;
+template struct KeptLevel<3>;
 
 }  // namespace tribound::app

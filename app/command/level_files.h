@@ -1,16 +1,18 @@
 #pragma once
 
 /// @file level_files.h
-/// A level kept beyond its turn in the loop, and its fields as a file.
+/// A level or load step kept beyond its turn in the loop, and its files.
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/loop.h"
+#include "tribound/case/config.h"
 #include "tribound/io/fields/vtu.h"
 
 namespace tribound::app
@@ -34,7 +36,29 @@ struct KeptLevel
   {
   }
 
+  /// What the first rank shows of a level whose owner keeps it as `kept`: that, or of several ranks their
+  /// cells put together; null on the others.
+  [[nodiscard]] static std::shared_ptr<const KeptLevel> gathered(const adapt::LevelView<dim>& view,
+                                                                 std::shared_ptr<const KeptLevel> kept,
+                                                                 const case_file::OutputConfig& output,
+                                                                 const adapt::Method& method);
+
   [[nodiscard]] io::SeriesPlace place() const { return {number, t}; }
+  /// Whether these are the cells of all ranks.
+  [[nodiscard]] bool is_complete() const
+  {
+    return discrete->mesh.n_cells() == discrete->mesh.n_global_cells();
+  }
+  /// Whether the page can show it.
+  [[nodiscard]] bool fits_page() const { return dim == 3 || is_merged || is_complete(); }
+
+  /// Writes level_NNN.vtu or step_NNN.vtu, or the files of several ranks: the fields of a level with the
+  /// bound of every cell, and `further` numbers per cell. Throws WriteError when the file cannot be written.
+  void write_fields(const std::filesystem::path& directory,
+                    std::span<const io::CellField> further = {}) const;
+  /// contact.csv, and the mesh as adapted.msh where it is wanted; boundaries that the case does not mention
+  /// have no group there. Throws WriteError.
+  void write_contact_and_mesh(const case_file::Config& config) const;
 
   int number;
   std::optional<double> t;  ///< of a load step
@@ -42,12 +66,5 @@ struct KeptLevel
   adapt::CertifiedLevel<dim> level;
   bool is_merged = false;  ///< whether cells of several ranks were put together to be few enough
 };
-
-/// Writes level_NNN.vtu or step_NNN.vtu, or the files of several ranks: the fields of a level with the bound
-/// of every cell, and `further` numbers per cell. Throws WriteError when the file cannot be written.
-template <int dim>
-void write_level_fields(const std::filesystem::path& directory, const io::SeriesPlace& place,
-                        const adapt::Discretisation<dim>& discrete, const adapt::CertifiedLevel<dim>& level,
-                        std::span<const io::CellField> further = {});
 
 }  // namespace tribound::app

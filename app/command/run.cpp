@@ -2,20 +2,19 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "app/command/interrupt.h"
-#include "app/command/run_history.h"
 #include "app/command/run_report.h"
-#include "app/console/balance_text.h"
-#include "app/console/forecast.h"
+#include "app/command/with_case.h"
+#include "app/console/text.h"
 #include "app/output_directory.h"
-#include "app/program_facts.h"
+#include "tribound/adapt/history_check.h"
 #include "tribound/adapt/loop.h"
+#include "tribound/adapt/transfer.h"
 #include "tribound/algebra/linear_solver.h"
-#include "tribound/base/clock.h"
-#include "tribound/base/rank_failure.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/interface_check.h"
@@ -24,7 +23,8 @@
 #include "tribound/doctor/findings.h"
 #include "tribound/doctor/support_facts.h"
 #include "tribound/fem/nested.h"
-#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/record/run_statements.h"
+#include "tribound/io/state/path_checkpoint.h"
 
 namespace tribound::app
 {
@@ -62,8 +62,7 @@ std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem, const 
 template <int dim>
 std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
                                                 const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
-                                                const std::optional<Restart>& restart,
-                                                const std::atomic<bool>& stop,
+                                                const Restart* restart, const std::atomic<bool>& stop,
                                                 std::shared_ptr<const mesh::Mesh<dim>> whole)
 {
   contact::DataAccuracy accuracy;
@@ -81,72 +80,142 @@ std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
                                               std::move(whole));
 }
 
+/// Refines the mesh level by level.
+template <int dim>
+certify::Verdict go_through_levels(const case_file::Config& config, adapt::Levels<dim>& levels,
+                                   const std::atomic<bool>& stop, const Progress& progress,
+                                   RunReport<dim>& report)
+{
+  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
+  strategy.observer.step = progress;
+  strategy.observer.level = [&](const adapt::LevelView<dim>& view)
+  {
+    report.add(view);
+    const std::string forecast = forecast_text(report.record(), config.adapt.max_dofs);
+    if (!forecast.empty()) progress.stage(forecast);
+  };
+  if (config.output.checkpoints != case_file::Checkpoints::none)
+    strategy.observer.refined = [&](const adapt::Levels<dim>& next) { report.write_checkpoint(next); };
+  return adapt::adapt(levels, strategy);
+}
+
+/// The path that has been followed to its end, once more with half the steps on a finer mesh.
+template <int dim>
+void check_history(const case_file::Config& config, const problem::Problem<dim>& problem,
+                   const std::atomic<bool>& stop, const Progress& progress, RunReport<dim>& report)
+{
+  const std::shared_ptr<const adapt::Grid<dim>> grid = report.last_grid();
+  if (!grid) return;  // a run that had nothing left to do
+  io::HistoryCheck check;
+  const auto begins = [&](int, const adapt::Grid<dim>& finer)
+  {
+    check.cells = finer.mesh.n_global_cells();
+    report.print_mesh("check", finer);
+  };
+  const auto add = [&](const adapt::LoadStep<dim>& step)
+  {
+    check.last = io::load_step_record<dim>(step, check.last ? &*check.last : nullptr);
+    check.steps = step.number;
+    io::LevelRecord shown;
+    shown.level = step.number;
+    shown.newton = step.level.steps;
+    shown.times.level = step.seconds;
+    shown.load_step = check.last;
+    report.print_level(shown);
+  };
+  if (grid->mesh.ranks().any(stop))
+    check.end.failure = "interrupted";
+  else
+    check.end = adapt::follow_finely<dim>(*grid, problem, config.method, config.history->program,
+                                          {.newton = progress, .begins = begins, .step = add}, &stop);
+  report.add_check(std::move(check));
+}
+
+/// Follows the load steps on meshes that become fine enough for all of them.
+template <int dim>
+certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<adapt::LoadPath<dim>> path,
+                               const std::atomic<bool>& stop, const Progress& progress,
+                               const Restart* restart, RunReport<dim>& report)
+{
+  std::optional<adapt::ReplayState<dim>> from;
+  if (restart)
+    from = io::from_checkpoint<dim>(restart->facts, path->grid().space, restart->cells, restart->values,
+                                    restart->points);
+  const adapt::ReplayState<dim>* state = from ? &*from : nullptr;
+  const adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
+  const adapt::ReplayObserver<dim> observer = report.path_observer(progress);
+  const problem::Problem<dim>& problem = path->problem();
+  const adapt::PathProgram& program = config.history->program;
+  const certify::Verdict verdict =
+      config.history->refine == case_file::Refine::transfer
+          ? adapt::transfer<dim>(*path, program, strategy, observer, state)
+          : adapt::replay<dim>(std::move(path), program, strategy, observer, state);
+  path.reset();  // its factors are in the way
+  if (config.history->check && certify::is_bound(verdict.status))
+    check_history<dim>(config, problem, stop, progress, report);
+  return verdict;
+}
+
 }  // namespace
 
 template <int dim>
 ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
-             std::shared_ptr<const mesh::Mesh<dim>> whole, const std::optional<Restart>& restart)
+             std::shared_ptr<const mesh::Mesh<dim>> whole, const Restart* restart)
 {
   const Clock::time_point begin = Clock::now();
   const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   const std::atomic<bool>& stop = stop_on_signals();
   const std::vector<bool> slides = slides_as_a_whole<dim>(problem, mesh, whole.get());
+  const auto report_from = [&](const adapt::Discretisation<dim>& first, const auto& work)
+  {
+    RunReport<dim> report(config, problem, first, slides, begin,
+                          progress.quiet() ? Printed::verdict : Printed::everything, restart);
+    try
+    {
+      return report.close(work(report));
+    }
+    catch (const SolveError& error)
+    {
+      report.fail(error.what());
+      throw;
+    }
+    catch (const InputError& error)  // data that are not valid on a finer mesh, or at a later t
+    {
+      report.fail(error.what());
+      throw;
+    }
+  };
   if (config.history)
-    return run_history<dim>(config, problem, std::move(mesh), slides, stop, progress, std::move(whole),
-                            restart, begin);
+  {
+    auto path = std::make_unique<adapt::LoadPath<dim>>(
+        problem, config.method, adapt::PathOptions{.tolerance = config.adapt.tolerance}, std::move(mesh),
+        &stop, std::move(whole));
+    const adapt::Discretisation<dim>& first = path->prepare(config.history->program.targets.front());
+    return report_from(
+        first, [&](RunReport<dim>& report)
+        { return go_along_path<dim>(config, std::move(path), stop, progress, restart, report); });
+  }
   auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const std::unique_ptr<adapt::Levels<dim>> levels =
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
-  RunReport<dim> report(config, problem, levels->discrete(), slides, begin,
-                        progress.quiet() ? Printed::verdict : Printed::everything,
-                        restart ? &restart->facts.earlier : nullptr);
   levels->ask_for(config.adapt.bars, std::move(quantities));
-  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
-  strategy.observer = {[&](const adapt::CertifiedStep& step) { progress(step.step, step.relative); },
-                       [&](const adapt::LevelView<dim>& view)
-                       {
-                         report.add(view);
-                         const std::string forecast = forecast_text(report.record(), config.adapt.max_dofs);
-                         if (!forecast.empty()) progress.stage(forecast);
-                       },
-                       [&](const adapt::Levels<dim>& next)
-                       {
-                         if (config.output.checkpoints == case_file::Checkpoints::none) return;
-                         try
-                         {
-                           report.write_checkpoint(next);
-                         }
-                         catch (const io::WriteError& error)
-                         {
-                           require_all_failed(next.discrete().mesh.ranks(), error.what());
-                           report.write_what_holds();
-                           throw;
-                         }
-                       }};
-  try
-  {
-    return report.close(adapt::adapt(*levels, strategy));
-  }
-  catch (const SolveError& error)
-  {
-    require_all_failed(levels->discrete().mesh.ranks(), error.what());
-    report.fail(error.what());
-    throw;
-  }
-  catch (const InputError& error)  // data that are not valid on a finer mesh: the levels before hold
-  {
-    require_all_failed(levels->discrete().mesh.ranks(), error.what());
-    report.write_what_holds();
-    throw;
-  }
+  return report_from(levels->discrete(), [&](RunReport<dim>& report)
+                     { return go_through_levels<dim>(config, *levels, stop, progress, report); });
 }
+
+template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&,
+                      std::shared_ptr<const mesh::Mesh<2>>, const Restart*);
+template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&,
+                      std::shared_ptr<const mesh::Mesh<3>>, const Restart*);
+namespace
+{
 
 template <int dim>
 void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json)
 {
   problem::Problem<dim> problem(case_file::resolve(config, mesh));
   if (config.history) problem = problem.at(config.history->program.targets.front());
-  (void)moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
+  (void)case_file::moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   (void)case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
@@ -154,17 +223,23 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   contact::check_interfaces(form);
   contact::check_rigid_motions(form);
   require_mesh_elsewhere(config);
-  try_output_directory(config.output.directory);
-  print_check(case_file::case_facts(config, dim), io::mesh_facts<dim>(problem, space, form.constraints()),
-              describe_solver(solve::choose_method(form, config.method.solver, true)),
-              doctor::findings(doctor::diagnose(form, config.method, config.adapt)), as_json);
+  io::try_output_directory(config.output.directory);
+  const io::CaseFacts facts = case_file::case_facts(config, dim);
+  const io::MeshFacts about_mesh = io::mesh_facts<dim>(problem, space, form.constraints());
+  const std::string solver = io::describe_solver(solve::choose_method(form, config.method.solver, true));
+  const std::vector<doctor::Finding> findings =
+      doctor::findings(doctor::diagnose(form, config.method, config.adapt));
+  print(as_json ? check_json(facts, about_mesh, solver, findings)
+                : check_text(facts, about_mesh, solver) + findings_text(findings));
 }
 
-template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&,
-                      std::shared_ptr<const mesh::Mesh<2>>, const std::optional<Restart>&);
-template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&,
-                      std::shared_ptr<const mesh::Mesh<3>>, const std::optional<Restart>&);
-template void check(const case_file::Config&, const mesh::Mesh<2>&, bool);
-template void check(const case_file::Config&, const mesh::Mesh<3>&, bool);
+}  // namespace
+
+void check(const CaseRequest& request, bool as_json)
+{
+  with_case(request, nullptr,
+            [&]<int dim>(const case_file::Config& config, const mesh::Mesh<dim>& mesh)
+            { check<dim>(config, mesh, as_json); });
+}
 
 }  // namespace tribound::app

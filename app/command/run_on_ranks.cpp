@@ -1,5 +1,3 @@
-#include "app/command/run_on_ranks.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -9,12 +7,13 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <span>
+#include <utility>
 #include <variant>
 
-#include "app/command/interrupt.h"
-#include "app/command/path_report.h"
+#include "app/command/run.h"
 #include "app/console/console.h"
+#include "app/console/text.h"
+#include "app/shared_file.h"
 #include "tribound/algebra/blas.h"
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/error.h"
@@ -41,82 +40,35 @@ int launcher_says(std::array<const char*, 2> variables, int otherwise)
   return otherwise;
 }
 
-/// Boxes of which every rank makes its own cells, or none.
-struct BoxSource
+/// What a run goes on from.
+struct Checkpoint
 {
-  explicit BoxSource(const mesh::MeshSource& source)
-      : box(std::get_if<mesh::BoxMesh>(&source)), boxes(std::get_if<mesh::Boxes>(&source))
-  {
-  }
-
-  [[nodiscard]] bool is_there() const { return box != nullptr || boxes != nullptr; }
-  [[nodiscard]] std::int64_t n_cells() const
-  {
-    return box ? mesh::n_box_cells(*box) : mesh::n_box_cells(*boxes);
-  }
-  /// The same with few cells, that one rank makes to look at.
-  [[nodiscard]] mesh::MeshSource coarser() const
-  {
-    constexpr std::int64_t most = 100'000;
-    if (box) return mesh::coarser_box(*box, most);
-    return mesh::coarser_box(*boxes, most);
-  }
-  template <int dim>
-  [[nodiscard]] mesh::Mesh<dim> share_out(const Ranks& ranks) const
-  {
-    return box ? mesh::share_out<dim>(ranks, *box) : mesh::share_out<dim>(ranks, *boxes);
-  }
-
-  const mesh::BoxMesh* box;
-  const mesh::Boxes* boxes;
+  std::filesystem::path file;
+  io::CheckpointFacts facts;
 };
 
-/// The mesh of a run that begins, and that of one that goes on.
-template <int dim>
-ExitCode run_part(const Ranks& ranks, const case_file::Config& config, std::optional<mesh::AnyMesh> whole,
-                  const std::optional<io::CheckpointFacts>& checkpoint, const std::filesystem::path& file,
-                  const Progress& progress)
+/// That of a directory of results, or one of several there.
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& place, const Ranks& ranks)
 {
-  using Whole = mesh::Mesh<dim>;
-  const BoxSource by_formula(config.mesh);
-  std::shared_ptr<const Whole> first;
-  ranks.on_first([&] { first = std::make_shared<const Whole>(std::get<Whole>(*std::exchange(whole, {}))); });
-  if (!checkpoint)
-  {
-    Whole part =
-        by_formula.is_there() ? by_formula.share_out<dim>(ranks) : mesh::share_out<dim>(ranks, first.get());
-    return run(config, std::move(part), progress, std::move(first));
-  }
-  ranks.on_first(
-      [&]
-      {
-        const std::int64_t n_cells = by_formula.is_there() ? by_formula.n_cells() : first->n_cells();
-        if (n_cells != checkpoint->earlier.first_cells)
-          throw InputError(first->source(),
-                           fmt::format("has {} cells, but the run to restart began with {}", n_cells,
-                                       checkpoint->earlier.first_cells),
-                           "restart with the mesh that the run began with");
-      });
-  io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(file, *checkpoint, ranks);
-  mesh::Balanced<dim> balanced = mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values,
-                                                    io::n_values_of_cell(*checkpoint));
-  return run(config, std::move(balanced.mesh), progress, std::move(first),
-             Restart{*checkpoint, std::move(balanced.cells), std::move(balanced.values),
-                     std::move(read.points), file});
+  if (place.empty()) return std::nullopt;
+  const bool is_file = place.extension() == ".h5" && !std::filesystem::is_directory(place);
+  const std::filesystem::path file = is_file ? place : place / io::checkpoint_name;
+  return Checkpoint{file, io::read_checkpoint_facts(file, ranks)};
 }
 
-/// What is to be gone on with: a directory of results with its checkpoint, or one of several there.
-std::filesystem::path checkpoint_file(const std::filesystem::path& restart)
+/// Whether a checkpoint is that of a pass after the first that was not complete.
+bool is_of_unfinished_pass(const std::filesystem::path& file)
 {
-  const bool is_file = restart.extension() == ".h5" && !std::filesystem::is_directory(restart);
-  return is_file ? restart : restart / io::checkpoint_name;
+  const std::filesystem::path directory = file.parent_path();
+  return directory.filename() == unfinished_pass ||
+         (file.filename() == io::checkpoint_name && std::filesystem::exists(directory / unfinished_pass));
 }
 
 /// The case of a checkpoint, whose results go on in the directory.
-case_file::Config restarted_config(const RunRequest& request, const std::filesystem::path& file,
-                                   const io::CheckpointFacts& checkpoint)
+case_file::Config restarted_config(const CaseRequest& request, const Checkpoint& from)
 {
-  std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
+  const io::CheckpointFacts& checkpoint = from.facts;
+  std::filesystem::path directory = from.file.has_parent_path() ? from.file.parent_path() : ".";
   if (directory.filename() == unfinished_pass) directory /= "..";
   // Before the others: paths of the effective case lead from there.
   std::vector<std::string> overrides = {fmt::format("output.directory='{}'", directory.string())};
@@ -137,32 +89,76 @@ case_file::Config restarted_config(const RunRequest& request, const std::filesys
   return config;
 }
 
-ExitCode run_on(const Ranks& ranks, const RunRequest& request)
+/// What one process does that neither shares its mesh out nor goes on.
+template <int dim>
+ExitCode run_alone(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
 {
+  const algebra::Environment environment;  // behind the input: bad input then fails at once
+  if (Ranks::world().size() > 1)
+    throw InputError(
+        {}, fmt::format("{} processes were started by a launcher that is not known", Ranks::world().size()),
+        "start them by mpirun");
+  return run(config, std::move(mesh), progress);
+}
+
+/// `whole`: on the first rank the mesh, or of boxes, where each rank makes its own cells, a coarser one.
+template <int dim>
+ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
+                        std::optional<mesh::AnyMesh> whole, const std::optional<Checkpoint>& checkpoint,
+                        const Progress& progress)
+{
+  using Whole = mesh::Mesh<dim>;
+  std::shared_ptr<const Whole> first;
+  ranks.on_first([&] { first = std::make_shared<const Whole>(std::get<Whole>(*std::exchange(whole, {}))); });
+  if (!checkpoint)
+  {
+    Whole part = mesh::share_out<dim>(ranks, config.mesh, first.get());
+    return run(config, std::move(part), progress, std::move(first));
+  }
+  const io::CheckpointFacts& facts = checkpoint->facts;
+  ranks.on_first(
+      [&]
+      {
+        const std::int64_t n_cells = mesh::n_box_cells(config.mesh).value_or(first->n_cells());
+        if (n_cells != facts.earlier.first_cells)
+          throw InputError(first->source(),
+                           fmt::format("has {} cells, but the run to restart began with {}", n_cells,
+                                       facts.earlier.first_cells),
+                           "restart with the mesh that the run began with");
+      });
+  io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(checkpoint->file, facts, ranks);
+  mesh::Balanced<dim> balanced =
+      mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, io::n_values_of_cell(facts));
+  const Restart restart{facts, std::move(balanced.cells), std::move(balanced.values), std::move(read.points),
+                        ranks.on_first([&] { return is_of_unfinished_pass(checkpoint->file); })};
+  return run(config, std::move(balanced.mesh), progress, std::move(first), &restart);
+}
+
+ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::string& place)
+{
+  constexpr std::int64_t most_to_look_at = 100'000;
   const Progress progress(request.quiet || !ranks.is_first());
-  std::optional<io::CheckpointFacts> checkpoint;
-  const std::filesystem::path file = checkpoint_file(request.restart);
-  if (!request.restart.empty()) checkpoint = io::read_checkpoint_facts(file, ranks);
+  const std::optional<Checkpoint> checkpoint = read_checkpoint(place, ranks);
   const case_file::Config config = ranks.together(
       [&]
       {
-        return checkpoint ? restarted_config(request, file, *checkpoint)
+        return checkpoint ? restarted_config(request, *checkpoint)
                           : case_file::read_config(request.case_file, request.overrides);
       });
+  const bool is_alone = ranks.size() == 1 && !checkpoint;
   std::optional<mesh::AnyMesh> whole;
   const bool is_plane = ranks.on_first(
       [&]
       {
-        const BoxSource by_formula(config.mesh);
-        if (by_formula.box) mesh::require_valid(*by_formula.box);
-        if (by_formula.boxes)
-          for (const mesh::NamedBox& named : *by_formula.boxes) mesh::require_valid(named.box);
-        whole.emplace(mesh::read_mesh(by_formula.is_there() ? by_formula.coarser() : config.mesh,
-                                      case_file::find_seams(config), &stop_on_signals()));
+        whole.emplace(
+            mesh::read_mesh(is_alone ? config.mesh : mesh::coarser_box(config.mesh, most_to_look_at),
+                            case_file::find_seams(config), &stop_on_signals()));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
-  const auto run_in = is_plane ? run_part<2> : run_part<3>;
-  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, file, progress);
+  if (is_alone)
+    return std::visit([&](auto& mesh) { return run_alone(config, std::move(mesh), progress); }, *whole);
+  const auto run_in = is_plane ? run_shared_out<2> : run_shared_out<3>;
+  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, progress);
 }
 
 /// One for each of several processes, where the environment does not say how many.
@@ -211,10 +207,14 @@ int report(ExitCode code, const std::string& message)
   return static_cast<int>(code);
 }
 
-ExitCode run_on_ranks(const RunRequest& request)
+ExitCode run(const CaseRequest& request, const std::string& restart)
 {
+  if (request.case_file.empty() == restart.empty())
+    throw InputError({}, "tribound run takes either a case file or --restart with a directory",
+                     "tribound run case.toml, or tribound run --restart out/case");
+  if (n_processes() == 1 && restart.empty()) return run_on(Ranks(), request, restart);
   const algebra::Environment environment;
-  if (n_processes() == 1) return run_on(Ranks(), request);
+  if (n_processes() == 1) return run_on(Ranks(), request, restart);
   limit_threads();
   const Ranks ranks = Ranks::world();
   try
@@ -223,7 +223,7 @@ ExitCode run_on_ranks(const RunRequest& request)
       throw InputError(
           {}, fmt::format("started as {} processes, of which MPI connects {}", n_processes(), ranks.size()),
           "start it by the mpirun of the MPI library it is built with (tribound info), or as one process");
-    return run_on(ranks, request);
+    return run_on(ranks, request, restart);
   }
   catch (...)
   {
@@ -236,6 +236,12 @@ ExitCode run_on_ranks(const RunRequest& request)
     if (ranks.is_first()) report(code, message);
     return code;
   }
+}
+
+void info(bool prints)
+{
+  const algebra::Environment environment;
+  if (prints) print(info_text(io::build_facts(), find_shared_file("report.html").string()));
 }
 
 }  // namespace tribound::app

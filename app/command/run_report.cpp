@@ -2,18 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <exception>
 #include <utility>
 
-#include "app/console/balance_text.h"
 #include "app/console/console.h"
-#include "app/program_facts.h"
 #include "app/shared_file.h"
-#include "tribound/algebra/linear_solver.h"
+#include "tribound/base/rank_failure.h"
+#include "tribound/case/resolve.h"
+#include "tribound/doctor/run_warnings.h"
+#include "tribound/doctor/solution_facts.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/record/run_statements.h"
 #include "tribound/io/state/checkpoint.h"
 
 namespace tribound::app
@@ -43,58 +43,96 @@ std::exception_ptr failure_of(const Write& write)
 }  // namespace
 
 template <int dim>
+RunReport<dim>::Pass::Pass(const case_file::OutputConfig& output)
+    : page(output.report ? find_shared_file("report.html") : std::filesystem::path{})
+{
+}
+
+template <int dim>
 RunReport<dim>::RunReport(const case_file::Config& config, const problem::Problem<dim>& problem,
                           const adapt::Discretisation<dim>& first, std::vector<bool> slides,
-                          Clock::time_point begin, Printed printed, const io::EarlierLevels* earlier)
-    : output_(config.output),
-      method_(config.method),
+                          Clock::time_point begin, Printed printed, const Restart* restart)
+    : config_(config),
       ranks_(first.mesh.ranks()),
-      contact_rule_(config.method.contact_rule),
-      printed_(printed),
-      page_(config.output.report ? find_shared_file("report.html") : std::filesystem::path{}),
-      moment_about_(moment_point<dim>(config.output, first.mesh)),
+      printed_(ranks_.is_first() ? printed : Printed::nothing),
+      moment_about_(case_file::moment_point<dim>(config.output, first.mesh)),
       slides_(std::move(slides)),
-      free_sides_(free_sides(config, first.mesh.boundary_names()))
+      in_work_(config.output)
 {
-  ranks_.on_first([&] { directory_ = take_directory(config, earlier != nullptr); });
-  record_ = first_record(config, problem, first.space, first.form.constraints(), begin);
-  record_.statements = certify::statements(first.form, contact_rule_);
-  record_.statements.assumptions.emplace_back(
-      "linear_solver",
-      describe_solver(algebra::choose_method(config.method.solver, dim, first.space.n_global_dofs())));
-  if (earlier) record_.earlier = *earlier;
-  if (!ranks_.is_first()) printed_ = Printed::nothing;
-  if (printed_ == Printed::everything) print_header(record_.facts, record_.mesh);
+  ranks_.on_first([&] { directory_ = take_directory(config, restart != nullptr); });
+  record_.facts = case_file::case_facts(config, dim);
+  record_.mesh = io::mesh_facts<dim>(problem, first.space, first.form.constraints());
+  record_.build = io::build_facts();
+  record_.build.processes = ranks_.size();
+  record_.effective = config.effective;
+  record_.case_file = effective_file_name(config);
+  record_.tolerance = config.adapt.tolerance;
+  record_.setup = seconds_since(begin);
+  record_.statements = io::run_statements(first, config.method);
+  if (restart)
+  {
+    record_.earlier = restart->facts.earlier;
+    is_resumed_ = is_path();
+    is_apart_ = is_path() && restart->is_apart;
+  }
+  if (printed_ == Printed::everything) print(header_text(record_.facts, record_.mesh));
+}
+
+template <int dim>
+void RunReport<dim>::update_warnings(const adapt::LevelView<dim>& view)
+{
+  record_.warnings.clear();
+  const KeptLevel<dim>* shown = in_work_.shown.get();
+  const bool is_shared = view.discrete.mesh.partition() != nullptr;
+  if (!view.level.solved() || (is_shared && (!shown || shown->number != view.number))) return;
+  const io::LevelRecord& level = record_.levels.back();
+  record_.warnings =
+      doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
+                           is_shared ? doctor::contact_outcomes<dim>(shown->discrete->form, shown->level.u)
+                                     : doctor::contact_outcomes<dim>(view.discrete.form, view.level.u));
+}
+
+template <int dim>
+std::filesystem::path RunReport<dim>::fields_directory() const
+{
+  return is_apart_ ? config_.output.directory / unfinished_pass : config_.output.directory;
 }
 
 template <int dim>
 void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const
 {
-  if (shown) write_contact_and_mesh(*shown, output_, free_sides_);
-  if (!output_.vtu) return;
-  write_vtu_files(output_.directory, level, shown);
-  if (shown) io::write_series(output_.directory, writes_all_levels() ? 0 : level.number, level.number);
+  if (!config_.output.vtu) return;
+  const std::filesystem::path directory = fields_directory();
+  level.write_fields(directory);
+  if (shown == nullptr) return;
+  io::write_contact_vtu<dim>(directory / io::level_file_name("contact", level.number), level.place(),
+                             shown->discrete->form, shown->level.u);
+  const int first = is_path() ? 1 : 0;
+  io::write_series(directory, writes_all() ? first : level.number, level.number, level.place().stem());
 }
 
 template <int dim>
 void RunReport<dim>::start_writing()
 {
   std::optional<io::RunRecord> record;  // a copy, since this one goes on
-  if (writes_all_levels() || seconds_since(written_) > most_lost)
+  const bool is_due = (writes_all() && !is_path()) || seconds_since(written_) > most_lost;
+  if (ranks_.is_first() && is_due && !is_apart_)
   {
     record = record_;
     written_ = Clock::now();
   }
+  const bool is_kept = is_path() || record_.levels.back().bound;
   background_.start(
-      [this, record = std::move(record), level = record_.levels.back().bound ? last_ : nullptr,
-       shown = record_.levels.back().bound ? shown_ : nullptr,
-       is_followed = record_.status == certify::RunStatus::budget]
+      [this, record = std::move(record), level = is_kept ? in_work_.last : nullptr,
+       shown = is_kept ? in_work_.shown : nullptr,
+       is_followed = is_path() || record_.status == certify::RunStatus::budget]
       {
         const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
-        if (level && writes_all_levels()) write_fields(*level, shown.get());
-        if (record && ranks_.is_first()) io::write_report(output_.directory, *record);
-        if (shown && is_followed && fits_page(*shown))
-          page_.add(shown->number, shown->discrete->form, shown->level);
+        if (level && writes_all()) write_fields(*level, shown.get());
+        if (shown && writes_all() && !is_path()) shown->write_contact_and_mesh(config_);
+        if (record) io::write_report(config_.output.directory, *record);
+        if (shown && is_followed && shown->fits_page())
+          in_work_.page.add(shown->number, shown->discrete->form, shown->level);
       });
 }
 
@@ -142,7 +180,7 @@ void RunReport<dim>::count_time(Clock::time_point& begin)
 }
 
 template <int dim>
-void RunReport<dim>::add(const adapt::LevelView<dim>& view)
+void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadStep<dim>* step)
 {
   Clock::time_point begin = Clock::now();
   io::LevelRecord level;
@@ -150,7 +188,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   double output_cpu = 0;
   {
     const ScopedTimer timer(output, output_cpu, thread_cpu_seconds);
-    level = io::level_record<dim>(view, moment_about_, slides_);
+    level = record_of(view, step);
   }
   const std::exception_ptr failure = finish_writing();
   const io::LevelTimes before = take_back(view.number);
@@ -161,71 +199,99 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view)
   level.times.level += held_;
   level.times.level_cpu = before.level_cpu;
   record_.levels.push_back(std::move(level));
-  if (record_.levels.back().bound)
+  if (step || record_.levels.back().bound)
   {
-    shown_.reset();  // makes room for this one
-    last_.reset();
-    last_ = std::make_shared<const KeptLevel<dim>>(view);
-    shown_ = gather(view, last_, output_, method_);
+    in_work_.shown.reset();  // makes room for this one
+    in_work_.last.reset();
+    in_work_.last =
+        std::make_shared<const KeptLevel<dim>>(view, step ? std::optional(step->t) : std::nullopt);
+    in_work_.shown = KeptLevel<dim>::gathered(view, in_work_.last, config_.output, config_.method);
   }
-  update_statements(record_, view, contact_rule_);
-  record_.status = view.verdict.status;
-  record_.reason = view.verdict.reason;
-  ranks_.together([&] { update_warnings(record_, view, shown_.get()); });
+  if (!view.level.steps.empty())
+    record_.statements =
+        io::run_statements(view, record_.levels.back(), config_.method,
+                           is_path() && config_.history->refine == case_file::Refine::transfer);
+  if (!step)
+  {
+    record_.status = view.verdict.status;
+    record_.reason = view.verdict.reason;
+  }
+  ranks_.together([&] { update_warnings(view); });
   count_time(begin);
-  if ((printed_ == Printed::everything || printed_ == Printed::levels) && !again)
-    print_level(record_.levels.back());
+  if (!again) print_level(record_.levels.back());
   rethrow(failure);
   ranks_.together([&] { start_writing(); });
   count_time(begin);
 }
 
 template <int dim>
+void RunReport<dim>::print_mesh(const std::string& caption, const adapt::Grid<dim>& grid) const
+{
+  if (printed_ == Printed::everything)
+    print(mesh_text(caption, grid.mesh.n_global_cells(), grid.space.n_global_dofs()));
+}
+
+template <int dim>
+void RunReport<dim>::print_level(const io::LevelRecord& level) const
+{
+  if (printed_ == Printed::everything || printed_ == Printed::levels) print(level_text(level));
+}
+
+template <int dim>
+void RunReport<dim>::write_record()
+{
+  if (is_restarted() && record_.levels.empty()) return;  // nothing new: what there is holds
+  ranks_.on_first([&] { io::write_report(config_.output.directory, record_); });
+  written_ = Clock::now();
+}
+
+template <int dim>
 void RunReport<dim>::write_what_holds()
 {
   Clock::time_point begin = Clock::now();
+  give_up();
+  if (directory_holds_ || (is_restarted() && record_.levels.empty())) return;
   std::exception_ptr failure;
-  const auto timed = [this](const auto& work)
+  const KeptLevel<dim>* shown = in_work_.shown.get();
+  const auto timed = [&](const auto& work)
   {
     io::LevelTimes& times = record_.levels.back().times;
     const ScopedTimer timer(times.stages.output, times.output_cpu, thread_cpu_seconds);
-    work();
+    if (const std::exception_ptr thrown = failure_of(work)) failure = thrown;
   };
   // Fields of where the run before has stopped.
-  if (last_ && !writes_all_levels() && is_restarted())
-    ranks_.on_first([&] { io::remove_series(output_.directory); });
-  if (last_ && !writes_all_levels())  // beside the page's data of this level
-    timed([&] { failure = failure_of([&] { write_fields(*last_, shown_.get()); }); });
+  if (in_work_.last && !writes_all() && is_restarted())
+    ranks_.on_first([&] { io::remove_series(config_.output.directory); });
+  if (in_work_.last && !writes_all())  // beside the page's data of this level
+    timed([&] { write_fields(*in_work_.last, shown); });
+  if (shown && (is_path() || !writes_all())) timed([&] { shown->write_contact_and_mesh(config_); });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
-  const auto add_last = [&] { page_.add_last(shown_->number, shown_->discrete->form, shown_->level); };
-  if (shown_ && fits_page(*shown_))
-    timed(
-        [&]
-        {
-          if (const std::exception_ptr of_page = failure_of(add_last)) failure = of_page;
-        });
+  if (shown && shown->fits_page())
+    timed([&] { in_work_.page.add_last(shown->number, shown->discrete->form, shown->level); });
   if (!record_.levels.empty()) count_time(begin);
-  ranks_.together(
-      [&]
-      {
-        if (ranks_.is_first())
-        {
-          io::write_report(output_.directory, record_);
-          page_.write(output_.directory, record_);
-        }
-      });
+  write_record();
+  ranks_.on_first([&] { in_work_.page.write(config_.output.directory, record_); });
   rethrow(failure);
 }
 
 template <int dim>
 void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next)
 {
-  rethrow(finish_writing());  // the files of the level before come first
   const fem::LagrangeSpace<dim>& space = next.discrete().space;
-  io::write_checkpoint<dim>(
-      output_.directory / io::checkpoint_name,
-      {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_), {}}, space,
-      {.functions = {next.start_displacement()}});
+  try
+  {
+    rethrow(finish_writing());  // the files of the level before come first
+    io::write_checkpoint<dim>(
+        config_.output.directory / io::checkpoint_name,
+        {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_), {}}, space,
+        {.functions = {next.start_displacement()}});
+  }
+  catch (const io::WriteError& error)
+  {
+    require_all_failed(ranks_, error.what());
+    write_what_holds();
+    throw;
+  }
 }
 
 template <int dim>
@@ -234,16 +300,21 @@ ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
   record_.status = verdict.status;
   record_.reason = verdict.reason;
   write_what_holds();
-  print_end(record_, printed_, output_.directory);
+  const std::string directory = config_.output.directory.string();
+  if (printed_ == Printed::everything) print(summary_text(record_, directory));
+  if (printed_ == Printed::verdict) print(warnings_text(record_.warnings) + verdict_text(record_, directory));
   return exit_code(verdict.status);
 }
 
 template <int dim>
 void RunReport<dim>::fail(const std::string& reason)
 {
-  if (is_restarted() && record_.levels.empty()) return;  // what the run before has left holds
-  record_.status = certify::RunStatus::failed;
-  record_.reason = reason;
+  require_all_failed(ranks_, reason);
+  if (is_path() || record_.levels.empty())
+  {
+    record_.status = certify::RunStatus::failed;
+    record_.reason = reason;
+  }
   write_what_holds();
 }
 

@@ -1,5 +1,3 @@
-#include "app/command/study.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,17 +8,17 @@
 #include <span>
 #include <utility>
 
-#include "app/command/interrupt.h"
 #include "app/command/run_report.h"
 #include "app/command/study_cases.h"
+#include "app/command/with_case.h"
+#include "app/console/console.h"
+#include "app/console/text.h"
 #include "app/output_directory.h"
 #include "app/page/report_page.h"
-#include "app/page/study_page.h"
-#include "app/program_facts.h"
-#include "app/result/figures.h"
 #include "app/result/study.h"
 #include "app/shared_file.h"
 #include "tribound/adapt/loop.h"
+#include "tribound/algebra/petsc.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
@@ -42,14 +40,21 @@ struct FinishedRun
 {
   certify::Verdict verdict{certify::RunStatus::failed, {}};
   std::vector<io::LevelRecord> records;
-  std::vector<KeptLevel<dim>> levels;  ///< as many as asked for
+  std::vector<KeptLevel<dim>> levels;
 };
 
-enum class Keep
+/// The richest space of at most `max_dofs` in which the dual norm can be looked for, if there is one.
+template <int dim>
+std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<dim>& space, long max_dofs)
 {
-  all,
-  last
-};
+  for (const int refinements : {2, 1})
+    for (const int further : {2, 1})
+    {
+      const certify::RicherSpace richer = {.refinements = refinements, .degree = space.degree() + further};
+      if (certify::count_dofs(space.mesh(), richer) <= static_cast<double>(max_dofs)) return richer;
+    }
+  return std::nullopt;
+}
 
 template <int dim>
 class StudyCommand
@@ -64,7 +69,7 @@ class StudyCommand
         stop_(stop_on_signals())
   {
     study_.facts = case_file::case_facts(config, dim);
-    study_.build = library_facts();
+    study_.build = io::build_facts();
     study_.gamma_lin = config.method.stopping.gamma_lin;
     study_.marking = config.adapt.marking.strategy == adapt::Marking::doerfler ? "doerfler" : "maximum";
     study_.theta = config.adapt.marking.theta;
@@ -72,8 +77,8 @@ class StudyCommand
 
   ExitCode run()
   {
-    const OutputDirectory directory(config_.output.directory);
-    remove_results(config_.output.directory, {"study.json", "study.csv", "report.html"});
+    const io::OutputDirectory directory(config_.output.directory);
+    io::remove_results(config_.output.directory, {"study.json", "study.csv", "report.html"});
     for (const char* name : variant_names)
       if (!stop_) solve_variant(name);
     if (!stop_) solve_reference();
@@ -81,28 +86,174 @@ class StudyCommand
     if (stop_) study_.interruption = "by a signal; what was complete is in the tables";
     study_.times.emplace_back("total", seconds_since(begin_));
     write();
-    print_study(study_, config_.output.directory.string());
+    print(study_text(study_, config_.output.directory.string()));
     if (config_.study.figures && !stop_) draw_figures(config_.output.directory);
     write_page();
     return exit_code();
   }
 
  private:
-  void solve_variant(const std::string& name);
-  void solve_reference();
+  /// As `tribound run` does it, from the mesh of the case. `own_limit`: how the reason ends for a limit that
+  /// is not of the case; `keeps_all`: its levels, else the last.
+  FinishedRun<dim> adapt_and_report(const case_file::Config& config, bool keeps_all,
+                                    const std::string& own_limit = {})
+  {
+    FinishedRun<dim> finished;
+    // Bisected nowhere, the mesh is copied.
+    auto first = std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_,
+                                                              config.method);
+    adapt::Levels<dim> levels(problem_, config.method, config.adapt.tolerance, std::move(first), &stop_);
+    RunReport<dim> report(config, problem_, levels.discrete(),
+                          doctor::slides_as_a_whole<dim>(problem_, levels.discrete().mesh), Clock::now(),
+                          Printed::levels);
+    levels.ask_for(config.adapt.bars, quantities_);
+    adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop_);
+    strategy.observer = {progress_, [&](const adapt::LevelView<dim>& view)
+                         {
+                           report.add(view);
+                           if (!keeps_all) finished.levels.clear();
+                           finished.levels.emplace_back(view);
+                           if (!config.output.vtu) finished.levels.back().level.stress = {};
+                         }};
+    try
+    {
+      finished.verdict = adapt::adapt(levels, strategy);
+      if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
+        finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
+      (void)report.close(finished.verdict);
+    }
+    catch (const SolveError& error)
+    {
+      report.fail(error.what());
+      finished.verdict = {certify::RunStatus::failed, error.what()};
+    }
+    finished.records = report.record().levels;
+    return finished;
+  }
+
+  void solve_variant(const std::string& name)
+  {
+    case_file::Config variant = variant_config(config_, name);
+    print(line("variant", name));
+    std::string own_limit;
+    if (variant.adapt.marking.strategy == adapt::Marking::uniform && !study_.variants[0].levels.empty())
+    {
+      // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times
+      // larger.
+      const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
+      if (std::lround(size) < variant.adapt.max_dofs)
+        own_limit = fmt::format("adapt.max_dofs = {}", std::lround(size));
+      variant.adapt.max_dofs = std::min(variant.adapt.max_dofs, std::lround(size));
+    }
+    const Clock::time_point begin = Clock::now();
+    FinishedRun<dim> finished = adapt_and_report(variant, true, own_limit);
+    study_.times.emplace_back(name, seconds_since(begin));
+    StudyVariant& result = study_.variants.emplace_back();
+    result.name = name;
+    result.status = finished.verdict.status;
+    result.reason = finished.verdict.reason;
+    for (io::LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
+    levels_.push_back(std::move(finished.levels));
+    write();
+  }
+
+  void solve_reference()
+  {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const StudyVariant& variant : study_.variants)
+      for (const StudiedLevel& level : variant.levels)
+        smallest = std::min(smallest, io::relative_bound(level.record).value_or(smallest));
+    if (!std::isfinite(smallest)) return;
+    constexpr double round_off = 1e-10;
+    const double required = std::max(config_.study.reference_factor * smallest, round_off);
+    const case_file::Config config = reference_config(config_, required);
+    print(line("reference",
+               fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.method.degree, required)));
+    const Clock::time_point begin = Clock::now();
+    FinishedRun<dim> finished = adapt_and_report(config, false);
+    study_.times.emplace_back("reference", seconds_since(begin));
+    if (stop_ || !certify::is_bound(finished.verdict.status)) return;
+    StudyReference& reference = study_.reference.emplace();
+    reference.degree = config.method.degree;
+    reference.level = finished.records.back();
+    reference.required = required;
+    reference.fine_enough = finished.verdict.status == certify::RunStatus::certified;
+    reference.reason = finished.verdict.reason;
+    reference_ = std::move(finished.levels.back());
+  }
+
   /// Errors and dual norms of all levels of all variants.
-  void measure();
-  void measure(std::size_t variant, std::size_t number);
+  void measure()
+  {
+    const Clock::time_point begin = Clock::now();
+    for (std::size_t variant = 0; variant < levels_.size(); ++variant)
+    {
+      if (!stop_) progress_.stage(fmt::format("errors of the variant {}", variant_names[variant]));
+      for (std::size_t number = 0; number < levels_[variant].size() && !stop_; ++number)
+        measure(variant, number);
+      show_errors(study_.variants[variant]);
+      levels_[variant].clear();
+      write();
+    }
+    study_.times.emplace_back("errors", seconds_since(begin));
+  }
+
   /// Adds them to the report page of the variant.
-  void show_errors(const StudyVariant& variant) const;
-  /// `own_limit`: how the reason ends for a limit that is not of the case.
-  FinishedRun<dim> adapt_and_report(const case_file::Config& config, Keep keep,
-                                    const std::string& own_limit = {});
-  [[nodiscard]] double smallest_relative_bound() const;
-  [[nodiscard]] ExitCode exit_code() const;
+  void show_errors(const StudyVariant& variant) const
+  {
+    std::vector<TrueErrors> errors;
+    for (const StudiedLevel& level : variant.levels)
+      errors.push_back({level.record.level, level.error ? std::optional(level.error->stress) : std::nullopt,
+                        level.dual_norm});
+    add_true_errors(config_.output.directory / variant.name / "report.html", errors);
+  }
+
+  void measure(std::size_t variant, std::size_t number)
+  {
+    const KeptLevel<dim>& kept = levels_[variant][number];
+    const adapt::Discretisation<dim>& discrete = *kept.discrete;
+    StudiedLevel& result = study_.variants[variant].levels[number];
+    if (!result.record.bound) return;
+    if (const auto space = dual_space(discrete.space, config_.study.dual_norm_dofs))
+      result.dual_norm = certify::DualNorm<dim>(discrete.form, *space)(kept.level.u);
+    if (!reference_) return;
+    const certify::LocalError error = certify::solution_error<dim>(
+        problem_, discrete.space, kept.level.u, reference_->discrete->space, reference_->level.u);
+    result.error = error.global;
+    result.intervals_agree = io::intervals_agree(result.record, study_.reference->level);
+    const case_file::Config config = variant_config(config_, study_.variants[variant].name);
+    if (config.output.vtu)
+      kept.write_fields(config.output.directory,
+                        {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
+  }
+
   /// What is complete so far.
-  void write() const;
-  void write_page() const;
+  void write() const
+  {
+    io::write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
+    io::write_file(config_.output.directory / "study.csv", study_csv(study_));
+    io::write_file(config_.output.directory / "study.json", study_json(study_));
+    write_page();
+  }
+
+  void write_page() const
+  {
+    if (config_.output.report)
+      write_study_page(find_shared_file("report.html"), config_.output.directory, study_);
+  }
+
+  ExitCode exit_code() const
+  {
+    const bool failed = !std::ranges::all_of(study_.variants, certify::is_bound, &StudyVariant::status);
+    if (failed || !violation(study_).empty()) return ExitCode::failed;
+    const bool reached =
+        !stop_ && std::ranges::all_of(study_.variants,
+                                      [](const StudyVariant& variant) {
+                                        return variant.name.starts_with("uniform") ||
+                                               variant.status == certify::RunStatus::certified;
+                                      });
+    return reached ? ExitCode::success : ExitCode::budget_used_up;
+  }
 
   const case_file::Config& config_;
   mesh::Mesh<dim> mesh_;
@@ -115,180 +266,6 @@ class StudyCommand
   std::vector<std::vector<KeptLevel<dim>>> levels_;  ///< of the variants
   std::optional<KeptLevel<dim>> reference_;
 };
-
-/// As `tribound run` does it, from the mesh of the case.
-template <int dim>
-FinishedRun<dim> StudyCommand<dim>::adapt_and_report(const case_file::Config& config, Keep keep,
-                                                     const std::string& own_limit)
-{
-  FinishedRun<dim> finished;
-  // Bisected nowhere, the mesh is copied.
-  auto first = std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_,
-                                                            config.method);
-  adapt::Levels<dim> levels(problem_, config.method, config.adapt.tolerance, std::move(first), &stop_);
-  RunReport<dim> report(config, problem_, levels.discrete(),
-                        doctor::slides_as_a_whole<dim>(problem_, levels.discrete().mesh), Clock::now(),
-                        Printed::levels);
-  levels.ask_for(config.adapt.bars, quantities_);
-  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop_);
-  strategy.observer = {[&](const adapt::CertifiedStep& step) { progress_(step.step, step.relative); },
-                       [&](const adapt::LevelView<dim>& view)
-                       {
-                         report.add(view);
-                         if (keep == Keep::last) finished.levels.clear();
-                         finished.levels.emplace_back(view);
-                         if (!config.output.vtu) finished.levels.back().level.stress = {};
-                       }};
-  try
-  {
-    finished.verdict = adapt::adapt(levels, strategy);
-    if (!own_limit.empty() && finished.verdict.reason.ends_with(own_limit))
-      finished.verdict.reason = "as large as the last adaptive mesh, there the comparison ends";
-    (void)report.close(finished.verdict);
-  }
-  catch (const SolveError& error)
-  {
-    report.fail(error.what());
-    finished.verdict = {certify::RunStatus::failed, error.what()};
-  }
-  finished.records = report.record().levels;
-  return finished;
-}
-
-template <int dim>
-void StudyCommand<dim>::solve_variant(const std::string& name)
-{
-  case_file::Config variant = variant_config(config_, name);
-  print_stage("variant", name);
-  std::string own_limit;
-  if (variant.adapt.marking.strategy == adapt::Marking::uniform && !study_.variants[0].levels.empty())
-  {
-    // The level whose size is nearest to that of the last adaptive one: the next would be 2^dim times larger.
-    const double size = std::sqrt(std::exp2(dim)) * study_.variants[0].levels.back().record.dofs;
-    if (std::lround(size) < variant.adapt.max_dofs)
-      own_limit = fmt::format("adapt.max_dofs = {}", std::lround(size));
-    variant.adapt.max_dofs = std::min(variant.adapt.max_dofs, std::lround(size));
-  }
-  const Clock::time_point begin = Clock::now();
-  FinishedRun<dim> finished = adapt_and_report(variant, Keep::all, own_limit);
-  study_.times.emplace_back(name, seconds_since(begin));
-  StudyVariant& result = study_.variants.emplace_back();
-  result.name = name;
-  result.status = finished.verdict.status;
-  result.reason = finished.verdict.reason;
-  for (io::LevelRecord& record : finished.records) result.levels.push_back({std::move(record), {}, {}});
-  levels_.push_back(std::move(finished.levels));
-  write();
-}
-
-template <int dim>
-double StudyCommand<dim>::smallest_relative_bound() const
-{
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const StudyVariant& variant : study_.variants)
-    for (const StudiedLevel& level : variant.levels)
-      smallest = std::min(smallest, io::relative_bound(level.record).value_or(smallest));
-  return smallest;
-}
-
-template <int dim>
-void StudyCommand<dim>::solve_reference()
-{
-  const double smallest = smallest_relative_bound();
-  if (!std::isfinite(smallest)) return;
-  constexpr double round_off = 1e-10;
-  const double required = std::max(config_.study.reference_factor * smallest, round_off);
-  const case_file::Config config = reference_config(config_, required);
-  print_stage("reference",
-              fmt::format("degree {}, to a bound of {:.3g} of ||sigma||", config.method.degree, required));
-  const Clock::time_point begin = Clock::now();
-  FinishedRun<dim> finished = adapt_and_report(config, Keep::last);
-  study_.times.emplace_back("reference", seconds_since(begin));
-  if (stop_ || !certify::is_bound(finished.verdict.status)) return;
-  StudyReference& reference = study_.reference.emplace();
-  reference.degree = config.method.degree;
-  reference.level = finished.records.back();
-  reference.required = required;
-  reference.fine_enough = finished.verdict.status == certify::RunStatus::certified;
-  reference.reason = finished.verdict.reason;
-  reference_ = std::move(finished.levels.back());
-}
-
-template <int dim>
-void StudyCommand<dim>::measure()
-{
-  const Clock::time_point begin = Clock::now();
-  for (std::size_t variant = 0; variant < levels_.size(); ++variant)
-  {
-    if (!stop_) progress_.stage(fmt::format("errors of the variant {}", variant_names[variant]));
-    for (std::size_t number = 0; number < levels_[variant].size() && !stop_; ++number)
-      measure(variant, number);
-    show_errors(study_.variants[variant]);
-    levels_[variant].clear();
-    write();
-  }
-  study_.times.emplace_back("errors", seconds_since(begin));
-}
-
-template <int dim>
-void StudyCommand<dim>::show_errors(const StudyVariant& variant) const
-{
-  std::vector<TrueErrors> errors;
-  for (const StudiedLevel& level : variant.levels)
-    errors.push_back({level.record.level, level.error ? std::optional(level.error->stress) : std::nullopt,
-                      level.dual_norm});
-  add_true_errors(config_.output.directory / variant.name / "report.html", errors);
-}
-
-template <int dim>
-void StudyCommand<dim>::measure(std::size_t variant, std::size_t number)
-{
-  const KeptLevel<dim>& kept = levels_[variant][number];
-  const adapt::Discretisation<dim>& discrete = *kept.discrete;
-  StudiedLevel& result = study_.variants[variant].levels[number];
-  if (!result.record.bound) return;
-  if (const auto space = dual_space(discrete.space, config_.study.dual_norm_dofs))
-    result.dual_norm = certify::DualNorm<dim>(discrete.form, *space)(kept.level.u);
-  if (!reference_) return;
-  const certify::LocalError error = certify::solution_error<dim>(
-      problem_, discrete.space, kept.level.u, reference_->discrete->space, reference_->level.u);
-  result.error = error.global;
-  result.intervals_agree = io::intervals_agree(result.record, study_.reference->level);
-  const case_file::Config config = variant_config(config_, study_.variants[variant].name);
-  if (config.output.vtu)
-    write_level_fields<dim>(config.output.directory, {static_cast<int>(number)}, discrete, kept.level,
-                            {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
-}
-
-template <int dim>
-void StudyCommand<dim>::write() const
-{
-  io::write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
-  write_study(config_.output.directory, study_);
-  write_page();
-}
-
-template <int dim>
-void StudyCommand<dim>::write_page() const
-{
-  if (config_.output.report)
-    write_study_page(find_shared_file("report.html"), config_.output.directory, study_);
-}
-
-template <int dim>
-ExitCode StudyCommand<dim>::exit_code() const
-{
-  const bool failed = !std::ranges::all_of(study_.variants, certify::is_bound, &StudyVariant::status);
-  if (failed || !violation(study_).empty()) return ExitCode::failed;
-  const bool reached = !stop_ && std::ranges::all_of(study_.variants,
-                                                     [](const StudyVariant& variant) {
-                                                       return variant.name.starts_with("uniform") ||
-                                                              variant.status == certify::RunStatus::certified;
-                                                     });
-  return reached ? ExitCode::success : ExitCode::budget_used_up;
-}
-
-}  // namespace
 
 template <int dim>
 ExitCode study(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
@@ -303,7 +280,16 @@ ExitCode study(const case_file::Config& config, mesh::Mesh<dim> mesh, const Prog
   return StudyCommand<dim>(config, std::move(mesh), progress).run();
 }
 
-template ExitCode study(const case_file::Config&, mesh::Mesh<2>, const Progress&);
-template ExitCode study(const case_file::Config&, mesh::Mesh<3>, const Progress&);
+}  // namespace
+
+ExitCode study(const CaseRequest& request)
+{
+  return with_case(request, &stop_on_signals(),
+                   [&]<int dim>(const case_file::Config& config, mesh::Mesh<dim> mesh)
+                   {
+                     const algebra::Environment environment;
+                     return study<dim>(config, std::move(mesh), Progress(request.quiet));
+                   });
+}
 
 }  // namespace tribound::app

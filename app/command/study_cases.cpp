@@ -52,19 +52,4 @@ case_file::Config reference_config(const case_file::Config& config, double requi
   return reference;
 }
 
-template <int dim>
-std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<dim>& space, long max_dofs)
-{
-  for (const int refinements : {2, 1})
-    for (const int further : {2, 1})
-    {
-      const certify::RicherSpace richer = {.refinements = refinements, .degree = space.degree() + further};
-      if (certify::count_dofs(space.mesh(), richer) <= static_cast<double>(max_dofs)) return richer;
-    }
-  return std::nullopt;
-}
-
-template std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<2>&, long);
-template std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<3>&, long);
-
 }  // namespace tribound::app

@@ -1,5 +1,3 @@
-#include "app/command/sweep.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -18,15 +16,15 @@
 #include <thread>
 #include <variant>
 
-#include "app/command/interrupt.h"
+#include "app/command/commands.h"
 #include "app/console/text.h"
-#include "app/output_directory.h"
-#include "app/page/page_template.h"
 #include "app/result/sweep.h"
 #include "tribound/base/sha256.h"
 #include "tribound/case/config.h"
 #include "tribound/case/node.h"
+#include "tribound/case/sweep_values.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/output_directory.h"
 
 extern char** environ;
 
@@ -70,6 +68,18 @@ pid_t start(std::vector<std::string> arguments, const std::filesystem::path& log
   return child;
 }
 
+case_file::SweepTable table_of(const SweepRequest& request)
+{
+  const std::string& file = request.table;
+  if (request.values.empty() == file.empty())
+    throw InputError({}, "tribound sweep takes either keys with values or a table",
+                     "tribound sweep case.toml 'degree=[1, 2]', or --table runs.csv");
+  if (file.empty()) return case_file::sweep_grid(request.values);
+  if (std::filesystem::is_directory(file) || ::access(file.c_str(), R_OK) != 0)
+    throw InputError({.file = file}, "cannot be read", "the path of a file");
+  return case_file::sweep_rows(io::read_text(file), file);
+}
+
 /// Reads a mesh file of many runs once. What the file itself reads, such as the .step of a .geo, is not seen.
 class MeshHashes
 {
@@ -80,7 +90,7 @@ class MeshHashes
     const auto* file = std::get_if<mesh::MeshFile>(&source);
     const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
     if (is_new && file != nullptr)
-      if (const std::string content = read_text(file->path); !content.empty())
+      if (const std::string content = io::read_text(file->path); !content.empty())
         entry->second = sha256(content);
     return entry->second;
   }
@@ -92,23 +102,136 @@ class MeshHashes
 class Sweep
 {
  public:
-  Sweep(const SweepOptions& options, const case_file::SweepTable& table);
+  explicit Sweep(const SweepRequest& request) : request_(request)
+  {
+    const std::string& file = request.case_file;
+    const case_file::SweepTable table = table_of(request);
+    const case_file::Config config = case_file::read_config(file, request.overrides);
+    directory_ = config.output.directory / "sweep";
+    record_ = {config.title, file, table.keys, {}};
+    MeshHashes mesh_hash;
+    for (const auto& values : table.rows)
+    {
+      SweepRun& run = record_.runs.emplace_back();
+      run.name = fmt::format("{:04}", record_.runs.size());
+      run.values = values;
+      run.status = "not run";
+      const case_file::Config its_config = case_file::read_config(file, overrides(run));
+      run.sha256 = sha256(its_config.effective.text);
+      run.mesh_sha256 = mesh_hash(its_config.mesh);
+    }
+  }
+
   /// Ends the runs that an exception would leave alone.
-  ~Sweep();
+  ~Sweep()
+  {
+    end_all();
+    for (const auto& [child, run] : running_) ::waitpid(child, nullptr, 0);
+  }
   Sweep(const Sweep&) = delete;
   Sweep& operator=(const Sweep&) = delete;
-  ExitCode run();
+
+  ExitCode run()
+  {
+    using namespace std::chrono_literals;
+    const io::OutputDirectory owned(directory_);
+    if (request_.resume)
+      for (const auto& [name, code] : complete_runs(directory_, record_))
+      {
+        SweepRun& run = *std::ranges::find(record_.runs, name, &SweepRun::name);
+        run.exit_code = code;
+        read_results(directory_ / name, run);
+        print(sweep_line(record_, run) + line("", "kept from an earlier sweep"));
+      }
+    limit_threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / request_.jobs));
+    const std::atomic<bool>& stop = stop_on_signals();
+    write_sweep(directory_, record_);
+    while (next_ < record_.runs.size() || !running_.empty())
+    {
+      if (stop && !interrupted_)
+      {
+        interrupted_ = true;
+        next_ = record_.runs.size();
+        end_all();
+      }
+      if (next_ < record_.runs.size() && static_cast<int>(running_.size()) < request_.jobs)
+      {
+        start_next();
+        continue;
+      }
+      int status = 0;
+      const pid_t child = ::waitpid(-1, &status, WNOHANG);
+      if (child > 0 && running_.contains(child))
+        finish(child, status);
+      else
+        std::this_thread::sleep_for(10ms);
+    }
+    write_sweep(directory_, record_);
+    print(line("results", (directory_ / "sweep.csv").string()));
+    return exit_code();
+  }
 
  private:
   /// The --set of a run.
-  [[nodiscard]] std::vector<std::string> overrides(const SweepRun& run) const;
-  void start_next();
-  /// Takes note of a run that has ended.
-  void finish(pid_t child, int status);
-  void end_all() const;
-  [[nodiscard]] ExitCode exit_code() const;
+  std::vector<std::string> overrides(const SweepRun& run) const
+  {
+    std::vector<std::string> result = request_.overrides;
+    for (std::size_t i = 0; i < record_.keys.size(); ++i)
+      result.push_back(record_.keys[i] + "=" + run.values[i]);
+    result.push_back("output.directory=" + case_file::to_inline_toml({(directory_ / run.name).string(), {}}));
+    return result;
+  }
 
-  const SweepOptions& options_;
+  void start_next()
+  {
+    SweepRun& run = record_.runs[next_++];
+    if (run.exit_code) return;  // of an earlier sweep
+    const std::filesystem::path directory = directory_ / run.name;
+    std::filesystem::create_directories(directory);
+    io::remove_results(directory,
+                       {"certificate.json", "contact.csv"});  // a run that ends early would leave them
+    std::vector<std::string> arguments = {"tribound", "run", request_.case_file, "--quiet"};
+    for (const std::string& assignment : overrides(run))
+    {
+      arguments.emplace_back("--set");
+      arguments.push_back(assignment);
+    }
+    running_[start(std::move(arguments), directory / "log.txt")] = &run;
+  }
+
+  /// Takes note of a run that has ended.
+  void finish(pid_t child, int status)
+  {
+    SweepRun& run = *running_.at(child);
+    running_.erase(child);
+    run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    read_results(directory_ / run.name, run);
+    if (interrupted_ && run.exit_code != 1 && run.figures.empty())  // ended before its first level
+    {
+      run.exit_code.reset();
+      run.status = "not run";
+      run.reason.clear();
+    }
+    write_sweep(directory_, record_);
+    print(sweep_line(record_, run));
+  }
+
+  void end_all() const
+  {
+    for (const auto& [child, run] : running_) ::kill(child, SIGTERM);
+  }
+
+  ExitCode exit_code() const
+  {
+    const auto some = [&](const auto& property) { return std::ranges::any_of(record_.runs, property); };
+    if (some([](const SweepRun& run) { return run.exit_code == 1; })) return ExitCode::bad_input;
+    if (some([](const SweepRun& run) { return run.exit_code == 2 || run.exit_code > 3; }))
+      return ExitCode::failed;
+    if (some([](const SweepRun& run) { return run.exit_code != 0; })) return ExitCode::budget_used_up;
+    return ExitCode::success;
+  }
+
+  const SweepRequest& request_;
   std::filesystem::path directory_;
   SweepRecord record_;
   std::map<pid_t, SweepRun*> running_;
@@ -116,131 +239,11 @@ class Sweep
   bool interrupted_ = false;
 };
 
-Sweep::Sweep(const SweepOptions& options, const case_file::SweepTable& table) : options_(options)
-{
-  const case_file::Config config = case_file::read_config(options.case_file, options.overrides);
-  directory_ = config.output.directory / "sweep";
-  record_ = {config.title, options.case_file, table.keys, {}};
-  MeshHashes mesh_hash;
-  for (const auto& values : table.rows)
-  {
-    SweepRun& run = record_.runs.emplace_back();
-    run.name = fmt::format("{:04}", record_.runs.size());
-    run.values = values;
-    run.status = "not run";
-    const case_file::Config its_config = case_file::read_config(options.case_file, overrides(run));
-    run.sha256 = sha256(its_config.effective.text);
-    run.mesh_sha256 = mesh_hash(its_config.mesh);
-  }
-}
-
-Sweep::~Sweep()
-{
-  end_all();
-  for (const auto& [child, run] : running_) ::waitpid(child, nullptr, 0);
-}
-
-std::vector<std::string> Sweep::overrides(const SweepRun& run) const
-{
-  std::vector<std::string> result(options_.overrides.begin(), options_.overrides.end());
-  for (std::size_t i = 0; i < record_.keys.size(); ++i)
-    result.push_back(record_.keys[i] + "=" + run.values[i]);
-  result.push_back("output.directory=" + case_file::to_inline_toml({(directory_ / run.name).string(), {}}));
-  return result;
-}
-
-void Sweep::start_next()
-{
-  SweepRun& run = record_.runs[next_++];
-  if (run.exit_code) return;  // of an earlier sweep
-  const std::filesystem::path directory = directory_ / run.name;
-  std::filesystem::create_directories(directory);
-  remove_results(directory, {"certificate.json", "contact.csv"});  // a run that ends early would leave them
-  std::vector<std::string> arguments = {"tribound", "run", options_.case_file, "--quiet"};
-  for (const std::string& assignment : overrides(run))
-  {
-    arguments.emplace_back("--set");
-    arguments.push_back(assignment);
-  }
-  running_[start(std::move(arguments), directory / "log.txt")] = &run;
-}
-
-void Sweep::finish(pid_t child, int status)
-{
-  SweepRun& run = *running_.at(child);
-  running_.erase(child);
-  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  read_results(directory_ / run.name, run);
-  if (interrupted_ && run.exit_code != 1 && run.figures.empty())  // ended before its first level
-  {
-    run.exit_code.reset();
-    run.status = "not run";
-    run.reason.clear();
-  }
-  write_sweep(directory_, record_);
-  print(sweep_line(record_, run));
-}
-
-void Sweep::end_all() const
-{
-  for (const auto& [child, run] : running_) ::kill(child, SIGTERM);
-}
-
-ExitCode Sweep::exit_code() const
-{
-  const auto some = [&](const auto& property) { return std::ranges::any_of(record_.runs, property); };
-  if (some([](const SweepRun& run) { return run.exit_code == 1; })) return ExitCode::bad_input;
-  if (some([](const SweepRun& run) { return run.exit_code == 2 || run.exit_code > 3; }))
-    return ExitCode::failed;
-  if (some([](const SweepRun& run) { return run.exit_code != 0; })) return ExitCode::budget_used_up;
-  return ExitCode::success;
-}
-
-ExitCode Sweep::run()
-{
-  using namespace std::chrono_literals;
-  const OutputDirectory owned(directory_);
-  if (options_.resume)
-    for (const auto& [name, code] : complete_runs(directory_, record_))
-    {
-      SweepRun& run = *std::ranges::find(record_.runs, name, &SweepRun::name);
-      run.exit_code = code;
-      read_results(directory_ / name, run);
-      print(sweep_line(record_, run) + line("", "kept from an earlier sweep"));
-    }
-  limit_threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options_.jobs));
-  const std::atomic<bool>& stop = stop_on_signals();
-  write_sweep(directory_, record_);
-  while (next_ < record_.runs.size() || !running_.empty())
-  {
-    if (stop && !interrupted_)
-    {
-      interrupted_ = true;
-      next_ = record_.runs.size();
-      end_all();
-    }
-    if (next_ < record_.runs.size() && static_cast<int>(running_.size()) < options_.jobs)
-    {
-      start_next();
-      continue;
-    }
-    int status = 0;
-    const pid_t child = ::waitpid(-1, &status, WNOHANG);
-    if (child > 0 && running_.contains(child))
-      finish(child, status);
-    else
-      std::this_thread::sleep_for(10ms);
-  }
-  write_sweep(directory_, record_);
-  print(line("results", (directory_ / "sweep.csv").string()));
-  return exit_code();
-}
-
 }  // namespace
 
-ExitCode sweep(const SweepOptions& options, const case_file::SweepTable& table)
+ExitCode sweep(const SweepRequest& request)
 {
-  return Sweep(options, table).run();
+  return Sweep(request).run();
 }
 
 }  // namespace tribound::app

@@ -1,16 +1,17 @@
-#include "app/command/verify.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 #include <memory>
 
-#include "app/output_directory.h"
+#include "app/command/with_case.h"
+#include "app/console/console.h"
+#include "app/console/text.h"
 #include "app/result/verification.h"
 #include "tribound/adapt/error_bars.h"
 #include "tribound/adapt/path_program.h"
 #include "tribound/adapt/regularisation.h"
+#include "tribound/algebra/petsc.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
@@ -19,6 +20,8 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/contact/support/rigid_motion.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/output_directory.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/solve/newton.h"
 
@@ -62,28 +65,15 @@ void check_size(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
                                             fewer, n_dofs(fewer)));
 }
 
-/// Seconds of the stages of a verification.
-class Stages
+/// work(), its wall time noted as that of a stage.
+template <class Work>
+auto timed(const std::string& stage, Verification& result, const Work& work)
 {
- public:
-  explicit Stages(const Progress& progress) : progress_(progress) {}
-
-  template <class Work>
-  auto time(const std::string& stage, const std::string& announcement, const Work& work)
-  {
-    progress_.stage(announcement);
-    const Clock::time_point begin = Clock::now();
-    auto result = work();
-    times_.emplace_back(stage, seconds_since(begin));
-    return result;
-  }
-
-  [[nodiscard]] const std::vector<std::pair<std::string, double>>& times() const { return times_; }
-
- private:
-  const Progress& progress_;
-  std::vector<std::pair<std::string, double>> times_;
-};
+  const Clock::time_point begin = Clock::now();
+  auto value = work();
+  result.times.emplace_back(stage, seconds_since(begin));
+  return value;
+}
 
 template <int dim>
 VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
@@ -100,23 +90,6 @@ VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
       certify::check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
   return iterate;
 }
-
-template <int dim>
-certify::RicherSolution richer_solution(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                        const case_file::Config& config, int refinements,
-                                        const certify::UseOfRicher<dim>& use)
-{
-  const certify::RicherSpace richer = solution_space(config, refinements);
-  const double gamma0 = config.method.gamma0.value_or(contact::default_gamma0(richer.degree));
-  solve::NewtonOptions newton = config.method.newton;
-  newton.damping = true;  // undamped steps may cycle; they are not what is verified here
-  return certify::compare_with_richer<dim>(form, u, richer, gamma0, newton, config.method.solver, use);
-}
-
-}  // namespace
-
-namespace
-{
 
 /// Newton's method on a form from `start`, each of its iterates verified and added to `result`, with the
 /// intervals of the quantities, if there are any.
@@ -141,7 +114,7 @@ solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, 
     result.iterates.push_back(verified_iterate(form, iterate, stress, eta, dual_norm));
     if (!quantities.empty())
       result.iterates.back().energy = adapt::energy_bound<dim>(form, config.method, iterate.u(), quantities);
-    progress(iterate.step);
+    progress({.step = iterate.step});
     if (!regularisation) return false;
     return regularisation->advise(form, iterate, eta.global, iterate.converged);
   };
@@ -177,14 +150,15 @@ constexpr const char* announcement = "solving, with bound and dual norm of every
 
 /// Once the input is known to be good: takes the directory and prints what is going to be verified.
 template <int dim>
-std::unique_ptr<OutputDirectory> begin(const case_file::Config& config, const problem::Problem<dim>& problem,
-                                       const fem::LagrangeSpace<dim>& space,
-                                       const fem::Constraints& constraints, Verification& result)
+std::unique_ptr<io::OutputDirectory> begin(const case_file::Config& config,
+                                           const problem::Problem<dim>& problem,
+                                           const fem::LagrangeSpace<dim>& space,
+                                           const fem::Constraints& constraints, Verification& result)
 {
-  auto directory = std::make_unique<OutputDirectory>(config.output.directory);
-  remove_results(config.output.directory, {"verify.json"});
+  auto directory = std::make_unique<io::OutputDirectory>(config.output.directory);
+  io::remove_results(config.output.directory, {"verify.json"});
   result.mesh = io::mesh_facts<dim>(problem, space, constraints);
-  print_header(result.facts, result.mesh);
+  print(header_text(result.facts, result.mesh));
   return directory;
 }
 
@@ -192,7 +166,7 @@ std::unique_ptr<OutputDirectory> begin(const case_file::Config& config, const pr
 template <int dim>
 std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
                         const case_file::Config& config, Verification& result, const Progress& progress,
-                        std::unique_ptr<OutputDirectory>& directory)
+                        std::unique_ptr<io::OutputDirectory>& directory)
 {
   adapt::LoadPath<dim> path(problem, config.method, {}, std::move(mesh));
   path.prepare(config.history->program.targets.front());
@@ -205,11 +179,10 @@ std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> me
     verify_step<dim>(step, step.start.empty() ? before : step.start, config, result, progress);
     before = step.level.u;
   };
-  Stages stages(progress);
+  progress.stage(announcement);
   std::string why =
-      stages.time("iterates", announcement,
-                  [&] { return adapt::follow<dim>(path, config.history->program, committed, {}).failure; });
-  result.times = stages.times();
+      timed("iterates", result,
+            [&] { return adapt::follow<dim>(path, config.history->program, committed, {}).failure; });
   if (why.empty() && !result.converged) why = "Newton's method did not converge a second time";
   return why;
 }
@@ -218,46 +191,51 @@ std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> me
 template <int dim>
 void verify_solution(const contact::NitscheForm<dim>& form, std::span<const double> u,
                      const case_file::Config& config, const std::vector<problem::Quantity<dim>>& quantities,
-                     Verification& result, Stages& stages)
+                     Verification& result, const Progress& progress)
 {
+  const certify::RicherSpace space = solution_space(config, result.refinements);
+  const double gamma0 = config.method.gamma0.value_or(contact::default_gamma0(space.degree));
+  solve::NewtonOptions newton = config.method.newton;
+  newton.damping = true;  // undamped steps may cycle; they are not what is verified here
   const auto bound_richer = [&](const contact::NitscheForm<dim>& richer, std::span<const double> richer_u)
   {
     if (!quantities.empty())
       result.richer_energy = adapt::energy_bound<dim>(richer, config.method, richer_u, quantities);
   };
-  result.richer =
-      stages.time("richer", fmt::format("solving with degree {} on the refined mesh", result.richer_degree),
-                  [&] { return richer_solution<dim>(form, u, config, result.refinements, bound_richer); });
+  progress.stage(fmt::format("solving with degree {} on the refined mesh", space.degree));
+  result.richer = timed("richer", result,
+                        [&]
+                        {
+                          return certify::compare_with_richer<dim>(form, u, space, gamma0, newton,
+                                                                   config.method.solver, bound_richer);
+                        });
   result.energy = result.iterates.back().energy;
-  if (!result.energy && config.adapt.bars.levels != adapt::EnergyLevels::off)
-    result.energy = stages.time("energy", "bounding the error in the energy norm",
-                                [&] { return adapt::energy_bound<dim>(form, config.method, u); });
+  if (result.energy || config.adapt.bars.levels == adapt::EnergyLevels::off) return;
+  progress.stage("bounding the error in the energy norm");
+  result.energy = timed("energy", result, [&] { return adapt::energy_bound<dim>(form, config.method, u); });
 }
 
 /// Not empty: why there is no solution.
 template <int dim>
 std::string verify_single(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                           const case_file::Config& config, Verification& result, const Progress& progress,
-                          std::unique_ptr<OutputDirectory>& directory)
+                          std::unique_ptr<io::OutputDirectory>& directory)
 {
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   const contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
   const auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   contact::check_rigid_motions(form);
   directory = begin<dim>(config, problem, space, form.constraints(), result);
-  Stages stages(progress);
-  const solve::NewtonResult<dim> newton = stages.time(
-      "iterates", announcement,
+  progress.stage(announcement);
+  const solve::NewtonResult<dim> newton = timed(
+      "iterates", result,
       [&]
       { return verify_iterates<dim>(form, {}, config.method.newton, config, result, progress, quantities); });
   result.converged = newton.status == solve::NewtonStatus::converged;
   result.richer_degree = solution_space(config, result.refinements).degree;
-  if (result.converged) verify_solution<dim>(form, newton.u, config, quantities, result, stages);
-  result.times = stages.times();
+  if (result.converged) verify_solution<dim>(form, newton.u, config, quantities, result, progress);
   return result.converged ? std::string() : newton.message;
 }
-
-}  // namespace
 
 template <int dim>
 ExitCode verify(const case_file::Config& config, mesh::Mesh<dim> mesh, int refinements,
@@ -265,7 +243,7 @@ ExitCode verify(const case_file::Config& config, mesh::Mesh<dim> mesh, int refin
 {
   const problem::Problem<dim> problem(case_file::resolve(config, mesh));
   check_size(config, mesh, refinements);
-  std::unique_ptr<OutputDirectory> directory;
+  std::unique_ptr<io::OutputDirectory> directory;
   Verification result;
   result.facts = case_file::case_facts(config, dim);
   result.refinements = refinements;
@@ -274,15 +252,25 @@ ExitCode verify(const case_file::Config& config, mesh::Mesh<dim> mesh, int refin
                             : verify_single<dim>(problem, mesh, config, result, progress, directory);
   if (result.iterates.empty()) throw SolveError(failure);
 
-  write_verification(config.output.directory, result);
-  print_verification(result, (config.output.directory / "verify.json").string());
+  const std::filesystem::path file = config.output.directory / "verify.json";
+  io::write_file(file, verification_json(result));
+  print(verification_text(result, file.string()));
   if (const std::string problem_found = violation(result); !problem_found.empty())
     throw SolveError(problem_found);
   if (!result.converged || !failure.empty()) throw SolveError(failure);
   return ExitCode::success;
 }
 
-template ExitCode verify(const case_file::Config&, mesh::Mesh<2>, int, const Progress&);
-template ExitCode verify(const case_file::Config&, mesh::Mesh<3>, int, const Progress&);
+}  // namespace
+
+ExitCode verify(const CaseRequest& request, int refinements)
+{
+  return with_case(request, nullptr,
+                   [&]<int dim>(const case_file::Config& config, mesh::Mesh<dim> mesh)
+                   {
+                     const algebra::Environment environment;
+                     return verify<dim>(config, std::move(mesh), refinements, Progress(request.quiet));
+                   });
+}
 
 }  // namespace tribound::app

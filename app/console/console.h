@@ -34,23 +34,22 @@ namespace tribound::app
 [[nodiscard]] std::string summary_text(const io::RunRecord& run, const std::string& directory);
 /// The end of the summary: status, and where the files are.
 [[nodiscard]] std::string verdict_text(const io::RunRecord& run, const std::string& directory);
+/// The balance of forces as a table. What is below 1e-9 of the largest number of its kind is shown as 0.
+[[nodiscard]] std::string balance_text(const certify::Balance& balance);
+/// What a run will need, from how its bound has decreased so far: "at this rate 1 % needs 1.2 million
+/// unknowns": the rate is fitted to the last half of the levels. Empty where the tolerance is reached, or
+/// less than three levels have a bound.
+[[nodiscard]] std::string forecast_text(const io::RunRecord& run, long max_dofs);
 /// `tribound check`: everything that was read; `solver` names the linear solver that would be taken.
 [[nodiscard]] std::string check_text(const io::CaseFacts& facts, const io::MeshFacts& mesh,
                                      const std::string& solver);
 /// What the doctor found, with advice, and how many warnings and notes there are.
 [[nodiscard]] std::string findings_text(std::span<const doctor::Finding> findings);
-/// `tribound info`.
-[[nodiscard]] std::string info_text(const io::BuildFacts& build);
-
-void print_header(const io::CaseFacts& facts, const io::MeshFacts& mesh);
-void print_level(const io::LevelRecord& level);
-void print_mesh(std::string_view caption, std::int64_t cells, std::int64_t dofs);
-void print_summary(const io::RunRecord& run, const std::string& directory);
-/// Warnings and status only.
-void print_verdict(const io::RunRecord& run, const std::string& directory);
-void print_check(const io::CaseFacts& facts, const io::MeshFacts& mesh, const std::string& solver,
-                 std::span<const doctor::Finding> findings, bool as_json);
-void print_info(const io::BuildFacts& build);
+/// Both as JSON with the fields of docs/output.md.
+[[nodiscard]] std::string check_json(const io::CaseFacts& facts, const io::MeshFacts& mesh,
+                                     const std::string& solver, std::span<const doctor::Finding> findings);
+/// `tribound info`; `report_page`: the path of its template, empty where there is none.
+[[nodiscard]] std::string info_text(const io::BuildFacts& build, const std::string& report_page);
 
 /// One line per Newton step on stderr, where somebody can be watching: stderr is a terminal and the user has
 /// not asked for quiet.
@@ -59,7 +58,7 @@ class Progress
  public:
   explicit Progress(bool quiet);
 
-  void operator()(const solve::NewtonStep& step, std::optional<double> relative_bound = {}) const;
+  void operator()(const adapt::CertifiedStep& step) const;
   /// Whether the user has asked for quiet.
   [[nodiscard]] bool quiet() const { return quiet_; }
   /// A line about a stage, such as "reading block.msh".

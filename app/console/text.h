@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,27 @@ constexpr std::size_t caption_width = 14;
 [[nodiscard]] inline std::string line(std::string_view caption, std::string_view text)
 {
   return fmt::format("{:<{}}{}\n", caption, caption_width, text);
+}
+
+/// line(), or nothing for an empty text.
+[[nodiscard]] inline std::string line_if_any(std::string_view caption, std::string_view text)
+{
+  return text.empty() ? std::string{} : line(caption, text);
+}
+
+/// A line broken into several of at most 80 characters, the later ones indented below the first.
+[[nodiscard]] std::string paragraph(std::string_view caption, std::string_view text);
+
+/// "1 cell", "2 cells".
+[[nodiscard]] inline std::string count(long n, std::string_view singular, std::string_view plural)
+{
+  return fmt::format("{} {}", n, n == 1 ? singular : plural);
+}
+
+/// The number in a format such as "{:.3g}", or a dash.
+[[nodiscard]] inline std::string number(const char* format, const std::optional<double>& value)
+{
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
 /// Writes to stdout at once. A reader that has gone, such as `head`, is no reason to end, nor to throw.

@@ -1,11 +1,9 @@
-#include "app/page/page_contact.h"
-
 #include <algorithm>
 
 #include "app/page/packed_array.h"
+#include "app/page/page_level.h"
 #include "app/page/page_pairs.h"
 #include "app/page/page_profile.h"
-#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {

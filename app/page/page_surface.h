@@ -23,6 +23,7 @@ struct PageLimits
   std::size_t stresses = 24'000;    ///< triangles up to which stresses are those of points, not of faces
   std::size_t earlier = 40'000;     ///< triangles of all levels before the last; beyond, they are left out
   std::size_t segments = 40'000;    ///< between bodies; beyond, contact values are means over facets
+  std::size_t volume = 40'000;      ///< cells in 3D; beyond, the inside is left out
 };
 
 /// Values at the lattice points of faces, see Surface.

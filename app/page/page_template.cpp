@@ -1,11 +1,7 @@
 #include "app/page/page_template.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <utility>
 
-#include "app/machine.h"
 #include "tribound/certify/bound/components.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
@@ -17,17 +13,13 @@ std::string script_safe(std::string_view json)
 {
   std::string safe;
   safe.reserve(json.size());
-  for (std::size_t less = json.find('<'); less != std::string_view::npos; less = json.find('<'))
-  {
-    safe.append(json.substr(0, less)).append("\\u003c");
-    json.remove_prefix(less + 1);
-  }
-  return safe.append(json);
+  for (const char c : json) c == '<' ? safe += "\\u003c" : safe += c;
+  return safe;
 }
 
 PageTemplate::PageTemplate(const std::filesystem::path& path)
 {
-  text_ = read_text(path);
+  text_ = io::read_text(path);
   marker_ = text_.find(page_data_marker);
 }
 
@@ -44,24 +36,6 @@ void PageTemplate::write(const std::filesystem::path& page, std::string_view id,
   file.write("</script>");
   file.write(text.substr(marker_ + page_data_marker.size()));
   file.commit();
-}
-
-std::string read_text(const std::filesystem::path& path)
-{
-  const std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return std::move(text).str();
-}
-
-io::Json machine_json()
-{
-  const MachineFacts machine = machine_facts();
-  return {{"processor", machine.processor},
-          {"processors", machine.n_processors},
-          {"memory", machine.memory},
-          {"system", machine.system},
-          {"written", date_and_time()}};
 }
 
 io::Json components_json(const certify::RunKind& kind)

@@ -38,10 +38,7 @@ class PageTemplate
   std::size_t marker_;  ///< its place in the text; npos where there is none
 };
 
-/// The text of a file; empty where it cannot be read.
-[[nodiscard]] std::string read_text(const std::filesystem::path& path);
-
-/// This computer, and when it writes.
+/// This computer, and the time; what could not be found out is empty or 0.
 [[nodiscard]] io::Json machine_json();
 
 /// What is said of the components of the bound that a run has.

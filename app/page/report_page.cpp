@@ -1,12 +1,11 @@
 #include "app/page/report_page.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "app/page/packed_array.h"
-#include "app/page/page_contact.h"
-#include "app/page/page_volume.h"
+#include "app/page/page_level.h"
+#include "app/result/study.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/error_bars.h"
@@ -19,63 +18,8 @@ namespace tribound::app
 namespace
 {
 
-// Bits per number: beyond what can be seen, and close to what a reader of values wants.
-constexpr int point_bits = 24;
-constexpr int displacement_bits = 16;
-constexpr int stress_bits = 12;
-constexpr int component_bits = 10;
-constexpr double component_decades = 8;
-
 /// Characters up to which the page holds a table.
 constexpr std::size_t largest_table = 400'000;
-
-/// Component by component.
-io::Json stress_json(std::span<const std::vector<double>> stress)
-{
-  double scale = 0;
-  for (const std::vector<double>& component : stress) scale = std::max(scale, largest(component));
-  io::Json components = io::Json::array();
-  for (const std::vector<double>& component : stress)
-    components.push_back(pack_values(component, scale, stress_bits));
-  return components;
-}
-
-/// eta_tot and the components, one number per face; what is zero everywhere is left out.
-io::Json eta_json(const Surface& surface, const certify::Estimate& estimate)
-{
-  io::Json eta = io::Json::object();
-  std::vector<double> values(surface.n_faces());
-  const auto add = [&](const char* name, const auto& value)
-  {
-    for (std::size_t face = 0; face < values.size(); ++face)
-      values[face] = value(estimate.cells[surface.cells[face]]);
-    if (std::ranges::any_of(values, [](double x) { return x > 0.0; }))
-      eta[name] = pack_logarithmic(values, component_bits, component_decades);
-  };
-  add("tot", [](const certify::BoundComponents& cell) { return cell.total_sharp(); });
-  for (const certify::Component& c : certify::all_components)
-    if (estimate.global.*c.value > 0)
-      add(c.name, [&c](const certify::BoundComponents& cell) { return cell.*c.value; });
-  return eta;
-}
-
-/// sigma_zz / (sigma_xx + sigma_yy), region by region.
-io::Json out_of_plane_json(const problem::Problem<2>& problem, const mesh::Mesh<2>& mesh)
-{
-  io::Json ratios = io::Json::array();
-  for (int region = 0; region < static_cast<int>(mesh.region_names().size()); ++region)
-    ratios.push_back(io::out_of_plane_ratio(problem.material(region)));
-  return ratios;
-}
-
-/// Which region a face lies in.
-template <int dim>
-io::Json region_json(const Surface& surface, const mesh::Mesh<dim>& mesh)
-{
-  std::vector<Index> regions;
-  for (const Index cell : surface.cells) regions.push_back(mesh.region(cell));
-  return pack_integers(regions);
-}
 
 /// A table of which the page offers a copy; null where it is too large.
 io::Json table(std::string_view text)
@@ -134,54 +78,46 @@ std::vector<std::string> run_files(const io::RunRecord& run)
   return names;
 }
 
-}  // namespace
-
-template <int dim>
-PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
-                     const adapt::CertifiedLevel<dim>& level, const PageLimits& limits)
+/// The figures, by name; those older than the table that they are drawn from are of another study.
+std::vector<std::string> figure_names(const std::filesystem::path& directory)
 {
-  const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const Surface surface = sample_surface(form, level.u, level.stress, limits);
-  PageLevel result{number,
-                   surface.n_triangles(),
-                   {{"level", number},
-                    {"dimension", dim},
-                    {"cells", mesh.n_global_cells()},
-                    {"subdivision", surface.subdivision},
-                    {"merged_below", surface.merged_below},
-                    {"points", pack_linear(surface.points, point_bits, dim)},
-                    {"displacement", pack_linear(surface.displacement, displacement_bits, dim)},
-                    {"faces", pack_integers(surface.faces, surface.n_face_points())},
-                    {"eta", eta_json(surface, level.estimate)},
-                    {"stress", stress_json(surface.stress)}}};
-  io::Json& json = result.json;
-  if (mesh.region_names().size() > 1) json["region"] = region_json(surface, mesh);
-  if (!surface.bodies.empty() && std::ranges::max(surface.bodies) > 0)
-    json["body"] = pack_integers(surface.bodies);
-  if constexpr (dim == 2) json["out_of_plane"] = out_of_plane_json(form.problem(), mesh);
-  json.update(page_contact(form, level.u, surface, limits));
-  return result;
+  std::vector<std::string> names;
+  std::error_code none;  // there need not be a table or a directory of figures
+  const auto drawn_after = std::filesystem::last_write_time(directory / "study.csv", none);
+  for (const auto& entry : std::filesystem::directory_iterator(directory / "figures", none))
+    if (entry.path().extension() == ".svg" && entry.last_write_time() >= drawn_after)
+      names.push_back("figures/" + entry.path().filename().string());
+  std::ranges::sort(names);
+  return names;
 }
 
-template <int dim>
-io::Json page_volume(const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level)
+/// In the order in which a reader wants them.
+std::vector<std::string> study_files(const std::filesystem::path& directory, const Study& study)
 {
-  if constexpr (dim == 3)
-    if (std::cmp_less_equal(form.space().mesh().n_global_cells(), max_volume_cells))
-    {
-      const Volume volume = sample_volume(form, level.u, level.stress);
-      return {{"points", pack_linear(volume.points, point_bits, 3)},
-              {"displacement", pack_linear(volume.displacement, displacement_bits, 3)},
-              {"cells", pack_integers(volume.cells, 4)},
-              {"bodies", pack_integers(volume.bodies)},
-              {"stress", stress_json(volume.stress)}};
-    }
-  return nullptr;
+  std::vector<std::string> names = {"study.csv", "study.json"};
+  for (const StudyVariant& variant : study.variants) names.push_back(variant.name + "/report.html");
+  if (study.reference) names.emplace_back("reference/report.html");
+  std::ranges::copy(figure_names(directory), std::back_inserter(names));
+  return names;
+}
+
+}  // namespace
+
+void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
+                      const Study& study)
+{
+  const PageTemplate page(page_template);
+  if (page.empty()) return;
+  page.write(directory / "report.html", "study-data",
+             {{"study", study_object(study)},
+              {"components", components_json(run_kind(study))},
+              {"machine", machine_json()},
+              {"files", files_json(directory, study_files(directory, study))}});
 }
 
 void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors)
 {
-  std::string text = read_text(page);
+  std::string text = io::read_text(page);
   const std::size_t marker = text.rfind(true_errors_marker);
   if (marker == std::string::npos) return;
   io::Json rows = io::Json::array();
@@ -197,6 +133,9 @@ void add_true_errors(const std::filesystem::path& page, std::span<const TrueErro
 }
 
 ReportPage::ReportPage(const std::filesystem::path& page_template) : template_(page_template) {}
+ReportPage::~ReportPage() = default;
+ReportPage::ReportPage(ReportPage&&) noexcept = default;
+ReportPage& ReportPage::operator=(ReportPage&&) noexcept = default;
 
 template <int dim>
 void ReportPage::add(int number, const contact::NitscheForm<dim>& form,
@@ -215,7 +154,7 @@ void ReportPage::add_last(int number, const contact::NitscheForm<dim>& form,
   if (template_.empty()) return;
   std::erase_if(levels_, [number](const PageLevel& other) { return other.number == number; });
   levels_.push_back(page_level(number, form, level));
-  volume_ = page_volume(form, level);
+  if constexpr (dim == 3) levels_.back().volume = page_volume(form, level);
 }
 
 void ReportPage::write(const std::filesystem::path& directory, const io::RunRecord& run) const
@@ -223,25 +162,19 @@ void ReportPage::write(const std::filesystem::path& directory, const io::RunReco
   if (template_.empty()) return;
   io::Json fields = io::Json::array();
   for (const PageLevel& level : levels_) fields.push_back(level.json);
-  template_.write(
-      directory / "report.html", "run-data",
-      {{"certificate", io::certificate(run)},
-       {"components", components_json(io::run_kind(run.levels))},
-       {"case", case_json(run)},
-       {"newton", newton_json(run)},
-       {"tables", tables_json(run, levels_.empty() ? std::string{} : read_text(directory / "contact.csv"))},
-       {"machine", machine_json()},
-       {"files", files_json(directory, run_files(run))},
-       {"volume", volume_},
-       {"fields", std::move(fields)}});
+  template_.write(directory / "report.html", "run-data",
+                  {{"certificate", io::certificate(run)},
+                   {"components", components_json(io::run_kind(run.levels))},
+                   {"case", case_json(run)},
+                   {"newton", newton_json(run)},
+                   {"tables", tables_json(run, levels_.empty() ? std::string{}
+                                                               : io::read_text(directory / "contact.csv"))},
+                   {"machine", machine_json()},
+                   {"files", files_json(directory, run_files(run))},
+                   {"volume", levels_.empty() ? io::Json(nullptr) : levels_.back().volume},
+                   {"fields", std::move(fields)}});
 }
 
-template io::Json page_volume(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
-template io::Json page_volume(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
-template PageLevel page_level(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&,
-                              const PageLimits&);
-template PageLevel page_level(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&,
-                              const PageLimits&);
 template void ReportPage::add(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);
 template void ReportPage::add(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&);
 template void ReportPage::add_last(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&);

@@ -1,40 +1,23 @@
 #pragma once
 
 /// @file report_page.h
-/// report.html of a run: its data, put into the template of app/page/page_template.h.
+/// report.html of a run or a study: their data, put into the template of app/page/page_template.h.
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
-#include "app/page/page_surface.h"
 #include "app/page/page_template.h"
 #include "tribound/adapt/level.h"
-#include "tribound/io/file/json.h"
 #include "tribound/io/record/report.h"
 
 namespace tribound::app
 {
 
-/// The fields of a level.
-struct PageLevel
-{
-  int number = 0;
-  std::size_t n_triangles = 0;
-  io::Json json;
-};
-
-template <int dim>
-[[nodiscard]] PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
-                                   const adapt::CertifiedLevel<dim>& level, const PageLimits& limits = {});
-
-/// The inside of a body in 3D; null in 2D, and beyond max_volume_cells.
-template <int dim>
-[[nodiscard]] io::Json page_volume(const contact::NitscheForm<dim>& form,
-                                   const adapt::CertifiedLevel<dim>& level);
+struct Study;      // of app/result/study.h
+struct PageLevel;  // of app/page/page_level.h
 
 /// The comment in the template, and in a page without them, which add_true_errors() replaces.
 inline constexpr std::string_view true_errors_marker = "<!-- true errors -->";
@@ -57,6 +40,9 @@ class ReportPage
  public:
   /// `page_template`: what report/ builds; where there is none nothing is collected or written.
   explicit ReportPage(const std::filesystem::path& page_template);
+  ~ReportPage();
+  ReportPage(ReportPage&&) noexcept;
+  ReportPage& operator=(ReportPage&&) noexcept;
 
   /// A level that is not the last, in less detail than that; left out where it and those before it are more
   /// than PageLimits::earlier.
@@ -73,7 +59,12 @@ class ReportPage
  private:
   PageTemplate template_;
   std::vector<PageLevel> levels_;
-  io::Json volume_;  ///< of the last level
 };
+
+/// Writes report.html of a study into the directory, with links to the tables, the figures and the pages of
+/// the variants that are there. Does nothing without a template. Throws WriteError when the file cannot be
+/// written.
+void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
+                      const Study& study);
 
 }  // namespace tribound::app

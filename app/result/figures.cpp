@@ -1,4 +1,4 @@
-#include "app/result/figures.h"
+#include "app/result/study.h"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -18,12 +18,6 @@ extern char** environ;
 
 namespace tribound::app
 {
-
-std::optional<std::filesystem::path> find_figure_script()
-{
-  const std::filesystem::path script = find_shared_file("study_figures");
-  return ::access(script.c_str(), X_OK) == 0 ? std::optional(script) : std::nullopt;
-}
 
 std::string run_figure_script(const std::filesystem::path& script, const std::filesystem::path& directory)
 {
@@ -45,12 +39,12 @@ std::string run_figure_script(const std::filesystem::path& script, const std::fi
 void draw_figures(const std::filesystem::path& directory)
 {
   std::fflush(stdout);
-  const auto script = find_figure_script();
-  const std::string problem = script ? run_figure_script(*script, directory)
-                                     : std::string("the script study_figures is not installed");
-  print(line("figures", problem.empty()
-                            ? (directory / "figures").string()
-                            : fmt::format("not drawn: {}{}", script ? script->string() + " " : "", problem)));
+  const std::filesystem::path script = find_shared_file("study_figures");
+  const std::string problem =
+      script.empty() ? "the script study_figures is not installed" : run_figure_script(script, directory);
+  print(line("figures", problem.empty() ? (directory / "figures").string()
+                                        : fmt::format("not drawn: {}{}",
+                                                      script.empty() ? "" : script.string() + " ", problem)));
 }
 
 }  // namespace tribound::app

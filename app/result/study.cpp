@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "tribound/adapt/rate.h"
-#include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/record_json.h"
@@ -227,34 +226,25 @@ std::vector<std::optional<double>> error_differences(const StudyVariant& with, c
 namespace
 {
 
-std::string interval_violation(const Study& study)
+/// What is wrong on a level, as the end of a sentence; `of_reference`: the bound of the error of the
+/// reference.
+std::string violation(const StudiedLevel& level, const std::optional<double>& of_reference)
 {
-  for (const StudyVariant& variant : study.variants)
-    for (const StudiedLevel& level : variant.levels)
-      if (level.intervals_agree == false)
-        return fmt::format(
-            "the guarantee is violated: in the variant {} on level {} the interval of a quantity has no "
-            "point "
-            "in common with that of the reference",
-            variant.name, level.record.level);
-  return {};
-}
-
-/// The triangle inequality: the reference is not the solution either.
-std::string energy_violation(const Study& study)
-{
-  const auto of_reference = study.reference ? io::energy_bound(study.reference->level) : std::nullopt;
-  if (!of_reference) return {};
-  for (const StudyVariant& variant : study.variants)
-    for (const StudiedLevel& level : variant.levels)
-      if (level.energy_effectivity() &&
-          *energy_error(level) > *io::energy_bound(level.record) + *of_reference)
-        return fmt::format(
-            "the guarantee is violated: in the variant {} on level {} the bound {:.9g} of the error in the "
-            "energy norm and that of the reference, {:.3g}, are together below the distance {:.9g} between "
-            "both",
-            variant.name, level.record.level, *io::energy_bound(level.record), *of_reference,
-            *energy_error(level));
+  if (const auto e = level.effectivity(); e && *e < 1)
+    return fmt::format(
+        "the bound {:.9g} is below the dual norm of the residual, which is at least {:.9g} (effectivity "
+        "{:.6f})",
+        *bound_of(level), *level.dual_norm, *e);
+  const auto bound = io::energy_bound(level.record);
+  // The triangle inequality: the reference is not the solution either.
+  if (of_reference && level.energy_effectivity() && *energy_error(level) > *bound + *of_reference)
+    return fmt::format(
+        "the bound {:.9g} of the error in the energy norm and that of the reference, {:.3g}, are together "
+        "below "
+        "the distance {:.9g} between both",
+        *bound, *of_reference, *energy_error(level));
+  if (level.intervals_agree == false)
+    return "the interval of a quantity has no point in common with that of the reference";
   return {};
 }
 
@@ -262,16 +252,13 @@ std::string energy_violation(const Study& study)
 
 std::string violation(const Study& study)
 {
+  const auto of_reference = study.reference ? io::energy_bound(study.reference->level) : std::nullopt;
   for (const StudyVariant& variant : study.variants)
     for (const StudiedLevel& level : variant.levels)
-      if (const auto e = level.effectivity(); e && *e < 1)
-        return fmt::format(
-            "the guarantee is violated: in the variant {} on level {} the bound {:.9g} is below the dual "
-            "norm "
-            "of the residual, which is at least {:.9g} (effectivity {:.6f})",
-            variant.name, level.record.level, *bound_of(level), *level.dual_norm, *e);
-  std::string problem = energy_violation(study);
-  return problem.empty() ? interval_violation(study) : problem;
+      if (const std::string wrong = violation(level, of_reference); !wrong.empty())
+        return fmt::format("the guarantee is violated: in the variant {} on level {} {}", variant.name,
+                           level.record.level, wrong);
+  return {};
 }
 
 std::string study_csv(const Study& study)
@@ -317,12 +304,6 @@ io::Json study_object(const Study& study)
 std::string study_json(const Study& study)
 {
   return io::json_text(study_object(study));
-}
-
-void write_study(const std::filesystem::path& directory, const Study& study)
-{
-  io::write_file(directory / "study.csv", study_csv(study));
-  io::write_file(directory / "study.json", study_json(study));
 }
 
 }  // namespace tribound::app

@@ -107,15 +107,15 @@ struct Rates
 [[nodiscard]] io::Json study_object(const Study& study);
 [[nodiscard]] std::string study_json(const Study& study);
 
-/// Writes study.csv and study.json. Throws WriteError when they cannot be written.
-void write_study(const std::filesystem::path& directory, const Study& study);
-
 /// The tables of the variants, of Newton's steps, the rates and where the files are.
 [[nodiscard]] std::string study_text(const Study& study, const std::string& directory);
 
-/// The text on stdout.
-void print_study(const Study& study, const std::string& directory);
-/// A line on stdout about what comes next.
-void print_stage(const std::string& name, const std::string& text);
+/// Runs `script` with the directory of a study as its argument and waits for it. Returns what went wrong;
+/// empty when it succeeded.
+[[nodiscard]] std::string run_figure_script(const std::filesystem::path& script,
+                                            const std::filesystem::path& directory);
+
+/// Draws the figures of the study in `directory` and says on stdout where they are or why there are none.
+void draw_figures(const std::filesystem::path& directory);
 
 }  // namespace tribound::app

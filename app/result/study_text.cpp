@@ -12,12 +12,6 @@ namespace tribound::app
 namespace
 {
 
-/// The number in the given format, or a dash.
-std::string number(const char* format, const std::optional<double>& value)
-{
-  return value ? fmt::format(fmt::runtime(format), *value) : "-";
-}
-
 std::string level_line(const StudyVariant& variant, std::size_t i)
 {
   const StudiedLevel& level = variant.levels[i];
@@ -161,16 +155,6 @@ std::string study_text(const Study& study, const std::string& directory)
   text += reference_text(study) + guarantee_text(study);
   if (!study.interruption.empty()) text += line("interrupted", study.interruption);
   return text + line("results", directory);
-}
-
-void print_study(const Study& study, const std::string& directory)
-{
-  print(study_text(study, directory));
-}
-
-void print_stage(const std::string& name, const std::string& text)
-{
-  print(line(name, text));
 }
 
 }  // namespace tribound::app

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "app/console/text.h"
@@ -24,44 +22,41 @@ using Figures = std::vector<std::pair<std::string, std::optional<double>>>;
 
 constexpr const char* sweep_schema = "1";
 
-/// Null where the file is missing or not whole.
+/// No object where the file is missing or not whole.
 io::Json read_json(const std::filesystem::path& file)
 {
-  std::ifstream stream(file, std::ios::binary);
-  return stream ? io::Json::parse(stream, nullptr, false) : io::Json(nullptr);
+  return io::Json::parse(io::read_text(file), nullptr, false);
 }
 
-std::optional<double> number(const io::Json& object, const char* key)
+/// The value there, such as "/contact/normal", if it is of this kind.
+std::optional<double> number_at(const io::Json& json, const std::string& path)
 {
-  const auto value = object.is_object() ? object.find(key) : object.end();
-  if (!object.is_object() || value == object.end() || !value->is_number()) return std::nullopt;
-  return value->get<double>();
+  const io::Json::json_pointer place(path);
+  const bool is_there = json.contains(place) && json.at(place).is_number();
+  return is_there ? std::optional(json.at(place).get<double>()) : std::nullopt;
 }
-
-std::string text(const io::Json& object, const char* key)
+std::string text_at(const io::Json& json, const std::string& path)
 {
-  const auto value = object.find(key);
-  return value != object.end() && value->is_string() ? value->get<std::string>() : std::string{};
+  const io::Json::json_pointer place(path);
+  return json.contains(place) && json.at(place).is_string() ? json.at(place).get<std::string>() : "";
 }
 
 void add_contact(const io::Json& certificate, Figures& figures)
 {
-  const io::Json contact = certificate.value("contact", io::Json(nullptr));
-  if (!contact.is_object()) return;
-  figures.emplace_back("contact_normal", number(contact, "normal"));
-  figures.emplace_back("contact_tangential", number(contact, "tangential"));
+  if (!number_at(certificate, "/contact/normal")) return;
+  const io::Json& contact = certificate["contact"];
+  figures.emplace_back("contact_normal", number_at(contact, "/normal"));
+  figures.emplace_back("contact_tangential", number_at(contact, "/tangential"));
   if (!contact.contains("boundaries")) return;
   for (const auto& [name, part] : contact["boundaries"].items())
-    if (const io::Json sliding = part.value("sliding", io::Json(nullptr)); sliding.is_object())
-      figures.emplace_back("sliding_factor." + name, number(sliding, "sliding_factor"));
+    if (const auto factor = number_at(part, "/sliding/sliding_factor"))
+      figures.emplace_back("sliding_factor." + name, factor);
 }
 
 /// The largest pressure, and the measure of what is open: sums over contact.csv.
 void add_contact_line(const std::filesystem::path& file, Figures& figures)
 {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  const std::vector<std::vector<std::string>> rows = case_file::parse_csv(content, file.string());
+  const auto rows = case_file::parse_csv(io::read_text(file), file.string());
   if (rows.empty()) return;
   const auto column = [&](const char* name) { return std::ranges::find(rows[0], name) - rows[0].begin(); };
   const std::array places = {column("pressure"), column("status"), column("weight")};
@@ -79,13 +74,12 @@ void add_contact_line(const std::filesystem::path& file, Figures& figures)
 
 void add_reactions(const io::Json& certificate, Figures& figures)
 {
-  const io::Json balance = certificate.value("balance", io::Json(nullptr));
-  if (!balance.is_object()) return;
   constexpr std::array axes = {"x", "y", "z"};
-  for (const io::Json& row : balance["rows"])
-    if (text(row, "kind") == "reaction")
+  if (!certificate.contains(io::Json::json_pointer("/balance/rows"))) return;
+  for (const io::Json& row : certificate["balance"]["rows"])
+    if (text_at(row, "/kind") == "reaction")
       for (std::size_t i = 0; i < row["force"].size(); ++i)
-        figures.emplace_back(fmt::format("reaction_{}.{}", axes[i], text(row, "name")),
+        figures.emplace_back(fmt::format("reaction_{}.{}", axes[i], text_at(row, "/name")),
                              row["force"][i].get<double>());
 }
 
@@ -93,18 +87,14 @@ void add_reactions(const io::Json& certificate, Figures& figures)
 io::Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
 {
   io::Json certificate = read_json(directory / "certificate.json");
-  const io::Json effective =
-      certificate.is_object() ? certificate.value("case", io::Json(nullptr)) : io::Json(nullptr);
-  const bool its_own = effective.is_object() && text(effective, "sha256") == run.sha256;
-  return its_own ? certificate : io::Json(nullptr);
+  return text_at(certificate, "/case/sha256") == run.sha256 ? certificate : io::Json(nullptr);
 }
 
 /// Whether a run that ended with this exit code has left the certificate at its end. After a crash or on a
 /// full disk it is that of an earlier level.
 bool is_final(const io::Json& certificate, int exit_code)
 {
-  if (!certificate.is_object()) return false;
-  const std::string status = text(certificate, "status");
+  const std::string status = text_at(certificate, "/status");
   if (exit_code == 2) return status == "failed" || status == "not certified";
   return (exit_code == 0 && status == "certified") || (exit_code == 3 && status == "budget");
 }
@@ -145,11 +135,11 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
     if (run.status == "crashed") run.reason = fmt::format("ended by signal {}", *run.exit_code - 128);
     return;
   }
-  run.status = text(certificate, "status");
-  run.reason = text(certificate, "reason");
+  run.status = text_at(certificate, "/status");
+  run.reason = text_at(certificate, "/reason");
   for (const char* name : {"relative", "bound", "cells", "dofs"})
-    run.figures.emplace_back(name, number(certificate, name));
-  if (number(certificate, "bound"))
+    run.figures.emplace_back(name, number_at(certificate, std::string("/") + name));
+  if (number_at(certificate, "/bound"))
   {
     add_contact(certificate, run.figures);
     add_contact_line(directory / "contact.csv", run.figures);
@@ -168,15 +158,15 @@ std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
   if (!before.is_object()) return complete;
   for (const io::Json& old : before.value("runs", io::Json::array()))
   {
-    const std::string name = text(old, "run");
+    const std::string name = text_at(old, "/run");
     const auto run = std::ranges::find(sweep.runs, name, &SweepRun::name);
-    const std::optional<double> code = number(old, "exit_code");
-    if (run == sweep.runs.end() || !code || text(old, "sha256") != run->sha256 ||
-        text(old, "mesh_sha256") != run->mesh_sha256)
+    const std::optional<double> code = number_at(old, "/exit_code");
+    if (run == sweep.runs.end() || !code || text_at(old, "/sha256") != run->sha256 ||
+        text_at(old, "/mesh_sha256") != run->mesh_sha256)
       continue;
     const io::Json certificate = certificate_of(directory / name, *run);
     const bool complete_before = is_final(certificate, static_cast<int>(*code)) &&
-                                 text(certificate, "reason").find("interrupted") == std::string::npos;
+                                 text_at(certificate, "/reason").find("interrupted") == std::string::npos;
     if (complete_before) complete[name] = static_cast<int>(*code);
   }
   return complete;

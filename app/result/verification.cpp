@@ -18,11 +18,6 @@ namespace
 
 constexpr const char* verification_schema = "1";
 
-std::string number_or_dash(const std::optional<double>& value)
-{
-  return value ? fmt::format("{:.4f}", *value) : "-";
-}
-
 /// Whether it is the first of a load step.
 bool begins_load_step(const std::vector<VerifiedIterate>& iterates, std::size_t i)
 {
@@ -33,7 +28,7 @@ std::string iterate_line(const VerifiedIterate& iterate)
 {
   return fmt::format("{:>4}  {:>9.3e}  {:>12.6g}  {:>12.6g}  {:>12.6g}  {:>11}  {:>10.1e}\n",
                      iterate.step.step, iterate.step.residual, iterate.bound_plain, iterate.bound,
-                     iterate.dual_norm, number_or_dash(iterate.effectivity()), iterate.identities);
+                     iterate.dual_norm, number("{:.4f}", iterate.effectivity()), iterate.identities);
 }
 
 /// The distance from the richer solution, and the bound.
@@ -107,20 +102,16 @@ io::Json richer_json(const Verification& v)
 {
   if (!v.richer) return nullptr;
   const certify::RicherSolution& richer = *v.richer;
-  io::Json object{{"degree", v.richer_degree},
-                  {"cells", richer.cells},
-                  {"dofs", richer.dofs},
-                  {"newton_steps", richer.newton_steps},
-                  {"energy_error", nullptr},
-                  {"stress_error", nullptr},
-                  {"failure", richer.failure},
-                  {"energy_bound", nullptr},
-                  {"energy_effectivity", io::number_or_null(v.energy_effectivity())}};
-  if (v.energy && v.energy->reason.empty()) object["energy_bound"] = v.energy->bound;
-  if (!richer.error) return object;
-  object["energy_error"] = richer.error->energy;
-  object["stress_error"] = richer.error->stress;
-  return object;
+  const bool is_bounded = v.energy && v.energy->reason.empty();
+  return {{"degree", v.richer_degree},
+          {"cells", richer.cells},
+          {"dofs", richer.dofs},
+          {"newton_steps", richer.newton_steps},
+          {"energy_error", richer.error ? io::Json(richer.error->energy) : io::Json(nullptr)},
+          {"stress_error", richer.error ? io::Json(richer.error->stress) : io::Json(nullptr)},
+          {"failure", richer.failure},
+          {"energy_bound", is_bounded ? io::Json(v.energy->bound) : io::Json(nullptr)},
+          {"energy_effectivity", io::number_or_null(v.energy_effectivity())}};
 }
 
 }  // namespace
@@ -245,17 +236,7 @@ std::string verification_json(const Verification& v)
     object["quantities"] = quantities_json(quantities);
   for (const VerifiedIterate& iterate : v.iterates) object["iterates"].push_back(json(v, iterate));
   for (const auto& [stage, seconds] : v.times) object["times"][stage] = seconds;
-  return object.dump(2) + "\n";
-}
-
-void write_verification(const std::filesystem::path& directory, const Verification& verification)
-{
-  io::write_file(directory / "verify.json", verification_json(verification));
-}
-
-void print_verification(const Verification& verification, const std::string& directory)
-{
-  print(verification_text(verification, directory));
+  return io::json_text(object);
 }
 
 }  // namespace tribound::app

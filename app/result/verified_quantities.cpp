@@ -1,4 +1,4 @@
-#include "app/result/verified_quantities.h"
+#include "app/result/verification.h"
 
 #include <fmt/format.h>
 

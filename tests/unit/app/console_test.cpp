@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/console/balance_text.h"
-
 namespace tribound
 {
 namespace
@@ -230,11 +228,11 @@ TEST(Console, InfoLeavesOutWhatIsUnknown)
   io::BuildFacts build = io::build_facts();
   build.blas = "OpenBLAS 0.3.21";
   build.blas_threads = 1;
-  EXPECT_THAT(app::info_text(build), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
+  build.petsc.clear();
+  EXPECT_THAT(app::info_text(build, ""), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
                                            HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
                                            HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
-  build.report_page = "/usr/share/tribound/report.html";
-  EXPECT_THAT(app::info_text(build), HasSubstr("report page   /usr/share/tribound/report.html\n"));
+  EXPECT_THAT(app::info_text(build, "/usr/share/tribound/report.html"), HasSubstr("report page   /usr/share/tribound/report.html\n"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 /// The script that draws figures is run with its argument as it stands, and its failure is told.
 
-#include "app/result/figures.h"
+#include "app/result/study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

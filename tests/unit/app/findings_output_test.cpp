@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/console/console.h"
-#include "app/result/check_json.h"
 
 namespace tribound
 {

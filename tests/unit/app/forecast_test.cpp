@@ -1,4 +1,4 @@
-#include "app/console/forecast.h"
+#include "app/console/console.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -34,7 +34,7 @@ class OutputDirectoryTest : public ::testing::Test
 
   static std::string message(const fs::path& path)
   {
-    return test::message_of([&] { const app::OutputDirectory opened(path); });
+    return test::message_of([&] { const io::OutputDirectory opened(path); });
   }
 
   const fs::path directory;
@@ -66,7 +66,7 @@ TEST_F(OutputDirectoryTest, ThatCannotBe)
 TEST_F(OutputDirectoryTest, BelongsToOne)
 {
   {
-    const app::OutputDirectory mine(directory);
+    const io::OutputDirectory mine(directory);
     EXPECT_THAT(message(directory), HasSubstr("another run is writing to it: process "));
   }
   EXPECT_EQ(message(directory), "");
@@ -76,7 +76,7 @@ TEST_F(OutputDirectoryTest, RemovesWhatKilledProgramsLeft)
 {
   for (const char* name : {".a.csv.123.part", ".part", "a.123.part", ".a.part", ".a.12x.part"})
     io::write_file(directory / name, "");
-  const app::OutputDirectory mine(directory);
+  const io::OutputDirectory mine(directory);
   EXPECT_FALSE(fs::exists(directory / ".a.csv.123.part"));
   for (const char* name : {".part", "a.123.part", ".a.part", ".a.12x.part"})
     EXPECT_TRUE(fs::exists(directory / name)) << name;
@@ -84,14 +84,14 @@ TEST_F(OutputDirectoryTest, RemovesWhatKilledProgramsLeft)
 
 TEST_F(OutputDirectoryTest, TryingLeavesNothing)
 {
-  app::try_output_directory(directory / "a" / "b");
+  io::try_output_directory(directory / "a" / "b");
   EXPECT_TRUE(fs::is_empty(directory));
 }
 
 TEST_F(OutputDirectoryTest, RemovesResultsByName)
 {
   for (const char* name : {"a.json", "b.csv", "mine.csv"}) io::write_file(directory / name, "");
-  app::remove_results(directory, {"a.json", "b.csv", "c.html"});
+  io::remove_results(directory, {"a.json", "b.csv", "c.html"});
   EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 1);
   EXPECT_TRUE(fs::exists(directory / "mine.csv"));
 }

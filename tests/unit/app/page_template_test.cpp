@@ -1,4 +1,5 @@
 #include "app/page/page_template.h"
+#include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ TEST_F(PageTemplateFile, TakesTheDataInThePlaceOfTheMarker)
   const app::PageTemplate page(file);
   EXPECT_FALSE(page.empty());
   page.write(directory_ / "page.html", "the-id", io::Json::array({"<", 2}));
-  EXPECT_EQ(app::read_text(directory_ / "page.html"),
+  EXPECT_EQ(io::read_text(directory_ / "page.html"),
             R"(<p><script type="application/json" id="the-id">["\u003c",2]</script></p>)");
 }
 

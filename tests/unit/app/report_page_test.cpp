@@ -1,4 +1,5 @@
 #include "app/page/report_page.h"
+#include "app/page/page_level.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

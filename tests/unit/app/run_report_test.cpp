@@ -16,7 +16,6 @@
 #include <variant>
 #include <vector>
 
-#include "app/page/page_template.h"
 #include "tribound/case/resolve.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/gmsh.h"
@@ -84,7 +83,7 @@ std::map<std::string, std::string> contents(const fs::path& directory)
   std::map<std::string, std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory))
   {
-    std::string text = app::read_text(entry.path());
+    std::string text = io::read_text(entry.path());
     const std::string name = entry.path().filename().string();
     if (name == "certificate.json") text = without_times(nlohmann::json::parse(text)).dump();
     if (name == "report.html") text = page_data(text).dump();

@@ -1,4 +1,4 @@
-#include "app/page/study_page.h"
+#include "app/page/report_page.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/page/page_template.h"
+#include "app/result/study.h"
+#include "tribound/io/file/atomic_file.h"
 
 namespace tribound
 {
@@ -29,7 +31,7 @@ class StudyPageFile : public ::testing::Test
   /// The data in the page.
   json data() const
   {
-    const std::string page = app::read_text(directory_ / "report.html");
+    const std::string page = io::read_text(directory_ / "report.html");
     const std::string begin = R"(<!doctype html><script type="application/json" id="study-data">)";
     const std::string end = "</script>";
     EXPECT_TRUE(page.starts_with(begin) && page.ends_with(end));

@@ -8,9 +8,12 @@
 #include <cstddef>
 #include <limits>
 
+#include "tribound/algebra/petsc.h"
+#include "tribound/base/parallel.h"
 #include "tribound/base/version.h"
 #include "tribound/doctor/load_facts.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/gmsh.h"
 
 namespace tribound::io
 {
@@ -154,6 +157,15 @@ BuildFacts build_facts()
   facts.version = version();
   facts.compiler = compiler();
   facts.eigen = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+  const algebra::AlgebraVersions algebra = algebra::algebra_versions();
+  facts.petsc = algebra.petsc;
+  facts.mumps = algebra.mumps;
+  facts.mpi = algebra.mpi;
+  facts.threads = max_threads();
+  facts.blas = algebra.blas.library;
+  facts.blas_threads = algebra.blas.threads;
+  facts.gmsh = mesh::gmsh_version();
+  facts.features = {"2D", "3D", "degrees 1-4", "friction: none, Tresca, Coulomb"};
   return facts;
 }
 

@@ -71,7 +71,6 @@ struct BuildFacts
   std::string mpi;
   std::string eigen;
   std::vector<std::string> features;
-  std::string report_page;  ///< path of its template; empty where there is none
 };
 
 /// The mesh of `space` with what `problem` says about its parts.
@@ -79,7 +78,7 @@ template <int dim>
 [[nodiscard]] MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                    const fem::Constraints& constraints);
 
-/// Version, compiler and Eigen; the libraries that io does not know are left to the caller.
+/// Of the program and of the libraries it runs with.
 [[nodiscard]] BuildFacts build_facts();
 
 /// "E = ..., nu = ...", with the plane model in 2D.

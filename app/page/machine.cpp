@@ -1,5 +1,3 @@
-#include "app/machine.h"
-
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -7,8 +5,11 @@
 #include <array>
 #include <ctime>
 #include <fstream>
+#include <string>
 
+#include "app/page/page_template.h"
 #include "tribound/base/memory.h"
+#include "tribound/io/file/json.h"
 
 namespace tribound::app
 {
@@ -28,26 +29,7 @@ std::string processor_name()
   return {};
 }
 
-MachineFacts find_out()
-{
-  MachineFacts facts;
-  facts.processor = processor_name();
-  facts.n_processors = static_cast<int>(std::max(0L, sysconf(_SC_NPROCESSORS_ONLN)));
-  facts.memory = physical_memory();
-  utsname system{};
-  if (uname(&system) == 0)
-    facts.system = std::string(system.sysname) + " " + system.release + ", " + system.machine;
-  return facts;
-}
-
-}  // namespace
-
-MachineFacts machine_facts()
-{
-  static const MachineFacts facts = find_out();
-  return facts;
-}
-
+/// Now, as in "2024-05-17 09:30 UTC".
 std::string date_and_time()
 {
   const std::time_t now = std::time(nullptr);
@@ -55,6 +37,20 @@ std::string date_and_time()
   gmtime_r(&now, &utc);
   std::array<char, 32> text{};
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc)};
+}
+
+}  // namespace
+
+io::Json machine_json()
+{
+  utsname system{};
+  const bool is_known = uname(&system) == 0;
+  return {
+      {"processor", processor_name()},
+      {"processors", std::max(0L, sysconf(_SC_NPROCESSORS_ONLN))},
+      {"memory", physical_memory()},
+      {"system", is_known ? std::string(system.sysname) + " " + system.release + ", " + system.machine : ""},
+      {"written", date_and_time()}};
 }
 
 }  // namespace tribound::app

@@ -1,7 +1,6 @@
-#include "app/result/check_json.h"
-
 #include <algorithm>
 
+#include "app/console/console.h"
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/record_json.h"
 
