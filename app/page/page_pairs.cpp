@@ -1,11 +1,11 @@
 #include "app/page/page_pairs.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 #include <map>
 #include <utility>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/mesh/bodies.h"
 
 namespace tribound::app
@@ -174,7 +174,7 @@ std::vector<BodyInterface<dim>> body_interfaces(const contact::NitscheForm<dim>&
   {
     auto& [interface, squares] = sums;
     interface.normal /= interface.measure;
-    interface.axis = Eigen::SelfAdjointEigenSolver<Tensor<dim>>(squares).eigenvectors().col(0);
+    interface.axis = symmetric_eigen(squares).vectors.col(0);
     interfaces.push_back(interface);
   }
   return interfaces;

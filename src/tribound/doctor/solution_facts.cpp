@@ -1,12 +1,12 @@
 #include "tribound/doctor/solution_facts.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <variant>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/contact/support/support.h"
 #include "tribound/doctor/contact_facts.h"
 
@@ -71,8 +71,7 @@ double deviation(std::span<const FacetOutcome<dim>> facets, int k, const std::ve
   Eigen::MatrixXd conditions(dim + 1, n);  // the weights reproduce 1 and x; in the least-squares sense on
   for (Eigen::Index i = 0; i < n; ++i)     // a curved boundary
     conditions.col(i) << 1, (facets[neighbours[i]].centre - facets[k].centre) / size;
-  const Eigen::VectorXd weights =
-      conditions.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Unit(dim + 1, 0));
+  const Eigen::VectorXd weights = least_norm_solution(conditions, Eigen::VectorXd::Unit(dim + 1, 0));
   double interpolated = 0;
   for (Eigen::Index i = 0; i < n; ++i) interpolated += weights[i] * facets[neighbours[i]].pressure;
   return facets[k].pressure - interpolated;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/fem/polynomials.h"
 
 namespace tribound::fem
@@ -85,7 +86,7 @@ std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree)
   }
   std::vector<double> result(static_cast<std::size_t>(n) * rule.size());
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-      result.data(), n, rule.size()) = basis.partialPivLu().solve(theta * moments);
+      result.data(), n, rule.size()) = solve_regular(basis, theta * moments);
   return result;
 }
 

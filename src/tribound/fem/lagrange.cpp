@@ -1,8 +1,8 @@
 #include "tribound/fem/lagrange.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 
@@ -45,7 +45,7 @@ LagrangeBasis<k>::LagrangeBasis(int degree) : degree_(degree), nodes_(lattice<k>
   Matrix vandermonde(n, n);  // value of orthonormal polynomial j at node i
   for (int i = 0; i < n; ++i)
     orthonormal_values<k>(degree, node_point(i), std::span(vandermonde.row(i).data(), n));
-  const Matrix coefficients = vandermonde.inverse().transpose();
+  const Matrix coefficients = inverse_of(vandermonde).transpose();
   coefficients_.assign(coefficients.data(), coefficients.data() + coefficients.size());
 }
 

@@ -1,11 +1,11 @@
 #include "tribound/fem/quadrature.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/fem/symmetric_rules.h"
 
 namespace tribound::fem
@@ -27,14 +27,13 @@ Quadrature<1> gauss_jacobi(int n, int alpha)
     if (i == 0) diagonal[i] = -alpha / (alpha + 2.0);
     if (i > 0) offdiagonal[i - 1] = 2.0 * i * (i + alpha) / (s * std::sqrt((s + 1) * (s - 1)));
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-  eigen.computeFromTridiagonal(diagonal, offdiagonal);
+  const SymmetricEigen eigen = tridiagonal_eigen(diagonal, offdiagonal);
 
   Quadrature<1> rule;
   for (int i = 0; i < n; ++i)
   {
-    rule.points.emplace_back(0.5 * (eigen.eigenvalues()[i] + 1));
-    rule.weights.push_back(std::pow(eigen.eigenvectors()(0, i), 2) / (alpha + 1));
+    rule.points.emplace_back(0.5 * (eigen.values[i] + 1));
+    rule.weights.push_back(std::pow(eigen.vectors(0, i), 2) / (alpha + 1));
   }
   return rule;
 }

@@ -1,6 +1,5 @@
 #include "tribound/certify/bound/algebraic.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/mesh/geometry.h"
@@ -132,7 +132,7 @@ RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& 
                    motions[j].translation.dot(g * position) +
                    (g * position_position).cwiseProduct(motions[j].gradient).sum();
   }
-  work = gram.llt().solve(work);
+  work = CholeskyFactors(gram).solve(work);
   RigidField<dim> rho{Point<dim>::Zero(), Tensor<dim>::Zero()};
   for (int i = 0; i < n; ++i)
   {

@@ -1,6 +1,5 @@
 #include "tribound/certify/bound/friedrichs.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "tribound/algebra/cholesky.h"
+#include "tribound/base/dense_factors.h"
 #include "tribound/certify/bound/constants.h"
 #include "tribound/certify/bound/friedrichs_flux.h"
 #include "tribound/certify/bound/friedrichs_pairs.h"
@@ -157,12 +157,9 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
     diagonal.push_back(dot(w, mv));
     for (std::size_t i = 0; i < n; ++i) w[i] -= diagonal.back() * v[i] + (k > 0 ? beta : 0) * previous[i];
 
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), k + 1),
-                                  Eigen::Map<Eigen::VectorXd>(off_diagonal.data(), k),
-                                  Eigen::EigenvaluesOnly);
     const double before = largest;
-    largest = solver.eigenvalues()[k];
+    largest = tridiagonal_eigenvalues(Eigen::Map<Eigen::VectorXd>(diagonal.data(), k + 1),
+                                      Eigen::Map<Eigen::VectorXd>(off_diagonal.data(), k))[k];
     if (k > 1 && largest - before <= accuracy * largest) break;
 
     std::swap(previous, v);

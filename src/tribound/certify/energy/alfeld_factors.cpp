@@ -1,11 +1,12 @@
 /// @file alfeld_factors.cpp
 /// The constraints on the reference cell, and what solves them.
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/certify/energy/alfeld_reference.h"
 #include "tribound/certify/equilibrate/cell_operator.h"
 #include "tribound/fem/quadrature.h"
@@ -197,18 +198,6 @@ Eigen::MatrixXd of_skew_functions(const RowConstraints<dim>& row_constraints,
   return result;
 }
 
-/// columns = Q columns, reflection by reflection.
-void apply_reflections(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Eigen::MatrixXd& columns)
-{
-  Eigen::VectorXd workspace(columns.cols());
-  for (Eigen::Index k = qr.hCoeffs().size() - 1; k >= 0; --k)
-  {
-    const Eigen::Index below = columns.rows() - k - 1;
-    columns.bottomRows(below + 1).applyHouseholderOnTheLeft(qr.matrixQR().col(k).tail(below), qr.hCoeffs()[k],
-                                                            workspace.data());
-  }
-}
-
 std::vector<double> column_by_column(const Eigen::MatrixXd& matrix)
 {
   return {matrix.data(), matrix.data() + matrix.size()};
@@ -227,19 +216,19 @@ AlfeldFactors alfeld_factors(int q)
   const RowConstraints<dim> row_constraints(pieces, q);
   const Eigen::MatrixXd restriction = restriction_to(pieces, q);
   const Eigen::MatrixXd constraints = symmetric_constraints(row_constraints);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(constraints.transpose());
+  const PivotedQr qr(constraints.transpose());
   const Eigen::Index rank = constraints.rows() - dim * (dim + 1) / 2;
   const Eigen::Index n = constraints.cols();
-  const Eigen::MatrixXd triangle = qr.matrixR().template triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd triangle = qr.upper();
 
-  Eigen::MatrixXd data = qr.colsPermutation().transpose() * of_skew_functions(row_constraints, restriction);
+  Eigen::MatrixXd data = qr.permuted(of_skew_functions(row_constraints, restriction));
   data.conservativeResize(rank, Eigen::NoChange);
-  triangle.topLeftCorner(rank, rank).transpose().template triangularView<Eigen::Lower>().solveInPlace(data);
+  data = solve_lower(triangle.topLeftCorner(rank, rank).transpose(), data);
   Eigen::MatrixXd columns =
       Eigen::MatrixXd::Zero(n, n - rank + data.cols());  // of the kernel, of the lifting
   columns.bottomLeftCorner(n - rank, n - rank).setIdentity();
   columns.topRightCorner(rank, data.cols()) = data;
-  apply_reflections(qr, columns);
+  columns = qr.times_q(columns);
 
   AlfeldFactors result;
   result.restriction = column_by_column(restriction.transpose());

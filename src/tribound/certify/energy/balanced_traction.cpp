@@ -1,11 +1,11 @@
 #include "tribound/certify/energy/balanced_traction.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/base/parallel.h"
 #include "tribound/certify/energy/traction_fit.h"
 
@@ -178,8 +178,8 @@ Vector BalanceConditions<dim>::step(const State& state) const
   const Matrix sums = tangents(state);
   const double shift =
       std::max(1e-14, share * state.rest.template lpNorm<1>() / std::max(state.size.sum(), 1e-300));
-  const Eigen::LLT<Matrix> factors(sums.leftCols(n()) + shift * sums.rightCols(n()));
-  if (factors.info() != Eigen::Success) return Vector::Zero(n());
+  const CholeskyFactors factors(sums.leftCols(n()) + shift * sums.rightCols(n()));
+  if (!factors.is_definite()) return Vector::Zero(n());
   return -factors.solve(state.rest);
 }
 

@@ -1,9 +1,11 @@
 #include "tribound/certify/energy/control_point.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <optional>
 #include <vector>
+
+#include "tribound/base/dense_factors.h"
 
 namespace tribound::certify
 {
@@ -67,8 +69,8 @@ double rounding(const Eigen::VectorXd& x, double size)
   return 4e-15 * std::max(size, x.cwiseAbs().maxCoeff());
 }
 
-/// The point nearest to `target` in the norm |U x| on the intersection of hyperplanes; absent if they do not
-/// meet.
+/// The point nearest to `target` in the norm |L^T x| on the intersection of hyperplanes; absent if they do
+/// not meet.
 std::optional<Eigen::VectorXd> nearest_on(const std::vector<Row>& planes, const Eigen::MatrixXd& root,
                                           const Eigen::VectorXd& target, double size)
 {
@@ -80,14 +82,11 @@ std::optional<Eigen::VectorXd> nearest_on(const std::vector<Row>& planes, const 
     a.row(i) = planes[i].a;
     b[i] = planes[i].b;
   }
-  const Eigen::MatrixXd scaled =
-      root.transpose().triangularView<Eigen::Lower>().solve(a.transpose()).transpose();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-  factors.setThreshold(1e-12);  // rows that depend on others do so up to rounding
-  factors.compute(scaled);
+  const Eigen::MatrixXd scaled = solve_lower(root, a.transpose()).transpose();
+  constexpr double threshold = 1e-12;  // rows that depend on others do so up to rounding
   Eigen::VectorXd x = target;
   for (int step = 0; step < 2; ++step)  // the second removes the rounding of the first, which may be long
-    x += root.triangularView<Eigen::Upper>().solve(factors.solve(b - a * x));
+    x += solve_lower_transposed(root, least_norm_solution(scaled, b - a * x, threshold));
   if ((a * x - b).cwiseAbs().maxCoeff() > rounding(x, size)) return {};
   return x;
 }
@@ -105,7 +104,7 @@ std::optional<Eigen::VectorXd> nearest_in(const std::vector<Row>& planes, const 
   {
     const auto x = nearest_on(chosen, root, target, size);
     if (!x) return;  // nor do they meet with others
-    const double distance = (root * (*x - target)).norm();
+    const double distance = (root.transpose() * (*x - target)).norm();
     if (best && distance >= least) return;  // others come no nearer
     if (std::ranges::all_of(halves,
                             [&](const Row& row) { return row.a.dot(*x) <= row.b + rounding(*x, size); }))
@@ -173,8 +172,8 @@ std::optional<Point<dim>> compromise(const FreeComponents<dim>& components,
   const double eps = matrix.trace() > 0 ? small * matrix.trace() : 1;
   matrix.diagonal().array() += eps;
   vector += eps * components.values();
-  const Eigen::LLT<Eigen::MatrixXd> factors(matrix);
-  const auto x = nearest_in({}, halves, factors.matrixU(), factors.solve(vector), size);
+  const CholeskyFactors factors(matrix);
+  const auto x = nearest_in({}, halves, factors.lower(), factors.solve(vector), size);
   if (!x) return {};
   return components.with(*x);
 }

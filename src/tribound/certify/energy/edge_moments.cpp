@@ -1,9 +1,9 @@
 #include "tribound/certify/energy/edge_moments.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstddef>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/certify/equilibrate/rigid.h"
 #include "tribound/mesh/geometry.h"
 
@@ -76,7 +76,7 @@ std::vector<Tensor<dim>> edge_moments(const mesh::Mesh<dim>& mesh, std::span<con
   {
     const auto [a, b] = topology.edges[e];
     const Tensor<dim> moment = forces[e] * (mesh.vertex(b) - mesh.vertex(a)).transpose();
-    from_first[e] = skew_tensor<dim>(grams[e].llt().solve(tested<dim>(moment)));
+    from_first[e] = skew_tensor<dim>(CholeskyFactors(grams[e]).solve(tested<dim>(moment)));
   }
   std::vector<Tensor<dim>> result(static_cast<std::size_t>(mesh.n_cells()) * (dim + 1), Tensor<dim>::Zero());
   for (Index c = 0; c < mesh.n_cells(); ++c)

@@ -1,10 +1,10 @@
 #include "tribound/certify/energy/free_motions.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -82,13 +82,13 @@ FreeMotions<dim>::FreeMotions(const problem::Problem<dim>& problem, const mesh::
   for (int b = 0; b < bodies_.n; ++b)
   {
     const Eigen::Map<const Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(b) * n * n]);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> eigen(gram);
-    const double largest = eigen.eigenvalues()[n - 1];
-    for (int i = 0; i < n && eigen.eigenvalues()[i] <= held * largest; ++i)
+    const SymmetricEigen eigen = symmetric_eigen(gram);
+    const double largest = eigen.values[n - 1];
+    for (int i = 0; i < n && eigen.values[i] <= held * largest; ++i)
     {
-      is_unclear_ = is_unclear_ || eigen.eigenvalues()[i] > rounding * largest;
+      is_unclear_ = is_unclear_ || eigen.values[i] > rounding * largest;
       modes_.push_back(modes[b]);
-      motions_.push_back(eigen.eigenvectors().col(i));
+      motions_.push_back(eigen.vectors.col(i));
     }
     begin_.push_back(static_cast<int>(motions_.size()));
   }

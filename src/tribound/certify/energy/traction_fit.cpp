@@ -1,6 +1,5 @@
 #include "tribound/certify/energy/traction_fit.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -90,7 +89,7 @@ TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form)
   const Eigen::Map<const Eigen::VectorXd> weights(rule.weights.data(), rule.size());
   weighted_ = at_points_.transpose() * weights.asDiagonal();
   gram_ = weighted_ * at_points_;
-  factors_.compute(gram_);
+  factors_ = CholeskyFactors(gram_);
 }
 
 template <int dim>
@@ -169,7 +168,7 @@ Eigen::MatrixXd TractionFit<dim>::tangent(const Columns& t, std::span<const Trac
       system.template block<dim, dim>(dim * j, dim * k) += gram_(k, j) / gram_(j, j) * d;
     rates.template middleRows<dim>(dim * j) = d * tests.template middleRows<dim>(dim * j) / gram_(j, j);
   }
-  return tests.transpose() * system.partialPivLu().solve(rates);
+  return tests.transpose() * solve_regular(system, rates);
 }
 
 template <int dim>

@@ -4,10 +4,10 @@
 /// The nearest polynomial on a facet of Gamma_C whose coefficients obey the law, and how it follows what it
 /// is fitted to. For the implementation of tractions alone.
 
-#include <Eigen/Cholesky>
 #include <span>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/lagrange.h"
@@ -74,7 +74,7 @@ class TractionFit
   Eigen::MatrixXd at_points_;
   Eigen::MatrixXd weighted_;  ///< moments from values at the points
   Eigen::MatrixXd gram_;
-  Eigen::LLT<Eigen::MatrixXd> factors_;
+  CholeskyFactors factors_;
 };
 
 }  // namespace tribound::certify

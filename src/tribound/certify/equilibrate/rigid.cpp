@@ -1,8 +1,8 @@
 #include "tribound/certify/equilibrate/rigid.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "tribound/base/dense_factors.h"
 
 namespace tribound::certify
 {
@@ -57,12 +57,11 @@ SortedSpins<dim>::SortedSpins(const Point<dim>& centre, double size, std::span<c
     }
   // In coordinates y with |z| = |y|. Singular values, not eigenvalues of the Gram matrix, which would square
   // the shares and lose those below 1e-8.
-  const Eigen::LLT<Gram> factor(all);
-  const Eigen::Matrix<double, Eigen::Dynamic, n> scaled =
-      factor.matrixL().solve(fixed.topRows(n_fixed).transpose()).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, n>> svd(scaled, Eigen::ComputeFullV);
-  for (int i = 0; i < svd.singularValues().size(); ++i) shares[n - 1 - i] = svd.singularValues()[i];
-  spins = factor.matrixU().solve(svd.matrixV()).rowwise().reverse();
+  const Eigen::MatrixXd lower = CholeskyFactors(all).lower();
+  const RightSingular svd =
+      right_singular(solve_lower(lower, fixed.topRows(n_fixed).transpose()).transpose());
+  for (int i = 0; i < svd.values.size(); ++i) shares[n - 1 - i] = svd.values[i];
+  spins = solve_lower_transposed(lower, svd.vectors).rowwise().reverse();
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "tribound/contact/support/cone.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <vector>
+
+#include "tribound/base/dense_factors.h"
 
 namespace tribound::contact
 {
@@ -39,7 +40,7 @@ void solve_on_active_set(const Eigen::MatrixXd& columns, const Eigen::VectorXd& 
   while (!active.columns.empty())
   {
     const Eigen::MatrixXd selected = columns(Eigen::all, active.columns);
-    const Eigen::VectorXd target = selected.colPivHouseholderQr().solve(b);
+    const Eigen::VectorXd target = PivotedQr(selected).solve(b);
     double alpha = 1;
     for (std::size_t i = 0; i < active.x.size(); ++i)
       if (target[static_cast<Eigen::Index>(i)] <= 0)

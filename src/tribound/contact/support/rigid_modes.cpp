@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
@@ -103,9 +103,9 @@ std::string RigidModes<dim>::describe(const Coefficients& motion) const
 MotionBasis null_space(const Eigen::MatrixXd& gram, double scale)
 {
   constexpr double threshold = 1e-14;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-  const auto n_null = (eigen.eigenvalues().array() <= threshold * scale).count();  // they ascend
-  return eigen.eigenvectors().leftCols(n_null);
+  const SymmetricEigen eigen = symmetric_eigen(gram);
+  const auto n_null = (eigen.values.array() <= threshold * scale).count();  // they ascend
+  return eigen.vectors.leftCols(n_null);
 }
 
 template <int dim>
