@@ -14,8 +14,21 @@ namespace tribound::fem
 namespace
 {
 
+/// Makes the rule on [0, 1] that of 1 - t, which it is up to rounding; points ascend.
+void make_symmetric(Quadrature<1>& rule)
+{
+  for (int i = 0, j = rule.size() - 1; i <= j; ++i, --j)
+  {
+    const double right = 0.5 * (1 + (rule.points[j][0] - rule.points[i][0]));  // from 1/2 on 1 - t is exact
+    rule.points[j][0] = right;
+    rule.points[i][0] = 1 - right;
+    rule.weights[i] = rule.weights[j] = 0.5 * (rule.weights[i] + rule.weights[j]);
+  }
+}
+
 /// The n-point Gauss rule on [0, 1] for the weight (1 - t)^alpha, from the eigenvalues of the Jacobi matrix
-/// (Golub and Welsch 1969).
+/// (Golub and Welsch 1969). For alpha = 0 it is symmetric, 1 - t for t, to the last digit: rounding leaves
+/// the eigenvalues symmetric only up to some units of it, which depend on how a compiler contracts products.
 Quadrature<1> gauss_jacobi(int n, int alpha)
 {
   Eigen::VectorXd diagonal(n);
@@ -35,6 +48,7 @@ Quadrature<1> gauss_jacobi(int n, int alpha)
     rule.points.emplace_back(0.5 * (eigen.values[i] + 1));
     rule.weights.push_back(std::pow(eigen.vectors(0, i), 2) / (alpha + 1));
   }
+  if (alpha == 0) make_symmetric(rule);
   return rule;
 }
 

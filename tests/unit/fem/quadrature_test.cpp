@@ -94,16 +94,14 @@ std::array<double, k + 1> lambda_of(const Point<k>& x)
   return lambda;
 }
 
-/// Points that differ by rounding only count as one. The weights of an orbit are one number, those of Gauss's
-/// rules come from eigenvectors.
+/// Points that differ by rounding only count as one, since 1 - x - y rounds; 1 - x does not from 1/2 on. The
+/// weights of an orbit are one number.
 template <int k>
 bool is_point_of(const fem::Quadrature<k>& rule, const Point<k>& x, double weight)
 {
-  constexpr double rounding = k == 1 ? 1e-13 : 0;
+  constexpr double rounding = k == 1 ? 0 : 1e-15;
   for (int q = 0; q < rule.size(); ++q)
-    if (std::abs(rule.weights[q] - weight) <= rounding * weight &&
-        (rule.points[q] - x).cwiseAbs().maxCoeff() < 1e-15)
-      return true;
+    if (rule.weights[q] == weight && (rule.points[q] - x).cwiseAbs().maxCoeff() <= rounding) return true;
   return false;
 }
 
