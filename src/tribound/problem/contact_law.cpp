@@ -8,63 +8,13 @@
 #include <concepts>
 #include <limits>
 
-#include "tribound/problem/projection.h"
+#include "tribound/problem/unilateral.h"
 
 namespace tribound::problem
 {
 
 namespace
 {
-
-/// A friction limit S_h and its derivative by P^n.
-struct Limit
-{
-  double value;
-  double by_normal = 0;
-};
-
-Limit limit(const Frictionless& /*law*/, double /*strength*/, double /*p_n*/, double /*delta*/)
-{
-  return {0};
-}
-
-Limit limit(const Tresca& /*law*/, double strength, double /*p_n*/, double /*delta*/)
-{
-  return {strength};
-}
-
-/// S_h = -mu_F [P^n]_{-,delta}.
-Limit limit(const Coulomb& law, double /*strength*/, double p_n, double delta)
-{
-  return {-law.coefficient * negative_part(p_n, delta),
-          -law.coefficient * negative_part_derivative(p_n, delta)};
-}
-
-/// T = [P^n]_- n + [P^t]_S.
-template <int dim>
-Response<dim> unilateral(const LawPoint<dim>& point, const Point<dim>& P, double S, double delta)
-{
-  const double p_n = P.dot(point.normal);
-  const Point<dim> p_t = P - p_n * point.normal;
-  ContactStatus status = p_t.norm() <= S ? ContactStatus::stick : ContactStatus::slip;
-  if (p_n > 0) status = ContactStatus::open;
-  return {negative_part(p_n, delta) * point.normal + ball_projection<dim>(p_t, S, delta), S, status};
-}
-
-/// DT = D[P^n]_- n n^T + D_x[P^t]_S (I - n n^T) + D_a[P^t]_S DS n^T.
-template <int dim>
-Tensor<dim> unilateral_tangent(const LawPoint<dim>& point, const Point<dim>& P, const Limit& S, double delta)
-{
-  const Point<dim>& n = point.normal;
-  const double p_n = P.dot(n);
-  const Point<dim> p_t = P - p_n * n;
-  const Tensor<dim> tangential = Tensor<dim>::Identity() - n * n.transpose();
-  Tensor<dim> derivative = negative_part_derivative(p_n, delta) * n * n.transpose() +
-                           ball_projection_derivative<dim>(p_t, S.value, delta) * tangential;
-  if (S.by_normal != 0)
-    derivative += S.by_normal * ball_projection_radius_derivative<dim>(p_t, S.value, delta) * n.transpose();
-  return derivative;
-}
 
 /// A field in words: its value where it is constant.
 std::string text(const Field& field)
@@ -112,13 +62,6 @@ Value of_bond(const ContactLaw& law, const Value& without, const Of& of)
           return without;
       },
       law);
-}
-
-/// P with the slip that friction without bond remembers.
-template <int dim>
-Point<dim> remembered(const LawPoint<dim>& point, const Point<dim>& P)
-{
-  return P + point.gamma * point.state.slip;
 }
 
 }  // namespace
@@ -199,8 +142,7 @@ Response<dim> respond_effectively(const ContactLaw& law, const LawPoint<dim>& po
         }
         else
         {
-          const Point<dim> p = remembered(point, P);
-          return unilateral<dim>(point, p, limit(l, point.strength, p.dot(point.normal), delta).value, delta);
+          return respond_unilaterally<dim>(l, point, P, delta);
         }
       },
       law);
@@ -219,9 +161,7 @@ Tensor<dim> tangent_effectively(const ContactLaw& law, const LawPoint<dim>& poin
           return problem::respond<dim>(l, point, P).derivative;
         else
         {
-          const Point<dim> p = remembered(point, P);
-          return unilateral_tangent<dim>(point, p, limit(l, point.strength, p.dot(point.normal), delta),
-                                         delta);
+          return unilateral_tangent<dim>(l, point, P, delta);
         }
       },
       law);
