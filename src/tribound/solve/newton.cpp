@@ -2,16 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <utility>
 
 #include "tribound/base/clock.h"
-#include "tribound/base/error.h"
-#include "tribound/solve/equilibrium.h"
-#include "tribound/solve/linearised.h"
+#include "tribound/solve/newton_iteration.h"
 
 namespace tribound::solve
 {
@@ -19,299 +14,33 @@ namespace tribound::solve
 namespace
 {
 
-/// y += a x
-void axpy(double a, std::span<const double> x, std::span<double> y)
-{
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += a * x[i];
-}
-
-/// What residuals are relative to: NewtonOptions::reference_force.
-double force_scale(double of_problem, double reference)
-{
-  return reference > 0 ? std::clamp(of_problem, reference, 10 * reference) : of_problem;
-}
-
-/// The state of the iteration on one mesh.
 template <int dim>
-class Newton
-{
- public:
-  Newton(const contact::NitscheForm<dim>& form, const NewtonOptions& newton, double linear_tolerance,
-         double delta, std::shared_ptr<Equilibrium<dim>> equilibrium)
-      : form_(form),
-        config_(newton),
-        delta_(delta),
-        linear_tolerance_(linear_tolerance),
-        equilibrium_(std::move(equilibrium)),
-        scale_(force_scale(equilibrium_->force_scale(), newton.reference_force))
-  {
-  }
-
-  NewtonResult<dim> run(std::span<const double> start, const NewtonObserver<dim>& observer);
-
- private:
-  void initialise(std::span<const double> start);
-  void set_residual(std::vector<double> r);
-  void regularise(double delta);
-  [[nodiscard]] double forcing_term() const;
-  [[nodiscard]] double tight_target(std::span<const double> rhs) const;
-  void balance_traction();
-  [[nodiscard]] std::vector<double>& displacement();
-  [[nodiscard]] bool in_balance() const { return residual_norm_ <= smallest_residual(); }
-  [[nodiscard]] double smallest_residual() const
-  {
-    return std::max(config_.tolerance * scale_, equilibrium_->round_off(x_));
-  }
-  [[nodiscard]] bool traction_settled() const;
-  [[nodiscard]] double relative_residual() const
-  {
-    return scale_ > 0 ? residual_norm_ / scale_ : residual_norm_;
-  }
-  [[nodiscard]] std::string describe_residual() const;
-  void step(contact::Linearisation kind);
-  [[nodiscard]] algebra::LinearSolve solve_tangent(std::span<const double> rhs, double target,
-                                                   std::span<double> delta,
-                                                   const algebra::ResidualTest& small_enough = {});
-  [[nodiscard]] double search(std::span<const double> direction, bool full_step);
-
-  const contact::NitscheForm<dim>& form_;
-  const NewtonOptions& config_;
-  double delta_;  ///< of T_delta
-  double linear_tolerance_;
-  std::shared_ptr<Equilibrium<dim>> equilibrium_;
-  double scale_;  ///< of the forces that balance
-
-  std::vector<double> x_;             ///< u^k as unknowns of the equilibrium
-  std::vector<double> internal_;      ///< their internal forces
-  std::vector<double> u_;             ///< what is linearised at: u^k on cells at the contact boundary
-  std::vector<double> residual_;      ///< <R(u^k), phi_i>
-  std::vector<Point<dim>> traction_;  ///< t^k
-  double residual_norm_ = 0;
-  double norm_before_ = 0;                           ///< of the residual of u^{k-1}
-  NewtonStep report_;                                ///< of step k
-  Linearised<dim> linearised_;                       ///< in step k
-  bool loose_ = false;                               ///< t^k is not in equilibrium with u^k
-  std::optional<std::vector<double>> displacement_;  ///< u^k everywhere, where it has been asked for
-};
-
-template <int dim>
-void Newton<dim>::initialise(std::span<const double> start)
-{
-  const fem::Constraints& constraints = form_.constraints();
-  u_.assign(form_.space().n_dofs(), 0.0);
-  std::ranges::copy(start, u_.begin());
-  for (std::size_t i = 0; i < u_.size(); ++i)
-    if (constraints.fixed[i]) u_[i] = constraints.values[i];
-  x_ = equilibrium_->unknowns(u_);
-  internal_ = equilibrium_->internal_forces(x_);
-  traction_ = form_.traction(u_, delta_);
-  set_residual(equilibrium_->residual(internal_, traction_));
-}
-
-template <int dim>
-void Newton<dim>::set_residual(std::vector<double> r)
-{
-  residual_ = std::move(r);
-  residual_norm_ = equilibrium_->norm(residual_);
-}
-
-/// From here on T_delta with this delta: the residual of u^k becomes another.
-template <int dim>
-void Newton<dim>::regularise(double delta)
-{
-  delta_ = delta;
-  set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
-}
-
-/// Relative residual to which the linear system of step k is solved: as loosely as Newton's method converges,
-/// [EisenstatWalker96, choice 2]. Multigrid alone gains by it.
-template <int dim>
-double Newton<dim>::forcing_term() const
-{
-  constexpr double largest = 0.1;
-  constexpr double smallest = 1e-4;
-  if (equilibrium_->method() != algebra::LinearMethod::iterative) return 0;
-  if (norm_before_ == 0) return largest;
-  return std::clamp(0.9 * std::pow(residual_norm_ / norm_before_, 2), smallest, largest);
-}
-
-/// Residual of a linear system that is as good as none.
-template <int dim>
-double Newton<dim>::tight_target(std::span<const double> rhs) const
-{
-  return std::max({std::min(linear_tolerance_, 0.1 * config_.tolerance) * scale_, equilibrium_->round_off(x_),
-                   1e-14 * equilibrium_->norm(rhs)});
-}
-
-/// Brings t^k into equilibrium with u^k where a loose solve has left it: corrects both by the tangent of step
-/// k, under which K u^k - (t^k, v)_C changes by the defect.
-template <int dim>
-void Newton<dim>::balance_traction()
-{
-  if (!loose_) return;
-  const std::vector<double> defect = equilibrium_->residual(internal_, traction_);
-  if (config_.small_enough && config_.small_enough(defect)) return;
-  displacement_.reset();
-  std::vector<double> delta(x_.size(), 0.0);
-  const double target = tight_target(defect);
-  report_.linear_iterations += solve_tangent(defect, target, delta, config_.small_enough).iterations;
-  const std::vector<Point<dim>> before = linearised_.traction(form_, u_);
-  axpy(1, delta, x_);
-  axpy(1, equilibrium_->internal_forces(delta), internal_);
-  equilibrium_->displace_contact(x_, u_);
-  const std::vector<Point<dim>> after = linearised_.traction(form_, u_);
-  for (std::size_t i = 0; i < after.size(); ++i) traction_[i] += after[i] - before[i];
-  set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
-  loose_ = config_.small_enough && equilibrium_->norm(equilibrium_->residual(internal_, traction_)) > target;
-}
-
-/// u^k everywhere, computed when it is first asked for, with t^k in equilibrium.
-template <int dim>
-std::vector<double>& Newton<dim>::displacement()
-{
-  balance_traction();
-  if (!displacement_) displacement_ = equilibrium_->displacement(x_);
-  return *displacement_;
-}
-
-/// Whether t^k = T(u^k) as far as it matters: forces at the contact points, with a margin for their number,
-/// so that where degrees of freedom feel them all the residual decides.
-template <int dim>
-bool Newton<dim>::traction_settled() const
-{
-  constexpr double margin = 100;
-  const std::vector<Point<dim>> t = form_.traction(u_, delta_);
-  double sum = 0;
-  for (std::size_t i = 0; i < form_.n_owned_contact_points(); ++i)
-    sum += (form_.contact_points()[i].weight * (t[i] - traction_[i])).squaredNorm();
-  return std::sqrt(form_.space().mesh().ranks().sum(sum)) <= margin * smallest_residual();
-}
-
-template <int dim>
-std::string Newton<dim>::describe_residual() const
-{
-  return fmt::format("the relative residual is {:.3g}, above newton.tolerance = {:g}", relative_residual(),
-                     config_.tolerance);
-}
-
-/// Moves u by alpha times the direction with the largest alpha = 1, 1/2, 1/4, ... that lowers the residual,
-/// or, when none does, with the best of them. Returns alpha.
-template <int dim>
-double Newton<dim>::search(std::span<const double> direction, bool full_step)
-{
-  constexpr int max_halvings = 10;
-  const std::vector<double> of_direction = equilibrium_->internal_forces(direction);
-  struct Trial
-  {
-    double alpha = 0;
-    double norm = 0;
-    std::vector<double> x, internal, residual;
-  } best;
-  const double good_enough = smallest_residual();
-  double alpha = 1;
-  for (int halvings = 0; halvings <= max_halvings; ++halvings, alpha /= 2)
-  {
-    Trial trial{alpha, 0, x_, internal_, {}};
-    axpy(alpha, direction, trial.x);
-    axpy(alpha, of_direction, trial.internal);
-    equilibrium_->displace_contact(trial.x, u_);
-    trial.residual = equilibrium_->residual(trial.internal, form_.traction(u_, delta_));
-    trial.norm = equilibrium_->norm(trial.residual);
-    if (halvings == 0 || trial.norm < best.norm) best = std::move(trial);
-    if (full_step || best.norm < std::max(residual_norm_, good_enough)) break;
-  }
-  x_ = std::move(best.x);
-  displacement_.reset();
-  equilibrium_->displace_contact(x_, u_);
-  internal_ = std::move(best.internal);
-  residual_ = std::move(best.residual);
-  residual_norm_ = best.norm;
-  return best.alpha;
-}
-
-/// Solves with the tangent of the step; says at which step it failed.
-template <int dim>
-algebra::LinearSolve Newton<dim>::solve_tangent(std::span<const double> rhs, double target,
-                                                std::span<double> delta,
-                                                const algebra::ResidualTest& small_enough)
-{
-  try
-  {
-    return equilibrium_->solve(linearised_.tangent(form_), rhs, target, delta, small_enough);
-  }
-  catch (const SolveError& error)
-  {
-    throw SolveError("Newton step " + std::to_string(report_.step) + ": " + error.what());
-  }
-}
-
-/// Solves a(u + delta, v) - (T_lin(u + delta), v)_C = L(v), moves along delta and updates t^k.
-template <int dim>
-void Newton<dim>::step(contact::Linearisation kind)
-{
-  const bool first = report_.step == 1;
-  linearised_ = {kind, u_, delta_};
-  std::vector<double> target_u = u_;
-  std::vector<double> rhs = residual_;  // T_lin = T where it is linearised
-  if (first)
-  {
-    equilibrium_->displace_contact(x_, target_u);
-    rhs = equilibrium_->residual(internal_, linearised_.traction(form_, target_u));
-  }
-  const double tight = tight_target(rhs);
-  const double target = std::max(tight, forcing_term() * equilibrium_->norm(rhs));
-  norm_before_ = residual_norm_;
-  loose_ = target > tight;
-  std::vector<double> delta(x_.size(), 0.0);
-  const algebra::LinearSolve linear = solve_tangent(rhs, target, delta);
-
-  std::vector<double> target_x = x_;
-  axpy(1, delta, target_x);
-  equilibrium_->displace_contact(target_x, target_u);
-  const std::vector<Point<dim>> t_lin = linearised_.traction(form_, target_u);
-  const double alpha = search(delta, first || !config_.damping);
-  for (std::size_t i = 0; i < t_lin.size(); ++i)
-    traction_[i] = first ? t_lin[i] : (1 - alpha) * traction_[i] + alpha * t_lin[i];
-
-  report_.residual = relative_residual();
-  report_.damping = alpha;
-  report_.linear_iterations = linear.iterations;
-  report_.factorised = linear.factorised;
-  report_.method = equilibrium_->method();
-  report_.fell_back = linear.fell_back;
-}
-
-template <int dim>
-NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonObserver<dim>& observer)
+NewtonResult<dim> run(NewtonIteration<dim>& iteration, const NewtonOptions& options, bool is_new,
+                      const NewtonObserver<dim>& observer)
 {
   NewtonResult<dim> result;
-  initialise(start);
-  const bool is_new = !form_.space().mesh().ranks().any(!start.empty());  // a rank may have no cells
-  const bool at_rest = is_new && scale_ == 0 && residual_norm_ == 0;
+  const bool at_rest = is_new && iteration.at_rest();
   int without_progress = 0;
-  for (int k = 1; k <= config_.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
+  for (int k = 1; k <= options.max_steps && result.status == NewtonStatus::too_many_steps; ++k)
   {
     const Clock::time_point begin = Clock::now();
     const bool from_scratch = k == 1 && is_new;
-    const double before = residual_norm_;
-    report_ = {.step = k,
-               .delta = delta_,
-               .method = equilibrium_->method(),
-               .degree = form_.space().degree(),
-               .gamma0 = form_.gamma0()};
+    const double before = iteration.residual_norm();
+    iteration.begin(k);
     if (!at_rest)
-      step(from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
-    report_.seconds = seconds_since(begin);
-    without_progress = k > 1 && residual_norm_ >= before ? without_progress + 1 : 0;
-    const bool converged =
-        in_balance() && (k == config_.max_steps || without_progress > 0 || traction_settled());
-    const NewtonIterate<dim> iterate{report_, u_, traction_, converged,
-                                     [this] { return std::span<const double>(displacement()); }};
+      iteration.step(from_scratch ? contact::Linearisation::closed_sticking : contact::Linearisation::newton);
+    iteration.report().seconds = seconds_since(begin);
+    without_progress = k > 1 && iteration.residual_norm() >= before ? without_progress + 1 : 0;
+    const bool converged = iteration.in_balance() &&
+                           (k == options.max_steps || without_progress > 0 || iteration.traction_settled());
+    const NewtonIterate<dim> iterate{
+        iteration.report(), iteration.contact_displacement(), iteration.traction(), converged,
+        [&iteration] { return std::span<const double>(iteration.displacement()); }};
     const NewtonAdvice advice = observer ? observer(iterate) : false;
-    result.steps.push_back(report_);
+    result.steps.push_back(iteration.report());
     if (advice.delta)
     {
-      regularise(*advice.delta);
+      iteration.regularise(*advice.delta);
       without_progress = 0;
       continue;
     }
@@ -320,23 +49,17 @@ NewtonResult<dim> Newton<dim>::run(std::span<const double> start, const NewtonOb
       result.status = NewtonStatus::converged;
     else if (advice.good_enough)
       result.status = NewtonStatus::accepted;
-    else if ((config_.damping && without_progress == 3) || !std::isfinite(residual_norm_))
+    else if ((options.damping && without_progress == 3) || !std::isfinite(iteration.residual_norm()))
     {
       result.status = NewtonStatus::diverged;
-      result.message =
-          fmt::format("at step {} no step length lowers the residual any more; {}", k, describe_residual());
+      result.message = fmt::format("at step {} no step length lowers the residual any more; {}", k,
+                                   iteration.describe_residual());
       break;
     }
   }
   if (result.status == NewtonStatus::too_many_steps)
-    result.message =
-        fmt::format("step {} was the last of newton.max_steps; {}", config_.max_steps, describe_residual());
-  loose_ = loose_ && config_.balanced;
-  // An observer that has asked for u has bounded it: it must not be solved for any better now.
-  result.u = displacement_ ? std::move(*displacement_) : std::move(displacement());
-  if (!result.steps.empty()) result.steps.back() = report_;
-  result.traction = std::move(traction_);
-  result.equilibrium = std::move(equilibrium_);
+    result.message = fmt::format("step {} was the last of newton.max_steps; {}", options.max_steps,
+                                 iteration.describe_residual());
   return result;
 }
 
@@ -348,9 +71,16 @@ NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const d
                         const NewtonObserver<dim>& observer, double delta,
                         std::shared_ptr<Equilibrium<dim>> equilibrium)
 {
-  if (!equilibrium)
-    equilibrium = make_equilibrium(form, solver, !form.space().mesh().ranks().any(!start.empty()));
-  return Newton<dim>(form, newton, solver.tolerance, delta, std::move(equilibrium)).run(start, observer);
+  const bool is_new = !form.space().mesh().ranks().any(!start.empty());  // a rank may have no cells
+  if (!equilibrium) equilibrium = make_equilibrium(form, solver, is_new);
+  NewtonIteration<dim> iteration(form, newton, solver.tolerance, delta, std::move(equilibrium));
+  iteration.initialise(start);
+  NewtonResult<dim> result = run(iteration, newton, is_new, observer);
+  result.u = iteration.take_displacement();
+  if (!result.steps.empty()) result.steps.back() = iteration.report();
+  result.traction = std::move(iteration.traction());
+  result.equilibrium = std::move(iteration.equilibrium());
+  return result;
 }
 
 template NewtonResult<2> solve(const contact::NitscheForm<2>&, std::span<const double>, const NewtonOptions&,
