@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "tribound/base/parallel.h"
+#include "tribound/contact/nitsche/data_effect.h"
+#include "tribound/contact/nitsche/given_data.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
@@ -19,64 +21,6 @@ namespace
 constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts_of_facet = 4096;
-
-/// An upper bound of |f| on a cell or facet; 0 where there is none.
-template <int k, int dim, int n>
-double largest_value(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map)
-{
-  std::array<double, (k + 1) * dim> vertices;
-  for (int i = 0; i <= k; ++i)
-    std::ranges::copy(map(fem::reference_simplex<k>()[i]), vertices.begin() + i * dim);
-  Point<n> size = Point<n>::Zero();
-  for (const auto& [value, direction] : datum.terms)
-  {
-    std::array<problem::Enclosure, 1> range;
-    value->enclose(vertices, dim, range);
-    if (range[0].bounded()) size += range[0].magnitude() * direction.cwiseAbs();
-  }
-  return size.norm();
-}
-
-/// Of interferences, g < 0, at points of the segments: the stress that they cause across the body, as of
-/// prescribed displacements.
-template <int dim>
-double effect_of_interference(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                              std::span<const ContactSegment<dim>> segments,
-                              std::span<const Point<dim - 1>> points, double size, double volume)
-{
-  std::vector<Point<dim>> places(points.size());
-  std::vector<double> gaps(points.size());
-  std::array<double, 2> most{};
-  auto& [stiffest, interference] = most;
-  for (const ContactSegment<dim>& segment : segments)
-  {
-    if (!segment.contact->gap) continue;
-    const problem::Material& material = problem.material(mesh.region(segment.slave.facet.cell));
-    stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
-    const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
-    std::ranges::transform(points, places.begin(), map);
-    segment.contact->gap->template evaluate<dim>(places, gaps);
-    interference = std::max(interference, -std::ranges::min(gaps));
-  }
-  mesh.ranks().max(std::span(most));
-  return stiffest * interference / size * std::sqrt(volume);
-}
-
-/// Of the pressure of water, as of a traction: size^{1/2} ||p_w||.
-template <int dim>
-double effect_of_water(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
-                       double size)
-{
-  double squares = 0;
-  for (const ContactSegment<dim>& segment : segments)
-  {
-    if (!segment.contact->water || !is_owned(mesh, segment)) continue;
-    const Datum<dim, 1> pressure{{{&segment.contact->water->pressure(), Point<1>(1.0)}}};
-    const SimplexMap<dim - 1, dim> map = simplex_map(mesh, segment.slave);
-    squares += segment.measure * std::pow(largest_value(pressure, map), 2);
-  }
-  return std::sqrt(size * mesh.ranks().sum(squares));
-}
 
 }  // namespace
 
@@ -95,12 +39,9 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
   const Measures all = measures(segments);
   double allowed = 0;
   if (effort_.formulas > 0)
-    allowed = accuracy.absolute
-                  ? *accuracy.absolute
-                  : accuracy.share * (largest_effect() +
-                                      effect_of_interference<dim>(problem, mesh, segments,
-                                                                  facet_rule().points, size_, all.body) +
-                                      effect_of_water<dim>(mesh, segments, size_));
+    allowed = accuracy.absolute ? *accuracy.absolute
+                                : accuracy.share * largest_effect<dim>(problem, mesh, segments,
+                                                                       facet_rule().points, all.body);
   const double of_each = static_cast<double>(cell_rule().size()) *
                          fem::polynomial_dimension(dim, degree + 1) *
                          static_cast<double>(std::max<std::int64_t>(effort_.formulas, 1));
@@ -132,46 +73,6 @@ auto DiscreteData<dim>::measures(Segments segments) const -> Measures
 }
 
 template <int dim>
-Datum<dim> DiscreteData<dim>::body_datum(Index cell) const
-{
-  Datum<dim> datum;
-  const auto& f = problem_.body_force(mesh_.region(cell));
-  for (int i = 0; i < dim; ++i)
-    if (!f[i].is_zero()) datum.terms.push_back({&f[i], Point<dim>::Unit(i)});
-  return datum;
-}
-
-template <int dim>
-Datum<dim> DiscreteData<dim>::traction_datum(const mesh::BoundaryFacet& facet) const
-{
-  const problem::BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
-  Datum<dim> datum;
-  Point<dim> against_normal = -mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
-  for (int i = 0; i < dim; ++i)
-  {
-    if (boundary.fixes(i))
-      against_normal[i] = 0;
-    else if (!boundary.traction[i].is_zero())
-      datum.terms.push_back({&boundary.traction[i], Point<dim>::Unit(i)});
-  }
-  if (boundary.pressure && !boundary.pressure->is_zero())
-    datum.terms.push_back({&*boundary.pressure, against_normal});
-  return datum;
-}
-
-template <int dim>
-Datum<dim, 3> DiscreteData<dim>::contact_datum(const ContactSegment<dim>& segment) const
-{
-  Datum<dim, 3> datum;
-  const problem::Contact& contact = *segment.contact;
-  if (contact.gap) datum.terms.push_back({&*contact.gap, segment.gamma * Point<3>::Unit(0)});
-  if (const problem::Field* strength = cone(contact.law).strength)
-    datum.terms.push_back({strength, Point<3>::Unit(1)});
-  if (contact.water) datum.terms.push_back({&contact.water->pressure(), Point<3>::Unit(2)});
-  return datum;
-}
-
-template <int dim>
 void DiscreteData<dim>::count_formulas(Segments segments)
 {
   const auto count = [&](const auto& datum, bool is_load)
@@ -182,8 +83,9 @@ void DiscreteData<dim>::count_formulas(Segments segments)
     if (!datum.is_enclosed()) ++effort_.unenclosed;
   };
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
-    if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(c), true);
-  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary()) count(traction_datum(facet), true);
+    if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(problem_, mesh_, c), true);
+  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
+    count(traction_datum(problem_, mesh_, facet), true);
   for (const ContactSegment<dim>& segment : segments)
   {
     if (!is_owned(mesh_, segment)) continue;
@@ -199,39 +101,6 @@ void DiscreteData<dim>::count_formulas(Segments segments)
   effort_.formulas = sums[0];
   effort_.loads = sums[1];
   effort_.unenclosed = sums[2];
-}
-
-/// Of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; of prescribed displacements: the stress that
-/// they cause across the body.
-template <int dim>
-double DiscreteData<dim>::largest_effect() const
-{
-  std::array<double, 3> sums{};
-  auto& [body, volume, traction] = sums;
-  std::array<double, 2> most{};
-  auto& [stiffest, displacement] = most;
-  for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
-  {
-    const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
-    body += map.measure * std::pow(largest_value(body_datum(c), map), 2);
-    volume += map.measure;
-    const problem::Material& material = problem_.material(mesh_.region(c));
-    stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
-  }
-  for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
-  {
-    const problem::BoundaryCondition<dim>& boundary = problem_.boundary(facet.tag);
-    const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facet);
-    traction += map.measure * std::pow(largest_value(traction_datum(facet), map), 2);
-    Datum<dim> prescribed;
-    for (int i = 0; i < dim; ++i)
-      if (boundary.fixes(i)) prescribed.terms.push_back({&*boundary.displacement[i], Point<dim>::Unit(i)});
-    displacement = std::max(displacement, largest_value(prescribed, map));
-  }
-  mesh_.ranks().sum(std::span(sums));
-  mesh_.ranks().max(std::span(most));
-  return size_ * std::sqrt(body) + std::sqrt(size_ * traction) +
-         stiffest * displacement / size_ * std::sqrt(volume);
 }
 
 template <int dim>
@@ -266,7 +135,8 @@ void DiscreteData<dim>::represent_body_forces(double density)
         const SimplexMap<dim, dim> map = simplex_map(mesh_, c);
         const DatumWeights weights{mesh::cell_diameter(mesh_, c) / 3, size_ / std::sqrt(map.measure)};
         keep(body_, i, c < mesh_.n_owned_cells(),
-             cell_moments_(body_datum(c), map, weights, density * std::sqrt(map.measure), max_parts_));
+             cell_moments_(body_datum(problem_, mesh_, c), map, weights, density * std::sqrt(map.measure),
+                           max_parts_));
       });
 }
 
@@ -274,14 +144,14 @@ template <int dim>
 void DiscreteData<dim>::represent_tractions(double density)
 {
   const std::span<const mesh::BoundaryFacet> facets = mesh_.boundary();
-  if (std::ranges::all_of(
-          facets, [this](const mesh::BoundaryFacet& facet) { return traction_datum(facet).degree() == 0; }))
+  if (std::ranges::all_of(facets, [this](const mesh::BoundaryFacet& facet)
+                          { return traction_datum(problem_, mesh_, facet).degree() == 0; }))
     return;
   traction_.remainders.resize(facets.size());
   parallel_for(facets.size(),
                [&](std::size_t i)
                {
-                 const Datum<dim> datum = traction_datum(facets[i]);
+                 const Datum<dim> datum = traction_datum(problem_, mesh_, facets[i]);
                  if (datum.degree() == 0) return;
                  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, facets[i]);
                  const DatumWeights weights{std::sqrt(mesh::cell_diameter(mesh_, facets[i].cell)),
@@ -343,7 +213,7 @@ void DiscreteData<dim>::body_force(Index cell, std::span<Point<dim>> values) con
     cell_moments_.evaluate(found->second, values);
     return;
   }
-  const Datum<dim> datum = body_datum(cell);
+  const Datum<dim> datum = body_datum(problem_, mesh_, cell);
   const SimplexMap<dim, dim> map = simplex_map(mesh_, cell);
   for (int q = 0; q < cell_rule().size(); ++q) values[q] = datum(map(cell_rule().points[q]));
 }
@@ -356,7 +226,7 @@ void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values
     facet_moments_.evaluate(found->second, values);
     return;
   }
-  const Datum<dim> datum = traction_datum(mesh_.boundary()[facet]);
+  const Datum<dim> datum = traction_datum(problem_, mesh_, mesh_.boundary()[facet]);
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, mesh_.boundary()[facet]);
   for (int q = 0; q < facet_rule().size(); ++q) values[q] = datum(map(facet_rule().points[q]));
 }

@@ -114,11 +114,6 @@ class DiscreteData
     std::unordered_map<std::size_t, std::vector<Point<n>>> moments;  ///< where a formula is subdivided
   };
 
-  [[nodiscard]] Datum<dim> body_datum(Index cell) const;
-  [[nodiscard]] Datum<dim> traction_datum(const mesh::BoundaryFacet& facet) const;
-  /// g in direction 0, as the stress gamma g, where it is given, s in direction 1, and p_w in direction 2.
-  [[nodiscard]] Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment) const;
-
   /// Of the body, its boundary and the contact boundary.
   struct Measures
   {
@@ -131,7 +126,6 @@ class DiscreteData
 
   [[nodiscard]] Measures measures(Segments segments) const;
   void count_formulas(Segments segments);
-  [[nodiscard]] double largest_effect() const;
   // A cell or facet may leave out `density` times the root of its measure.
   void represent_body_forces(double density);
   void represent_tractions(double density);

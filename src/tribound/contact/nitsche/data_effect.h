@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file data_effect.h
+/// How much stress the data of a problem can cause, by their size.
+
+#include <span>
+
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::contact
+{
+
+/// The sum of what loads, prescribed displacements, interferences (g < 0 at the `points` of the segments) and
+/// water can cause in the norm of the stress: stress times length^(dim/2). `volume`: of the body. All ranks
+/// together.
+template <int dim>
+[[nodiscard]] double largest_effect(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                    std::span<const ContactSegment<dim>> segments,
+                                    std::span<const Point<dim - 1>> points, double volume);
+
+}  // namespace tribound::contact

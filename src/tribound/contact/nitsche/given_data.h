@@ -1,0 +1,28 @@
+#pragma once
+
+/// @file given_data.h
+/// The data of a problem on one cell, facet or contact segment, as they are given.
+
+#include "tribound/contact/nitsche/datum_moments.h"
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::contact
+{
+
+/// f on a cell.
+template <int dim>
+[[nodiscard]] Datum<dim> body_datum(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                    Index cell);
+
+/// g_N on a boundary facet, without the components that are fixed there.
+template <int dim>
+[[nodiscard]] Datum<dim> traction_datum(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                        const mesh::BoundaryFacet& facet);
+
+/// g in direction 0, as the stress gamma g, where it is given, s in direction 1, and p_w in direction 2.
+template <int dim>
+[[nodiscard]] Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment);
+
+}  // namespace tribound::contact
