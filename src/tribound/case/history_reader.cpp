@@ -20,15 +20,25 @@ namespace
 
 constexpr auto steps_hint = "values of t, such as [0, 0.5, 1], or { from = 0, to = 1, count = 11 }";
 
+const Table& equal_steps_table()
+{
+  static const Table table{
+      .name = "history.steps",
+      .keys = {{"from", number_in(finite), steps_hint},
+               {"to", number_in(finite), steps_hint},
+               {"count", integer_from(2, "how many values, both ends included, such as 11", 1'000'000),
+                steps_hint}}};
+  return table;
+}
+
 std::vector<double> equal_steps(const Node& node)
 {
-  const TableReader table(node, {"from", "to", "count"});
-  const double from = to_number(table.require("from", steps_hint));
-  const double to = to_number(table.require("to", steps_hint));
-  const long count = to_integer_in(table.require("count", steps_hint), 2, 1'000'000,
-                                   "how many values, both ends included, such as 11");
+  const TableReader table(node, equal_steps_table());
+  const auto from = table.get<double>("from");
+  const auto to = table.get<double>("to");
+  const auto count = table.get<int>("count");
   std::vector<double> steps;
-  for (long i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i)
     steps.push_back(
         i + 1 == count ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
   return steps;
@@ -66,6 +76,12 @@ adapt::Gauge to_gauge(const std::string& text, double factor, const Where& where
   return gauge;
 }
 
+Value gauge_value()
+{
+  static const Table sum{.name = "history.sum", .named = number_in(finite)};
+  return text(gauge_hint) | keys_of(sum);
+}
+
 /// One gauge, or a table of gauges with their factors.
 std::vector<adapt::Gauge> to_gauges(const Node& node)
 {
@@ -77,44 +93,56 @@ std::vector<adapt::Gauge> to_gauges(const Node& node)
   return gauges;
 }
 
-/// `until` has to be there unless something else ends the stage.
+/// A displacement that is given; `until` has to be there unless something else ends the stage.
+const Table& displacement_table(bool needs_end)
+{
+  constexpr auto until = "the value at which the path ends";
+  const auto make = [](bool needs_until)
+  {
+    return Table{.name = "history.then",
+                 .keys = {{"displacement", gauge_value(), gauge_hint},
+                          {"step", number_in(finite), "by how much it grows in a load step, such as 1e-3"},
+                          {"until", number_in(finite, until), needs_until ? until : ""}}};
+  };
+  static const Table endless = make(false);
+  static const Table ending = make(true);
+  return needs_end ? ending : endless;
+}
+
 adapt::DisplacementStage to_displacement(const Node& node, bool needs_end)
 {
-  const TableReader table(node, {"displacement", "step", "until"});
+  const TableReader table(node, displacement_table(needs_end));
   adapt::DisplacementStage stage;
-  stage.gauges = to_gauges(table.require("displacement", gauge_hint));
-  const Node& step = table.require("step", "by how much it grows in a load step, such as 1e-3");
-  stage.step = to_number(step);
-  if (stage.step == 0)
-    throw InputError(step.where, "is 0", "by how much it grows in a load step, such as 1e-3");
+  stage.gauges = to_gauges(table.require("displacement"));
+  stage.step = table.get<double>("step");
+  if (stage.step == 0) throw InputError(table.find("step")->where, "is 0", table.key_of("step").missing);
   if (stage.step < 0) stage.until *= -1;
-  if (needs_end) (void)table.require("until", "the value at which the path ends");
-  table.read("until", stage.until, to_number);
+  if (needs_end) (void)table.require("until");
+  table.read("until", stage.until);
   return stage;
 }
 
-void read_control(const Node& node, adapt::PathProgram& program)
+void read_control(const Node& node, const Value& value, adapt::PathProgram& program)
 {
   if (!node.is_table())
   {
-    program.following = one_of<adapt::Following>({"load", "auto", "damage"})(node);
+    convert(node, value, program.following);
     return;
   }
   program.following = adapt::Following::displacement;
   program.displacement = to_displacement(node, false);
 }
 
-void read_stop(const Node& node, adapt::PathProgram& program)
+const Options<adapt::PathProgram>& stop_options()
 {
-  const TableReader table(node, {"damage", "t_min", "steps"});
-  table.read("damage", program.enough_damage,
-             [](const Node& value)
-             {
-               return to_number_in(value, {.lower = 0.0, .upper = 1.0, .includes_upper = true},
-                                   "the mean damage of all interfaces, such as 0.95");
-             });
-  if (const Node* t_min = table.find("t_min")) program.t_min = to_number(*t_min);
-  table.read("steps", program.max_steps, integer_from(1, "a number of load steps, such as 100"));
+  using P = adapt::PathProgram;
+  static const Options<P> options(
+      "history.stop",
+      {option<&P::enough_damage>("damage", number_in({.lower = 0.0, .upper = 1.0, .includes_upper = true},
+                                                     "the mean damage of all interfaces, such as 0.95")),
+       option<&P::t_min>("t_min", number_in(finite, "the t at which the path ends, after its peak")),
+       option<&P::max_steps>("steps", integer_from(1, "a number of load steps, such as 100"))});
+  return options;
 }
 
 void read_steps(const Node& steps, std::vector<double>& targets)
@@ -139,24 +167,20 @@ std::vector<adapt::Watch> read_watch(const Node& node)
   return watch;
 }
 
-constexpr std::array<std::string_view, 8> history_keys = {"steps", "control", "damage_step", "stop",
-                                                          "then",  "watch",   "refine",      "check"};
-
 HistoryConfig read_history(const Node& node)
 {
-  const TableReader table(node, history_keys);
+  const TableReader table(node, history_table());
   HistoryConfig history{.where = node.where};
   adapt::PathProgram& program = history.program;
-  read_steps(table.require("steps", steps_hint), program.targets);
-  if (const Node* control = table.find("control")) read_control(*control, program);
-  if (const Node* step = table.find("damage_step"))
-    program.damage_step =
-        to_number_in(*step, positive, "length or area that is damaged anew in a load step, such as 0.5");
-  if (const Node* stop = table.find("stop")) read_stop(*stop, program);
+  read_steps(table.require("steps"), program.targets);
+  if (const Node* control = table.find("control"))
+    read_control(*control, table.key_of("control").value, program);
+  table.read("damage_step", program.damage_step);
+  if (const Node* stop = table.find("stop")) stop_options().read(*stop, program);
   if (const Node* then = table.find("then")) program.then = to_displacement(*then, true);
-  table.read("watch", history.watch, read_watch);
-  table.read("refine", history.refine, one_of<Refine>({"replay", "transfer", "none"}));
-  table.read("check", history.check, to_bool);
+  if (const Node* watch = table.find("watch")) history.watch = read_watch(*watch);
+  table.read("refine", history.refine);
+  table.read("check", history.check);
   return history;
 }
 
@@ -213,9 +237,27 @@ void check_control(const TableReader& table, const Config& config)
 
 }  // namespace
 
+const Table& history_table()
+{
+  static const Table watch{.name = "history.watch", .named = gauge_value()};
+  static const Table table{
+      .name = "history",
+      .keys = {
+          {"steps", array_of(number_in(finite), 1, steps_hint) | keys_of(equal_steps_table()), steps_hint},
+          {"control", one_of({"load", "auto", "damage"}) | keys_of(displacement_table(false))},
+          {"damage_step",
+           number_in(positive, "length or area that is damaged anew in a load step, such as 0.5")},
+          {"stop", keys_of(stop_options().table())},
+          {"then", keys_of(displacement_table(true))},
+          {"watch", keys_of(watch)},
+          {"refine", one_of({"replay", "transfer", "none"})},
+          {"check", truth()}}};
+  return table;
+}
+
 void read_load_steps(const TableReader& root, Config& config)
 {
-  root.read("history", config.history, read_history);
+  if (const Node* history = root.find("history")) config.history = read_history(*history);
   if (!config.history && any_contact(config, remembers)) config.history.emplace();
   // What a step leaves to the next ones is not in their bounds: all of it is solved for.
   if (config.history) config.method.stopping.criterion = adapt::Stopping::last_bounded;
@@ -235,7 +277,8 @@ void check_load_steps(const TableReader& root, Config& config)
                      root.has("history") ? "stands beside [history]" : "stands beside an interface",
                      "drop it: load steps go by the plain method");
   if (config.history->refine == Refine::none) config.adapt.max_levels = 0;
-  if (const Node* history = root.find("history")) check_control(TableReader(*history, history_keys), config);
+  if (const Node* history = root.find("history"))
+    check_control(TableReader(*history, history_table()), config);
 }
 
 }  // namespace tribound::case_file

@@ -9,6 +9,9 @@
 namespace tribound::case_file
 {
 
+/// [history].
+[[nodiscard]] const Table& history_table();
+
 /// Reads [history] of a case whose contacts are read already, and how its steps are solved unless [newton]
 /// says otherwise. An interface alone is a history of one step.
 void read_load_steps(const TableReader& root, Config& config);

@@ -3,8 +3,7 @@
 /// @file interface_reader.h
 /// Interfaces with a memory, as the case file has them.
 
-#include <initializer_list>
-#include <string_view>
+#include <optional>
 #include <vector>
 
 #include "tribound/case/config.h"
@@ -14,9 +13,8 @@
 namespace tribound::case_file
 {
 
-/// The keys of `interface = { law = ... }`, and the given ones.
-[[nodiscard]] std::vector<std::string_view> interface_keys(
-    std::initializer_list<std::string_view> others = {});
+/// `interface = { law = ... }`, with the given keys beside its own.
+[[nodiscard]] Table interface_table(const std::vector<Key>& others = {});
 
 /// The contact that an interface table describes, with `gap` as it is before the table is read.
 [[nodiscard]] problem::Contact read_interface(const TableReader& table, std::optional<problem::Field> gap);

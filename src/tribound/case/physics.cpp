@@ -16,93 +16,94 @@ namespace tribound::case_file
 namespace
 {
 
-problem::PlaneModel to_plane(const Node& node)
+/// `friction`, the keys of its laws, and the given ones.
+Table with_friction(std::string name, std::span<const problem::LawKind> kinds, const std::vector<Key>& others)
 {
-  return one_of<problem::PlaneModel>({"strain", "stress"})(node);
-}
-
-MaterialConfig read_material(const TableReader& table, std::string region, problem::PlaneModel plane)
-{
-  MaterialConfig material{.region = std::move(region), .plane = plane, .where = table.where()};
-  const Node& E = table.require("E", "Young's modulus, in the units of stress: E = 210e9");
-  material.E = to_number_in(E, positive, "Young's modulus in the units of stress, such as 210e9");
-  (void)to_number_in(E, reasonable, "squares of stresses must be numbers, too: take other units");
-  material.nu = to_number_in(table.require("nu", "Poisson's ratio in (-1, 0.5): nu = 0.3"),
-                             {.lower = -1.0, .upper = 0.5},
-                             "Poisson's ratio, such as 0.3; nearly incompressible is 0.499, not 0.5");
-  table.read("plane", material.plane, to_plane);
-  return material;
-}
-
-LoadConfig read_load(const TableReader& table, std::string region)
-{
-  const Node& body = table.require("body", "force per volume: body = [0, -9.81]");
-  return {std::move(region), to_fields(body), body.where};
-}
-
-std::vector<std::optional<problem::Field>> read_displacement(const Node& node)
-{
-  std::vector<std::optional<problem::Field>> displacement;
-  for (const Node& item :
-       to_components(node, "one number, formula or \"free\" per dimension, such as [0, \"free\"]"))
+  Table table{.name = std::move(name), .choice = "friction"};
+  std::vector<std::string> words;
+  std::vector<Key> keys;
+  for (const problem::LawKind& kind : kinds)
   {
-    const auto* text = std::get_if<std::string>(&item.value);
-    if (text != nullptr && *text == "free")
-      displacement.emplace_back();
-    else
-      displacement.emplace_back(to_field(item));
+    words.emplace_back(kind.name);
+    KeyGroup& group = table.groups.emplace_back(KeyGroup{kind.name});
+    for (const problem::LawKey& key : kind.keys)
+    {
+      const std::string meaning(key.meaning);
+      keys.push_back({std::string(key.key),
+                      key.is_number ? number_in(not_negative, meaning) : nonnegative_datum(meaning)});
+      group.keys.emplace_back(key.key);
+    }
+    group.required = group.keys;
   }
-  return displacement;
-}
-
-problem::Field read_law_value(const TableReader& table, const problem::LawKey& key)
-{
-  const Node& node = table.require(key.key, std::string(key.meaning));
-  if (!key.is_number) return to_nonnegative_field(node);
-  return problem::Field(to_number_in(node, not_negative, std::string(key.meaning)), node.where);
+  table.keys = std::vector<Key>{{"friction", one_of(words)}} + keys + others;
+  return table;
 }
 
 /// `friction` and the keys that belong to the law it names.
 problem::ContactLaw read_law(const TableReader& table, std::span<const problem::LawKind> kinds)
 {
-  std::vector<std::string> names;
-  for (const problem::LawKind& kind : kinds) names.emplace_back(kind.name);
-  std::size_t chosen = 0;
-  table.read("friction", chosen, [&](const Node& node) { return to_choice(node, names); });
-  std::vector<KeyGroup> groups;
-  groups.reserve(kinds.size());
-  for (const problem::LawKind& kind : kinds)
-  {
-    KeyGroup& group = groups.emplace_back(KeyGroup{kind.name, {}});
-    for (const problem::LawKey& key : kind.keys) group.keys.push_back(key.key);
-  }
-  refuse_keys_of_others(table, "friction", groups, chosen);
+  const std::size_t chosen = table.choose();
+  table.require_group(chosen);
+  const problem::LawKind& kind = kinds[chosen];
   std::vector<problem::Field> values;
-  for (const problem::LawKey& key : kinds[chosen].keys) values.push_back(read_law_value(table, key));
-  return kinds[chosen].make(values);
+  for (const problem::LawKey& key : kind.keys)
+  {
+    const Value& value = table.key_of(key.key).value;
+    const Node& node = *table.find(key.key);
+    if (key.is_number)
+      values.emplace_back(to_number_in(node, *value.number, value.hint), node.where);
+    else
+      table.read(key.key, values.emplace_back());
+  }
+  return kind.make(values);
 }
 
-/// `friction`, the keys of all laws, and the given ones.
-std::vector<std::string_view> law_keys(std::initializer_list<std::string_view> others)
+/// What everything that touches an obstacle has beside its law.
+std::vector<Key> obstacle_keys()
 {
-  std::vector<std::string_view> keys = {"friction"};
-  for (const problem::LawKind& kind : problem::law_kinds())
-    for (const problem::LawKey& key : kind.keys) keys.push_back(key.key);
-  keys.insert(keys.end(), others.begin(), others.end());
-  return keys;
+  return std::vector<Key>{{"gap", datum()}} + obstacle_geometry_keys();
+}
+
+const Table& obstacle_contact_table()
+{
+  static const Table table =
+      with_friction("boundary.NAME.contact", problem::obstacle_law_kinds(), obstacle_keys());
+  return table;
+}
+
+const Table& obstacle_interface_table()
+{
+  static const Table table = interface_table(obstacle_keys());
+  return table;
+}
+
+const Table& boundary_table()
+{
+  static const Table table{
+      .name = "boundary.NAME",
+      .keys = {{"displacement",
+                vector_of(datum() | one_of({"free"}),
+                          "one number, formula or \"free\" per dimension, such as [0, \"free\"]")},
+               {"traction", data()},
+               {"pressure", datum()},
+               {"contact", keys_of(obstacle_contact_table())},
+               {"interface", keys_of(obstacle_interface_table())}},
+      .relations = {{.key = "contact", .excludes = {"displacement", "traction", "pressure", "interface"}},
+                    {.key = "interface", .excludes = {"displacement", "traction", "pressure"}}}};
+  return table;
 }
 
 /// Sets what touches an obstacle, with the keys that all of these have beside their law.
 void set_obstacle(const TableReader& table, problem::Contact contact, BoundaryConfig& boundary)
 {
-  table.read("gap", *contact.gap, to_field);
+  table.read("gap", *contact.gap);
   boundary.contact = std::move(contact);
   boundary.geometry = read_obstacle_geometry(table);
 }
 
 void read_obstacle(const Node& node, BoundaryConfig& boundary)
 {
-  const TableReader table(node, law_keys({"gap", "obstacle", "shape", "normal"}));
+  const TableReader table(node, obstacle_contact_table());
   set_obstacle(
       table,
       problem::Contact(read_law(table, problem::obstacle_law_kinds()), problem::Field(0.0, node.where)),
@@ -112,35 +113,8 @@ void read_obstacle(const Node& node, BoundaryConfig& boundary)
 /// `interface`: what touches an obstacle and remembers.
 void read_memory(const Node& node, BoundaryConfig& boundary)
 {
-  const TableReader table(node, interface_keys({"gap", "obstacle", "shape", "normal"}));
+  const TableReader table(node, obstacle_interface_table());
   set_obstacle(table, read_interface(table, problem::Field(0.0, node.where)), boundary);
-}
-
-/// A name, or an array of them.
-std::vector<std::string> read_names(const Node& node)
-{
-  constexpr auto hint = "a boundary of the mesh, or an array of them: [\"top\", \"arc\"]";
-  const auto* items = std::get_if<Node::Array>(&node.value);
-  if (items == nullptr && !std::holds_alternative<std::string>(node.value))
-    fail_type(node, "a string or an array", hint);
-  if (items != nullptr && items->empty()) throw InputError(node.where, "is empty", hint);
-  std::vector<std::string> names;
-  for (const Node& item : items != nullptr ? std::span(*items) : std::span(&node, 1))
-    names.push_back(to_text(item));
-  return names;
-}
-
-/// Absent for "geometry".
-std::optional<problem::Field> read_gap(const Node& node)
-{
-  const auto* text = std::get_if<std::string>(&node.value);
-  if (text != nullptr && *text == "geometry") return std::nullopt;
-  return to_field(node);
-}
-
-std::vector<double> read_direction(const Node& node)
-{
-  return to_direction(node, "\"normal\", or a direction out of the slave, such as [0, -1]");
 }
 
 /// The sides: slave and master, or a joint.
@@ -148,19 +122,20 @@ void read_sides(const TableReader& table, ContactConfig& config)
 {
   if (const Node* joint = table.find("joint"))
   {
-    for (const std::string_view key : {"slave", "master"})
-      if (const Node* side = table.find(key))
-        throw InputError(side->where, "stands beside joint",
-                         "a joint is cut open and makes both sides itself; for two boundaries give slave and "
-                         "master");
+    if (const Node* side = table.excluded_by("joint"))
+      throw InputError(side->where, "stands beside joint",
+                       "a joint is cut open and makes both sides itself; for two boundaries give slave and "
+                       "master");
     config.joint = to_text(*joint);
     config.slave = {config.joint};
     config.master = {config.joint + ".other"};
     return;
   }
   constexpr auto hint = "slave = \"...\" and master = \"...\", two boundaries, or joint = \"...\"";
-  config.slave = read_names(table.require("slave", hint));
-  config.master = read_names(table.require("master", hint));
+  (void)table.require("slave", hint);
+  table.read("slave", config.slave);
+  (void)table.require("master", hint);
+  table.read("master", config.master);
   for (const std::string& name : config.master)
     if (std::ranges::find(config.slave, name) != config.slave.end())
       throw InputError(table.find("master")->where, fmt::format("\"{}\" is the slave, too", name),
@@ -172,22 +147,20 @@ problem::Contact read_pair_law(const TableReader& table)
 {
   const Node* interface = table.find("interface");
   if (interface == nullptr) return problem::Contact(read_law(table, problem::law_kinds()), std::nullopt);
-  for (const std::string_view key : law_keys({}))
-    if (const Node* other = table.find(key))
-      throw InputError(other->where, "stands beside interface", "it belongs into the table of interface");
-  return read_interface(TableReader(*interface, interface_keys()), std::nullopt);
+  if (const Node* other = table.excluded_by("interface"))
+    throw InputError(other->where, "stands beside interface", "it belongs into the table of interface");
+  return read_interface(TableReader(*interface, interface_table()), std::nullopt);
 }
 
 ContactConfig read_pair(const Node& node)
 {
-  const TableReader table(node, law_keys({"slave", "master", "joint", "gap", "pairing", "reach", "shape",
-                                          "normal", "interface"}));
+  const TableReader table(node, pair_table());
   ContactConfig config;
   config.where = node.where;
   read_sides(table, config);
   config.contact = read_pair_law(table);
   if (!cone(config.contact.law).is_tied)
-    table.read("gap", config.contact.gap, read_gap);
+    table.read("gap", config.contact.gap);
   else if (const Node* gap = table.find("gap"))
     throw InputError(gap->where, "does not belong to friction = \"tied\"",
                      "what is tied moves as one, whatever lies between");
@@ -199,9 +172,8 @@ ContactConfig read_pair(const Node& node)
       if (const Node* of_contact = table.find(key))
         throw InputError(of_contact->where, "does not belong to friction = \"tied\"",
                          "what is tied has neither gap nor direction");
-  table.read("pairing", config.direction, read_direction);
-  table.read("reach", config.reach,
-             number_in(positive, "the largest distance between the sides, a length, such as 0.1"));
+  table.read("pairing", config.direction);
+  table.read("reach", config.reach);
   return config;
 }
 
@@ -210,16 +182,13 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
 {
   const auto fail = [&](std::string_view key, const std::string& problem, const std::string& hint)
   { throw InputError(table.find(key)->where, problem, hint); };
-  if (boundary.contact)
-    for (const std::string_view key : {"displacement", "traction", "pressure"})
-      if (table.has(key))
-        fail(
-            key,
-            fmt::format("stands beside {} on the same boundary",
-                        table.has("contact") ? "contact" : "interface"),
-            "a part of the boundary is either in contact or has displacement, traction and pressure; "
-            "split the group in the mesh; a pressure in the joint itself, such as uplift, is the water of an "
-            "interface");
+  for (const std::string_view kind : {"contact", "interface"})
+    if (const Node* other = table.excluded_by(kind))
+      throw InputError(
+          other->where, fmt::format("stands beside {} on the same boundary", kind),
+          "a part of the boundary is either in contact or has displacement, traction and pressure; "
+          "split the group in the mesh; a pressure in the joint itself, such as uplift, is the water of an "
+          "interface");
   if (boundary.displacement.empty()) return;
 
   const auto is_fixed = [](const std::optional<problem::Field>& component) { return component.has_value(); };
@@ -239,7 +208,7 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
 
 BoundaryConfig read_boundary(const Entry& entry)
 {
-  const TableReader table(entry.node, {"displacement", "traction", "pressure", "contact", "interface"});
+  const TableReader table(entry.node, boundary_table());
   if (std::get<Node::Table>(entry.node.value).empty())
     throw InputError(
         entry.where, "nothing is given on this boundary",
@@ -247,9 +216,9 @@ BoundaryConfig read_boundary(const Entry& entry)
   BoundaryConfig boundary;
   boundary.name = entry.name;
   boundary.where = entry.where;
-  table.read("displacement", boundary.displacement, read_displacement);
-  table.read("traction", boundary.traction, to_fields);
-  table.read("pressure", boundary.pressure, to_field);
+  table.read("displacement", boundary.displacement);
+  table.read("traction", boundary.traction);
+  table.read("pressure", boundary.pressure);
   const Node* interface = table.find("interface");
   if (const Node* contact = table.find("contact"))
   {
@@ -264,28 +233,40 @@ BoundaryConfig read_boundary(const Entry& entry)
 
 }  // namespace
 
-std::vector<MaterialConfig> read_materials(const Node& node)
+const Table& boundaries_table()
 {
-  const TableReader table(node, {"E", "nu", "plane"}, TableReader::Subtables::named);
-  problem::PlaneModel plane = problem::PlaneModel::strain;
-  table.read("plane", plane, to_plane);
-
-  std::vector<MaterialConfig> materials;
-  if (table.has("E") || table.has("nu") || table.named().empty())
-    materials.push_back(read_material(table, {}, plane));
-  for (const Entry* entry : table.named())
-    materials.push_back(read_material(TableReader(entry->node, {"E", "nu", "plane"}), entry->name, plane));
-  return materials;
+  static const Table table{.name = "boundary", .named = keys_of(boundary_table())};
+  return table;
 }
 
-std::vector<LoadConfig> read_loads(const Node& node)
+const Table& pair_table()
 {
-  const TableReader table(node, {"body"}, TableReader::Subtables::named);
-  std::vector<LoadConfig> loads;
-  if (table.has("body")) loads.push_back(read_load(table, {}));
-  for (const Entry* entry : table.named())
-    loads.push_back(read_load(TableReader(entry->node, {"body"}), entry->name));
-  return loads;
+  constexpr auto names_hint = "a boundary of the mesh, or an array of them: [\"top\", \"arc\"]";
+  constexpr auto pairing_hint = "\"normal\", or a direction out of the slave, such as [0, -1]";
+  static const Table interface = interface_table();
+  static const Table table = []
+  {
+    const Value names = array_of(text(), 1, names_hint) | text();
+    Table pair = with_friction(
+        "contact", problem::law_kinds(),
+        std::vector<Key>{
+            {"slave", names},
+            {"master", names},
+            {"joint", text()},
+            {"gap", datum() | one_of({"geometry"})},
+            {"pairing", direction(pairing_hint) | one_of({"normal"})},
+            {"reach", number_in(positive, "the largest distance between the sides, a length, such as 0.1")}} +
+            pair_geometry_keys() + std::vector<Key>{{"interface", keys_of(interface)}});
+    pair.one_of = {"joint", "slave"};
+    pair.relations = {{.key = "slave", .needs = {"master"}},
+                      {.key = "master", .needs = {"slave"}},
+                      {.key = "joint", .excludes = {"slave", "master"}},
+                      {.key = "interface", .excludes = {pair.choice}}};
+    for (const KeyGroup& group : pair.groups)
+      for (const std::string& key : group.keys) pair.relations.back().excludes.push_back(key);
+    return pair;
+  }();
+  return table;
 }
 
 std::vector<BoundaryConfig> read_boundaries(const Node& node)

@@ -18,38 +18,17 @@ using problem::QuantityKind;
 
 /// In the order of QuantityKind, with the keys that go with each beside `name` and `kind`.
 const std::array kinds = {
-    KeyGroup{to_string(QuantityKind::energy), {}},
-    KeyGroup{to_string(QuantityKind::load_work), {}},
+    KeyGroup{to_string(QuantityKind::energy)},
+    KeyGroup{to_string(QuantityKind::load_work)},
     KeyGroup{to_string(QuantityKind::contact_force), {"boundary", "direction", "ramp"}},
     KeyGroup{to_string(QuantityKind::contact_moment), {"boundary", "direction", "point", "ramp"}},
-    KeyGroup{to_string(QuantityKind::safety_factor), {"boundary", "ramp"}},
-    KeyGroup{to_string(QuantityKind::mean_displacement), {"boundary", "direction"}}};
-
-constexpr auto direction_hint = "\"normal\", the outward normal of the boundary, or a vector such as [0, 1]";
-
-/// Empty for "normal".
-std::vector<double> read_direction(const Node& node)
-{
-  return to_direction(node, direction_hint);
-}
-
-QuantityKind read_kind(const TableReader& table)
-{
-  std::vector<std::string> names;
-  names.reserve(kinds.size());
-  for (const KeyGroup& kind : kinds) names.emplace_back(kind.name);
-  const std::size_t chosen =
-      to_choice(table.require("kind", "what is wanted, such as kind = \"contact_force\""), names);
-  refuse_keys_of_others(table, "kind", kinds, chosen);
-  return static_cast<QuantityKind>(chosen);
-}
+    KeyGroup{to_string(QuantityKind::safety_factor), {"boundary", "ramp"}, {"boundary"}},
+    KeyGroup{to_string(QuantityKind::mean_displacement), {"boundary", "direction"}, {"boundary"}}};
 
 /// Where a quantity is no number without a key.
 void require_keys(const TableReader& table, const QuantityConfig& quantity)
 {
-  const bool needs_boundary =
-      quantity.kind == QuantityKind::safety_factor || quantity.kind == QuantityKind::mean_displacement;
-  if (needs_boundary) (void)table.require("boundary", "the boundary whose number it is");
+  table.require_group(static_cast<std::size_t>(quantity.kind));
   const bool is_of_all = quantity.boundary.empty();
   if (is_of_all && quantity.kind == QuantityKind::contact_force)
     (void)table.require("direction", "of the force, a vector such as [0, 1]");
@@ -60,19 +39,16 @@ void require_keys(const TableReader& table, const QuantityConfig& quantity)
 
 QuantityConfig read_quantity(const Node& node)
 {
-  const TableReader table(node, {"name", "kind", "boundary", "direction", "point", "ramp"});
-  QuantityConfig quantity{.kind = read_kind(table), .where = node.where};
-  table.read("boundary", quantity.boundary, to_text);
-  table.read("direction", quantity.direction, read_direction);
-  table.read("point", quantity.point, [](const Node& value) { return to_numbers(value); });
-  table.read("ramp", quantity.ramp,
-             number_in(positive, "a distance, over which the weight of a force grows from 0 to 1"));
+  const TableReader table(node, quantity_table());
+  QuantityConfig quantity{.kind = static_cast<QuantityKind>(table.choose()), .where = node.where};
+  table.read("boundary", quantity.boundary);
+  table.read("direction", quantity.direction);
+  table.read("point", quantity.point);
+  table.read("ramp", quantity.ramp);
   require_keys(table, quantity);
   quantity.name = to_string(quantity.kind);
   if (!quantity.boundary.empty()) quantity.name += " " + quantity.boundary;
-  table.read("name", quantity.name, to_text);
-  if (quantity.name.empty())
-    throw InputError(table.find("name")->where, "is empty", "a name, such as \"thrust\"");
+  table.read("name", quantity.name);
   return quantity;
 }
 
@@ -84,6 +60,29 @@ Point<dim> in_dimension(const std::vector<double>& x, std::string_view key, cons
 }
 
 }  // namespace
+
+const Table& quantity_table()
+{
+  constexpr auto direction_hint =
+      "\"normal\", the outward normal of the boundary, or a vector such as [0, 1]";
+  static const Table table = []
+  {
+    std::vector<std::string> words;
+    for (const KeyGroup& kind : kinds) words.emplace_back(kind.word);
+    return Table{
+        .name = "quantity",
+        .keys = {{"name", text("a name, such as \"thrust\"", 1)},
+                 {"kind", one_of(words), "what is wanted, such as kind = \"contact_force\""},
+                 {"boundary", text("the boundary whose number it is")},
+                 {"direction", direction(direction_hint) | one_of({"normal"})},
+                 {"point", numbers()},
+                 {"ramp",
+                  number_in(positive, "a distance, over which the weight of a force grows from 0 to 1")}},
+        .choice = "kind",
+        .groups = {kinds.begin(), kinds.end()}};
+  }();
+  return table;
+}
 
 std::vector<QuantityConfig> read_quantities(const Node& node)
 {

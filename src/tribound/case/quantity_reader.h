@@ -15,6 +15,9 @@
 namespace tribound::case_file
 {
 
+/// One [[quantity]].
+[[nodiscard]] const Table& quantity_table();
+
 /// One entry for each [[quantity]].
 [[nodiscard]] std::vector<QuantityConfig> read_quantities(const Node& array);
 

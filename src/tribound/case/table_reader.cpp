@@ -13,43 +13,54 @@ namespace tribound::case_file
 namespace
 {
 
-[[noreturn]] void fail_unknown_key(const Entry& entry, const std::vector<std::string>& keys,
-                                   bool named_tables)
+std::vector<std::string> key_names(const Table& table)
 {
+  std::vector<std::string> all;
+  for (const Key& key : table.keys) all.push_back(key.name);
+  return all;
+}
+
+[[noreturn]] void fail_unknown_key(const Entry& entry, const Table& table)
+{
+  const std::vector<std::string> keys = key_names(table);
   const std::string near = closest(entry.name, keys);
   throw InputError(
       entry.where, "unknown key",
       fmt::format("{}allowed here: {}{}", near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
-                  fmt::join(keys, ", "), named_tables ? ", or tables of single regions" : ""));
+                  fmt::join(keys, ", "), table.named ? ", or tables of single regions" : ""));
 }
 
-std::string requirement(const Interval& interval)
+std::string requirement(const Interval& interval, double number)
 {
-  if (interval.lower == 0.0 && std::isinf(interval.upper))
-    return interval.includes_lower ? "must not be negative" : "must be positive";
+  if ((interval.lower == 0.0 && std::isinf(interval.upper)) || (interval.lower > 0 && number <= 0))
+    return interval.lower == 0.0 && interval.includes_lower ? "must not be negative" : "must be positive";
   return fmt::format("must lie in {}{}, {}{}", interval.includes_lower ? '[' : '(', interval.lower,
                      interval.upper, interval.includes_upper ? ']' : ')');
 }
 
 }  // namespace
 
-TableReader::TableReader(const Node& node, std::span<const std::string_view> keys, Subtables subtables)
-    : table_(std::get_if<Node::Table>(&node.value)),
-      keys_(keys.begin(), keys.end()),
-      subtables_(subtables),
-      where_(node.where)
+TableReader::TableReader(const Node& node, const Table& table)
+    : entries_(std::get_if<Node::Table>(&node.value)), shape_(table), where_(node.where)
 {
-  if (table_ == nullptr)
-    fail_type(node, "a table", fmt::format("a table with the keys {}", fmt::join(keys_, ", ")));
-  for (const Entry& entry : *table_)
-    if (!is_named(entry) && std::ranges::find(keys_, entry.name) == keys_.end())
-      fail_unknown_key(entry, keys_, subtables_ == Subtables::named);
+  if (entries_ == nullptr)
+    fail_type(node, "a table", fmt::format("a table with the keys {}", fmt::join(key_names(table), ", ")));
+  for (const Entry& entry : *entries_)
+    if (!is_named(entry) && std::ranges::find(table.keys, entry.name, &Key::name) == table.keys.end())
+      fail_unknown_key(entry, table);
+}
+
+const Key& TableReader::key_of(std::string_view key) const
+{
+  const auto found = std::ranges::find(shape_.keys, key, &Key::name);
+  assert(found != shape_.keys.end());
+  return *found;
 }
 
 const Node* TableReader::find(std::string_view key) const
 {
-  assert(std::ranges::find(keys_, key) != keys_.end());
-  const Entry* entry = case_file::find(*table_, key);
+  (void)key_of(key);
+  const Entry* entry = case_file::find(*entries_, key);
   return entry == nullptr || is_named(*entry) ? nullptr : &entry->node;
 }
 
@@ -64,20 +75,53 @@ const Node& TableReader::require(std::string_view key, const std::string& hint) 
 std::vector<const Entry*> TableReader::named() const
 {
   std::vector<const Entry*> entries;
-  for (const Entry& entry : *table_)
+  for (const Entry& entry : *entries_)
     if (is_named(entry)) entries.push_back(&entry);
   return entries;
 }
 
-void refuse_keys_of_others(const TableReader& table, std::string_view what, std::span<const KeyGroup> groups,
-                           std::size_t chosen)
+std::string TableReader::only(const std::string& hint, std::string_view beside) const
 {
-  const KeyGroup& own = groups[chosen];
-  for (const KeyGroup& group : groups)
-    for (const std::string_view key : group.keys)
-      if (const Node* node = table.find(key); node != nullptr && std::ranges::count(own.keys, key) == 0)
-        throw InputError(node->where, fmt::format("does not belong to {} = \"{}\"", what, own.name),
-                         fmt::format("it goes with {} = \"{}\"", what, group.name));
+  std::string given;
+  for (const std::string& key : shape_.one_of)
+  {
+    const Node* node = find(key);
+    if (node == nullptr) continue;
+    if (!given.empty())
+      throw InputError(node->where, fmt::format("{} stands beside {}", key, beside.empty() ? given : beside),
+                       hint);
+    given = key;
+  }
+  return given;
+}
+
+const Node* TableReader::excluded_by(std::string_view key) const
+{
+  if (!has(key)) return nullptr;
+  const auto relation = std::ranges::find(shape_.relations, key, &Relation::key);
+  assert(relation != shape_.relations.end());
+  for (const std::string& other : relation->excludes)
+    if (const Node* node = find(other)) return node;
+  return nullptr;
+}
+
+std::size_t TableReader::choose() const
+{
+  const Key& choice = key_of(shape_.choice);
+  const Node* given = choice.missing.empty() ? find(choice.name) : &require(choice.name);
+  const std::size_t chosen = given == nullptr ? 0 : to_choice(*given, choice.value.words);
+  const KeyGroup& own = shape_.groups[chosen];
+  for (const KeyGroup& group : shape_.groups)
+    for (const std::string& key : group.keys)
+      if (const Node* node = find(key); node != nullptr && std::ranges::count(own.keys, key) == 0)
+        throw InputError(node->where, fmt::format("does not belong to {} = \"{}\"", choice.name, own.word),
+                         fmt::format("it goes with {} = \"{}\"", choice.name, group.word));
+  return chosen;
+}
+
+void TableReader::require_group(std::size_t chosen) const
+{
+  for (const std::string& key : shape_.groups[chosen].required) (void)require(key, key_of(key).value.hint);
 }
 
 void fail_type(const Node& node, std::string_view expected, const std::string& hint)
@@ -92,13 +136,6 @@ std::string to_text(const Node& node)
   if (text->find('\0') != std::string::npos)
     throw InputError(node.where, "holds the character \\u0000", "letters, digits and ordinary signs");
   return *text;
-}
-
-bool to_bool(const Node& node)
-{
-  const auto* truth = std::get_if<bool>(&node.value);
-  if (truth == nullptr) fail_type(node, "true or false", "true or false without quotes");
-  return *truth;
 }
 
 double to_number(const Node& node)
@@ -122,63 +159,13 @@ problem::Field to_field(const Node& node)
   return problem::Field(number, node.where);
 }
 
-problem::Field to_nonnegative_field(const Node& node)
-{
-  problem::Field field = to_field(node);
-  if (field.is_constant() && field.constant() < 0)
-    throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
-                     problem::nonnegative_hint);
-  return field;
-}
-
-const Node::Array& to_components(const Node& node, std::string_view what)
-{
-  const auto* array = std::get_if<Node::Array>(&node.value);
-  if (array == nullptr || (array->size() != 2 && array->size() != 3))
-    fail_type(node, "an array of 2 or 3", std::string(what));
-  return *array;
-}
-
-std::vector<problem::Field> to_fields(const Node& node)
-{
-  std::vector<problem::Field> components;
-  for (const Node& item : to_components(node, "one number or formula per dimension, such as [0, -1]"))
-    components.push_back(to_field(item));
-  return components;
-}
-
-std::vector<double> to_numbers(const Node& node, std::string_view what)
-{
-  std::vector<double> numbers;
-  for (const Node& item : to_components(node, what)) numbers.push_back(to_number(item));
-  return numbers;
-}
-
-std::vector<double> to_vector(const Node& node, std::string_view what, const std::string& hint)
-{
-  std::vector<double> vector = to_numbers(node, what);
-  if (std::ranges::count(vector, 0.0) == std::ssize(vector))
-    throw InputError(node.where, "has no length", hint);
-  return vector;
-}
-
-std::vector<double> to_direction(const Node& node, const std::string& hint)
-{
-  if (const auto* text = std::get_if<std::string>(&node.value))
-  {
-    if (*text == "normal") return {};
-    throw InputError(node.where, fmt::format("is \"{}\"", *text), hint);
-  }
-  return to_vector(node, "\"normal\" or one number per dimension", hint);
-}
-
 double to_number_in(const Node& node, const Interval& interval, const std::string& hint)
 {
   const double number = to_number(node);
   const bool above = interval.includes_lower ? number >= interval.lower : number > interval.lower;
   const bool below = interval.includes_upper ? number <= interval.upper : number < interval.upper;
   if (!above || !below)
-    throw InputError(node.where, fmt::format("{}, found {}", requirement(interval), number), hint);
+    throw InputError(node.where, fmt::format("{}, found {}", requirement(interval, number), number), hint);
   return number;
 }
 
@@ -207,6 +194,62 @@ std::size_t to_choice(const Node& node, const std::vector<std::string>& names)
   const std::string near = closest(*text, names);
   throw InputError(node.where, fmt::format("unknown value \"{}\"", *text),
                    near.empty() ? list : fmt::format("did you mean \"{}\"? {}", near, list));
+}
+
+std::span<const Node> to_items(const Node& node, const Value& value)
+{
+  const auto* array = std::get_if<Node::Array>(&node.value);
+  if (array == nullptr && value.text)
+  {
+    if (!std::holds_alternative<std::string>(node.value)) fail_type(node, "a string or an array", value.hint);
+    return {&node, 1};
+  }
+  if (array == nullptr || array->size() > value.most || (array->size() < value.least && value.least > 1))
+    fail_type(node, value.least > 1 ? "an array of 2 or 3" : "an array", value.hint);
+  if (array->size() < value.least) throw InputError(node.where, "is empty", value.hint);
+  return *array;
+}
+
+bool is_word(const Node& node, const Value& value)
+{
+  const auto* word = std::get_if<std::string>(&node.value);
+  if (word == nullptr || value.words.empty()) return false;
+  if (std::ranges::find(value.words, *word) != value.words.end()) return true;
+  if (!value.text) throw InputError(node.where, fmt::format("is \"{}\"", *word), value.hint);
+  return false;
+}
+
+void convert(const Node& node, const Value& /*value*/, bool& target)
+{
+  const auto* truth = std::get_if<bool>(&node.value);
+  if (truth == nullptr) fail_type(node, "true or false", "true or false without quotes");
+  target = *truth;
+}
+
+void convert(const Node& node, const Value& value, double& target)
+{
+  target = to_number_in(node, *value.number, value.hint);
+}
+
+void convert(const Node& node, const Value& value, std::string& target)
+{
+  target = value.text ? to_text(node) : value.words[to_choice(node, value.words)];
+  if (target.size() < value.least) throw InputError(node.where, "is empty", value.hint);
+}
+
+void convert(const Node& node, const Value& value, std::filesystem::path& target)
+{
+  std::string path;
+  convert(node, value, path);
+  target = path;
+}
+
+void convert(const Node& node, const Value& value, problem::Field& target)
+{
+  target = to_field(node);
+  if (value.number->lower == 0 && target.is_constant() && target.constant() < 0)
+    throw InputError(node.where, fmt::format("must not be negative, found {}", describe(node)),
+                     problem::nonnegative_hint);
 }
 
 }  // namespace tribound::case_file

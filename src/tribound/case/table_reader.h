@@ -4,141 +4,199 @@
 /// Typed, checked access to the tables of a case file. Every function throws InputError that says where the
 /// value stands, what is wrong with it and what would be right.
 
-#include <initializer_list>
+#include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "tribound/case/keys.h"
 #include "tribound/case/node.h"
 #include "tribound/problem/field.h"
 
 namespace tribound::case_file
 {
 
-/// A table whose keys are known to be allowed.
+/// A table of a case, and the keys it may have.
 class TableReader
 {
  public:
-  /// Whether tables inside are keys like the others, or are named by the user ([material.<region>]).
-  enum class Subtables
-  {
-    keys,
-    named
-  };
-
-  /// Checks that `node` is a table and that its keys are among `keys`. Keeps a reference to the node.
-  TableReader(const Node& node, std::span<const std::string_view> keys,
-              Subtables subtables = Subtables::keys);
-  TableReader(const Node& node, std::initializer_list<std::string_view> keys,
-              Subtables subtables = Subtables::keys)
-      : TableReader(node, std::span(keys.begin(), keys.size()), subtables)
-  {
-  }
+  /// Checks that `node` is a table and that its keys are among those of `table`, or are tables named by the
+  /// user where it has such. Keeps references to both.
+  TableReader(const Node& node, const Table& table);
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
-  /// The value of an allowed key, or null. Subtables named by the user do not count.
+  /// The value of an allowed key, or null. Tables named by the user do not count.
   [[nodiscard]] const Node* find(std::string_view key) const;
-  /// The value of an allowed key that must be there.
+  /// The value of an allowed key that must be there; the hint is that of the key, or the given one.
+  [[nodiscard]] const Node& require(std::string_view key) const { return require(key, key_of(key).missing); }
   [[nodiscard]] const Node& require(std::string_view key, const std::string& hint) const;
   /// The tables named by the user.
   [[nodiscard]] std::vector<const Entry*> named() const;
   [[nodiscard]] const Where& where() const { return where_; }
+  [[nodiscard]] const Key& key_of(std::string_view key) const;
 
-  /// target = convert(value) if the key is given.
-  template <class T, class Convert>
-  void read(std::string_view key, T& target, const Convert& convert) const
+  /// The key of `one_of` that is given; empty: none is. Throws where another one stands beside it, which the
+  /// message calls `beside`, or by its name.
+  [[nodiscard]] std::string only(const std::string& hint, std::string_view beside = {}) const;
+  /// The key that stands beside `key` and is excluded by it; null: none does.
+  [[nodiscard]] const Node* excluded_by(std::string_view key) const;
+  /// The group of keys that the word of `choice` chooses, by its number. Throws for keys of other groups.
+  [[nodiscard]] std::size_t choose() const;
+  /// Throws where a key is missing that the group requires.
+  void require_group(std::size_t chosen) const;
+
+  /// target = the value of the key, if it is given.
+  template <class T>
+  void read(std::string_view key, T& target) const
   {
-    if (const Node* node = find(key)) target = convert(*node);
+    if (const Node* node = find(key)) convert(*node, key_of(key).value, target);
+  }
+  /// The value of a key that must be there.
+  template <class T>
+  [[nodiscard]] T get(std::string_view key) const
+  {
+    T target{};
+    convert(require(key), key_of(key).value, target);
+    return target;
   }
 
  private:
-  [[nodiscard]] bool is_named(const Entry& entry) const
-  {
-    return subtables_ == Subtables::named && entry.node.is_table();
-  }
+  [[nodiscard]] bool is_named(const Entry& entry) const { return shape_.named && entry.node.is_table(); }
 
-  const Node::Table* table_;
-  std::vector<std::string> keys_;
-  Subtables subtables_;
+  const Node::Table* entries_;
+  const Table& shape_;
   const Where& where_;
 };
-
-/// Keys that go with one of several choices.
-struct KeyGroup
-{
-  std::string_view name;  ///< of the choice
-  std::vector<std::string_view> keys;
-};
-
-/// Throws for a key that is none of the chosen group but one of another; `what` is the key of the choice.
-void refuse_keys_of_others(const TableReader& table, std::string_view what, std::span<const KeyGroup> groups,
-                           std::size_t chosen);
 
 /// A value of the wrong type.
 [[noreturn]] void fail_type(const Node& node, std::string_view expected, const std::string& hint);
 
 [[nodiscard]] std::string to_text(const Node& node);
-[[nodiscard]] bool to_bool(const Node& node);
 /// A finite number; integers count.
 [[nodiscard]] double to_number(const Node& node);
 /// A number or a formula.
 [[nodiscard]] problem::Field to_field(const Node& node);
-/// A number or a formula; throws if it is a negative constant.
-[[nodiscard]] problem::Field to_nonnegative_field(const Node& node);
-/// The items of an array of 2 or 3 (dim); `what` describes it, such as "one component per dimension".
-[[nodiscard]] const Node::Array& to_components(const Node& node, std::string_view what);
-[[nodiscard]] std::vector<problem::Field> to_fields(const Node& node);
-/// One number per dimension; `what` as above.
-[[nodiscard]] std::vector<double> to_numbers(const Node& node,
-                                             std::string_view what = "one number per dimension");
-/// The same of a vector that is not 0.
-[[nodiscard]] std::vector<double> to_vector(const Node& node, std::string_view what, const std::string& hint);
-/// "normal", for which it is empty, or a vector that is not 0.
-[[nodiscard]] std::vector<double> to_direction(const Node& node, const std::string& hint);
-
-/// The numbers a key takes.
-struct Interval
-{
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-  bool includes_lower = false;
-  bool includes_upper = false;
-};
-inline constexpr Interval positive{.lower = 0.0};
-/// Positive numbers whose squares and products are in the range of a double.
-inline constexpr Interval reasonable{
-    .lower = 1e-60, .upper = 1e60, .includes_lower = true, .includes_upper = true};
-inline constexpr Interval not_negative{.lower = 0.0, .includes_lower = true};
-
-/// A number in the interval; the hint is a sentence about what would be right.
-[[nodiscard]] double to_number_in(const Node& node, const Interval& interval, const std::string& hint);
 /// An integer in [lower, upper].
 [[nodiscard]] long to_integer_in(const Node& node, long lower, long upper, const std::string& hint);
-
-/// The converter Node -> double for TableReader::read.
-[[nodiscard]] inline auto number_in(Interval interval, const std::string& hint)
-{
-  return [=](const Node& node) { return to_number_in(node, interval, hint); };
-}
-
-/// The converter Node -> Integer for TableReader::read.
-template <class Integer = int>
-[[nodiscard]] auto integer_from(Integer lower, const std::string& hint,
-                                Integer upper = std::numeric_limits<Integer>::max())
-{
-  return [=](const Node& node) { return static_cast<Integer>(to_integer_in(node, lower, upper, hint)); };
-}
-
+/// A number in the interval.
+[[nodiscard]] double to_number_in(const Node& node, const Interval& interval, const std::string& hint);
 /// The position of the string in `names`; throws listing them.
 [[nodiscard]] std::size_t to_choice(const Node& node, const std::vector<std::string>& names);
+/// The entries of an array, or the one value in its place where that is allowed.
+[[nodiscard]] std::span<const Node> to_items(const Node& node, const Value& value);
 
-/// The converter Node -> Enum for TableReader::read; the names are those of the values 0, 1, ...
-template <class Enum>
-[[nodiscard]] auto one_of(std::vector<std::string> names)
+/// Whether the node is one of the words that stand for "not given", such as "free"; throws for another word
+/// where no other text is allowed.
+[[nodiscard]] bool is_word(const Node& node, const Value& value);
+
+/// target = what the node says, checked against what is allowed.
+void convert(const Node& node, const Value& value, bool& target);
+void convert(const Node& node, const Value& value, double& target);
+void convert(const Node& node, const Value& value, std::string& target);
+void convert(const Node& node, const Value& value, std::filesystem::path& target);
+void convert(const Node& node, const Value& value, problem::Field& target);
+
+template <class T>
+requires std::is_integral_v<T>
+void convert(const Node& node, const Value& value, T& target)
 {
-  return [names = std::move(names)](const Node& node) { return static_cast<Enum>(to_choice(node, names)); };
+  const double upper = value.number->upper;
+  const long largest = std::numeric_limits<T>::max();
+  target = static_cast<T>(
+      to_integer_in(node, static_cast<long>(value.number->lower),
+                    upper < static_cast<double>(largest) ? static_cast<long>(upper) : largest, value.hint));
 }
+
+/// The words are those of the values 0, 1, ...
+template <class T>
+requires std::is_enum_v<T>
+void convert(const Node& node, const Value& value, T& target)
+{
+  target = static_cast<T>(to_choice(node, value.words));
+}
+
+/// A word stands for "not given".
+template <class T>
+void convert(const Node& node, const Value& value, std::optional<T>& target)
+{
+  if (is_word(node, value))
+    target.reset();
+  else
+    convert(node, value, target.emplace());
+}
+
+/// Likewise.
+template <class T>
+void convert(const Node& node, const Value& value, std::vector<T>& target)
+{
+  target.clear();
+  if (is_word(node, value)) return;
+  for (const Node& item : to_items(node, value)) convert(item, value.items.front(), target.emplace_back());
+  if constexpr (std::is_same_v<T, double>)
+    if (value.has_length && std::ranges::count(target, 0.0) == std::ssize(target))
+      throw InputError(node.where, "has no length", value.hint);
+}
+
+/// A key that sets a member of a T.
+template <class T>
+struct Option
+{
+  Key key;
+  void (*read)(const TableReader& table, std::string_view key, T& target);
+};
+
+namespace detail
+{
+template <class T, class Member>
+T owner(Member T::*);
+}  // namespace detail
+
+/// The key that sets target.*member, or (target.*member).*inner ...
+template <auto member, auto... inner>
+[[nodiscard]] auto option(std::string name, Value value, std::string missing = {})
+{
+  using T = decltype(detail::owner(member));
+  return Option<T>{{std::move(name), std::move(value), std::move(missing)},
+                   [](const TableReader& table, std::string_view key, T& target)
+                   { table.read(key, ((target.*member).*....*inner)); }};
+}
+
+/// A table each key of which sets a member of a T.
+template <class T>
+class Options
+{
+ public:
+  Options(std::string name, const std::vector<Option<T>>& options) : table_{.name = std::move(name)}
+  {
+    for (const Option<T>& option : options)
+    {
+      table_.keys.push_back(option.key);
+      readers_.push_back(option.read);
+    }
+  }
+
+  [[nodiscard]] const Table& table() const { return table_; }
+  /// Sets what is given.
+  void read(const TableReader& given, T& target) const
+  {
+    for (std::size_t i = 0; i < readers_.size(); ++i)
+    {
+      const Key& key = table_.keys[i];
+      if (!key.missing.empty()) (void)given.require(key.name);
+      readers_[i](given, key.name, target);
+    }
+  }
+  void read(const Node& node, T& target) const { read(TableReader(node, table_), target); }
+
+ private:
+  Table table_;
+  std::vector<void (*)(const TableReader&, std::string_view, T&)> readers_;
+};
 
 }  // namespace tribound::case_file

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -12,13 +12,16 @@ namespace tribound::case_file
 namespace
 {
 
+constexpr auto weight_hint = "of the water per volume, such as 9.81e-3 in MN and m";
 constexpr auto line_hint = "two points of the base, upstream and downstream: heel = [0, 0], toe = [60, 0]";
 
 problem::BaseLine read_line(const TableReader& table)
 {
   const Node& heel = table.require("heel", line_hint);
   const Node& toe = table.require("toe", line_hint);
-  problem::BaseLine line{to_numbers(heel), to_numbers(toe), heel.where};
+  problem::BaseLine line{{}, {}, heel.where};
+  table.read("heel", line.heel);
+  table.read("toe", line.toe);
   if (line.toe.size() != line.heel.size())
     throw InputError(toe.where,
                      fmt::format("has {} components, heel has {}", line.toe.size(), line.heel.size()),
@@ -36,6 +39,20 @@ problem::Field read_level(const Node& node)
   return level;
 }
 
+const Table& drain_table()
+{
+  constexpr auto efficiency_hint = "0 for none to 1, such as 0.67";
+  static const Table table{
+      .name = "drain",
+      .keys = {{"at", number_in(positive), "its distance from the heel along the base, such as 8"},
+               {"efficiency",
+                number_in({.lower = 0, .upper = 1, .includes_lower = true, .includes_upper = true},
+                          efficiency_hint),
+                efficiency_hint},
+               {"rule", one_of({"linear", "usbr"})}}};
+  return table;
+}
+
 problem::Drain read_drain(const Node& node, double length)
 {
   enum class Rule
@@ -43,56 +60,68 @@ problem::Drain read_drain(const Node& node, double length)
     linear,
     usbr
   };
-  const TableReader table(node, {"at", "efficiency", "rule"});
-  const Node& at = table.require("at", "its distance from the heel along the base, such as 8");
-  const Node& efficiency = table.require("efficiency", "0 for none to 1, such as 0.67");
+  const TableReader table(node, drain_table());
   auto rule = Rule::linear;
-  table.read("rule", rule, one_of<Rule>({"linear", "usbr"}));
-  return {.at = to_number_in(at, {.lower = 0, .upper = length},
+  table.read("rule", rule);
+  return {.at = to_number_in(table.require("at"), {.lower = 0, .upper = length},
                              fmt::format("a distance from the heel, more than 0 and less than {:.6g}, the "
                                          "length of the base",
                                          length)),
-          .efficiency = to_number_in(efficiency,
-                                     {.lower = 0, .upper = 1, .includes_lower = true, .includes_upper = true},
-                                     "0 for none to 1, such as 0.67"),
+          .efficiency = table.get<double>("efficiency"),
           .from_full_head = rule == Rule::usbr};
 }
-
-constexpr std::array level_keys = {"head", "tail", "weight", "heel", "toe", "crack", "drain"};
 
 problem::Seepage read_seepage(const TableReader& table)
 {
   constexpr auto hint = "pressure = \"...\", or head and weight with heel and toe";
   const Node& head = table.require("head", hint);
-  const Node& weight = table.require("weight", "of the water per volume, such as 9.81e-3 in MN and m");
-  problem::Seepage seepage{.head = read_level(head),
-                           .weight = to_number_in(weight, positive, "per volume, such as 9.81e-3"),
-                           .line = read_line(table)};
-  table.read("tail", seepage.tail, read_level);
+  (void)table.require("weight", weight_hint);
+  problem::Seepage seepage{
+      .head = read_level(head), .weight = table.get<double>("weight"), .line = read_line(table)};
+  if (const Node* tail = table.find("tail")) seepage.tail = read_level(*tail);
   // Without water downstream that level is the height of the toe, or anything below.
   if (!table.has("tail")) seepage.tail = problem::Field(0.0, head.where);
-  table.read("crack", seepage.crack, to_bool);
+  table.read("crack", seepage.crack);
   if (const Node* drain = table.find("drain")) seepage.drain = read_drain(*drain, seepage.line.length());
   return seepage;
 }
 
 }  // namespace
 
+const Table& water_table()
+{
+  static const Table table = []
+  {
+    Table water{.name = "water",
+                .keys = {{"pressure", nonnegative_datum()},
+                         {"head", datum()},
+                         {"tail", datum()},
+                         {"weight", number_in(positive, weight_hint)},
+                         {"heel", numbers()},
+                         {"toe", numbers()},
+                         {"crack", truth()},
+                         {"drain", keys_of(drain_table())}},
+                .one_of = {"pressure", "head"},
+                .relations = {{.key = "pressure"}, {.key = "head", .needs = {"weight", "heel", "toe"}}}};
+    for (const Key& key : std::span(water.keys).subspan(1)) water.relations[0].excludes.push_back(key.name);
+    return water;
+  }();
+  return table;
+}
+
 void read_water(const TableReader& interface, problem::Contact& contact)
 {
   if (interface.has("heel") || interface.has("toe")) contact.base = read_line(interface);
   const Node* node = interface.find("water");
   if (node == nullptr) return;
-  const TableReader table(*node, {"pressure", "head", "tail", "weight", "heel", "toe", "crack", "drain"});
-  if (const Node* pressure = table.find("pressure"))
+  const TableReader table(*node, water_table());
+  if (const Node* other = table.excluded_by("pressure"))
+    throw InputError(other->where, "stands beside pressure",
+                     "water is given by its pressure or by its levels; heel and toe for the figures stand "
+                     "beside water");
+  if (table.has("pressure"))
   {
-    for (const char* key : level_keys)
-      if (const Node* other = table.find(key))
-        throw InputError(
-            other->where, "stands beside pressure",
-            "water is given by its pressure or by its levels; heel and toe for the figures stand "
-            "beside water");
-    contact.water.emplace(to_nonnegative_field(*pressure));
+    contact.water.emplace(table.get<problem::Field>("pressure"));
     return;
   }
   for (const char* key : {"heel", "toe"})

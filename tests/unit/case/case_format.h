@@ -60,7 +60,8 @@ inline std::string section_table(const std::string& heading)
   return table == "boundary.NAME" ? "boundary.top" : table;
 }
 
-inline std::vector<Row> documented_keys()
+/// All of them; those of an interface, which has no section of its own, in the table "interface".
+inline std::vector<Row> all_documented_keys()
 {
   std::ifstream stream(TRIBOUND_DOCS "/case-format.md");
   std::vector<Row> rows;
@@ -79,7 +80,7 @@ inline std::vector<Row> documented_keys()
     {
       columns = cells;
       const std::vector<std::string> inner = quoted(columns[0], "`");
-      table = inner.empty() ? section : section + "." + inner[0];
+      table = inner.empty() ? section : (section.empty() ? "" : section + ".") + inner[0];
       continue;
     }
     if (!columns[0].starts_with("key") || line.starts_with("|---")) continue;
@@ -89,6 +90,15 @@ inline std::vector<Row> documented_keys()
     for (const std::string& key : quoted(cells[0], "`"))
       rows.push_back({table, key, type, standard < std::ssize(columns) ? cells[standard] : ""});
   }
+  return rows;
+}
+
+/// Those of sections: what goes together in an interface takes more than a value for each key.
+inline std::vector<Row> documented_keys()
+{
+  std::vector<Row> rows = all_documented_keys();
+  std::erase_if(rows, [](const Row& row)
+                { return row.table == "interface" || row.table == "water" || row.table == "drain"; });
   return rows;
 }
 

@@ -1,0 +1,112 @@
+#include "tribound/case/keys.h"
+
+#include <utility>
+
+namespace tribound::case_file
+{
+
+Value truth()
+{
+  return {.truth = true};
+}
+
+Value text(std::string hint, std::size_t least)
+{
+  return {.text = true, .least = least, .hint = std::move(hint)};
+}
+
+Value one_of(std::vector<std::string> words)
+{
+  return {.words = std::move(words)};
+}
+
+Value number_in(Interval interval, std::string hint)
+{
+  return {.number = interval, .hint = std::move(hint)};
+}
+
+Value integer_from(double lower, std::string hint, double upper)
+{
+  return {.number = Interval{.lower = lower, .upper = upper, .includes_lower = true, .includes_upper = true},
+          .is_integer = true,
+          .hint = std::move(hint)};
+}
+
+Value datum()
+{
+  return {.text = true,
+          .number = Interval{.lower = -reasonable.upper,
+                             .upper = reasonable.upper,
+                             .includes_lower = true,
+                             .includes_upper = true}};
+}
+
+Value nonnegative_datum(std::string hint)
+{
+  Value value = datum();
+  value.number->lower = 0;
+  value.hint = std::move(hint);
+  return value;
+}
+
+Value vector_of(Value item, std::string hint)
+{
+  return {.items = {std::move(item)}, .least = 2, .most = 3, .hint = std::move(hint)};
+}
+
+Value numbers(std::string hint)
+{
+  return vector_of(number_in(finite), std::move(hint));
+}
+
+Value data(std::string hint)
+{
+  return vector_of(datum(), std::move(hint));
+}
+
+Value direction(std::string hint)
+{
+  Value value = numbers(std::move(hint));
+  value.has_length = true;
+  return value;
+}
+
+Value array_of(Value item, std::size_t least, std::string hint)
+{
+  return {.items = {std::move(item)}, .least = least, .hint = std::move(hint)};
+}
+
+Value keys_of(const Table& table)
+{
+  return {.table = &table};
+}
+
+Value operator|(Value one, const Value& other)
+{
+  one.truth = one.truth || other.truth;
+  one.text = one.text || other.text;
+  one.words.insert(one.words.end(), other.words.begin(), other.words.end());
+  if (!one.number)
+  {
+    one.number = other.number;
+    one.is_integer = other.is_integer;
+  }
+  if (one.items.empty() && !other.items.empty())
+  {
+    one.items = other.items;
+    one.least = other.least;
+    one.most = other.most;
+    one.has_length = other.has_length;
+  }
+  if (one.table == nullptr) one.table = other.table;
+  if (one.hint.empty()) one.hint = other.hint;
+  return one;
+}
+
+std::vector<Key> operator+(std::vector<Key> keys, const std::vector<Key>& others)
+{
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
+}
+
+}  // namespace tribound::case_file

@@ -1,0 +1,95 @@
+#include "tribound/case/region_reader.h"
+
+#include <utility>
+
+namespace tribound::case_file
+{
+
+namespace
+{
+
+const Options<MaterialConfig>& material_options()
+{
+  using M = MaterialConfig;
+  static const Options<M> options(
+      "material",
+      {option<&M::E>("E",
+                     number_in(reasonable,
+                               "Young's modulus in the units of stress, such as 210e9; its square must be a "
+                               "number, too"),
+                     "Young's modulus, in the units of stress: E = 210e9"),
+       option<&M::nu>("nu",
+                      number_in({.lower = -1.0, .upper = 0.5},
+                                "Poisson's ratio, such as 0.3; nearly incompressible is 0.499, not 0.5"),
+                      "Poisson's ratio in (-1, 0.5): nu = 0.3"),
+       option<&M::plane>("plane", one_of({"strain", "stress"}))});
+  return options;
+}
+
+MaterialConfig read_material(const TableReader& table, std::string region, problem::PlaneModel plane)
+{
+  MaterialConfig material{.region = std::move(region), .plane = plane, .where = table.where()};
+  material_options().read(table, material);
+  return material;
+}
+
+const Options<LoadConfig>& load_options()
+{
+  static const Options<LoadConfig> options(
+      "load", {option<&LoadConfig::body>("body", data(), "force per volume: body = [0, -9.81]")});
+  return options;
+}
+
+LoadConfig read_load(const TableReader& table, std::string region)
+{
+  LoadConfig load{.region = std::move(region), .body = {}, .where = table.require("body").where};
+  load_options().read(table, load);
+  return load;
+}
+
+/// The table that also has one of the same keys for each region.
+Table of_regions(const Table& table)
+{
+  return {.name = table.name, .keys = table.keys, .named = keys_of(table)};
+}
+
+}  // namespace
+
+const Table& material_table()
+{
+  static const Table table = of_regions(material_options().table());
+  return table;
+}
+
+const Table& load_table()
+{
+  static const Table table = of_regions(load_options().table());
+  return table;
+}
+
+std::vector<MaterialConfig> read_materials(const Node& node)
+{
+  const TableReader table(node, material_table());
+  problem::PlaneModel plane = problem::PlaneModel::strain;
+  table.read("plane", plane);
+
+  std::vector<MaterialConfig> materials;
+  if (table.has("E") || table.has("nu") || table.named().empty())
+    materials.push_back(read_material(table, {}, plane));
+  for (const Entry* entry : table.named())
+    materials.push_back(
+        read_material(TableReader(entry->node, material_options().table()), entry->name, plane));
+  return materials;
+}
+
+std::vector<LoadConfig> read_loads(const Node& node)
+{
+  const TableReader table(node, load_table());
+  std::vector<LoadConfig> loads;
+  if (table.has("body")) loads.push_back(read_load(table, {}));
+  for (const Entry* entry : table.named())
+    loads.push_back(read_load(TableReader(entry->node, load_options().table()), entry->name));
+  return loads;
+}
+
+}  // namespace tribound::case_file
