@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "app/command/commands.h"
+#include "app/console/text.h"
+#include "app/result/case_schema.h"
 #include "app/shared_file.h"
 #include "tribound/base/error.h"
 #include "tribound/base/memory.h"
@@ -96,7 +98,8 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   app.footer(help_footer + guide_directory().string());
   CLI::App* init = app.add_subcommand("init", "Write a commented case to start from");
   CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
-  for (CLI::App* command : {init, info}) command->group(program_commands);
+  CLI::App* schema = app.add_subcommand("schema", "Print the case format as a JSON Schema, for editors");
+  for (CLI::App* command : {init, info, schema}) command->group(program_commands);
   CLI::App* check =
       app.add_subcommand("check", "Read and examine a case without solving it, say what to mend");
   CLI::App* run = app.add_subcommand("run", "Solve a case and write its results");
@@ -161,6 +164,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "check") check(arguments, arguments.json);
   if (command == "init") init(arguments.start, arguments.directory);
   if (command == "info") info(true);
+  if (command == "schema") print(case_schema());
   return ExitCode::success;
 }
 

@@ -27,7 +27,7 @@ struct EmbeddedFile
   std::string_view text;
 };
 
-/// The files of app/templates, see cmake/embed.cmake.
+/// The files of app/templates, and docs/case-format.md; see cmake/embed.cmake.
 [[nodiscard]] std::span<const EmbeddedFile> embedded_files();
 
 }  // namespace tribound::app

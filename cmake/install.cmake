@@ -14,6 +14,7 @@ if(TARGET tribound_app)
   install(FILES ${PROJECT_BINARY_DIR}/tribound.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${PROJECT_SOURCE_DIR}/app/completions/tribound.bash
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tribound)
+  install(FILES ${PROJECT_BINARY_DIR}/tribound.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
   install(FILES ${PROJECT_SOURCE_DIR}/app/completions/_tribound DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 

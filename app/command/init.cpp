@@ -16,9 +16,10 @@ namespace tribound::app
 namespace
 {
 
+/// The name of the case it belongs to; empty: of none.
 std::string stem(const EmbeddedFile& file)
 {
-  return std::filesystem::path(file.name).stem().string();
+  return file.name.ends_with(".md") ? "" : std::filesystem::path(file.name).stem().string();
 }
 
 std::vector<EmbeddedFile> files_of(const std::string& name)
@@ -53,7 +54,8 @@ std::vector<std::string> template_names()
 {
   std::vector<std::string> names;
   for (const EmbeddedFile& file : embedded_files())
-    if (std::ranges::find(names, stem(file)) == names.end()) names.push_back(stem(file));
+    if (!stem(file).empty() && std::ranges::find(names, stem(file)) == names.end())
+      names.push_back(stem(file));
   return names;
 }
 

@@ -3,7 +3,7 @@
 _tribound()
 {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands="init info check run sweep verify study" command= word candidates=
+  local commands="init info schema check run sweep verify study" command= word candidates=
 
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     if [[ " $commands " == *" $word "* ]]; then
@@ -28,7 +28,7 @@ _tribound()
       case $command in
         "") candidates="$commands --help --version" ;;
         init) candidates="block hertz dam --directory --help" ;;
-        info) candidates="--help" ;;
+        info | schema) candidates="--help" ;;
         check) candidates="--set --quiet --json --help" ;;
         run) candidates="--set --quiet --restart --help" ;;
         study) candidates="--set --quiet --help" ;;

@@ -8,7 +8,7 @@ file(REMOVE_RECURSE ${SCRATCH})
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
 foreach(file share/man/man1/tribound.1 share/bash-completion/completions/tribound share/zsh/site-functions/_tribound
              share/doc/tribound/docs/case-format.md share/doc/tribound/docs/images/report.png
-             share/doc/tribound/examples/05_dam/case.toml share/tribound/picture)
+             share/doc/tribound/examples/05_dam/case.toml share/tribound/picture share/tribound/tribound.schema.json)
   if(NOT EXISTS ${SCRATCH}/prefix/${file})
     message(FATAL_ERROR "${file} is not installed")
   endif()

@@ -13,10 +13,7 @@ const Options<MaterialConfig>& material_options()
   using M = MaterialConfig;
   static const Options<M> options(
       "material",
-      {option<&M::E>("E",
-                     number_in(reasonable,
-                               "Young's modulus in the units of stress, such as 210e9; its square must be a "
-                               "number, too"),
+      {option<&M::E>("E", number_in(positive, "Young's modulus in the units of stress, such as 210e9"),
                      "Young's modulus, in the units of stress: E = 210e9"),
        option<&M::nu>("nu",
                       number_in({.lower = -1.0, .upper = 0.5},
@@ -30,6 +27,8 @@ MaterialConfig read_material(const TableReader& table, std::string region, probl
 {
   MaterialConfig material{.region = std::move(region), .plane = plane, .where = table.where()};
   material_options().read(table, material);
+  (void)to_number_in(table.require("E"), reasonable,
+                     "squares of stresses must be numbers, too: take other units");
   return material;
 }
 

@@ -30,10 +30,10 @@ std::vector<std::string> key_names(const Table& table)
                   fmt::join(keys, ", "), table.named ? ", or tables of single regions" : ""));
 }
 
-std::string requirement(const Interval& interval, double number)
+std::string requirement(const Interval& interval)
 {
-  if ((interval.lower == 0.0 && std::isinf(interval.upper)) || (interval.lower > 0 && number <= 0))
-    return interval.lower == 0.0 && interval.includes_lower ? "must not be negative" : "must be positive";
+  if (interval.lower == 0.0 && std::isinf(interval.upper))
+    return interval.includes_lower ? "must not be negative" : "must be positive";
   return fmt::format("must lie in {}{}, {}{}", interval.includes_lower ? '[' : '(', interval.lower,
                      interval.upper, interval.includes_upper ? ']' : ')');
 }
@@ -165,7 +165,7 @@ double to_number_in(const Node& node, const Interval& interval, const std::strin
   const bool above = interval.includes_lower ? number >= interval.lower : number > interval.lower;
   const bool below = interval.includes_upper ? number <= interval.upper : number < interval.upper;
   if (!above || !below)
-    throw InputError(node.where, fmt::format("{}, found {}", requirement(interval, number), number), hint);
+    throw InputError(node.where, fmt::format("{}, found {}", requirement(interval), number), hint);
   return number;
 }
 
