@@ -167,12 +167,13 @@ TEST(Statements, DisplacementsInTheSpaceAreSaidToBe)
 
 TEST(Statements, SayForWhichLaw)
 {
+  using ::testing::AllOf;
   const DiscreteProblem<2> tresca = moved_block(0, Tresca(0.1));
   EXPECT_THAT(certify::statements(tresca.form, certify::ContactRule::resolved).law,
               HasSubstr("exists and is unique"));
   const DiscreteProblem<2> coulomb = moved_block(0, Coulomb(0.1));
   EXPECT_THAT(certify::statements(coulomb.form, certify::ContactRule::resolved).law,
-              HasSubstr("small friction"));
+              AllOf(HasSubstr("existence is known for small"), HasSubstr("uniqueness is not known")));
 }
 
 /// The right-hand side of a block that is held at the bottom and loaded on top, and what its certificate does

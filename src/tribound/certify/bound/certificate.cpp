@@ -84,9 +84,10 @@ std::string describe_law(const problem::Problem<dim>& problem)
            "softening, with a given friction threshold: unique";
   const bool minimum = std::ranges::all_of(laws, problem::is_minimum);
   if (!minimum)
-    return "Coulomb friction: existence and uniqueness are known for a small friction coefficient only; the "
-           "residual is bounded in any case";
-  return "unilateral contact without friction or with Tresca friction: the solution exists and is unique";
+    return "Coulomb friction: existence is known for small friction coefficients; uniqueness is not known "
+           "even then, but for criteria on the solution; the residual is bounded in any case";
+  return "unilateral contact without friction or with Tresca friction: the solution exists and is unique, "
+         "but for motions without stress of bodies that contact alone holds";
 }
 
 /// What was done about data that are no polynomials.
