@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Compares what the program says about its command line with its manual and with what shells complete.
 
-    command_line.py PROGRAM MANUAL BASH_COMPLETION ZSH_COMPLETION
+    command_line.py PROGRAM MANUAL BASH_COMPLETION ZSH_COMPLETION OUTPUT_PAGE
 
-Every command and every option of --help must be in the manual. bash and zsh (where it is installed) are asked what they
+Every command and every option of --help must be in the manual and in its synopsis, every file of the page docs/output.md in
+its list of files. bash and zsh (where it is installed) are asked what they
 complete: that must be the commands, their options and the case files, and nothing else.
 """
 
@@ -32,11 +33,15 @@ def commands(program):
 
 
 @cache
-def options(program, *command):
-    """The options of a command, all spellings."""
+def spellings(program, *command):
+    """The options of a command, of each all spellings."""
     text = printed(program, *command, "--help").split("Examples:")[0]
-    lines = [line for line in text.splitlines() if line.startswith("  -")]
-    return sorted({option for line in lines for option in re.findall(r"(?<![\w-])--?[a-z]+", line.split("   ")[0])})
+    lines = [line.split("   ")[0] for line in text.splitlines() if line.startswith("  -")]
+    return [re.findall(r"(?<![\w-])--?[a-z][a-z-]*", line) for line in lines]
+
+
+def options(program, *command):
+    return sorted({name for names in spellings(program, *command) for name in names})
 
 
 def manual_text(file):
@@ -48,8 +53,27 @@ def section(text, name):
     return re.search(rf"^\.SH {name}\n(.*?)(?=^\.SH |\Z)", text, re.MULTILINE | re.DOTALL).group(1)
 
 
-def manual_differences(program, file):
+def synopsis_differences(program, text):
+    synopses = dict(re.findall(r"^\.B tribound (\w+)\n(.*?)(?=^\.br|\Z)", section(text, "SYNOPSIS"), re.MULTILINE | re.DOTALL))
+    for command in commands(program):
+        for names in spellings(program, command):
+            if "--help" not in names and not set(names) & set(re.findall(r"--?[a-z][a-z-]*", synopses.get(command, ""))):
+                yield f"the synopsis of {command} has no option {names[-1]}"
+
+
+def file_differences(text, page):
+    """Files and directories that the tables of the page begin their rows with."""
+    for table in re.findall(r"^\| file \| contents \|\n(.*?)\n\n", page.read_text(), re.MULTILINE | re.DOTALL):
+        for row in table.splitlines():
+            for name in re.findall(r"`([^`]+)`", row.split("|")[1].replace("0001", "NNNN").replace("0002", "NNNN")):
+                if not re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.]\w)", section(text, "FILES")):
+                    yield f"the manual has no file {name}"
+
+
+def manual_differences(program, file, page):
     text = manual_text(file)
+    yield from synopsis_differences(program, text)
+    yield from file_differences(text, page)
     for command in commands(program):
         if not re.search(rf"^\.BI? {command}\b", section(text, "COMMANDS"), re.MULTILINE):
             yield f"the manual has no command {command}"
@@ -137,9 +161,9 @@ def zsh_differences(program, file):
 
 
 def main():
-    program, manual, bash_completion, zsh_completion = (Path(argument).resolve() for argument in sys.argv[1:])
+    program, manual, bash_completion, zsh_completion, page = (Path(argument).resolve() for argument in sys.argv[1:])
     problems = [
-        *manual_differences(program, manual),
+        *manual_differences(program, manual, page),
         *bash_differences(program, bash_completion),
         *zsh_differences(program, zsh_completion),
     ]
