@@ -8,38 +8,31 @@ namespace tribound::app
 namespace
 {
 
-/// The folder of this program; empty where the system does not tell.
-std::filesystem::path program_directory()
+/// `name` in a folder given relative to the one above that of this program, or else in one of the prefix.
+std::filesystem::path find_installed(const char* relative, const char* absolute, const std::string& name)
 {
   std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  for (const std::filesystem::path& folder :
+       {program.parent_path() / ".." / relative, std::filesystem::path(absolute)})
+  {
+    std::filesystem::path file = std::filesystem::canonical(folder / name, error);
+    if (!error) return file;
+  }
+  return {};
 }
 
 }  // namespace
 
 std::filesystem::path find_shared_file(const std::string& name)
 {
-  for (const std::filesystem::path& folder :
-       {program_directory() / ".." / TRIBOUND_RELATIVE_SHARE, std::filesystem::path(TRIBOUND_SCRIPTS),
-        std::filesystem::path(TRIBOUND_PAGE), std::filesystem::path(TRIBOUND_SHARE)})
-  {
-    std::error_code error;
-    std::filesystem::path file = (folder / name).lexically_normal();
-    if (std::filesystem::is_regular_file(file, error)) return file;
-  }
-  return {};
+  return find_installed(TRIBOUND_RELATIVE_SHARE, TRIBOUND_SHARE, name);
 }
 
 std::filesystem::path guide_directory()
 {
-  for (const std::filesystem::path& folder :
-       {program_directory() / ".." / TRIBOUND_RELATIVE_DOC / "docs", std::filesystem::path(TRIBOUND_GUIDE)})
-  {
-    std::error_code error;
-    std::filesystem::path directory = folder.lexically_normal();
-    if (std::filesystem::is_regular_file(directory / "case-format.md", error)) return directory;
-  }
-  return std::filesystem::path(TRIBOUND_DOC) / "docs";
+  const std::filesystem::path found = find_installed(TRIBOUND_RELATIVE_DOC, TRIBOUND_DOC, "docs");
+  return found.empty() ? std::filesystem::path(TRIBOUND_DOC) / "docs" : found;
 }
 
 }  // namespace tribound::app

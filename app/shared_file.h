@@ -12,13 +12,12 @@
 namespace tribound::app
 {
 
-/// The file of this name: in share/tribound of the installation the program belongs to, which may have been
-/// moved; else in the source or build tree; else under the prefix of the installation. Empty where it is in
-/// none of them.
+/// The file of this name, without symbolic links: in share/tribound of the installation or build tree that
+/// the program belongs to, which may have been moved; else under the prefix of the installation. Empty where
+/// it is in neither.
 [[nodiscard]] std::filesystem::path find_shared_file(const std::string& name);
 
-/// The folder of the guide, found in the same way: in the documentation of the installation, or in the
-/// sources.
+/// The folder of the guide, found in the same way; where the prefix has it if it is in neither.
 [[nodiscard]] std::filesystem::path guide_directory();
 
 struct EmbeddedFile

@@ -1,6 +1,6 @@
-// Bundles the page into one file: node build.mjs <report.html>
+// Bundles the page into one file, and writes the licences of what is in it beside it: node build.mjs <report.html>
 import { createHash } from "node:crypto";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -8,7 +8,7 @@ import { build } from "esbuild";
 const folder = dirname(fileURLToPath(import.meta.url));
 const target = process.argv[2] ?? `${folder}/dist/report.html`;
 
-const { outputFiles } = await build({
+const { outputFiles, metafile } = await build({
   entryPoints: [`${folder}/src/main.js`],
   absWorkingDir: folder,
   bundle: true,
@@ -19,6 +19,7 @@ const { outputFiles } = await build({
   legalComments: "none",
   outdir: "out",
   write: false,
+  metafile: true,
   logLevel: "warning",
 });
 const text = (ending) => outputFiles.find((file) => file.path.endsWith(ending)).text;
@@ -38,6 +39,20 @@ for (const [place, part] of Object.entries(parts)) {
   if (page.split(place).length !== 2) throw new Error(`index.html: ${place} must stand there once`);
   page = page.replace(place, () => part);
 }
+
+// The notices that have to accompany copies of the packages; where there is no file of them, the README has them.
+const packages = new Set(Object.keys(metafile.inputs).map((file) => file.match(/^.*node_modules\/(@[^/]+\/)?[^/]+/)?.[0]));
+packages.delete(undefined);
+const licences = [...packages].sort().map((path) => {
+  const { name, version, license } = JSON.parse(readFileSync(`${folder}/${path}/package.json`, "utf8"));
+  const all = readdirSync(`${folder}/${path}`);
+  const notices = all.filter((file) => /^(licen[cs]e|copying|notice)/i.test(file));
+  const files = notices.length > 0 ? notices : all.filter((file) => /^readme/i.test(file));
+  const texts = files.map((file) => readFileSync(`${folder}/${path}/${file}`, "utf8").trim());
+  return [`${name} ${version}, licence ${license}`, ...texts].join("\n\n");
+});
+
 mkdirSync(dirname(target), { recursive: true });
 writeFileSync(target, page);
+writeFileSync(`${dirname(target)}/report-licences.txt`, `${["What report.html is made of, besides Tribound's own code.", ...licences].join("\n\n\n")}\n`);
 console.log(`${target}: ${(page.length / 1e6).toFixed(2)} MB`);
