@@ -35,10 +35,13 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tribound-config-version.c
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/tribound-config-version.cmake
         DESTINATION ${package_dir})
-install(FILES LICENSE COPYING README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# The guide and the examples it refers to, beside each other as in the sources; and the script of pictures.
+# The guide, the examples and whatever else it refers to, beside each other as in the sources; and the script of pictures.
+install(FILES CHANGELOG.md CITATION.cff CONTRIBUTING.md COPYING LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES src/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src)
+install(FILES bench/README.md bench/block3d.toml DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png"
                                                                                           PATTERN "*.svg" PATTERN "*.bib")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "out" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "out" EXCLUDE
+                                                                                           PATTERN "__pycache__" EXCLUDE)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/picture DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
