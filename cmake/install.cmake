@@ -18,9 +18,10 @@ if(TARGET tribound_app)
   install(FILES ${PROJECT_SOURCE_DIR}/app/completions/_tribound DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 
-# What the program runs: app/result/figures.cpp.
-install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/study_figures DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
-foreach(module result_files study_bodies study_charts study_fields)
+# What the program runs (app/result/figures.cpp), and the script of pictures.
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/study_figures ${PROJECT_SOURCE_DIR}/scripts/picture
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
+foreach(module raster result_charts result_files result_picture result_surface study_bodies study_charts study_fields)
   install(FILES ${PROJECT_SOURCE_DIR}/scripts/${module}.py DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
 endforeach()
 
@@ -36,7 +37,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tribound-config-version.c
 install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/tribound-config-version.cmake
         DESTINATION ${package_dir})
 
-# The guide, the examples and whatever else it refers to, beside each other as in the sources; and the script of pictures.
+# The guide, the examples and whatever else it refers to, beside each other as in the sources.
 install(FILES CHANGELOG.md CITATION.cff CONTRIBUTING.md COPYING LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES src/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src)
 install(FILES bench/README.md bench/block3d.toml DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
@@ -44,4 +45,3 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
                                                                                           PATTERN "*.svg" PATTERN "*.bib")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "out" EXCLUDE
                                                                                            PATTERN "__pycache__" EXCLUDE)
-install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/picture DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)

@@ -7,7 +7,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-OPEN, STICK, SLIP = 0, 1, 2  # contact status
+OPEN, STICK, SLIP, TIED = 0, 1, 2, 3  # contact status
 
 DIMENSION_OF_CELL_TYPE = {68: 1, 69: 2, 71: 3}  # VTK Lagrange curve, triangle, tetrahedron
 
@@ -25,6 +25,11 @@ class Grid:
     def corners(self):
         """Cells x (dimension + 1) numbers of points."""
         return self.nodes[:, : self.dimension + 1]
+
+    def part(self, cells):
+        """The same with some of the cells."""
+        data = {name: values[cells] for name, values in self.cell_data.items()}
+        return Grid(self.dimension, self.points, self.nodes[cells], self.point_data, data)
 
 
 def read_grid(file):
@@ -70,8 +75,11 @@ def friction(contact):
 
 
 def displacement_scale(points, displacement):
-    """A round factor (1, 2, 5, 10, ...) by which the largest displacement is about a tenth of the body."""
-    factor = 0.1 * np.ptp(points, axis=0).max() / np.linalg.norm(displacement, axis=1).max()
+    """A round factor (1, 2, 5, 10, ...) by which the largest displacement is about a tenth of the body; 1 where nothing moves."""
+    largest = np.linalg.norm(displacement, axis=1).max()
+    if largest == 0:
+        return 1
+    factor = 0.1 * np.ptp(points, axis=0).max() / largest
     power = 10.0 ** np.floor(np.log10(factor))
     return power * max(digit for digit in (1, 2, 5) if digit * power <= factor)
 

@@ -6,12 +6,12 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator
 
 import study_fields as fields
-from result_files import OPEN, SLIP, STICK, displacement_scale, friction, read_table
+from result_files import OPEN, SLIP, STICK, TIED, displacement_scale, friction, read_table
 from study_charts import legend_below, scientific
 from study_fields import BLUE, GREEN, PURPLE, RED
 
 MOST_MAP_CELLS = 1500  # of a map whose cells can still be told apart
-ZONE_COLOUR = {OPEN: "#E9ECEF", STICK: "#DCEBF7", SLIP: "#FBE7D9"}
+ZONE_COLOUR = {OPEN: "#E9ECEF", STICK: "#DCEBF7", SLIP: "#FBE7D9", TIED: "#D9F0E7"}
 
 
 def chosen(levels, count):
@@ -107,7 +107,7 @@ def contact_line(study):
     distance.set_xlabel("x" if straight else "length along the boundary")
     distance.set_xlim(x.min(), x.max())
     lines = sum((axes.get_legend_handles_labels()[0] for axes in (traction, distance)), [])
-    shades = [Patch(color=ZONE_COLOUR[s], label=fields.STATUS_NAME[s]) for s in (STICK, SLIP, OPEN)
+    shades = [Patch(color=ZONE_COLOUR[s], label=fields.STATUS_NAME[s]) for s in (TIED, STICK, SLIP, OPEN)
               if np.any(table["status"] == s)]
     legend_below(figure, lines + shades, 4, 2)
     return figure

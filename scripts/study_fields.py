@@ -6,7 +6,8 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from result_files import OPEN, SLIP, STICK
+from result_files import OPEN, SLIP, STICK, TIED
+from result_surface import FACETS, outer_facets
 
 MOST_VECTOR_CELLS = 3000  # above, a mesh goes into the SVG as an image
 
@@ -14,8 +15,8 @@ MOST_VECTOR_CELLS = 3000  # above, a mesh goes into the SVG as an image
 BLUE, ORANGE, GREEN, RED, SKY, PURPLE, GREY = (
     "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#999999",
 )
-STATUS_COLOUR = {OPEN: GREY, STICK: BLUE, SLIP: RED}
-STATUS_NAME = {OPEN: "open", STICK: "sticks", SLIP: "slips"}
+STATUS_COLOUR = {OPEN: GREY, STICK: BLUE, SLIP: RED, TIED: GREEN}
+STATUS_NAME = {OPEN: "open", STICK: "sticks", SLIP: "slips", TIED: "tied"}
 
 
 class View:
@@ -52,17 +53,9 @@ def outline(grid, scale=0.0):
     points = grid.points
     if scale:
         points = points + scale * grid.point_data["displacement"]
-    corners = grid.corners()
-    if grid.dimension == 2:
-        return points[corners], np.arange(len(corners))
-    facets = np.concatenate([corners[:, [1, 2, 3]], corners[:, [0, 3, 2]], corners[:, [0, 1, 3]], corners[:, [0, 2, 1]]])
-    cells = np.tile(np.arange(len(corners)), 4)
-    # Every cell has its own points: the same place means the same vertex.
-    grain = 1e-9 * np.ptp(grid.points, axis=0).max()
-    _, vertex = np.unique(np.round(grid.points / grain), axis=0, return_inverse=True)
-    _, first, count = np.unique(np.sort(vertex[facets], axis=1), axis=0, return_index=True, return_counts=True)
-    surface = first[count == 1]
-    return points[facets[surface]], cells[surface]
+    cells, facets = outer_facets(grid)
+    corners = grid.corners()[cells[:, None], FACETS[grid.dimension][facets]]
+    return points[corners], cells
 
 
 def visible(polygons, view):
@@ -132,7 +125,7 @@ def draw_cell_map(axes, grid, view, values, levels, colours):
 def facet_status(contact):
     """Of every contact facet: the status of most of its nodes."""
     status = np.rint(contact.point_data["contact_status"][contact.nodes]).astype(int)
-    counts = np.stack([(status == s).sum(axis=1) for s in (OPEN, STICK, SLIP)], axis=1)
+    counts = np.stack([(status == s).sum(axis=1) for s in STATUS_NAME], axis=1)
     return counts.argmax(axis=1)
 
 
