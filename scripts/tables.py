@@ -1,4 +1,4 @@
-"""What scripts/readme, scripts/choosing and scripts/validation share: runs of the program, and tables of Markdown.
+"""What scripts/pictures, scripts/choosing and scripts/validation share: runs of the program, and tables of Markdown.
 
 Each of them replaces what stands between the lines
 

@@ -18,7 +18,8 @@ use_program()
 {
   [ -e "$share/man/man1/tribound.1" ] || [ -e "$share/man/man1/tribound.1.gz" ] || fail "the manual is not installed"
   for file in bash-completion/completions/tribound zsh/site-functions/_tribound tribound/picture \
-    tribound/study_figures tribound/tribound.schema.json doc/tribound/docs/case-format.md doc/tribound/docs/images/report.png doc/tribound/examples/05_dam/case.toml; do
+    tribound/study_figures tribound/tribound.schema.json doc/tribound/docs/case-format.md doc/tribound/docs/images/report.png doc/tribound/docs/gallery.md \
+    doc/tribound/docs/images/12_flange.png doc/tribound/examples/05_dam/case.toml; do
     [ -e "$share/$file" ] || fail "$share/$file is not installed"
   done
   tribound --help | grep -qxF "  $share/doc/tribound/docs" || fail "--help does not say where the guide is: $(tribound --help)"
