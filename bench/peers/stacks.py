@@ -52,16 +52,17 @@ def add_body(model, k, body, degree):
         mesh.set_region(region, outer[:, direction @ normals > 0.5])
     mf, mim = gf.MeshFem(mesh, 2), gf.MeshIm(mesh, 2 * degree)
     mf.set_classical_fem(degree)
+    regions = {side: region for region, side in enumerate(SIDES, 1)}
+    if "fixed" in body:  # as in block.py
+        held = mf.basic_dof_on_region(regions[body["fixed"]])
+        mf = gf.MeshFem("partial", mf, np.setdiff1d(np.arange(mf.nbdof()), held))
     model.add_fem_variable(f"u{k}", mf)
     for name, value in zip(("lam", "mu"), lame(body)):
         model.add_initialized_data(f"{name}{k}", value)
     model.add_isotropic_linearized_elasticity_brick(mim, f"u{k}", f"lam{k}", f"mu{k}")
-    regions = {side: region for region, side in enumerate(SIDES, 1)}
     for side, load in body.get("loads", {}).items():
         model.add_initialized_data(f"load{k}{side}", load)
         model.add_source_term_brick(mim, f"u{k}", f"load{k}{side}", regions[side])
-    if "fixed" in body:
-        model.add_Dirichlet_condition_with_simplification(f"u{k}", regions[body["fixed"]])
     if "roller" in body:
         model.add_normal_Dirichlet_condition_with_multipliers(mim, f"u{k}", degree, regions[body["roller"]])
     return mesh, mim
