@@ -18,6 +18,7 @@
 #include "tribound/problem/problem.h"
 #include "tribound/problem/quantity.h"
 #include "tribound/problem/surface.h"
+#include "tribound/problem/units.h"
 #include "tribound/problem/water.h"
 
 // The mesh.
