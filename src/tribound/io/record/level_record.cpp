@@ -88,6 +88,11 @@ std::optional<double> last_delta(const LevelRecord& level)
   return level.newton.empty() ? std::nullopt : std::optional(level.newton.back().step.delta);
 }
 
+std::optional<double> bound_value(const std::optional<certify::Bound>& bound, double certify::Bound::*number)
+{
+  return bound ? std::optional((*bound).*number) : std::nullopt;
+}
+
 std::optional<double> relative_bound(const LevelRecord& level)
 {
   if (!level.bound || level.figures.sigma_norm == 0.0) return std::nullopt;

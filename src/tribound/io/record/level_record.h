@@ -93,6 +93,10 @@ template <int dim>
 /// delta of T_delta in the last Newton step.
 [[nodiscard]] std::optional<double> last_delta(const LevelRecord& level);
 
+/// A number of a bound, if there is one.
+[[nodiscard]] std::optional<double> bound_value(const std::optional<certify::Bound>& bound,
+                                                double certify::Bound::*number);
+
 /// bound / ||sigma(u_h)||, if both are there.
 [[nodiscard]] std::optional<double> relative_bound(const LevelRecord& level);
 

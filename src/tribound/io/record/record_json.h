@@ -3,7 +3,6 @@
 /// @file record_json.h
 /// The record of a run as JSON.
 
-#include "tribound/certify/bound/balance.h"
 #include "tribound/io/file/json_forward.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/report.h"
@@ -20,17 +19,13 @@ namespace tribound::io
 /// `case` of the certificate: the effective case by the hash of its text; null where there is none.
 [[nodiscard]] Json effective_case_json(const RunRecord& run);
 
-/// `levels` of the certificate, earlier ones included, over a history the passes; one of them; and `steps`.
+/// `levels` of the certificate, earlier ones included, over a history the passes; and `steps`.
 [[nodiscard]] Json levels_json(const RunRecord& run);
-[[nodiscard]] Json level_json(const LevelRecord& level);
 [[nodiscard]] Json steps_json(const RunRecord& run);
 
 /// `path` of the certificate, and `history_check` of a run that has one.
 [[nodiscard]] Json path_json(const adapt::PathEnd& path);
 [[nodiscard]] Json check_json(const RunRecord& run);
-
-/// `balance` of the certificate.
-[[nodiscard]] Json balance_json(const certify::Balance& balance);
 
 /// certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] Json certificate(const RunRecord& run);

@@ -7,6 +7,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/error_bars.h"
+#include "tribound/io/record/level_json.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 

@@ -11,11 +11,6 @@ namespace tribound::io
 namespace
 {
 
-std::optional<double> member(const std::optional<certify::Bound>& bound, double certify::Bound::*value)
-{
-  return bound ? std::optional((*bound).*value) : std::nullopt;
-}
-
 void append(TableRow& row, TableRow columns)
 {
   std::ranges::move(columns, std::back_inserter(row));
@@ -50,8 +45,8 @@ TableRow newton_row(const char* level_name, int level, const adapt::CertifiedSte
                   {"residual", record.step.residual},
                   {"damping", record.step.damping}};
   append(row, component_columns(record));
-  append(row,
-         {{"total", member(record.bound, &certify::Bound::total)}, {"accepted", record.accepted ? 1 : 0}});
+  append(row, {{"total", bound_value(record.bound, &certify::Bound::total)},
+               {"accepted", record.accepted ? 1 : 0}});
   if (kind.regularised)
   {
     append(row, component_columns(certify::regularisation_components, record.bound));
@@ -143,8 +138,8 @@ TableRow level_columns(const LevelRecord& level)
                   {"dofs", level.dofs},
                   {"newton_steps", newton_steps(level)}};
   append(row, component_columns(certify::plain_components, level.bound));
-  append(row, {{"total", member(level.bound, &certify::Bound::total)},
-               {"total_sharp", member(level.bound, &certify::Bound::total_sharp)},
+  append(row, {{"total", bound_value(level.bound, &certify::Bound::total)},
+               {"total_sharp", bound_value(level.bound, &certify::Bound::total_sharp)},
                {"relative", relative_bound(level)}});
   return row;
 }
