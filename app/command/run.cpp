@@ -225,7 +225,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   require_mesh_elsewhere(config);
   io::try_output_directory(config.output.directory);
   const io::CaseFacts facts = case_file::case_facts(config, dim);
-  const io::MeshFacts about_mesh = io::mesh_facts<dim>(problem, space, form.constraints());
+  const io::MeshFacts about_mesh = io::mesh_facts<dim>(problem, space, form.constraints(), config.units);
   const std::string solver = io::describe_solver(solve::choose_method(form, config.method.solver, true));
   const std::vector<doctor::Finding> findings =
       doctor::findings(doctor::diagnose(form, config.method, config.adapt));

@@ -61,7 +61,7 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
 {
   ranks_.on_first([&] { directory_ = take_directory(config, restart != nullptr); });
   record_.facts = case_file::case_facts(config, dim);
-  record_.mesh = io::mesh_facts<dim>(problem, first.space, first.form.constraints());
+  record_.mesh = io::mesh_facts<dim>(problem, first.space, first.form.constraints(), config.units);
   record_.build = io::build_facts();
   record_.build.processes = ranks_.size();
   record_.effective = config.effective;
@@ -209,7 +209,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadSte
   }
   if (!view.level.steps.empty())
     record_.statements =
-        io::run_statements(view, record_.levels.back(), config_.method,
+        io::run_statements(view, record_.levels.back(), record_.facts, config_.method,
                            is_path() && config_.history->refine == case_file::Refine::transfer);
   if (!step)
   {

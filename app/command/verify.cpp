@@ -157,7 +157,7 @@ std::unique_ptr<io::OutputDirectory> begin(const case_file::Config& config,
 {
   auto directory = std::make_unique<io::OutputDirectory>(config.output.directory);
   io::remove_results(config.output.directory, {"verify.json"});
-  result.mesh = io::mesh_facts<dim>(problem, space, constraints);
+  result.mesh = io::mesh_facts<dim>(problem, space, constraints, config.units);
   print(header_text(result.facts, result.mesh));
   return directory;
 }

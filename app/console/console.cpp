@@ -12,6 +12,8 @@
 namespace tribound::app
 {
 
+using problem::UnitOf;
+
 namespace
 {
 
@@ -24,11 +26,22 @@ std::size_t name_width(const Parts& parts)
   return width;
 }
 
-std::string mesh_line(const io::MeshFacts& mesh)
+/// What numbers without a unit behind them are in; nothing where the case names no units.
+std::string units_line(const io::CaseFacts& facts)
+{
+  if (!facts.units.are_named()) return {};
+  const auto label = [&facts](UnitOf what) { return facts.units.label(what, facts.dimension); };
+  return line("units",
+              fmt::format("lengths in {}, stresses in {}, forces in {}, bounds in {}", label(UnitOf::length),
+                          label(UnitOf::stress), label(UnitOf::force), label(UnitOf::stress_norm)));
+}
+
+std::string mesh_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 {
   return line("mesh",
-              fmt::format("{}, {}, h from {:.4g} to {:.4g}", count(mesh.vertices, "vertex", "vertices"),
-                          count(mesh.cells, "cell", "cells"), mesh.smallest_cell, mesh.largest_cell));
+              fmt::format("{}, {}, h from {:.4g} to {:.4g}{}", count(mesh.vertices, "vertex", "vertices"),
+                          count(mesh.cells, "cell", "cells"), mesh.smallest_cell, mesh.largest_cell,
+                          facts.behind(UnitOf::length)));
 }
 
 std::string method_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
@@ -55,8 +68,8 @@ std::string paragraph(std::string_view caption, std::string_view text)
 
 std::string header_text(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 {
-  return line("case", facts.title.empty() ? facts.file : facts.title) + mesh_line(mesh) +
-         method_line(facts, mesh);
+  return line("case", facts.title.empty() ? facts.file : facts.title) + units_line(facts) +
+         mesh_line(facts, mesh) + method_line(facts, mesh);
 }
 
 std::string newton_text(const solve::NewtonStep& step, std::optional<double> relative_bound)
@@ -97,18 +110,19 @@ std::string mesh_text(std::string_view caption, std::int64_t cells, std::int64_t
 
 std::string check_text(const io::CaseFacts& facts, const io::MeshFacts& mesh, const std::string& solver)
 {
-  const char* unit = facts.dimension == 2 ? "area" : "volume";
+  const char* size = facts.dimension == 2 ? "area" : "volume";
   std::string text = header_text(facts, mesh);
   text += line_if_any("solver", solver);
   text += "regions\n";
   for (const io::RegionFacts& region : mesh.regions)
-    text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", region.name, name_width(mesh.regions),
-                        count(region.cells, "cell", "cells"), unit, region.measure, region.material);
+    text += fmt::format("  {:<{}}  {}, {} {:.6g}{}: {}\n", region.name, name_width(mesh.regions),
+                        count(region.cells, "cell", "cells"), size, region.measure,
+                        facts.behind(UnitOf::body), region.material);
   text += "boundaries\n";
   for (const io::BoundaryFacts& boundary : mesh.boundaries)
-    text += fmt::format("  {:<{}}  {}, {} {:.6g}: {}\n", boundary.name, name_width(mesh.boundaries),
+    text += fmt::format("  {:<{}}  {}, {} {:.6g}{}: {}\n", boundary.name, name_width(mesh.boundaries),
                         count(boundary.facets, "facet", "facets"), facts.dimension == 2 ? "length" : "area",
-                        boundary.measure, boundary.condition);
+                        boundary.measure, facts.behind(UnitOf::boundary), boundary.condition);
   return text;
 }
 
@@ -137,8 +151,8 @@ std::string info_text(const io::BuildFacts& build, const std::string& report_pag
          line_if_any("BLAS", build.blas.empty() ? "" : build.blas + threads) + line_if_any("MPI", build.mpi) +
          line_if_any("Eigen", build.eigen) +
          line_if_any("features", fmt::format("{}", fmt::join(build.features, ", "))) +
-         line("report page", report_page.empty() ? "none: Tribound was built without Node.js and npm"
-                                                       : report_page);
+         line("report page",
+              report_page.empty() ? "none: Tribound was built without Node.js and npm" : report_page);
 }
 
 Progress::Progress(bool quiet) : quiet_(quiet), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}

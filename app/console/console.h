@@ -34,8 +34,9 @@ namespace tribound::app
 [[nodiscard]] std::string summary_text(const io::RunRecord& run, const std::string& directory);
 /// The end of the summary: status, and where the files are.
 [[nodiscard]] std::string verdict_text(const io::RunRecord& run, const std::string& directory);
-/// The balance of forces as a table. What is below 1e-9 of the largest number of its kind is shown as 0.
-[[nodiscard]] std::string balance_text(const certify::Balance& balance);
+/// The balance of forces as a table, with the units of the case. What is below 1e-9 of the largest number of
+/// its kind is shown as 0.
+[[nodiscard]] std::string balance_text(const certify::Balance& balance, const io::CaseFacts& facts);
 /// What a run will need, from how its bound has decreased so far: "at this rate 1 % needs 1.2 million
 /// unknowns": the rate is fitted to the last half of the levels. Empty where the tolerance is reached, or
 /// less than three levels have a bound.

@@ -19,13 +19,16 @@
 namespace tribound::app
 {
 
+using problem::UnitOf;
+
 namespace
 {
 
-std::string resultants_line(std::string_view caption, std::string_view boundary, const io::Resultants& r)
+std::string resultants_line(std::string_view caption, std::string_view boundary, const io::Resultants& r,
+                            const std::string& unit)
 {
-  return line(caption, fmt::format("{}: normal {:.8g}, tangential {:.8g}, force ({:.8g})", boundary, r.normal,
-                                   r.tangential, fmt::join(r.force, ", ")));
+  return line(caption, fmt::format("{}: normal {:.8g}{}, tangential {:.8g}{}, force ({:.8g}){}", boundary,
+                                   r.normal, unit, r.tangential, unit, fmt::join(r.force, ", "), unit));
 }
 
 /// For a boundary with Coulomb friction: N and H are the normal and the tangential resultant.
@@ -81,19 +84,20 @@ std::string label(const certify::BalanceRow& row)
 }
 
 /// The bound of the error in the energy norm, or why there is none, and the quantities with their intervals.
-std::string energy_lines(const io::LevelRecord& level)
+std::string energy_lines(const io::LevelRecord& level, const io::CaseFacts& facts)
 {
   if (!level.energy) return {};
   std::string quantities;
   for (const certify::QuantityInterval& quantity : level.energy->quantities)
-    quantities +=
-        paragraph(quantities.empty() ? "quantities" : "", quantity.name + ": " + io::words_of(quantity));
+    quantities += paragraph(quantities.empty() ? "quantities" : "",
+                            quantity.name + ": " + io::words_of(quantity, facts.unit_of(quantity.name)));
   if (!level.energy->reason.empty())
     return paragraph("energy error", "no bound: " + level.energy->reason) + quantities;
   const auto relative = io::relative_energy_bound(level);
   return paragraph(
              "energy error",
-             fmt::format("at most {:.6g}{}: the distance from {}", level.energy->bound,
+             fmt::format("at most {:.6g}{}{}: the distance from {}", level.energy->bound,
+                         facts.behind(UnitOf::energy_norm),
                          relative ? fmt::format(", {:.4g} % of ||u_h||_en", 100 * *relative) : std::string(),
                          io::words_of(level.energy->target))) +
          quantities;
@@ -129,7 +133,8 @@ std::string comparison_text(const io::RunRecord& run)
     if (const std::optional<double> difference = figure.difference())
     {
       const bool is_rounding = std::abs(*difference) <= 1e-9 * std::abs(*figure.path);
-      text += fmt::format(" {} {:.6g} ({:+.2g}),", figure.word, *figure.check, is_rounding ? 0 : *difference);
+      text += fmt::format(" {} {:.6g}{} ({:+.2g}),", figure.word, *figure.check,
+                          figure.unit ? run.facts.behind(*figure.unit) : "", is_rounding ? 0 : *difference);
     }
   text.pop_back();
   return paragraph("check", text);
@@ -151,7 +156,7 @@ std::string count_in_words(double n)
 
 }  // namespace
 
-std::string balance_text(const certify::Balance& balance)
+std::string balance_text(const certify::Balance& balance, const io::CaseFacts& facts)
 {
   const std::size_t dim = balance.about.size();
   std::size_t width = 0;
@@ -178,7 +183,13 @@ std::string balance_text(const certify::Balance& balance)
       for (std::size_t i = 0; i < (dim == 2 ? 1 : dim); ++i) numbers += fmt::format("{:>13}", "-");
     text += line("", fmt::format("{:<10}{:<{}}{}", certify::to_string(row.kind), label(row), width, numbers));
   }
-  text += line("", fmt::format("on the body; moments about ({:.6g})", fmt::join(balance.about, ", ")));
+  const problem::Units& units = facts.units;
+  const int d = static_cast<int>(dim);
+  const std::string in_units =
+      units.are_named() ? fmt::format("forces in {}, moments in {} ", units.label(UnitOf::force, d),
+                                      units.label(UnitOf::moment, d))
+                        : "moments ";
+  text += line("", fmt::format("on the body; {}about ({:.6g})", in_units, fmt::join(balance.about, ", ")));
   const std::string note = certify::moment_note(balance);
   return note.empty() ? text : text + line("", note);
 }
@@ -190,7 +201,8 @@ std::string certificate_text(const io::RunRecord& run)
   const certify::Bound& bound = *level.bound;
   const std::optional<double> relative = io::relative_bound(level);
   std::string text =
-      line("bound", fmt::format("{:.6g}, {} (plain sums: {:.6g})", bound.total_sharp,
+      line("bound", fmt::format("{:.6g}{}, {} (plain sums: {:.6g})", bound.total_sharp,
+                                run.facts.behind(UnitOf::stress_norm),
                                 relative ? fmt::format("that is {:.4g} % of ||sigma(u_h)||", 100 * *relative)
                                 : io::is_round_off(level) ? std::string("rounding, as the stress is")
                                                           : std::string("of a stress that is zero"),
@@ -200,7 +212,7 @@ std::string certificate_text(const io::RunRecord& run)
     text +=
         line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
                                        level.identities->largest(run.facts.degree), certify::identity_limit));
-  text += energy_lines(level);
+  text += energy_lines(level, run.facts);
   for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
   text += paragraph("law", run.statements.law);
   for (const std::string& outside : run.statements.not_covered) text += paragraph("outside", outside);
@@ -224,14 +236,19 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
   if (!run.levels.empty())
   {
     const io::LevelRecord& last = run.levels.back();
+    const io::CaseFacts& facts = run.facts;
+    const std::string force = facts.behind(UnitOf::force);
     for (const io::Resultants& part : last.figures.boundary_contact)
-      text += resultants_line("contact", part.boundary, part);
-    if (last.figures.boundary_contact.size() > 1) text += resultants_line("", "in all", last.figures.contact);
+      text += resultants_line("contact", part.boundary, part, force);
+    if (last.figures.boundary_contact.size() > 1)
+      text += resultants_line("", "in all", last.figures.contact, force);
     for (const io::Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
-    if (last.balance) text += balance_text(*last.balance);
-    text += line("max |u|", fmt::format("{:.8g}", last.figures.max_displacement));
-    text += line("energy", fmt::format("a(u, u) = {:.8g}, ||sigma|| = {:.8g}", last.figures.energy,
-                                       last.figures.sigma_norm));
+    if (last.balance) text += balance_text(*last.balance, facts);
+    text +=
+        line("max |u|", fmt::format("{:.8g}{}", last.figures.max_displacement, facts.behind(UnitOf::length)));
+    text += line("energy", fmt::format("a(u, u) = {:.8g}{}, ||sigma|| = {:.8g}{}", last.figures.energy,
+                                       facts.behind(UnitOf::energy), last.figures.sigma_norm,
+                                       facts.behind(UnitOf::stress_norm)));
     text += certificate_text(run);
     text += warnings_text(run.warnings);
   }

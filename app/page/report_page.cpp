@@ -34,7 +34,7 @@ io::Json tables_json(const io::RunRecord& run, const std::string& contact)
                   {"newton.csv", table(io::newton_csv(run))},
                   {"contact.csv", table(contact)}};
   if (io::has_history(run)) tables["history.csv"] = table(io::history_csv(run));
-  if (const std::string quantities = io::quantities_csv(io::levels_json(run)); !quantities.empty())
+  if (const std::string quantities = io::quantities_csv(io::levels_json(run), run.facts); !quantities.empty())
     tables["quantities.csv"] = table(quantities);
   return tables;
 }

@@ -286,6 +286,7 @@ io::Json study_object(const Study& study)
                   {"d", study.facts.dimension},
                   {"p", study.facts.degree},
                   {"friction", study.facts.friction},
+                  {"units", io::units_json(study.facts)},
                   {"gamma_lin", study.gamma_lin},
                   {"marking", study.marking},
                   {"theta", study.theta},

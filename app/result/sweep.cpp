@@ -128,6 +128,7 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
 {
   run.figures.clear();
   run.reason.clear();
+  run.units.clear();
   const io::Json certificate = certificate_of(directory, run);
   if (!is_final(certificate, run.exit_code.value()))
   {
@@ -137,6 +138,8 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
   }
   run.status = text_at(certificate, "/status");
   run.reason = text_at(certificate, "/reason");
+  if (const io::Json units = certificate.value("units", io::Json(nullptr)); units.is_object())
+    run.units = io::json_text(units, -1);
   for (const char* name : {"relative", "bound", "cells", "dofs"})
     run.figures.emplace_back(name, number_at(certificate, std::string("/") + name));
   if (number_at(certificate, "/bound"))
@@ -196,6 +199,8 @@ std::string sweep_json(const SweepRecord& sweep)
 {
   io::Json object{
       {"schema", sweep_schema}, {"title", sweep.title}, {"file", sweep.file}, {"keys", sweep.keys}};
+  const auto named = std::ranges::find_if(sweep.runs, [](const SweepRun& run) { return !run.units.empty(); });
+  object["units"] = named == sweep.runs.end() ? io::Json(nullptr) : io::Json::parse(named->units);
   object["runs"] = io::Json::array();
   for (const SweepRun& run : sweep.runs)
   {

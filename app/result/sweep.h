@@ -26,6 +26,8 @@ struct SweepRun
   std::string reason;
   /// In the order in which they were found: relative, bound, cells, dofs, ...; see docs/output.md.
   std::vector<std::pair<std::string, std::optional<double>>> figures;
+  std::string
+      units{};  ///< `units` of its certificate, JSON; empty: the case names none, or they are not known
 };
 
 struct SweepRecord

@@ -9,6 +9,7 @@
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
+#include "tribound/io/record/record_json.h"
 
 namespace tribound::app
 {
@@ -34,11 +35,12 @@ std::string iterate_line(const VerifiedIterate& iterate)
 /// The distance from the richer solution, and the bound.
 std::string energy_text(const Verification& v)
 {
-  std::string error = fmt::format("{:.6g}", v.richer->error->energy);
+  const std::string unit = v.facts.behind(problem::UnitOf::energy_norm);
+  std::string error = fmt::format("{:.6g}{}", v.richer->error->energy, unit);
   if (!v.energy) return error;
   if (!v.energy->reason.empty()) return error + "; no bound: " + v.energy->reason;
   const auto effectivity = v.energy_effectivity();
-  return error + fmt::format("; bound {:.6g}", v.energy->bound) +
+  return error + fmt::format("; bound {:.6g}{}", v.energy->bound, unit) +
          (effectivity ? fmt::format(", effectivity {:.4f}", *effectivity) : std::string()) +
          (v.energy->target == certify::EnergyTarget::solution ? "" : ", for the computed friction threshold");
 }
@@ -53,11 +55,11 @@ std::string richer_text(const Verification& v)
                   v.richer->cells, v.richer->dofs, v.richer->newton_steps);
   if (!v.richer->error) return line("richer", where) + line("", "no solution: " + v.richer->failure);
   const double error = v.richer->error->stress;
-  std::string stress = fmt::format("{:.6g}", error);
+  std::string stress = fmt::format("{:.6g}{}", error, v.facts.behind(problem::UnitOf::stress_norm));
   if (sigma_norm > 0) stress += fmt::format(", {:.3g} of ||sigma||", error / sigma_norm);
   if (error > 0) stress += fmt::format("; bound / error = {:.4g}", v.iterates.back().bound / error);
   return line("richer", where) + line("energy error", energy_text(v)) + line("stress error", stress) +
-         quantities_text(v.quantities(v.iterates.back()));
+         quantities_text(v.quantities(v.iterates.back()), v.facts);
 }
 
 std::string status_text(const Verification& v)
@@ -187,10 +189,11 @@ std::string verification_text(const Verification& v, const std::string& director
     text += iterate_line(v.iterates[i]);
   }
   const VerifiedIterate& last = v.iterates.back();
-  text +=
-      line("||sigma||", last.norms.sigma > 0 ? fmt::format("{:.6g}; bound / ||sigma|| = {:.4g}",
-                                                           last.norms.sigma, last.bound / last.norms.sigma)
-                                             : std::string("0"));
+  text += line("||sigma||",
+               last.norms.sigma > 0
+                   ? fmt::format("{:.6g}{}; bound / ||sigma|| = {:.4g}", last.norms.sigma,
+                                 v.facts.behind(problem::UnitOf::stress_norm), last.bound / last.norms.sigma)
+                   : std::string("0"));
   return text + richer_text(v) + line("status", status_text(v)) + line("results", directory);
 }
 
@@ -217,6 +220,7 @@ std::string verification_json(const Verification& v)
       {"p", v.facts.degree},
       {"friction", v.facts.friction},
       {"gamma0", v.facts.gamma0},
+      {"units", io::units_json(v.facts)},
       {"cells", v.mesh.cells},
       {"dofs", v.mesh.free_dofs},
       {"guarantee", guarantee(v)},

@@ -45,7 +45,8 @@ struct VerifiedQuantity
 [[nodiscard]] std::string violation(const std::vector<VerifiedQuantity>& quantities);
 
 /// A line for each.
-[[nodiscard]] std::string quantities_text(const std::vector<VerifiedQuantity>& quantities);
+[[nodiscard]] std::string quantities_text(const std::vector<VerifiedQuantity>& quantities,
+                                          const io::CaseFacts& facts);
 
 /// The fields of docs/output.md; what is not known is null.
 [[nodiscard]] io::Json quantities_json(const std::vector<VerifiedQuantity>& quantities);

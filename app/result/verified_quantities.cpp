@@ -31,12 +31,12 @@ std::string words_of_comparison(const VerifiedQuantity& quantity)
                      ends(*quantity.richer), 100 * *position);
 }
 
-std::string words_of(const VerifiedQuantity& quantity)
+std::string words_of(const VerifiedQuantity& quantity, const std::string& unit)
 {
-  if (!quantity.interval.reason.empty()) return io::words_of(quantity.interval);
+  if (!quantity.interval.reason.empty()) return io::words_of(quantity.interval, unit);
   certify::QuantityInterval shown = quantity.interval;
   if (quantity.richer) shown.value = quantity.richer->value;
-  return io::words_of(shown) + ": " + words_of_comparison(quantity);
+  return io::words_of(shown, unit) + ": " + words_of_comparison(quantity);
 }
 
 io::Json json(const VerifiedQuantity& quantity)
@@ -105,11 +105,12 @@ std::string violation(const std::vector<VerifiedQuantity>& quantities)
                      ends(found->interval), found->interval.name, ends(*found->richer));
 }
 
-std::string quantities_text(const std::vector<VerifiedQuantity>& quantities)
+std::string quantities_text(const std::vector<VerifiedQuantity>& quantities, const io::CaseFacts& facts)
 {
   std::string text;
   for (const VerifiedQuantity& quantity : quantities)
-    text += line(text.empty() ? "quantities" : "", quantity.interval.name + ": " + words_of(quantity));
+    text += line(text.empty() ? "quantities" : "",
+                 quantity.interval.name + ": " + words_of(quantity, facts.unit_of(quantity.interval.name)));
   return text;
 }
 

@@ -92,6 +92,26 @@ mesh::MeshSource read_mesh_source(const Node& node, const std::filesystem::path&
   return mesh::MeshFile{case_directory / table.get<std::string>(key), given.where};
 }
 
+const Table& units_table()
+{
+  constexpr auto both = "[units] names both: length = \"mm\", force = \"N\"; stresses follow";
+  static const Table table{.name = "units",
+                           .keys = {{"length", one_of(problem::length_names()), both},
+                                    {"force", one_of(problem::force_names()), both}}};
+  return table;
+}
+
+problem::Units read_units(const Node& node)
+{
+  const TableReader table(node, units_table());
+  const auto name = [&table](std::string_view key)
+  {
+    const std::vector<std::string>& names = table.key_of(key).value.words;
+    return names[to_choice(table.require(key), names)];
+  };
+  return {name("length"), name("force")};
+}
+
 /// The document as a case file in the output directory: paths lead from there.
 io::EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
 {
@@ -127,6 +147,7 @@ Config read_document(const Node& document, std::string file)
   config.file = std::move(file);
   root.read("title", config.title);
   root.read("degree", config.method.degree);
+  if (const Node* node = root.find("units")) config.units = read_units(*node);
   config.mesh = read_mesh_source(root.require("mesh"), case_directory);
   config.materials = read_materials(root.require("material"));
   if (const Node* node = root.find("load")) config.loads = read_loads(*node);
@@ -154,6 +175,7 @@ const Table& case_table()
       .keys =
           std::vector<Key>{{"title", text()},
                            {"degree", integer_from(1, "the polynomial degree p", fem::max_degree)},
+                           {"units", keys_of(units_table())},
                            {"mesh", keys_of(mesh_table()), fmt::format("[mesh] with {}", mesh_hint)},
                            {"material", keys_of(material_table()), "[material] with E = 210e9 and nu = 0.3"},
                            {"load", keys_of(load_table())},

@@ -22,6 +22,7 @@
 #include "tribound/mesh/source.h"
 #include "tribound/problem/problem.h"
 #include "tribound/problem/quantity.h"
+#include "tribound/problem/units.h"
 
 namespace tribound::case_file
 {
@@ -125,6 +126,7 @@ struct Config
 {
   std::string file;  ///< the case file, for messages
   std::string title;
+  problem::Units units;  ///< of [units]
   mesh::MeshSource mesh;
   std::vector<MaterialConfig> materials;
   std::vector<LoadConfig> loads;

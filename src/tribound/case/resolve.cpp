@@ -212,10 +212,42 @@ Point<dim> moment_point(const OutputConfig& output, const mesh::Mesh<dim>& mesh)
   return Point<dim>(output.moment_about.data());
 }
 
+namespace
+{
+
+std::string label(problem::QuantityKind kind, const problem::Units& units, int dimension)
+{
+  switch (kind)
+  {
+    case problem::QuantityKind::energy:
+    case problem::QuantityKind::load_work:
+      return units.label(problem::UnitOf::energy, dimension);
+    case problem::QuantityKind::contact_force:
+      return units.label(problem::UnitOf::force, dimension);
+    case problem::QuantityKind::contact_moment:
+      return units.label(problem::UnitOf::moment, dimension);
+    case problem::QuantityKind::mean_displacement:
+      return units.label(problem::UnitOf::length, dimension);
+    case problem::QuantityKind::safety_factor:
+      return {};
+  }
+  return {};
+}
+
+}  // namespace
+
 io::CaseFacts case_facts(const Config& config, int dimension)
 {
-  return {config.title,         config.file,           dimension,
-          config.method.degree, friction_name(config), config.method.gamma_0()};
+  io::CaseFacts facts{.title = config.title,
+                      .file = config.file,
+                      .dimension = dimension,
+                      .degree = config.method.degree,
+                      .friction = friction_name(config),
+                      .gamma0 = config.method.gamma_0(),
+                      .units = config.units};
+  for (const QuantityConfig& quantity : config.quantities)
+    facts.quantity_units.emplace_back(quantity.name, label(quantity.kind, config.units, dimension));
+  return facts;
 }
 
 template problem::Problem<2> resolve(const Config&, std::span<const std::string>,

@@ -42,6 +42,34 @@ TEST(Console, CheckNamesRegionsAndBoundaries)
                 "  top     1 facet, length 2: traction-free\n");
 }
 
+/// The same in mm and N.
+io::CaseFacts facts_with_units()
+{
+  io::CaseFacts named = facts;
+  named.units = {"mm", "N"};
+  named.quantity_units = {{"thrust", "N/mm"}, {"safety", ""}};
+  return named;
+}
+
+TEST(Console, HeaderNamesTheUnits)
+{
+  EXPECT_EQ(app::header_text(facts_with_units(), mesh),
+            "case          Block\n"
+            "units         lengths in mm, stresses in MPa, forces in N/mm, bounds in MPa mm\n"
+            "mesh          15 vertices, 16 cells, h from 0.5 to 0.75 mm\n"
+            "method        2D, degree 2, 80 free degrees of freedom, gamma_0 = 10\n");
+  io::CaseFacts in_3d = facts_with_units();
+  in_3d.dimension = 3;
+  EXPECT_THAT(app::header_text(in_3d, mesh),
+              HasSubstr("stresses in MPa, forces in N, bounds in MPa mm^(3/2)\n"));
+}
+
+TEST(Console, CheckHasSizesWithUnits)
+{
+  EXPECT_THAT(app::check_text(facts_with_units(), mesh, ""),
+              AllOf(HasSubstr("16 cells, area 2 mm^2: E"), HasSubstr("4 facets, length 2 mm: contact")));
+}
+
 TEST(Console, NewtonStep)
 {
   EXPECT_EQ(app::newton_text({3, 1.3e-5, 1.0, 0, false, 0.125}),
@@ -140,6 +168,35 @@ TEST(Console, Summary)
             "results       out\n");
 }
 
+TEST(Console, ResultsCarryTheirUnits)
+{
+  io::RunRecord run;
+  run.facts = facts_with_units();
+  io::LevelRecord level;
+  level.figures = {0.0137,
+                   2,
+                   0.084,
+                   {"", {-0.04, 0.11}, -0.11, -0.04, 0.05},
+                   {{"bottom", {-0.04, 0.11}, -0.11, -0.04, 0.05}}};
+  level.bound = certify::Bound{{}, 0.5, 0.25};
+  level.energy.emplace();
+  level.energy->bound = 0.125;
+  level.energy->quantities = {
+      {.name = "thrust", .value = 1.5, .lower = 1, .upper = 2, .basis = "duality gap"},
+      {.name = "safety", .value = 3, .lower = 2, .upper = 4, .basis = "duality gap"}};
+  level.balance = certify::Balance{{1, 0.5}, {}};
+  run.levels = {level};
+  EXPECT_THAT(app::summary_text(run, ""),
+              AllOf(HasSubstr("bottom: normal -0.11 N/mm, tangential -0.04 N/mm, force (-0.04, 0.11) N/mm\n"),
+                    HasSubstr("on the body; forces in N/mm, moments in N mm/mm about (1, 0.5)\n"),
+                    HasSubstr("max |u|       0.084 mm\n"),
+                    HasSubstr("energy        a(u, u) = 0.0137 N mm/mm, ||sigma|| = 2 MPa mm\n"),
+                    HasSubstr("bound         0.25 MPa mm, that is 12.5 % of ||sigma(u_h)||"),
+                    HasSubstr("energy error  at most 0.125 (N mm/mm)^(1/2), "),
+                    HasSubstr("quantities    thrust: 1.5 N/mm, guaranteed between 1 and 2 (duality gap)\n"),
+                    HasSubstr("              safety: 3, guaranteed between 2 and 4 (duality gap)\n")));
+}
+
 /// A path and the same with half the steps, on which everything is a tenth larger.
 io::RunRecord checked_run()
 {
@@ -168,6 +225,9 @@ TEST(Console, ACheckOfThePathIsALine)
                         "              (+10), at the end t 80 (+0), N -40.7 (-3.7), V 0 (+0), dissipated\n"
                         "              0.55 (+0.05)\n"
                         "status"));
+  run.facts = facts_with_units();
+  EXPECT_THAT(app::verdict_text(run, ""),
+              AllOf(HasSubstr("N -40.7 N/mm (-3.7)"), HasSubstr("0.55 N mm/mm (+0.05)")));
   run.path.peak.reset();
   EXPECT_THAT(app::verdict_text(run, ""), HasSubstr("not guaranteed: at the end t 80 (+0)"));
   run.check->end.failure = "load step 2 at t = 0.5: no convergence";
@@ -204,7 +264,7 @@ TEST(Console, BalanceShowsRoundingAsZero)
        {certify::BalanceKind::reaction, "left", "displacement", {1.25, 0}, {{-1.5}}},
        {certify::BalanceKind::contact, "bottom", "contact", {-1.25, 3}, {{0}}},
        {certify::BalanceKind::sum, "", "", {0, -4e-16}, {{2e-16}}}}};
-  EXPECT_EQ(app::balance_text(plane),
+  EXPECT_EQ(app::balance_text(plane, {}),
             "balance                                      force x      force y       moment\n"
             "              load      box, body force            0           -3          1.5\n"
             "              reaction  left                    1.25            0         -1.5\n"
@@ -218,9 +278,9 @@ TEST(Console, BalanceOfDegreeOneLacksMoments)
   const certify::Balance space = {{0, 0, 0},
                                   {{certify::BalanceKind::reaction, "left", "displacement", {1, 2, 3}, {}},
                                    {certify::BalanceKind::sum, "", "", {0, 0, 0}, {}}}};
-  EXPECT_THAT(app::balance_text(space), AllOf(HasSubstr("moment x     moment y     moment z\n"),
-                                              HasSubstr("3            -            -            -\n"),
-                                              HasSubstr("need degree 2 or more")));
+  EXPECT_THAT(app::balance_text(space, {}), AllOf(HasSubstr("moment x     moment y     moment z\n"),
+                                                  HasSubstr("3            -            -            -\n"),
+                                                  HasSubstr("need degree 2 or more")));
 }
 
 TEST(Console, InfoLeavesOutWhatIsUnknown)
@@ -230,9 +290,10 @@ TEST(Console, InfoLeavesOutWhatIsUnknown)
   build.blas_threads = 1;
   build.petsc.clear();
   EXPECT_THAT(app::info_text(build, ""), AllOf(HasSubstr("tribound      " + build.version), HasSubstr("3.4"),
-                                           HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
-                                           HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
-  EXPECT_THAT(app::info_text(build, "/usr/share/tribound/report.html"), HasSubstr("report page   /usr/share/tribound/report.html\n"));
+                                               HasSubstr("OpenBLAS 0.3.21, 1 thread\n"),
+                                               HasSubstr("report page   none"), Not(HasSubstr("PETSc"))));
+  EXPECT_THAT(app::info_text(build, "/usr/share/tribound/report.html"),
+              HasSubstr("report page   /usr/share/tribound/report.html\n"));
 }
 
 }  // namespace

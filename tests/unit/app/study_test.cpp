@@ -175,6 +175,17 @@ TEST(Study, TextShowsTablesRatesAndTheReference)
                     HasSubstr("results       out\n")));
 }
 
+TEST(Study, NamesTheUnits)
+{
+  app::Study study = example();
+  EXPECT_THAT(app::study_text(study, ""), Not(HasSubstr("error in")));
+  EXPECT_TRUE(nlohmann::json::parse(app::study_json(study))["units"].is_null());
+  study.facts.dimension = 2;
+  study.facts.units = {"m", "MN"};
+  EXPECT_THAT(app::study_text(study, ""), HasSubstr("\nerror in (MN m/m)^(1/2)\n"));
+  EXPECT_EQ(nlohmann::json::parse(app::study_json(study))["units"]["force"], "MN/m");
+}
+
 TEST(Study, AReferenceThatIsTooCoarseIsSaidToBe)
 {
   app::Study study = example();

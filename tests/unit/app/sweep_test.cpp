@@ -68,6 +68,18 @@ TEST_F(SweepTest, StatusIsThatOfTheCertificateAtTheEnd)
   EXPECT_THAT(complete_after(2), ElementsAre(Pair("0001", 2)));
 }
 
+TEST_F(SweepTest, UnitsAreThoseOfTheCertificates)
+{
+  const auto units_after = [&](const io::Json& units)
+  {
+    std::ofstream(directory / "0001/certificate.json") << io::Json{
+        {"case", {{"sha256", "abc"}}}, {"status", "certified"}, {"reason", nullptr}, {"units", units}};
+    return io::Json::parse(app::sweep_json({"", "case.toml", {"degree"}, {read(0)}}))["units"];
+  };
+  EXPECT_EQ(units_after({{"force", "N/mm"}})["force"], "N/mm");
+  EXPECT_TRUE(units_after(nullptr).is_null());
+}
+
 TEST_F(SweepTest, CertificateOfAnEarlierLevelIsNoResult)
 {
   leave_certificate("budget");

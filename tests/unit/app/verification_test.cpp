@@ -117,6 +117,19 @@ TEST(Verification, IntervalsThatHoldTheRicherSolution)
   EXPECT_EQ(json["iterates"][0]["quantities"][0]["value"], 0.5);
 }
 
+TEST(Verification, NumbersCarryTheirUnits)
+{
+  app::Verification v = example_with_quantity();
+  EXPECT_TRUE(nlohmann::json::parse(app::verification_json(v))["units"].is_null());
+  v.facts.dimension = 2;
+  v.facts.units = {"mm", "N"};
+  v.facts.quantity_units = {{"thrust", "N/mm"}};
+  EXPECT_THAT(app::verification_text(v, ""),
+              AllOf(HasSubstr(" MPa mm; bound / ||sigma|| = "), HasSubstr("thrust: 1 N/mm, guaranteed"),
+                    HasSubstr("; bound 0.03 (N mm/mm)^(1/2)")));
+  EXPECT_EQ(nlohmann::json::parse(app::verification_json(v))["units"]["quantities"]["thrust"], "N/mm");
+}
+
 TEST(Verification, AWrongIntervalOfAnyIterateViolatesTheGuarantee)
 {
   app::Verification v = example_with_quantity();

@@ -33,6 +33,7 @@ std::string valid_case(const std::string& table)
   if (table.starts_with("load")) text += "load.body = [0, 0]\n";
   if (table == "boundary.top") text += "boundary.top.traction = [0, 0]\n";
   if (table == "history") text += "history.steps = [1]\n";
+  if (table == "units") text += "units = { length = 'mm', force = 'N' }\n";
   if (table == "regularisation") text += "regularisation = {}\n";
   if (table == "boundary.top.contact") text += "boundary.top.contact = {}\n";
   if (table.starts_with("obstacle.o")) text += "boundary.top.contact.obstacle = 'o'\n";

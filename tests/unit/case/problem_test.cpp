@@ -47,6 +47,39 @@ TEST(CaseFacts, AreThoseOfTheCase)
   EXPECT_EQ(facts.gamma0, 10.0);
 }
 
+TEST(CaseFacts, HaveTheUnitOfEveryQuantity)
+{
+  const std::string quantities =
+      "[[quantity]]\nkind = 'energy'\n[[quantity]]\nkind = 'load_work'\n"
+      "[[quantity]]\nkind = 'contact_force'\ndirection = [0, 1]\n[[quantity]]\nkind = 'contact_moment'\n"
+      "[[quantity]]\nkind = 'safety_factor'\nboundary = 'top'\n"
+      "[[quantity]]\nkind = 'mean_displacement'\nboundary = 'top'\n";
+  const auto units_of = [&](const std::string& units, int dimension)
+  {
+    std::vector<std::string> labels;
+    const case_file::Config config = case_file::parse_config(file_head + units + quantities);
+    for (const auto& [name, unit] : case_file::case_facts(config, dimension).quantity_units)
+      labels.push_back(name + ": " + unit);
+    return labels;
+  };
+  EXPECT_THAT(
+      units_of("[units]\nlength = 'mm'\nforce = 'N'\n", 3),
+      testing::ElementsAre("energy: N mm", "load_work: N mm", "contact_force: N", "contact_moment: N mm",
+                           "safety_factor top: ", "mean_displacement top: mm"));
+  EXPECT_THAT(
+      units_of("[units]\nlength = 'm'\nforce = 'kN'\n", 2),
+      testing::ElementsAre("energy: kN m/m", "load_work: kN m/m", "contact_force: kN/m",
+                           "contact_moment: kN m/m", "safety_factor top: ", "mean_displacement top: m"));
+  EXPECT_THAT(units_of("", 2), testing::Contains("energy: "));
+}
+
+TEST(CaseFacts, UnitsAreLabels)
+{
+  const auto with = [&](const std::string& units)
+  { return case_file::parse_config(units + file_head).materials[0].E; };
+  EXPECT_EQ(with("units = { length = 'mm', force = 'kN' }\n"), with(""));
+}
+
 TEST(Lame, FollowsTheFormulas)
 {
   const auto [lambda, mu, plane] = problem::lame(2.5, 0.25, problem::PlaneModel::strain);

@@ -19,6 +19,17 @@ TEST(Facts, MaterialInEngineersConstants)
   EXPECT_EQ(io::describe(problem::lame(1.0, -0.25, problem::PlaneModel::strain), 3), "E = 1, nu = -0.25");
 }
 
+TEST(Facts, NumbersInWordsCarryTheirUnits)
+{
+  const problem::Units units("mm", "N");
+  EXPECT_EQ(io::describe(problem::lame(2.1e5, 0.3, problem::PlaneModel::strain), 3, units),
+            "E = 210000 MPa, nu = 0.3");
+  EXPECT_EQ(io::describe(loaded<2>(fixed<2>("left", 0.1, free), 0, 0.5), units),
+            "displacement (0.1, free) mm, traction (0, 0.5) MPa");
+  EXPECT_EQ(io::describe(obstacle<2>("bottom", Tresca(0.03), 0.25), units),
+            "contact, Tresca friction, threshold 0.03, gap 0.25 mm");
+}
+
 TEST(Facts, MeshAndBoundary)
 {
   const DiscreteProblem<2> box(

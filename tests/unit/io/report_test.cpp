@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/tables.h"
 
 namespace tribound
@@ -143,6 +144,42 @@ TEST(Report, CertificateOfARegularisedRun)
   const json plain = json::parse(io::certificate_json(certified_run()));
   EXPECT_FALSE(plain.contains("regularisation"));
   EXPECT_FALSE(plain["components"].contains("reg1"));
+}
+
+TEST(Report, TheCertificateHasTheLabelOfEveryUnit)
+{
+  io::RunRecord run = certified_run();
+  EXPECT_TRUE(json::parse(io::certificate_json(run))["units"].is_null());
+  run.facts.units = {"mm", "N"};
+  run.facts.quantity_units = {{"thrust", "N/mm"}, {"safety", ""}};
+  const json expected = {{"length", "mm"},
+                         {"boundary", "mm"},
+                         {"body", "mm^2"},
+                         {"stress", "MPa"},
+                         {"body_force", "N/mm^3"},
+                         {"fracture_energy", "N/mm"},
+                         {"force", "N/mm"},
+                         {"moment", "N mm/mm"},
+                         {"energy", "N mm/mm"},
+                         {"stress_norm", "MPa mm"},
+                         {"energy_norm", "(N mm/mm)^(1/2)"},
+                         {"quantities", {{"thrust", "N/mm"}, {"safety", nullptr}}}};
+  EXPECT_EQ(json::parse(io::certificate_json(run))["units"], expected);
+  run.facts.dimension = 3;
+  EXPECT_EQ(json::parse(io::certificate_json(run))["units"]["force"], "N");
+}
+
+TEST(Report, QuantitiesHaveTheirUnitsInTheTable)
+{
+  io::CaseFacts facts;
+  facts.quantity_units = {{"thrust", "N/mm"}};
+  const io::Json levels = io::Json::parse(
+      R"([{"level": 0, "dofs": 8, "quantities": [{"name": "thrust", "value": 1.5, "lower": 1, "upper": 2,
+           "exact": false, "rests_on": "duality gap"}]}])");
+  EXPECT_THAT(lines(io::quantities_csv(levels, facts)),
+              ::testing::ElementsAre("level,dofs,name,value,lower,upper,exact,rests_on,unit",
+                                     "0,8,thrust,1.5,1,2,0,duality gap,N/mm"));
+  EXPECT_EQ(lines(io::quantities_csv(levels, {}))[1], "0,8,thrust,1.5,1,2,0,duality gap,");
 }
 
 certify::Balance small_balance()

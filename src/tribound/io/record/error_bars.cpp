@@ -19,15 +19,15 @@ bool has_bound(const LevelRecord& level)
 }
 
 /// What v and tau are not admissible for, in words; empty: nothing.
-std::string words_of_remainders(const certify::EnergyBound& bound)
+std::string words_of_remainders(const certify::EnergyBound& bound, const CaseFacts& facts)
 {
   std::string text;
   if (bound.gap_remainder > 0)
-    text += fmt::format("; gaps are interpolated, they differ by {:.3g} where they were compared",
-                        bound.gap_remainder);
+    text += fmt::format("; gaps are interpolated, they differ by {:.3g}{} where they were compared",
+                        bound.gap_remainder, facts.behind(problem::UnitOf::length));
   if (bound.threshold_remainder > 0)
-    text += fmt::format("; thresholds are interpolated, they differ by {:.3g} where they were compared",
-                        bound.threshold_remainder);
+    text += fmt::format("; thresholds are interpolated, they differ by {:.3g}{} where they were compared",
+                        bound.threshold_remainder, facts.behind(problem::UnitOf::stress));
   if (bound.loads_remainder > 0)
     text += fmt::format("; loads are projected, what is left has the weighted norm {:.3g}",
                         bound.loads_remainder);
@@ -54,16 +54,16 @@ const char* words_of(certify::EnergyTarget target)
              : "the exact solution for the computed friction threshold, not of Coulomb's law itself";
 }
 
-std::string words_of_guarantee(const LevelRecord& level)
+std::string words_of_guarantee(const LevelRecord& level, const CaseFacts& facts)
 {
   if (!has_bound(level)) return {};
   return fmt::format("the error in the energy norm: the distance of the computed displacement from {}{}",
-                     words_of(level.energy->target), words_of_remainders(*level.energy));
+                     words_of(level.energy->target), words_of_remainders(*level.energy, facts));
 }
 
-std::string words_of(const certify::QuantityInterval& quantity)
+std::string words_of(const certify::QuantityInterval& quantity, const std::string& unit)
 {
-  const std::string value = fmt::format("{:.6g}", quantity.value);
+  const std::string value = fmt::format("{:.6g}{}{}", quantity.value, unit.empty() ? "" : " ", unit);
   if (!quantity.reason.empty()) return value + ", without error bar: " + quantity.reason;
   const std::string note = quantity.note.empty() ? std::string() : "; " + quantity.note;
   if (quantity.exact) return fmt::format("{}, exact ({}){}", value, quantity.basis, note);
@@ -108,9 +108,9 @@ std::optional<bool> intervals_agree(const LevelRecord& level, const LevelRecord&
   return all;
 }
 
-std::string quantities_csv(const Json& levels)
+std::string quantities_csv(const Json& levels, const CaseFacts& facts)
 {
-  const auto row = [](const Json& level, const Json& quantity) -> TableRow
+  const auto row = [&facts](const Json& level, const Json& quantity) -> TableRow
   {
     return {{"level", level.at("level").get<long>()},
             {"dofs", level.at("dofs").get<long>()},
@@ -120,7 +120,8 @@ std::string quantities_csv(const Json& levels)
             {"upper", known(quantity.at("upper"))},
             {"exact", quantity.at("exact").get<bool>() ? 1L : 0L},
             {"rests_on", quantity.at("rests_on").is_string() ? quantity.at("rests_on").get<std::string>()
-                                                             : std::string()}};
+                                                             : std::string()},
+            {"unit", facts.unit_of(quantity.at("name").get<std::string>())}};
   };
   std::vector<TableRow> rows;
   for (const Json& level : levels)

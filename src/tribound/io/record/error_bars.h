@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tribound/io/file/json_forward.h"
+#include "tribound/io/record/facts.h"
 #include "tribound/io/record/level_record.h"
 
 namespace tribound::io
@@ -22,10 +23,10 @@ namespace tribound::io
 [[nodiscard]] const char* words_of(certify::EnergyTarget target);
 
 /// What the bound guarantees, as a sentence of the certificate; empty without one.
-[[nodiscard]] std::string words_of_guarantee(const LevelRecord& level);
+[[nodiscard]] std::string words_of_guarantee(const LevelRecord& level, const CaseFacts& facts);
 
-/// A quantity in words: "1.646, guaranteed between 1.63 and 1.66 (energy bound)".
-[[nodiscard]] std::string words_of(const certify::QuantityInterval& quantity);
+/// A quantity in words: "1.646 N/mm, guaranteed between 1.63 and 1.66 (energy bound)"; `unit` may be empty.
+[[nodiscard]] std::string words_of(const certify::QuantityInterval& quantity, const std::string& unit);
 
 /// Whether every interval of a level has a point in common with that of a better solution of the same
 /// problem, as both hold the number of the exact one; nothing where none can be compared
@@ -33,7 +34,7 @@ namespace tribound::io
 [[nodiscard]] std::optional<bool> intervals_agree(const LevelRecord& level, const LevelRecord& better);
 
 /// A row for each quantity of each level, levels as `levels` of the certificate has them.
-[[nodiscard]] std::string quantities_csv(const Json& levels);
+[[nodiscard]] std::string quantities_csv(const Json& levels, const CaseFacts& facts);
 
 /// Adds `energy_error` and, where it is null, `energy_reason`; and `quantities`, where there are any.
 void add_energy_error(Json& object, const LevelRecord& level);

@@ -18,21 +18,25 @@
 namespace tribound::io
 {
 
+using problem::UnitOf;
+
 namespace
 {
 
-/// A field in words: its value where it is constant, else "varies".
-std::string text(const problem::Field& field)
+/// A field in words: its value with its unit where it is constant, else "varies".
+std::string text(const problem::Field& field, const std::string& unit = {})
 {
-  return field.is_constant() ? fmt::format("{:.6g}", field.constant()) : "varies";
+  return field.is_constant() ? fmt::format("{:.6g}{}", field.constant(), unit) : "varies";
 }
 
 template <int dim>
-std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                      const problem::Units& units)
 {
   std::vector<RegionFacts> regions;
   for (std::size_t r = 0; r < mesh.region_names().size(); ++r)
-    regions.push_back({mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dim)});
+    regions.push_back(
+        {mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dim, units)});
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     RegionFacts& region = regions[mesh.region(c)];
@@ -58,28 +62,30 @@ std::string geometry_words(const problem::Contact& contact)
 
 /// What a pair does on boundary number `tag`, or nothing.
 template <int dim>
-std::string pair_words(const problem::Problem<dim>& problem, int tag)
+std::string pair_words(const problem::Problem<dim>& problem, int tag, const problem::Units& units)
 {
   if (const problem::ContactPair<dim>* pair = problem.pair_of_slave(tag))
     return fmt::format(
         "contact with {}, {}, gap {}{}", fmt::join(pair->master, ", "), problem::words(pair->contact.law),
-        pair->contact.gap ? text(*pair->contact.gap) : "of the meshes", geometry_words(pair->contact));
+        pair->contact.gap ? text(*pair->contact.gap, units.behind(UnitOf::length, dim)) : "of the meshes",
+        geometry_words(pair->contact));
   if (const problem::ContactPair<dim>* pair = problem.pair_of_master(tag))
     return fmt::format("contact with {}, whose master it is", fmt::join(pair->slave, ", "));
   return {};
 }
 
 template <int dim>
-std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
+std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                          const problem::Units& units)
 {
   std::vector<BoundaryFacts> boundaries;
   for (int tag = 0; tag < static_cast<int>(problem.boundaries().size()); ++tag)
   {
     const problem::BoundaryCondition<dim>& condition = problem.boundaries()[tag];
-    const std::string paired = pair_words(problem, tag);
-    boundaries.push_back({condition.name, 0, 0.0, paired.empty() ? describe(condition) : paired});
+    const std::string paired = pair_words(problem, tag, units);
+    boundaries.push_back({condition.name, 0, 0.0, paired.empty() ? describe(condition, units) : paired});
   }
-  boundaries.push_back({"(no group)", 0, 0.0, describe(problem.boundary(-1))});
+  boundaries.push_back({"(no group)", 0, 0.0, describe(problem.boundary(-1), units)});
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     BoundaryFacts& boundary = facet.tag < 0 ? boundaries.back() : boundaries[facet.tag];
@@ -97,17 +103,26 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
 
 }  // namespace
 
-std::string describe(const problem::Material& material, int dimension)
+std::string CaseFacts::unit_of(std::string_view quantity) const
+{
+  const auto found =
+      std::ranges::find(quantity_units, quantity, [](const auto& named) { return named.first; });
+  return found == quantity_units.end() ? std::string() : found->second;
+}
+
+std::string describe(const problem::Material& material, int dimension, const problem::Units& units)
 {
   const auto [E, nu] = doctor::elastic_constants(material, dimension);
   const bool plane_stress = material.plane == problem::PlaneModel::stress;
   const char* model = dimension == 3 ? "" : plane_stress ? ", plane stress" : ", plane strain";
-  return fmt::format("E = {:.6g}, nu = {:.6g}{}", E, nu, model);
+  return fmt::format("E = {:.6g}{}, nu = {:.6g}{}", E, units.behind(UnitOf::stress, dimension), nu, model);
 }
 
 template <int dim>
-std::string describe(const problem::BoundaryCondition<dim>& condition)
+std::string describe(const problem::BoundaryCondition<dim>& condition, const problem::Units& units)
 {
+  const std::string length = units.behind(UnitOf::length, dim);
+  const std::string stress = units.behind(UnitOf::stress, dim);
   std::string words;
   const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
   const auto vector = [](const auto& component)
@@ -118,19 +133,20 @@ std::string describe(const problem::BoundaryCondition<dim>& condition)
   };
   if (condition.fixes_any())
     add("displacement " +
-        vector([&](int i) { return condition.fixes(i) ? text(*condition.displacement[i]) : "free"; }));
+        vector([&](int i) { return condition.fixes(i) ? text(*condition.displacement[i]) : "free"; }) +
+        length);
   if (std::ranges::any_of(condition.traction, [](const problem::Field& t) { return !t.is_zero(); }))
-    add("traction " + vector([&](int i) { return text(condition.traction[i]); }));
-  if (condition.pressure) add("pressure " + text(*condition.pressure));
+    add("traction " + vector([&](int i) { return text(condition.traction[i]); }) + stress);
+  if (condition.pressure) add("pressure " + text(*condition.pressure, stress));
   if (condition.contact)
-    add("contact, " + problem::words(condition.contact->law) + ", gap " + text(*condition.contact->gap) +
-        geometry_words(*condition.contact));
+    add("contact, " + problem::words(condition.contact->law) + ", gap " +
+        text(*condition.contact->gap, length) + geometry_words(*condition.contact));
   return words.empty() ? "traction-free" : words;
 }
 
 template <int dim>
 MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                     const fem::Constraints& constraints)
+                     const fem::Constraints& constraints, const problem::Units& units)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   MeshFacts facts;
@@ -146,8 +162,8 @@ MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSp
   }
   facts.smallest_cell = -mesh.ranks().max(-facts.smallest_cell);
   facts.largest_cell = mesh.ranks().max(facts.largest_cell);
-  facts.regions = region_facts(problem, mesh);
-  facts.boundaries = boundary_facts(problem, mesh);
+  facts.regions = region_facts(problem, mesh, units);
+  facts.boundaries = boundary_facts(problem, mesh, units);
   return facts;
 }
 
@@ -169,11 +185,11 @@ BuildFacts build_facts()
   return facts;
 }
 
-template std::string describe(const problem::BoundaryCondition<2>&);
-template std::string describe(const problem::BoundaryCondition<3>&);
+template std::string describe(const problem::BoundaryCondition<2>&, const problem::Units&);
+template std::string describe(const problem::BoundaryCondition<3>&, const problem::Units&);
 template MeshFacts mesh_facts(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                              const fem::Constraints&);
+                              const fem::Constraints&, const problem::Units&);
 template MeshFacts mesh_facts(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                              const fem::Constraints&);
+                              const fem::Constraints&, const problem::Units&);
 
 }  // namespace tribound::io

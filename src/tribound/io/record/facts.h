@@ -4,10 +4,13 @@
 /// What a case, its mesh and the program are, as plain data for the report and the console.
 
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
+#include "tribound/problem/units.h"
 
 namespace tribound::io
 {
@@ -27,6 +30,14 @@ struct CaseFacts
   int degree = 0;
   std::string friction;  ///< friction_name(); empty without contact
   double gamma0 = 0.0;
+  problem::Units units{};
+  /// The units of its [[quantity]] tables, by name; empty for pure numbers, and where no units are named.
+  std::vector<std::pair<std::string, std::string>> quantity_units{};
+
+  /// " MPa", as it stands behind a number; empty where no units are named.
+  [[nodiscard]] std::string behind(problem::UnitOf what) const { return units.behind(what, dimension); }
+  /// The unit of the [[quantity]] of this name; empty: none.
+  [[nodiscard]] std::string unit_of(std::string_view quantity) const;
 };
 
 struct RegionFacts
@@ -73,19 +84,21 @@ struct BuildFacts
   std::vector<std::string> features;
 };
 
-/// The mesh of `space` with what `problem` says about its parts.
+/// The mesh of `space` with what `problem` says about its parts, in words with `units`.
 template <int dim>
 [[nodiscard]] MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                                   const fem::Constraints& constraints);
+                                   const fem::Constraints& constraints, const problem::Units& units = {});
 
 /// Of the program and of the libraries it runs with.
 [[nodiscard]] BuildFacts build_facts();
 
 /// "E = ..., nu = ...", with the plane model in 2D.
-[[nodiscard]] std::string describe(const problem::Material& material, int dimension);
+[[nodiscard]] std::string describe(const problem::Material& material, int dimension,
+                                   const problem::Units& units = {});
 
 /// What holds on a part of the boundary, in words.
 template <int dim>
-[[nodiscard]] std::string describe(const problem::BoundaryCondition<dim>& condition);
+[[nodiscard]] std::string describe(const problem::BoundaryCondition<dim>& condition,
+                                   const problem::Units& units = {});
 
 }  // namespace tribound::io

@@ -22,14 +22,15 @@ std::vector<ComparedFigure> compare(const adapt::PathEnd& end, const LoadStepRec
                                     const HistoryCheck& check)
 {
   if (!check.end.failure.empty() || !check.last) return {};
-  const auto figure = [&](const char* name, const char* word, double LoadStepRecord::*value) {
-    return ComparedFigure{name, word, last.*value, (*check.last).*value};
+  const auto figure = [&](const char* name, const char* word, double LoadStepRecord::*value,
+                          std::optional<problem::UnitOf> unit = {}) {
+    return ComparedFigure{name, word, last.*value, (*check.last).*value, unit};
   };
   return {{"peak_t", "t of the peak", peak_of(end), peak_of(check.end)},
           figure("t", "at the end t", &LoadStepRecord::t),
-          figure("effective_normal", "N", &LoadStepRecord::effective_normal),
-          figure("tangential", "V", &LoadStepRecord::tangential),
-          figure("dissipated", "dissipated", &LoadStepRecord::dissipated)};
+          figure("effective_normal", "N", &LoadStepRecord::effective_normal, problem::UnitOf::force),
+          figure("tangential", "V", &LoadStepRecord::tangential, problem::UnitOf::force),
+          figure("dissipated", "dissipated", &LoadStepRecord::dissipated, problem::UnitOf::energy)};
 }
 
 const char* words_of_check()

@@ -9,6 +9,7 @@
 
 #include "tribound/adapt/path_program.h"
 #include "tribound/io/record/load_step_record.h"
+#include "tribound/problem/units.h"
 
 namespace tribound::io
 {
@@ -28,6 +29,7 @@ struct ComparedFigure
   const char* word;  ///< on the screen
   std::optional<double> path{};
   std::optional<double> check{};
+  std::optional<problem::UnitOf> unit{};  ///< absent: a pure number
 
   /// check - path, where both are there.
   [[nodiscard]] std::optional<double> difference() const;

@@ -65,6 +65,17 @@ Json program_json(const BuildFacts& build)
           {"features", build.features}};
 }
 
+Json units_json(const CaseFacts& facts)
+{
+  if (!facts.units.are_named()) return nullptr;
+  Json object;
+  for (const auto& [name, what] : problem::unit_names)
+    object[name] = facts.units.label(what, facts.dimension);
+  object["quantities"] = Json::object();
+  for (const auto& [name, unit] : facts.quantity_units) object["quantities"][name] = text_or_null(unit);
+  return object;
+}
+
 Json mesh_json(const MeshFacts& mesh)
 {
   Json object{
@@ -140,7 +151,8 @@ Json certificate(const RunRecord& run)
               {"d", run.facts.dimension},
               {"p", run.facts.degree},
               {"friction", run.facts.friction},
-              {"gamma0", run.facts.gamma0}};
+              {"gamma0", run.facts.gamma0},
+              {"units", units_json(run.facts)}};
   if (!run.levels.empty()) add_results(object, run.levels.back());
   object["balance"] = nullptr;
   if (!run.levels.empty() && run.levels.back().balance)

@@ -13,6 +13,10 @@ namespace tribound::io
 /// The `program` of certificate.json and study.json.
 [[nodiscard]] Json program_json(const BuildFacts& build);
 
+/// `units` of all JSON files: the label of each kind of number, and of each quantity; null where the case
+/// names no units.
+[[nodiscard]] Json units_json(const CaseFacts& facts);
+
 /// The `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
 [[nodiscard]] Json mesh_json(const MeshFacts& mesh);
 

@@ -127,7 +127,7 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   if (!run.effective.text.empty()) write_file(directory / run.case_file, run.effective.text);
   write_file(directory / "convergence.csv", convergence_csv(run));
   if (has_history(run)) write_file(directory / "history.csv", history_csv(run));
-  if (const std::string quantities = quantities_csv(levels_json(run)); !quantities.empty())
+  if (const std::string quantities = quantities_csv(levels_json(run), run.facts); !quantities.empty())
     write_file(directory / "quantities.csv", quantities);
   write_file(directory / "newton.csv", newton_csv(run));
   write_file(directory / "certificate.json", certificate_json(run));

@@ -41,21 +41,21 @@ certify::Statements run_statements(const adapt::Discretisation<dim>& first, cons
 
 template <int dim>
 certify::Statements run_statements(const adapt::LevelView<dim>& view, const LevelRecord& record,
-                                   const adapt::Method& method, bool carried)
+                                   const CaseFacts& facts, const adapt::Method& method, bool carried)
 {
   const adapt::CertifiedLevel<dim>& level = view.level;
   certify::Statements statements =
       certify::statements(view.discrete.form, method.contact_rule, level.friedrichs);
   if (!record.load_step && view.discrete.form.problem().uses_time())
     statements.assumptions.emplace_back("load_factor", "t = 1 in all formulas, without [history]");
-  if (std::string energy = words_of_guarantee(record); !energy.empty())
+  if (std::string energy = words_of_guarantee(record, facts); !energy.empty())
     statements.covered.push_back(std::move(energy));
   if (level.solved() && certify::is_round_off(level.estimate, level.norms))
     statements.assumptions.emplace_back(
         "stress",
-        fmt::format("zero as far as can be known: here norms of stresses up to {:.3g} are nothing but "
+        fmt::format("zero as far as can be known: here norms of stresses up to {:.3g}{} are nothing but "
                     "rounding, and so is the bound",
-                    level.norms.round_off));
+                    level.norms.round_off, facts.behind(problem::UnitOf::stress_norm)));
   statements.assumptions.emplace_back(
       "linear_solver",
       describe_solver(level.steps) +
@@ -70,9 +70,9 @@ certify::Statements run_statements(const adapt::LevelView<dim>& view, const Leve
 
 template certify::Statements run_statements(const adapt::Discretisation<2>&, const adapt::Method&);
 template certify::Statements run_statements(const adapt::Discretisation<3>&, const adapt::Method&);
-template certify::Statements run_statements(const adapt::LevelView<2>&, const LevelRecord&,
+template certify::Statements run_statements(const adapt::LevelView<2>&, const LevelRecord&, const CaseFacts&,
                                             const adapt::Method&, bool);
-template certify::Statements run_statements(const adapt::LevelView<3>&, const LevelRecord&,
+template certify::Statements run_statements(const adapt::LevelView<3>&, const LevelRecord&, const CaseFacts&,
                                             const adapt::Method&, bool);
 
 }  // namespace tribound::io

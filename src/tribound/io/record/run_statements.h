@@ -8,6 +8,7 @@
 
 #include "tribound/adapt/levels.h"
 #include "tribound/algebra/linear_solver.h"
+#include "tribound/io/record/facts.h"
 #include "tribound/io/record/level_record.h"
 
 namespace tribound::io
@@ -26,6 +27,7 @@ template <int dim>
 /// `carried`: of a load step whether the history goes from mesh to mesh.
 template <int dim>
 [[nodiscard]] certify::Statements run_statements(const adapt::LevelView<dim>& view, const LevelRecord& record,
-                                                 const adapt::Method& method, bool carried);
+                                                 const CaseFacts& facts, const adapt::Method& method,
+                                                 bool carried);
 
 }  // namespace tribound::io
