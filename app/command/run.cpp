@@ -228,7 +228,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   const io::MeshFacts about_mesh = io::mesh_facts<dim>(problem, space, form.constraints(), config.units);
   const std::string solver = io::describe_solver(solve::choose_method(form, config.method.solver, true));
   const std::vector<doctor::Finding> findings =
-      doctor::findings(doctor::diagnose(form, config.method, config.adapt));
+      doctor::findings(doctor::diagnose(form, config.method, config.adapt, config.units));
   print(as_json ? check_json(facts, about_mesh, solver, findings)
                 : check_text(facts, about_mesh, solver) + findings_text(findings));
 }

@@ -86,10 +86,10 @@ void RunReport<dim>::update_warnings(const adapt::LevelView<dim>& view)
   const bool is_shared = view.discrete.mesh.partition() != nullptr;
   if (!view.level.solved() || (is_shared && (!shown || shown->number != view.number))) return;
   const io::LevelRecord& level = record_.levels.back();
-  record_.warnings =
-      doctor::run_warnings({level.bound, level.figures.sigma_norm, level.figures.max_displacement},
-                           is_shared ? doctor::contact_outcomes<dim>(shown->discrete->form, shown->level.u)
-                                     : doctor::contact_outcomes<dim>(view.discrete.form, view.level.u));
+  record_.warnings = doctor::run_warnings(
+      {level.bound, level.figures.sigma_norm, level.figures.max_displacement, record_.facts.units},
+      is_shared ? doctor::contact_outcomes<dim>(shown->discrete->form, shown->level.u)
+                : doctor::contact_outcomes<dim>(view.discrete.form, view.level.u));
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 /// @file diagnosis.h
 /// All that `tribound check` finds out about a case before it is solved.
 
+#include <string>
 #include <vector>
 
 #include "tribound/adapt/loop.h"
@@ -27,17 +28,24 @@ struct Diagnosis
   std::vector<ContactBoundaryFacts> contacts;
   std::vector<PairFacts> pairs;
   LoadFacts loads;
-  std::vector<UnitSystem> units;
+  problem::Units units{};               ///< that the case names
+  std::vector<problem::Units> guesses;  ///< plausible_units()
   MeshQuality mesh;
   std::vector<CostEstimate> costs;
   double multigrid_bytes = 0;  ///< of the case's degree with solver.method = "iterative"
   adapt::MemoryLimit memory;
+
+  /// " MPa", as it stands behind a number; empty where no units are named.
+  [[nodiscard]] std::string behind(problem::UnitOf what) const
+  {
+    return units.behind(what, static_cast<int>(loads.extent.size()));
+  }
 };
 
 /// For a case whose bodies are held, see check_rigid_motions().
 template <int dim>
 [[nodiscard]] Diagnosis diagnose(const contact::NitscheForm<dim>& form, const adapt::Method& method,
-                                 const adapt::AdaptOptions& options)
+                                 const adapt::AdaptOptions& options, const problem::Units& units = {})
 {
   Diagnosis result;
   result.degree = method.degree;
@@ -47,7 +55,8 @@ template <int dim>
   result.contacts = contact_boundary_facts(form);
   result.pairs = pair_facts(form);
   result.loads = load_facts(form);
-  result.units = plausible_units(result.loads);
+  result.units = units;
+  result.guesses = plausible_units(result.loads);
   result.mesh = mesh_quality(form.space().mesh());
   result.costs = cost_estimates(form.space().mesh(), method.solver);
   algebra::SolverOptions multigrid = method.solver;

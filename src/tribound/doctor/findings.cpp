@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <span>
 
 namespace tribound::doctor
 {
+
+using problem::UnitOf;
 
 namespace
 {
@@ -59,8 +60,11 @@ void add_supports(const Diagnosis& diagnosis, Findings& findings)
     findings.push_back({.code = "held", .text = "displacement conditions alone stop every rigid motion"});
 }
 
-Finding strain_finding(const LoadFacts& loads)
+Finding strain_finding(const Diagnosis& diagnosis)
 {
+  const LoadFacts& loads = diagnosis.loads;
+  const std::string stress_unit = diagnosis.behind(UnitOf::stress);
+  const std::string length_unit = diagnosis.behind(UnitOf::length);
   Finding finding{.code = "strain"};
   finding.numbers = {{"strain", loads.strain()},
                      {"traction_stress", loads.traction_stress},
@@ -82,11 +86,12 @@ Finding strain_finding(const LoadFacts& loads)
   const bool stresses = loads.stress() / loads.smallest_E >= loads.strain();
   const char* lengths =
       loads.displacement_strain >= loads.strain() ? "prescribed displacements of" : "interferences up to";
-  finding.text = stresses
-                     ? fmt::format("expect strains of about {:.2g} % (stresses near {:.3g}, E = {:.4g})",
-                                   100 * loads.strain(), loads.stress(), loads.smallest_E)
-                     : fmt::format("expect strains of about {:.2g} % ({} {:.3g} over the size {:.4g})",
-                                   100 * loads.strain(), lengths, loads.strain() * loads.size, loads.size);
+  finding.text =
+      stresses ? fmt::format("expect strains of about {:.2g} % (stresses near {:.3g}{}, E = {:.4g}{})",
+                             100 * loads.strain(), loads.stress(), stress_unit, loads.smallest_E, stress_unit)
+               : fmt::format("expect strains of about {:.2g} % ({} {:.3g}{} over the size {:.4g}{})",
+                             100 * loads.strain(), lengths, loads.strain() * loads.size, length_unit,
+                             loads.size, length_unit);
   if (loads.strain() < tiny_strain)
   {
     finding.severity = Severity::note;
@@ -100,13 +105,14 @@ Finding strain_finding(const LoadFacts& loads)
   return finding;
 }
 
-void add_suction(const LoadFacts& loads, Findings& findings)
+void add_suction(const Diagnosis& diagnosis, Findings& findings)
 {
-  for (const Suction& suction : loads.suction)
+  for (const Suction& suction : diagnosis.loads.suction)
   {
     Finding finding{.code = "suction", .severity = Severity::warning};
-    finding.text = fmt::format("the pressure on boundary \"{}\" is negative, {:.4g} at {}: it pulls the body",
-                               suction.boundary, suction.lowest, describe(suction.where));
+    finding.text = fmt::format(
+        "the pressure on boundary \"{}\" is negative, {:.4g}{} at {}: it pulls the body", suction.boundary,
+        suction.lowest, diagnosis.behind(UnitOf::stress), describe(suction.where));
     finding.advice =
         "pressure is positive where it pushes; water above its level is cut off: \"9810*max(0, 9-y)\"";
     finding.numbers = {{"pressure", suction.lowest}};
@@ -129,43 +135,6 @@ void add_poisson(const Diagnosis& diagnosis, Findings& findings)
                          : "degree 2 or more copes, but expect larger bounds";
     findings.push_back(finding);
   }
-}
-
-/// "m, N, Pa (E = 2.1e+11 Pa, a body of 2 m)".
-std::string in_words(const UnitSystem& units, const LoadFacts& loads)
-{
-  return fmt::format("{}, {}, {} (E = {:.3g} {}, a body of {:.3g} {})", units.length, units.force,
-                     units.stress, loads.smallest_E, units.stress, loads.size, units.length);
-}
-
-Finding units_finding(const Diagnosis& diagnosis)
-{
-  Finding finding{.code = "units"};
-  finding.numbers = {{"E", diagnosis.loads.smallest_E},
-                     {"size", diagnosis.loads.size},
-                     {"body_force", diagnosis.loads.largest_body_force}};
-  if (diagnosis.units.empty())
-  {
-    finding.severity = Severity::note;
-    finding.text =
-        fmt::format("E = {:.3g} with a body of size {:.3g}{} fits no usual system of units",
-                    diagnosis.loads.smallest_E, diagnosis.loads.size,
-                    diagnosis.loads.largest_body_force > 0
-                        ? fmt::format(" and a body force of {:.3g}", diagnosis.loads.largest_body_force)
-                        : "");
-    finding.advice =
-        "fine for a scaled model; otherwise do not mix systems: m with N and Pa, mm with N and MPa, "
-        "m with MN and MPa";
-    return finding;
-  }
-  constexpr std::size_t most_guesses = 2;
-  std::vector<std::string> systems;
-  for (const UnitSystem& units :
-       std::span(diagnosis.units).first(std::min(most_guesses, diagnosis.units.size())))
-    systems.push_back(in_words(units, diagnosis.loads));
-  finding.text = fmt::format("a guess at the units: {}", fmt::join(systems, "; or "));
-  finding.advice = "only a guess from the size of the numbers: Tribound has no units of its own";
-  return finding;
 }
 
 void add_mesh(const Diagnosis& diagnosis, Findings& findings)
@@ -194,8 +163,8 @@ void add_mesh(const Diagnosis& diagnosis, Findings& findings)
   const double ratio = mesh.largest_cell / mesh.smallest_cell;
   Finding sizes{.code = "cell_sizes", .severity = ratio > large_grading ? Severity::warning : Severity::ok};
   sizes.numbers = {{"smallest", mesh.smallest_cell}, {"largest", mesh.largest_cell}, {"ratio", ratio}};
-  sizes.text = fmt::format("cells have sizes from {:.4g} to {:.4g}, a ratio of {:.3g}", mesh.smallest_cell,
-                           mesh.largest_cell, ratio);
+  sizes.text = fmt::format("cells have sizes from {:.4g} to {:.4g}{}, a ratio of {:.3g}", mesh.smallest_cell,
+                           mesh.largest_cell, diagnosis.behind(UnitOf::length), ratio);
   if (ratio > large_grading) sizes.advice = "is one of the sizes in the .geo a slip of the pen?";
   findings.push_back(sizes);
 }
@@ -239,10 +208,10 @@ std::vector<Finding> findings(const Diagnosis& diagnosis)
   add_supports(diagnosis, result);
   std::ranges::move(contact_findings(diagnosis), std::back_inserter(result));
   std::ranges::move(pair_findings(diagnosis), std::back_inserter(result));
-  result.push_back(strain_finding(diagnosis.loads));
-  add_suction(diagnosis.loads, result);
+  result.push_back(strain_finding(diagnosis));
+  add_suction(diagnosis, result);
   add_poisson(diagnosis, result);
-  result.push_back(units_finding(diagnosis));
+  std::ranges::move(unit_findings(diagnosis), std::back_inserter(result));
   add_mesh(diagnosis, result);
   std::ranges::move(cost_findings(diagnosis), std::back_inserter(result));
   return result;

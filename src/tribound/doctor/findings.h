@@ -44,6 +44,9 @@ struct Finding
 /// The part about pairs of bodies in contact.
 [[nodiscard]] std::vector<Finding> pair_findings(const Diagnosis& diagnosis);
 
+/// The part about the units that the case names, or a guess at them.
+[[nodiscard]] std::vector<Finding> unit_findings(const Diagnosis& diagnosis);
+
 /// The part about memory and time.
 [[nodiscard]] std::vector<Finding> cost_findings(const Diagnosis& diagnosis);
 

@@ -17,7 +17,7 @@ constexpr double beyond = 1;
 /// Fewer facets do not show how the pressure is distributed.
 constexpr long few_facets = 4;
 
-Finding corner_finding(const OverconstrainedCorner& corner)
+Finding corner_finding(const OverconstrainedCorner& corner, const std::string& unit)
 {
   Finding finding{.code = "overconstrained_corner", .severity = Severity::note};
   finding.numbers = {{"vertices", static_cast<double>(corner.vertices)},
@@ -33,16 +33,16 @@ Finding corner_finding(const OverconstrainedCorner& corner)
     finding.severity = Severity::warning;
     finding.code = "contradicting_corner";
     finding.text = fmt::format(
-        "{}, where the prescribed displacement towards the obstacle, {:.4g}, is beyond the gap of {:.4g}",
-        place, corner.normal, corner.gap);
+        "{}, where the prescribed displacement towards the obstacle, {:.4g}{}, is beyond the gap of {:.4g}{}",
+        place, corner.normal, unit, corner.gap, unit);
     finding.advice =
         "the body is pushed into the obstacle there: no displacement satisfies both; reduce the "
         "displacement or enlarge the gap";
     return finding;
   }
   finding.text = fmt::format(
-      "{}, where the displacement towards the obstacle is prescribed: {:.4g}, with a gap of {:.4g}", place,
-      corner.normal, corner.gap);
+      "{}, where the displacement towards the obstacle is prescribed: {:.4g}{}, with a gap of {:.4g}{}",
+      place, corner.normal, unit, corner.gap, unit);
   finding.advice =
       corner.sticks ? "contact and friction have nothing to decide there; expect a stress singularity, and "
                       "do not read pressures from the last facet"
@@ -76,15 +76,16 @@ Finding surface_finding(const ContactBoundaryFacts& contact)
 }
 
 /// Nothing where the mesh has no curved facets, or the contact has a shape.
-std::optional<Finding> straightened_finding(const ContactBoundaryFacts& contact)
+std::optional<Finding> straightened_finding(const ContactBoundaryFacts& contact, const std::string& unit)
 {
   if (contact.straightened == 0) return {};
   Finding finding{.code = "straightened_facets", .severity = Severity::note};
   finding.numbers = {{"sagitta", contact.straightened}};
   finding.text = fmt::format(
-      "contact \"{}\" has second-order facets in the mesh, the straight ones in their place are up to {:.3g} "
+      "contact \"{}\" has second-order facets in the mesh, the straight ones in their place are up to "
+      "{:.3g}{} "
       "away",
-      contact.name, contact.straightened);
+      contact.name, contact.straightened, unit);
   finding.advice =
       "gap and direction of contact can be those of the curved facets: name a shape in the contact, "
       "with mesh = \"order2\" in its table";
@@ -110,19 +111,19 @@ std::optional<Finding> direction_finding(const ContactBoundaryFacts& contact)
   return finding;
 }
 
-Finding gap_finding(const ContactBoundaryFacts& contact, double size)
+Finding gap_finding(const ContactBoundaryFacts& contact, double size, const std::string& unit)
 {
   Finding finding{.code = "gap", .where = contact.smallest_gap_at};
   finding.numbers = {{"smallest", contact.smallest_gap}, {"largest", contact.largest_gap}};
   if (contact.largest_gap == 0 && contact.smallest_gap == 0)
     finding.text = fmt::format("contact \"{}\" is closed everywhere at the start", contact.name);
   else if (contact.smallest_gap == contact.largest_gap)
-    finding.text = fmt::format("contact \"{}\" starts with the gap {:.4g} everywhere", contact.name,
-                               contact.smallest_gap);
+    finding.text = fmt::format("contact \"{}\" starts with the gap {:.4g}{} everywhere", contact.name,
+                               contact.smallest_gap, unit);
   else
-    finding.text = fmt::format("contact \"{}\" starts with gaps from {:.4g} at {} to {:.4g} at {}",
-                               contact.name, contact.smallest_gap, describe(contact.smallest_gap_at),
-                               contact.largest_gap, describe(contact.largest_gap_at));
+    finding.text = fmt::format("contact \"{}\" starts with gaps from {:.4g}{} at {} to {:.4g}{} at {}",
+                               contact.name, contact.smallest_gap, unit, describe(contact.smallest_gap_at),
+                               contact.largest_gap, unit, describe(contact.largest_gap_at));
   if (contact.largest_gap > beyond * size)
   {
     finding.severity = Severity::warning;
@@ -159,14 +160,16 @@ Finding facets_finding(const ContactBoundaryFacts& contact, bool refines)
 std::vector<Finding> contact_findings(const Diagnosis& diagnosis)
 {
   std::vector<Finding> result;
-  for (const OverconstrainedCorner& corner : diagnosis.corners) result.push_back(corner_finding(corner));
+  const std::string unit = diagnosis.behind(problem::UnitOf::length);
+  for (const OverconstrainedCorner& corner : diagnosis.corners)
+    result.push_back(corner_finding(corner, unit));
   for (const ContactBoundaryFacts& contact : diagnosis.contacts)
   {
     result.push_back(facets_finding(contact, diagnosis.refines));
     result.push_back(surface_finding(contact));
-    if (auto straightened = straightened_finding(contact)) result.push_back(std::move(*straightened));
+    if (auto straightened = straightened_finding(contact, unit)) result.push_back(std::move(*straightened));
     if (auto direction = direction_finding(contact)) result.push_back(std::move(*direction));
-    result.push_back(gap_finding(contact, diagnosis.loads.size));
+    result.push_back(gap_finding(contact, diagnosis.loads.size, unit));
   }
   return result;
 }

@@ -28,7 +28,7 @@ Finding warning(const char* code, double number, const Place& where, std::string
           .advice = advice};
 }
 
-void add_warnings(const PairFacts& pair, std::vector<Finding>& result)
+void add_warnings(const PairFacts& pair, const std::string& unit, std::vector<Finding>& result)
 {
   if (pair.covered_share < nearly_all && (pair.geometric_gap || pair.is_tied))
     result.push_back(
@@ -59,7 +59,8 @@ void add_warnings(const PairFacts& pair, std::vector<Finding>& result)
   if (pair.is_tied && pair.distance > across * pair.size)
     result.push_back(warning(
         "tie_distance", pair.distance, pair.distance_at,
-        fmt::format("the sides of {}, which are tied, lie up to {:.3g} apart", pair.name, pair.distance),
+        fmt::format("the sides of {}, which are tied, lie up to {:.3g}{} apart", pair.name, pair.distance,
+                    unit),
         "a tie across a distance also stops rotations and carries a couple: let the sides meet in the mesh"));
 }
 
@@ -76,7 +77,7 @@ std::vector<Finding> pair_findings(const Diagnosis& diagnosis)
     finding.text = fmt::format("{} has {} segment{} and covers {:.4g} % of the slave", pair.name,
                                pair.segments, pair.segments == 1 ? "" : "s", 100 * pair.covered_share);
     result.push_back(std::move(finding));
-    add_warnings(pair, result);
+    add_warnings(pair, diagnosis.behind(problem::UnitOf::length), result);
   }
   return result;
 }

@@ -7,6 +7,8 @@
 namespace tribound::doctor
 {
 
+using problem::UnitOf;
+
 namespace
 {
 
@@ -77,7 +79,7 @@ void add_resolution(const ContactOutcome& outcome, std::vector<Finding>& warning
                 static_cast<double>(outcome.closed_facets), outcome.boundary));
 }
 
-void add_pressure(const ContactOutcome& outcome, std::vector<Finding>& warnings)
+void add_pressure(const ContactOutcome& outcome, const problem::Units& units, std::vector<Finding>& warnings)
 {
   if (outcome.zigzag > large_zigzag)
     warnings.push_back(
@@ -91,26 +93,28 @@ void add_pressure(const ContactOutcome& outcome, std::vector<Finding>& warnings)
   warnings.push_back(warning(
       "pressure_at_kinks",
       fmt::format(
-          "the contact pressure reaches {:.3g}, {:.2g} times its mean, where facets meet at an angle "
+          "the contact pressure reaches {:.3g}{}, {:.2g} times its mean, where facets meet at an angle "
           "(up to {:.2g} degrees): a peak of the polygon, not of the curve behind it, that grows with "
           "refinement; name the true shape and the obstacle, such as contact.shape = \"arc\" and "
           "contact.obstacle = \"floor\" with [shape.arc] circle = {{ centre = [0, 1], radius = 1 }} and "
           "[obstacle.floor] plane = {{ point = [0, 0], normal = [0, 1] }}; or take a flat boundary with the "
           "curvature in the gap",
-          outcome.kink_pressure, ratio, outcome.kink),
+          outcome.kink_pressure, units.behind(UnitOf::stress), ratio, outcome.kink),
       ratio, outcome.boundary, outcome.kink_at));
 }
 
-void add_penetration(const ContactOutcome& outcome, double max_displacement, std::vector<Finding>& warnings)
+void add_penetration(const ContactOutcome& outcome, const SolvedFigures& solved,
+                     std::vector<Finding>& warnings)
 {
+  const double max_displacement = solved.max_displacement;
   if (outcome.penetration <= large_penetration * max_displacement) return;
   const double ratio = outcome.penetration / max_displacement;
   warnings.push_back(warning(
       "penetration",
-      fmt::format("{} by {:.3g}, {:.2g} % of the largest displacement: contact is met on average "
+      fmt::format("{} by {:.3g}{}, {:.2g} % of the largest displacement: contact is met on average "
                   "only; refine there, or raise nitsche.gamma0 where it was lowered",
                   outcome.has_master ? "the bodies penetrate each other" : "the body penetrates the obstacle",
-                  outcome.penetration, 100 * ratio),
+                  outcome.penetration, solved.units.behind(UnitOf::length), 100 * ratio),
       ratio, outcome.boundary, outcome.penetration_at));
 }
 
@@ -133,17 +137,20 @@ void add_friction(const ContactOutcome& outcome, std::vector<Finding>& warnings)
                 outcome.slipping / outcome.closed, outcome.boundary));
 }
 
-void add_damage(const ContactOutcome& outcome, std::vector<Finding>& warnings)
+void add_damage(const ContactOutcome& outcome, const problem::Units& units, std::vector<Finding>& warnings)
 {
   const Softening& softening = outcome.damage.softening;
+  const std::string slope = units.behind(UnitOf::body_force);
+  const std::string length = units.behind(UnitOf::length);
   if (softening.ratio() > large_softening)
     warnings.push_back(warning(
         "steep_softening",
-        fmt::format("the law softens with the slope {:.4g}, and gamma is {:.4g} on a facet of size {:.4g}: "
-                    "Newton's method may fail; take facets of less than {:.4g} there, or a nitsche.gamma0 of "
-                    "{:.2g} times as much",
-                    softening.slope, softening.gamma, softening.h,
-                    large_softening * softening.h / softening.ratio(), softening.ratio() / large_softening),
+        fmt::format(
+            "the law softens with the slope {:.4g}{}, and gamma is {:.4g}{} on a facet of size {:.4g}{}: "
+            "Newton's method may fail; take facets of less than {:.4g}{} there, or a nitsche.gamma0 of "
+            "{:.2g} times as much",
+            softening.slope, slope, softening.gamma, slope, softening.h, length,
+            large_softening * softening.h / softening.ratio(), length, softening.ratio() / large_softening),
         softening.ratio(), outcome.boundary, softening.where));
   if (outcome.damage.process_zone.value_or(few_rows) < few_rows)
     warnings.push_back(warning(
@@ -156,9 +163,9 @@ void add_damage(const ContactOutcome& outcome, std::vector<Finding>& warnings)
   if (outcome.damage.open_cohesion > 0)
     warnings.push_back(warning(
         "open_cohesion",
-        fmt::format("an open point keeps its cohesion of {:.4g}, since only slip takes it from a joint "
+        fmt::format("an open point keeps its cohesion of {:.4g}{}, since only slip takes it from a joint "
                     "without tensile strength: with tensile_strength and fracture_energy what opens breaks",
-                    outcome.damage.open_cohesion),
+                    outcome.damage.open_cohesion, units.behind(UnitOf::stress)),
         outcome.damage.open_cohesion, outcome.boundary));
 }
 
@@ -171,10 +178,10 @@ std::vector<Finding> run_warnings(const SolvedFigures& solved, std::span<const C
   for (const ContactOutcome& outcome : outcomes)
   {
     add_resolution(outcome, warnings);
-    add_pressure(outcome, warnings);
-    add_penetration(outcome, solved.max_displacement, warnings);
+    add_pressure(outcome, solved.units, warnings);
+    add_penetration(outcome, solved, warnings);
     add_friction(outcome, warnings);
-    add_damage(outcome, warnings);
+    add_damage(outcome, solved.units, warnings);
   }
   return warnings;
 }

@@ -11,6 +11,7 @@
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/doctor/findings.h"
 #include "tribound/doctor/solution_facts.h"
+#include "tribound/problem/units.h"
 
 namespace tribound::doctor
 {
@@ -21,6 +22,7 @@ struct SolvedFigures
   std::optional<certify::Bound> bound;
   double sigma_norm = 0;        ///< ||sigma(u_h)||
   double max_displacement = 0;  ///< largest |u| at a node
+  problem::Units units{};       ///< that the case names
 };
 
 /// Warnings about the solution of a level with its contact; docs/doctor.md explains every code. The first

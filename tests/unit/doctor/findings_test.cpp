@@ -26,7 +26,7 @@ doctor::Diagnosis healthy()
   diagnosis.loads.materials = {{"steel", 2.1e11, 0.3, false}};
   diagnosis.loads.smallest_E = 2.1e11;
   diagnosis.loads.traction_stress = 1e8;
-  diagnosis.units = {{"m", "N", "Pa", 1, 1}};
+  diagnosis.guesses = {{"m", "N"}};
   diagnosis.mesh = {45, {0, 0}, 90, {1, 1}, 1.4, {1, 0}, 0.1, 0.2};
   diagnosis.contacts = {{.name = "base",
                          .facets = 10,
@@ -191,13 +191,103 @@ TEST(Findings, MeshAndUnits)
   diagnosis.mesh.smallest_angle = 10;
   diagnosis.mesh.smallest_angle_at = {0.25, 0.5};
   diagnosis.mesh.smallest_cell = 1e-6;
-  diagnosis.units.clear();
+  diagnosis.guesses.clear();
   EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, doctor::Severity::warning);
   EXPECT_THAT(finding(diagnosis, "cell_shapes").where, ElementsAre(0.25, 0.5));
   EXPECT_EQ(finding(diagnosis, "cell_sizes").severity, doctor::Severity::warning);
   EXPECT_EQ(finding(diagnosis, "units").severity, doctor::Severity::note);
   diagnosis.loads.extent = {2, 1, 1};  // what is poor for triangles is usual for tetrahedra
   EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, doctor::Severity::ok);
+}
+
+/// With E of the first region, in these units.
+doctor::Diagnosis named(const problem::Units& units, double E)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.units = units;
+  diagnosis.loads.materials[0].E = diagnosis.loads.smallest_E = E;
+  return diagnosis;
+}
+
+TEST(Findings, WithoutUnitsTheGuessSaysHowToNameThem)
+{
+  EXPECT_THAT(finding(healthy(), "units").advice, HasSubstr("[units] with length = \"m\" and force = \"N\""));
+}
+
+TEST(Findings, StiffnessOfSteelInTheUnitsOfTheCase)
+{
+  const doctor::Finding steel = finding(named({"mm", "N"}, 210e3), "units");
+  EXPECT_EQ(steel.severity, doctor::Severity::ok);
+  EXPECT_EQ(steel.text, "E = 210000 MPa of region \"steel\" is that of metals");
+  EXPECT_EQ(steel.advice, "");
+  for (const auto& [units, E] : {std::pair(problem::Units("m", "N"), 210e9),
+                                 {problem::Units("m", "kN"), 210e6},
+                                 {problem::Units("mm", "kN"), 210.0},
+                                 {problem::Units("in", "lbf"), 30e6},
+                                 {problem::Units("in", "kip"), 30e3},
+                                 {problem::Units("cm", "kgf"), 2.1e6}})
+    EXPECT_THAT(finding(named(units, E), "units").text, HasSubstr("is that of metals")) << E;
+}
+
+TEST(Findings, StiffnessOfRubberIsMeantInAnotherUnit)
+{
+  const doctor::Finding soft = finding(named({"mm", "N"}, 210), "units");
+  EXPECT_EQ(soft.severity, doctor::Severity::note);
+  EXPECT_EQ(soft.text, "E = 210 MPa of region \"steel\" is that of rubber, soft plastics and soil");
+  EXPECT_EQ(soft.advice, "GPa? Then it is E = 210000 in this case, whose stresses are in MPa");
+  EXPECT_THAT(finding(named({"in", "lbf"}, 30e3), "units").advice, HasSubstr("ksi? Then it is E = 3e+07"));
+}
+
+TEST(Findings, StiffnessOfNoSolid)
+{
+  const doctor::Finding stiff = finding(named({"mm", "N"}, 210e9), "units");
+  EXPECT_EQ(stiff.severity, doctor::Severity::warning);
+  EXPECT_EQ(stiff.text,
+            "E = 2.1e+11 MPa of region \"steel\" is that of no solid: they have 10 kPa (gels) to 1200 GPa "
+            "(diamond)");
+  EXPECT_EQ(stiff.advice, "Pa? Then it is E = 210000 in this case, whose stresses are in MPa");
+  EXPECT_EQ(finding(named({"m", "N"}, 1e-6), "units").severity, doctor::Severity::warning);
+  EXPECT_EQ(finding(named({"m", "N"}, 1e-6), "units").advice,
+            "look at E and [units]: one of them is hardly meant so");
+}
+
+TEST(Findings, EveryStiffnessIsJudgedOnce)
+{
+  doctor::Diagnosis diagnosis = named({"m", "MN"}, 25e3);
+  diagnosis.loads.materials.push_back({"rock", 15, 0.25, false});
+  diagnosis.loads.materials.push_back({"dam", 25e3, 0.2, false});
+  const std::vector<doctor::Finding> all = doctor::findings(diagnosis);
+  EXPECT_EQ(std::ranges::count(all, "units", &doctor::Finding::code), 2);
+}
+
+TEST(Findings, BodyForceThatIsNoWeight)
+{
+  doctor::Diagnosis diagnosis = named({"mm", "N"}, 210e3);
+  diagnosis.loads.largest_body_force = 7850 * 9.81e-9;
+  EXPECT_EQ(std::ranges::count(doctor::findings(diagnosis), "body_force", &doctor::Finding::code), 0);
+  diagnosis.loads.largest_body_force = 7850 * 9.81;
+  const doctor::Finding heavy = finding(diagnosis, "body_force");
+  EXPECT_EQ(heavy.severity, doctor::Severity::note);
+  EXPECT_EQ(heavy.text, "the largest body force, 7.7e+04 N/mm^3, is 1e+09 times the weight of steel");
+  EXPECT_EQ(heavy.advice,
+            "if it is a weight, look at its units: steel has 7.7e-05 N/mm^3, water 9.81e-06 N/mm^3");
+}
+
+TEST(Findings, NumbersCarryTheirUnits)
+{
+  doctor::Diagnosis diagnosis = named({"mm", "N"}, 210e3);
+  diagnosis.loads.traction_stress = 100;
+  diagnosis.loads.suction = {{"top", -3, {1, 1}}};
+  diagnosis.contacts[0].smallest_gap = 0.01;
+  diagnosis.contacts[0].largest_gap = 0.02;
+  diagnosis.contacts[0].straightened = 0.001;
+  EXPECT_EQ(finding(diagnosis, "strain").text,
+            "expect strains of about 0.048 % (stresses near 100 MPa, E = 2.1e+05 MPa)");
+  EXPECT_THAT(finding(diagnosis, "suction").text, HasSubstr("is negative, -3 MPa at (1, 1)"));
+  EXPECT_EQ(finding(diagnosis, "gap").text,
+            "contact \"base\" starts with gaps from 0.01 mm at (0, 0) to 0.02 mm at (0, 0)");
+  EXPECT_THAT(finding(diagnosis, "straightened_facets").text, HasSubstr("up to 0.001 mm away"));
+  EXPECT_EQ(finding(diagnosis, "cell_sizes").text, "cells have sizes from 0.1 to 0.2 mm, a ratio of 2");
 }
 
 TEST(Findings, Cost)

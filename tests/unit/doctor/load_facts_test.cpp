@@ -92,8 +92,10 @@ std::vector<std::string> guesses(double E, double size, double body_force = 0)
   loads.size = size;
   loads.largest_body_force = body_force;
   std::vector<std::string> names;
-  for (const doctor::UnitSystem& units : doctor::plausible_units(loads))
-    names.push_back(units.length + " " + units.force + " " + units.stress);
+  using problem::UnitOf;
+  for (const problem::Units& units : doctor::plausible_units(loads))
+    names.push_back(units.label(UnitOf::length) + " " + units.label(UnitOf::force) + " " +
+                    units.label(UnitOf::stress));
   return names;
 }
 

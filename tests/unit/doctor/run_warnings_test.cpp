@@ -52,6 +52,24 @@ TEST(RunWarnings, NoneForASoundResult)
   EXPECT_THAT(codes(sound, closed_contact()), IsEmpty());
 }
 
+TEST(RunWarnings, NumbersCarryTheirUnits)
+{
+  doctor::SolvedFigures in_mm = sound;
+  in_mm.units = {"mm", "N"};
+  doctor::ContactOutcome outcome = closed_contact();
+  outcome.penetration = 0.25;
+  outcome.kink_pressure = 6;
+  outcome.damage.softening = {.slope = 9, .gamma = 10, .h = 0.5};
+  outcome.damage.open_cohesion = 0.125;
+  std::string all;
+  for (const doctor::Finding& warning : doctor::run_warnings(in_mm, std::array{outcome}))
+    all += warning.text + "\n";
+  EXPECT_THAT(all, HasSubstr("reaches 6 MPa, 4 times its mean"));
+  EXPECT_THAT(all, HasSubstr("the body penetrates the obstacle by 0.25 mm, "));
+  EXPECT_THAT(all, HasSubstr("the slope 9 N/mm^3, and gamma is 10 N/mm^3 on a facet of size 0.5 mm"));
+  EXPECT_THAT(all, HasSubstr("its cohesion of 0.125 MPa, since"));
+}
+
 TEST(RunWarnings, DataThatDominate)
 {
   EXPECT_THAT(codes(solved({.osc = 2, .str = 1}), closed_contact()), ElementsAre("body_force_oscillation"));
