@@ -2,9 +2,10 @@
 
 import * as Plot from "@observablehq/plot";
 import { chartStyle, legend, responsive } from "./charts.js";
-import { boundUnit, shares } from "./components.js";
+import { shares } from "./components.js";
 import { element, number, percent, section, table } from "./dom.js";
-import { boundFormula, typeset } from "./math.js";
+import { boundFormula } from "./math.js";
+import { headed, unit } from "./units.js";
 
 /** The components of the last level with bars. */
 function componentTable(run, components) {
@@ -17,7 +18,7 @@ function componentTable(run, components) {
     element("span", { class: "share" }, element("span", { class: "share-bar", style: `--share:${share};--colour:${colour}` }),
       `${(100 * share).toFixed(1)}\u00a0%`)]);
   const hidden = all.filter(isRoundOff).map(({ name, meaning }) => `${name} (${meaning})`);
-  return [table(["component", "what it measures", ["#value [", typeset(boundUnit(run.d)), "]"], "#share of squares"], rows, { class: "components" }),
+  return [table(["component", "what it measures", headed("#value", unit("stress_norm")), "#share of squares"], rows, { class: "components" }),
     hidden.length > 0 ? element("p", { class: "note" }, `Zero, or round-off: ${hidden.join(", ")}.`) : null];
 }
 

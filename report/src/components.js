@@ -17,11 +17,6 @@ export function coloured(components) {
 export const statusColours = ["#9aa3ad", "#0072b2", "#d55e00", "#009e73"];
 export const statusNames = ["open", "stick", "slip", "tied"];
 
-/** The unit of the bound. */
-export function boundUnit(dimension) {
-  return dimension === 2 ? "S L" : "S L^(3/2)";
-}
-
 /** The shares of the squares, which add up to 1. */
 export function shares(components, values) {
   const squares = components.map(({ name }) => (values[name] ?? 0) ** 2);

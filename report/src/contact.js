@@ -11,6 +11,7 @@ import { boundaryTitle, resultants } from "./resultants.js";
 import { shownStates } from "./scales.js";
 import { stagesOf } from "./stages.js";
 import { readSurface } from "./surface.js";
+import { headed, unit } from "./units.js";
 
 /** Stretches of equal status along a profile. */
 function zonesOf({ arc, status }) {
@@ -27,34 +28,34 @@ function zonesOf({ arc, status }) {
 }
 
 const panels = [
-  { key: "pressure", title: (unit) => `contact pressure [${unit("S")}]`, colour: "#0072b2", zero: true },
-  { key: "friction", title: (unit) => `friction [${unit("S")}], dashed: its limit`, colour: "#d55e00", limits: true },
-  { key: "gap", title: (unit) => `gap [${unit("L")}]`, colour: "#009e73", zero: true },
-  { key: "slip", title: (unit) => `slip [${unit("L")}]`, colour: "#8458a3", zero: true },
+  { key: "pressure", title: (scale) => headed("contact pressure", unit("stress"), scale), colour: "#0072b2", zero: true },
+  { key: "friction", title: (scale) => `${headed("friction", unit("stress"), scale)}, dashed: its limit`, colour: "#d55e00", limits: true },
+  { key: "gap", title: (scale) => headed("gap", unit("length"), scale), colour: "#009e73", zero: true },
+  { key: "slip", title: (scale) => headed("slip", unit("length"), scale), colour: "#8458a3", zero: true },
 ];
 
 /** Those of a joint: of water, and of a bond. */
 const panelsOfWater = [
-  { key: "effective", title: (unit) => `effective pressure [${unit("S")}]`, colour: "#0072b2", zero: true },
-  { key: "water", title: (unit) => `pressure of the water [${unit("S")}]`, colour: "#56b4e9", zero: true },
+  { key: "effective", title: (scale) => headed("effective pressure", unit("stress"), scale), colour: "#0072b2", zero: true },
+  { key: "water", title: (scale) => headed("pressure of the water", unit("stress"), scale), colour: "#56b4e9", zero: true },
 ];
 const panelsOfBond = [
-  { key: "damage", title: (unit) => (unit("") ? `damage [${unit("")}]` : "damage"), colour: "#a6611a", zero: true },
-  { key: "opening", title: (unit) => `opening of the joint [${unit("L")}]`, colour: "#009e73", zero: true },
+  { key: "damage", title: (scale) => headed("damage", "", scale), colour: "#a6611a", zero: true },
+  { key: "opening", title: (scale) => headed("opening of the joint", unit("length"), scale), colour: "#009e73", zero: true },
 ];
 
 function panel(rows, zones, { key, title, colour, limits, zero }, width, isLast) {
   const hasLimit = limits && rows.some((row) => row.limit > 0);
-  const { factor, unit } = powerOfTen(rows.map((row) => Math.max(Math.abs(row[key]), hasLimit ? row.limit : 0)));
+  const scale = powerOfTen(rows.map((row) => Math.max(Math.abs(row[key]), hasLimit ? row.limit : 0)));
   const along = powerOfTen(rows.map((row) => row.arc));
-  const y = (row) => row[key] / factor;
-  const limit = (sign) => (hasLimit ? Plot.line(rows, { x: "arc", y: (row) => (sign * row.limit) / factor, strokeDasharray: "4 3", strokeOpacity: 0.8 }) : null);
+  const y = (row) => row[key] / scale.factor;
+  const limit = (sign) => (hasLimit ? Plot.line(rows, { x: "arc", y: (row) => (sign * row.limit) / scale.factor, strokeDasharray: "4 3", strokeOpacity: 0.8 }) : null);
   return Plot.plot({
     width, height: isLast ? 162 : 132, marginLeft: 58, marginTop: 24, marginBottom: isLast ? 44 : 16, marginRight: 12,
     style: chartStyle,
-    x: { domain: [rows[0].arc, rows.at(-1).arc], label: isLast ? `length along the boundary [${along.unit("L")}]` : null,
+    x: { domain: [rows[0].arc, rows.at(-1).arc], label: isLast ? headed("length along the boundary", unit("length"), along) : null,
       ticks: isLast ? undefined : [], tickFormat: (value) => number(value / along.factor, 4) },
-    y: { label: title(unit), labelAnchor: "top", labelArrow: "none", ticks: 4, nice: true, grid: true, zero, tickFormat: (value) => number(value, 3) },
+    y: { label: title(scale), labelAnchor: "top", labelArrow: "none", ticks: 4, nice: true, grid: true, zero, tickFormat: (value) => number(value, 3) },
     marks: [
       Plot.rect(zones, { x1: "from", x2: "to", fill: (zone) => statusColours[zone.status], fillOpacity: 0.13 }),
       Plot.ruleY([0], { strokeOpacity: 0.5 }),
@@ -121,16 +122,18 @@ function bestCoordinate(rows, names) {
 /** `names`: of the boundaries that the points are on. */
 function scatterChart(surface, names, quantity) {
   const { rows, centre } = contactPoints(surface, 3000);
-  const coordinates = { x: "x [L]", y: "y [L]", z: "z [L]", r: `distance from the largest pressure, at (${["x", "y", "z"].map((axis) => number(centre[axis], 3)).join(", ")}) [L]` };
+  const coordinates = Object.fromEntries([["x", "x"], ["y", "y"], ["z", "z"],
+    ["r", `distance from the largest pressure, at (${["x", "y", "z"].map((axis) => number(centre[axis], 3)).join(", ")})`]]
+    .map(([key, name]) => [key, headed(name, unit("length"))]));
   const coordinate = element("select", { id: "contact-coordinate" }, Object.entries(coordinates).map(([value, name]) => element("option", { value }, name)));
   const place = element("div", {});
   const plot = (width) => {
-    const { label, unit: symbol } = quantities[quantity.value];
-    const { factor, unit } = powerOfTen(rows.map((row) => row[quantity.value]));
-    const y = (row) => row[quantity.value] / factor;
+    const { label, measures } = quantities[quantity.value];
+    const scale = powerOfTen(rows.map((row) => row[quantity.value]));
+    const y = (row) => row[quantity.value] / scale.factor;
     return Plot.plot({ width, height: 330, marginLeft: 58, marginTop: 26, marginBottom: 46, style: chartStyle, grid: true,
       x: { label: coordinates[coordinate.value], tickFormat: (value) => number(value, 3) },
-      y: { label: `${label} [${unit(symbol)}]`, nice: true, tickFormat: (value) => number(value, 3) },
+      y: { label: headed(label, unit(measures), scale), nice: true, tickFormat: (value) => number(value, 3) },
       marks: [Plot.ruleY([0], { strokeOpacity: 0.5 }),
         Plot.dot(rows, { x: coordinate.value, y, r: 2, fill: (row) => statusColours[row.status], fillOpacity: 0.75 }),
         Plot.tip(rows, Plot.pointer({ x: coordinate.value, y, title: (row) =>

@@ -33,10 +33,10 @@ export function table(head, rows, attributes = {}) {
 }
 
 const superscripts = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075",
-  6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
+  6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079", ".": "\u00b7" };
 
-export function superscript(integer) {
-  return [...String(integer)].map((digit) => superscripts[digit]).join("");
+export function superscript(number) {
+  return [...String(number)].map((digit) => superscripts[digit]).join("");
 }
 
 /** A number with the given significant digits: 0.01234, 1.234×10⁻⁵. */

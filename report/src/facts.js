@@ -4,6 +4,7 @@ import { unpackText } from "./arrays.js";
 import { count, element, number, seconds, section, table, withoutNoise } from "./dom.js";
 import { download } from "./export.js";
 import { guaranteeFormula, typeset } from "./math.js";
+import { headed, measured, unit } from "./units.js";
 
 const list = (items) => element("ul", {}, items.map((item) => element("li", {}, typeset(item))));
 
@@ -43,8 +44,7 @@ function caseText(effective) {
 /** Loads, reactions and contact forces with their sum, which vanishes in equilibrium. */
 function balanceTable(balance, d) {
   if (!balance?.rows?.length) return null;
-  const forces = d === 2 ? "S L" : "S L\u00b2";
-  const moments = d === 2 ? "S L\u00b2" : "S L\u00b3";
+  const [forces, moments] = [unit("force"), unit("moment")];
   const scale = (key) => balance.rows.flatMap((row) => row[key] ?? []).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
   const [largestForce, largestMoment] = [scale("force"), scale("moment")];
   const cells = (values, n, largest) => (values ? withoutNoise([values].flat(), largest).map((value) => number(value, 6)) : Array(n).fill("\u2013"));
@@ -57,27 +57,32 @@ function balanceTable(balance, d) {
   });
   const about = balance.about ? `, moments about (${balance.about.map((x) => number(x, 4)).join(", ")})` : "";
   return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, `Forces on the body${about}; in equilibrium the sum is zero.`),
-    table(["", "where", "by", ...axes.map((axis) => `#force ${axis} [${forces}]`),
-      ...(d === 2 ? [`#moment [${moments}]`] : axes.map((axis) => `#moment ${axis} [${moments}]`))], rows, { class: "balance" }),
+    table(["", "where", "by", ...axes.map((axis) => headed(`#force ${axis}`, forces)),
+      ...(d === 2 ? [headed("#moment", moments)] : axes.map((axis) => headed(`#moment ${axis}`, moments)))], rows, { class: "balance" }),
     balance.note ? element("p", { class: "note" }, balance.note) : null];
+}
+
+/** In which units the numbers are. */
+function unitsText({ d, units }) {
+  if (!units) return `The case names no units: lengths, stresses and forces are in those of its numbers${d === 2 ? ", forces per unit of depth" : ""}.`;
+  return `Lengths are in ${unit("length")}, stresses in ${unit("stress")}, forces in ${unit("force")}${d === 2 ? `, per ${unit("length")} of depth` : ""}.`;
 }
 
 export function caseSection(data) {
   const run = data.certificate;
-  const measure = run.d === 2 ? ["area [L\u00b2]", "length [L]"] : ["volume [L\u00b3]", "area [L\u00b2]"];
+  const [body, boundary] = run.d === 2 ? ["area", "length"] : ["volume", "area"];
   return section("case", "Case", "The case", null, caseText(data.case),
-    table(["region", "#cells", `#${measure[0]}`, "material"],
+    table(["region", "#cells", headed(`#${body}`, unit("body")), "material"],
       run.mesh.regions.map((region) => [region.name, count(region.cells), number(region.measure), region.material])),
-    table(["boundary", "#facets", `#${measure[1]}`, "what holds there"],
+    table(["boundary", "#facets", headed(`#${boundary}`, unit("boundary")), "what holds there"],
       run.mesh.boundaries.map((part) => [part.name, count(part.facets), number(part.measure), part.condition])),
     element("p", { class: "note" }, `Cells and facets are those of the first mesh: ${count(run.mesh.vertices)} vertices, cells from `
-      + `${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)} L. Units are those of the case: L a length, S a stress `
-      + `(force per area)${run.d === 2 ? "; forces are per unit of depth" : ""}.`),
+      + `${measured(`${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)}`, unit("length"))}. ${unitsText(run)}`),
     balanceTable(run.balance, run.d));
 }
 
 function levelTable(run) {
-  return table(["#level", "#cells", "#dofs", "#Newton steps", "#bound [%]", "#energy error [%]", "#energy", "#solve", "#certify", "#whole level"],
+  return table(["#level", "#cells", "#dofs", "#Newton steps", "#bound [%]", "#energy error [%]", headed("#energy", unit("energy")), "#solve", "#certify", "#whole level"],
     run.levels.map((level) => [String(level.level), count(level.cells), count(level.dofs), String(level.newton.length),
       level.relative === null ? "\u2013" : number(100 * level.relative),
       level.energy_error?.relative > 0 ? number(100 * level.energy_error.relative) : "\u2013", number(level.energy, 6), seconds(level.times.solve),

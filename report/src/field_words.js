@@ -2,6 +2,7 @@
 
 import { statusNames } from "./components.js";
 import { count, number } from "./dom.js";
+import { measured, unit } from "./units.js";
 
 /** 1, 2 or 5 times a power of ten, not above x. */
 function roundedDown(x) {
@@ -22,7 +23,7 @@ export function noteText(surface, { factor, explosion }, { isCut, isInside, isSl
     isSlow ? "This browser has no WebGL: the page draws the picture itself, more slowly." : "",
     surface.dimension === 3 && !isCut ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}.` : "",
     !isCut ? "" : isInside ? "On the section values are averages at the vertices of the mesh." : "The page does not have the inside of this mesh.",
-    surface.merged_below > 0 ? `The mesh is too large for this page: details below ${number(surface.merged_below, 2)} L are merged, ${count(surface.nFaces)} triangles are shown.` : "",
+    surface.merged_below > 0 ? `The mesh is too large for this page: details below ${measured(number(surface.merged_below, 2), unit("length"))} are merged, ${count(surface.nFaces)} triangles are shown.` : "",
     nLeftOut > 0 ? `${nLeftOut === 1 ? `One of the ${stage}s in between is` : `${nLeftOut} of the ${stage}s in between are`} left out to keep the page small.` : "",
     surface.nBodies > 1 && explosion > 0 ? "Bodies are drawn apart." : "",
     `Displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`].filter(Boolean).join(" ");
@@ -32,5 +33,5 @@ export function noteText(surface, { factor, explosion }, { isCut, isInside, isSl
 export function valueText(field, value, names) {
   if (value === null) return field.contact ? "not on the contact boundary" : "known on the surface only";
   if (field.kind === "status") return statusNames[Math.round(value)];
-  return field.kind === "category" ? names[Math.round(value)] : `${number(value, 4)} ${field.unit}`;
+  return field.kind === "category" ? names[Math.round(value)] : measured(number(value, 4), field.unit);
 }

@@ -32,7 +32,6 @@ const fragments = [
   ["u_h", () => [sub(i("u"), i("h"))]],
   ["h_F", () => [sub(i("h"), i("F"))]],
   ["H^1", () => [sup(i("H"), n(1))]],
-  ["L^(3/2)", () => [sup(i("L", true), row(n(3), o("/"), n(2)))]],
 ];
 const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 const pattern = new RegExp(`(${fragments.map(([text]) => escaped(text)).join("|")})(?![\\w])`);

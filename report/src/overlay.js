@@ -4,6 +4,7 @@ import { scaleLinear } from "d3";
 import { statusColours } from "./components.js";
 import { element, number } from "./dom.js";
 import { obstaclePoints } from "./obstacle.js";
+import { headed, measured, unit } from "./units.js";
 
 const hatchDistance = 9; // pixels
 const sideRatio = 5; // of lengths on the master to those on the slave; beyond, the master is left out between two points
@@ -103,8 +104,8 @@ export function axes({ box }, { target, scale }, { left, top, width, height }, n
     ...y.ticks(Math.max(3, height / 60)).flatMap((tick) => [
       element("svg:line", { x1: left - 4, x2: left, y1: y(tick), y2: y(tick) }),
       element("svg:text", { x: left - 7, y: y(tick) + 4, "text-anchor": "end" }, label(tick))]),
-    element("svg:text", { x: left + width, y: top + height + 30, "text-anchor": "end", class: "axis-name" }, `${names[0]} [L] \u2192`),
-    element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, `\u2191 ${names[1]} [L]`)];
+    element("svg:text", { x: left + width, y: top + height + 30, "text-anchor": "end", class: "axis-name" }, `${headed(names[0], unit("length"))} \u2192`),
+    element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, `\u2191 ${headed(names[1], unit("length"))}`)];
 }
 
 /** Both sides of an interface: with the points, displacements and bodies of the master in the place of the slave's. */
@@ -141,7 +142,7 @@ function triad({ box }, camera, place) {
   const arrows = [0, 1, 2].sort((a, b) => eye[a] - eye[b]).flatMap((i) => [
     element("svg:line", { class: `triad triad-${"xyz"[i]}`, x1: x0, y1: y0, x2: x0 + 28 * right[i], y2: y0 - 28 * up[i] }),
     element("svg:text", { x: x0 + 38 * right[i], y: y0 - 38 * up[i] + 4, "text-anchor": "middle" }, "xyz"[i])]);
-  return [...arrows, element("svg:text", { x: 12, y: 20 }, `${box.size.map((length) => number(length, 3)).join(" \u00d7 ")} L`)];
+  return [...arrows, element("svg:text", { x: 12, y: 20 }, measured(box.size.map((length) => number(length, 3)).join(" \u00d7 "), unit("length")))];
 }
 
 /** `state`: the factor of the displacements, whether the obstacle is drawn, and the layout of the bodies, undefined for one. */

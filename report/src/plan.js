@@ -11,18 +11,19 @@ import { cornerAt, valueAt } from "./pick.js";
 import { colours, fieldLegend } from "./scales.js";
 import { SoftwareScene } from "./software.js";
 import { colourRange } from "./surface.js";
+import { measured, unit } from "./units.js";
 
 const size = { left: 64, top: 22, bottom: 38, right: 8, width: 520 };
 const nKeySteps = 40; // of an arrow key, across the picture
 
 export const quantities = {
-  pressure: { label: "contact pressure", unit: "S", kind: "sequential" },
-  friction: { label: "friction, length", unit: "S", kind: "sequential" },
-  limit: { label: "limit of friction", unit: "S", kind: "sequential" },
-  gap: { label: "gap", unit: "L", kind: "sequential" },
-  slip: { label: "slip, length", unit: "L", kind: "sequential" },
+  pressure: { label: "contact pressure", measures: "stress", kind: "sequential" },
+  friction: { label: "friction, length", measures: "stress", kind: "sequential" },
+  limit: { label: "limit of friction", measures: "stress", kind: "sequential" },
+  gap: { label: "gap", measures: "length", kind: "sequential" },
+  slip: { label: "slip, length", measures: "length", kind: "sequential" },
 };
-const status = { label: "contact status", unit: "", kind: "status" };
+const status = { label: "contact status", kind: "status" };
 
 /** All the faces of a slave, of which those with nothing opposite stay grey. */
 function pointsAround(surface, faces) {
@@ -96,7 +97,7 @@ class BoundaryPlan {
   /** Draws `quantity`, or "status". */
   draw(quantity) {
     this.quantity = quantity;
-    const field = quantity === "status" ? status : quantities[quantity];
+    const field = quantity === "status" ? status : { ...quantities[quantity], unit: unit(quantities[quantity].measures) };
     const values = this.values[quantity];
     const range = colourRange(this.surface, field, values);
     const style = getComputedStyle(document.documentElement);
@@ -145,10 +146,10 @@ class BoundaryPlan {
   }
 
   tell(hit, left, top) {
-    const { unit, label } = quantities[this.quantity === "status" ? "pressure" : this.quantity];
+    const { measures, label } = quantities[this.quantity === "status" ? "pressure" : this.quantity];
     const value = valueAt(this.values[this.quantity === "status" ? "pressure" : this.quantity], hit);
     const place = this.placeOf(hit);
-    this.tooltip.replaceChildren(element("strong", {}, `${label} ${number(value)} ${unit}, ${statusNames[this.status[Math.floor(hit.corner / 3)]]}`), element("br"),
+    this.tooltip.replaceChildren(element("strong", {}, `${label} ${measured(number(value), unit(measures))}, ${statusNames[this.status[Math.floor(hit.corner / 3)]]}`), element("br"),
       ["x", "y", "z"].map((axis, k) => `${axis} = ${number(place[k])}`).join(", "));
     const perPixel = this.svg.viewBox.baseVal.width / this.svg.getBoundingClientRect().width;
     this.tooltip.style.left = `${Math.min(left / perPixel + 14, this.svg.clientWidth - 230)}px`;

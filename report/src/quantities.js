@@ -4,13 +4,15 @@ import * as Plot from "@observablehq/plot";
 import { chartStyle, dofAxis, responsive } from "./charts.js";
 import { element, number, powerOfTen, section, table } from "./dom.js";
 import { typeset } from "./math.js";
+import { headed, measured, quantityUnit } from "./units.js";
 
 const colour = "#0072b2";
 
-/** "1.646, between 1.63 and 1.66", or what there is. */
-export function intervalText({ lower, upper, exact, reason }) {
-  if (reason) return "no error bar";
-  return exact ? "exact" : `between ${number(lower, 5)} and ${number(upper, 5)}`;
+/** "between 1.63 and 1.66 N", or what there is. */
+export function intervalText({ name, lower, upper, exact, reason }) {
+  const unit = quantityUnit(name);
+  if (reason || exact) return [unit, reason ? "no error bar" : "exact"].filter(Boolean).join(", ");
+  return measured(`between ${number(lower, 5)} and ${number(upper, 5)}`, unit);
 }
 
 /** A quantity of each level with its bar, over the degrees of freedom. */
@@ -18,12 +20,12 @@ function barChart(name, levels) {
   const known = levels.map((level) => ({ dofs: level.dofs, level: level.level, ...level.quantities.find((quantity) => quantity.name === name) }))
     .filter(({ lower }) => typeof lower === "number");
   if (known.length < 2 || known.at(-1).exact) return null;
-  const { factor, unit } = powerOfTen(known.flatMap(({ lower, upper }) => [lower, upper]));
-  const points = known.map((point) => ({ ...point, x: point.dofs, y: point.value / factor, low: point.lower / factor, high: point.upper / factor }));
-  const tip = (d) => `level ${d.level}: ${number(d.value, 6)}\n${intervalText(d)}\n${d.rests_on}`;
+  const scale = powerOfTen(known.flatMap(({ lower, upper }) => [lower, upper]));
+  const points = known.map((point) => ({ ...point, x: point.dofs, y: point.value / scale.factor, low: point.lower / scale.factor, high: point.upper / scale.factor }));
+  const tip = (d) => `level ${d.level}: ${measured(number(d.value, 6), quantityUnit(name))}\n${intervalText(d)}\n${d.rests_on}`;
   return element("figure", {}, element("h3", {}, name), responsive(`${name} with its error bars over the degrees of freedom`, (width) => Plot.plot({
     width, height: Math.max(240, 0.55 * width), marginLeft: 62, marginRight: 18, marginTop: 28, marginBottom: 44, style: chartStyle,
-    x: dofAxis([{ points }], width), y: { label: unit("value"), grid: true, ticks: 6 },
+    x: dofAxis([{ points }], width), y: { label: headed("value", quantityUnit(name), scale), grid: true, ticks: 6 },
     marks: [Plot.ruleX(points, { x: "x", y1: "low", y2: "high", stroke: colour, strokeWidth: 2 }),
       Plot.dot(points, { x: "x", y: "y", fill: colour, r: 3 }),
       Plot.tip(points, Plot.pointer({ x: "x", y: "y", title: tip }))],
@@ -35,7 +37,7 @@ export function quantitiesSection(run) {
   const { quantities } = run;
   if (!quantities || quantities.length === 0) return null;
   const levels = run.levels.filter((level) => level.quantities);
-  const rows = quantities.map((quantity) => [quantity.name, number(quantity.value, 6), quantity.reason ? "\u2013" : number(quantity.lower, 6),
+  const rows = quantities.map((quantity) => [headed(quantity.name, quantityUnit(quantity.name)), number(quantity.value, 6), quantity.reason ? "\u2013" : number(quantity.lower, 6),
     quantity.reason ? "\u2013" : number(quantity.upper, 6), quantity.reason ? typeset(quantity.reason) : [quantity.exact ? "exact: " : "", quantity.rests_on],
     quantity.note ? typeset(quantity.note) : ""]);
   const charts = quantities.map(({ name }) => barChart(name, levels)).filter(Boolean);

@@ -1,7 +1,7 @@
 // What contact comes to: forces of each boundary, what else there is to know of pairs, and the bodies with their parts of the bound.
 
-import { boundUnit } from "./components.js";
 import { count, element, number, percent, table, withoutNoise } from "./dom.js";
+import { headed, unit } from "./units.js";
 
 const vector = (values) => (values?.length > 0 ? `(${withoutNoise(values).map((value) => number(value, 6)).join(", ")})` : "\u2013");
 const moment = (values) => (values?.length === 1 ? number(values[0], 6) : vector(values));
@@ -13,7 +13,7 @@ export function boundaryTitle(run, name) {
 }
 
 function forceTable(run, parts) {
-  const unit = run.d === 2 ? "S L" : "S L\u00b2";
+  const force = unit("force");
   const isSliding = run.bound !== null && parts.some(([, part]) => part.sliding);
   const row = (name, part) => {
     const [normal, tangential, length, ...force] = withoutNoise([part.normal, part.tangential, part.abs_tangential, ...part.force])
@@ -23,20 +23,21 @@ function forceTable(run, parts) {
   };
   const rows = parts.map(([name, part]) => row(name, part));
   if (parts.length > 1) rows.push(row("in all", run.contact));
-  return table(["boundary", `#normal [${unit}]`, `#tangential [${unit}]`, `#|tangential| [${unit}]`,
-    `#force on the ${parts.some(([, { master }]) => master) ? "slave" : "body"} [${unit}]`, ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows);
+  return table(["boundary", headed("#normal", force), headed("#tangential", force), headed("#|tangential|", force),
+    headed(`#force on the ${parts.some(([, { master }]) => master) ? "slave" : "body"}`, force), ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows);
 }
 
 function pairTables(run, pairs) {
-  const [size, moments] = run.d === 2 ? ["length", "S L\u00b2"] : ["area", "S L\u00b3"];
-  const [length, about] = [run.d === 2 ? "L" : "L\u00b2", run.d === 2 ? "the origin" : "the axes through the origin"];
+  const [size, about] = run.d === 2 ? ["length", "the origin"] : ["area", "the axes through the origin"];
+  const [covered, moments] = [unit("boundary"), unit("moment")];
   const isTied = pairs.some(([, { largest_tension: tension }]) => tension > 0);
   return [element("h3", {}, "Pairs"),
-    table(["slave", "master", "law", "#segments", `#${size} covered [${length}]`, "#share of the slave", `#of the master [${length}]`, "#gap [L]", ...(isTied ? ["#largest tension [S]"] : [])],
+    table(["slave", "master", "law", "#segments", headed(`#${size} covered`, covered), "#share of the slave", headed("#of the master", covered), headed("#gap", unit("length")),
+      ...(isTied ? [headed("#largest tension", unit("stress"))] : [])],
       pairs.map(([name, pair]) => [name, pair.master.join(", "), pair.law, count(pair.segments), number(pair.covered), percent(pair.covered_share),
         number(pair.covered_master), withoutNoise([pair.gap.smallest, pair.gap.largest], run.max_displacement).map((gap) => number(gap, 3)).join(" to "),
         ...(isTied ? [number(pair.largest_tension)] : [])])),
-    table(["slave", `#moment on it [${moments}]`, `#moment on the master [${moments}]`],
+    table(["slave", headed("#moment on it", moments), headed("#moment on the master", moments)],
       pairs.map(([name, pair]) => [name, moment(pair.moment), moment(pair.moment_on_master)])),
     element("p", { class: "note" }, `Moments of the contact traction about ${about}. They cancel where the two sides coincide.`)];
 }
@@ -44,7 +45,7 @@ function pairTables(run, pairs) {
 function bodyTable(run) {
   const squares = run.bodies.map(({ bound }) => bound ** 2);
   const sum = squares.reduce((a, b) => a + b, 0);
-  return [element("h3", {}, "Bodies"), table(["body", "#cells", `#energy [S L${run.d === 2 ? "\u00b2" : "\u00b3"}]`, `#bound [${boundUnit(run.d)}]`, "#share of its square"],
+  return [element("h3", {}, "Bodies"), table(["body", "#cells", headed("#energy", unit("energy")), headed("#bound", unit("stress_norm")), "#share of its square"],
     run.bodies.map(({ name, cells, energy, bound }, i) => [name, count(cells), number(energy), number(bound), bound === null ? "\u2013" : percent(sum > 0 ? squares[i] / sum : 0)]))];
 }
 

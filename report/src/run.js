@@ -9,11 +9,13 @@ import { fieldsSection } from "./fields.js";
 import { historySection } from "./history.js";
 import { newtonSection } from "./newton.js";
 import { quantitiesSection } from "./quantities.js";
+import { nameUnits } from "./units.js";
 import { header } from "./verdict.js";
 
 /** `trueErrors`: what a study knows of the levels of a variant, else undefined. */
 export function runPage(data, trueErrors) {
   const { certificate: run, machine } = data;
+  nameUnits(run.units);
   for (const { level, ...errors } of trueErrors ?? [])
     Object.assign(run.levels.find((other) => other.level === level) ?? {}, errors);
   const components = coloured(data.components.filter(({ part }) => part !== "combined"));

@@ -5,6 +5,7 @@ import { count, element, fixed, number, percent, section, seconds, table } from 
 import { definitions, filesSection, timesAndMachine } from "./facts.js";
 import { componentsSection, convergenceSection, effectivitySection } from "./study_charts.js";
 import { studyHeader } from "./study_verdict.js";
+import { measured, nameUnits, unit } from "./units.js";
 import { extent, total, variantsOf } from "./variants.js";
 
 /** "1.21 to 1.32" */
@@ -53,20 +54,20 @@ function newtonSection(study) {
 }
 
 function referenceSection(study) {
-  const { reference, d } = study;
+  const { reference } = study;
   const lead = "The solution that stands for the exact one: of higher degree, on a mesh adapted to it by its own bound.";
   if (!reference) return section("reference", "Reference", "The reference", lead, element("p", {}, "There is none: the errors are not known."));
-  const force = d === 2 ? "S L" : "S L\u00b2";
   return section("reference", "Reference", "The reference", lead, element("div", { class: "two-columns" },
     definitions([["degree", String(reference.degree)], ["cells", count(reference.cells)], ["degrees of freedom", count(reference.dofs)],
       ["its own bound", `${percent(reference.relative)} of the norm of the stress`], ["asked for", `at most ${percent(reference.required)}`],
       ["verdict", reference.fine_enough ? "fine enough" : `too coarse, errors near its bound are not reliable: ${reference.reason}`]]),
-    definitions([["energy", `${number(reference.energy, 6)} ${d === 2 ? "S L\u00b2" : "S L\u00b3"}`],
-      ["contact force", `${number(reference.contact_normal, 6)} ${force} normal, ${number(reference.contact_tangential, 6)} ${force} tangential`],
-      ["largest displacement", `${number(reference.max_displacement, 6)} L`]])));
+    definitions([["energy", measured(number(reference.energy, 6), unit("energy"))],
+      ["contact force", `${measured(number(reference.contact_normal, 6), unit("force"))} normal, ${measured(number(reference.contact_tangential, 6), unit("force"))} tangential`],
+      ["largest displacement", measured(number(reference.max_displacement, 6), unit("length"))]])));
 }
 
 export function studyPage({ study, components, machine, files }) {
+  nameUnits(study.units);
   const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study, coloured(components.filter(({ part }) => part !== "combined"))), variantsSection(study, files),
     newtonSection(study), referenceSection(study),
     section("times", "Times", "Times and machine", null, timesAndMachine(study.times, machine, study.program)), filesSection(files)].filter(Boolean);

@@ -4,6 +4,7 @@ import { unpackAll } from "./arrays.js";
 import { contactValues } from "./contact_parts.js";
 import { latticeSides, latticeTriangles } from "./lattice.js";
 import { stressFields, stressValues } from "./stress.js";
+import { unit } from "./units.js";
 
 /** Segments of the sides of all faces, each once, and how many faces have it. */
 function uniqueSegments(faces, nFacePoints, k, nVertices) {
@@ -148,24 +149,24 @@ export function fieldsOf(surface, components) {
   const d = surface.dimension;
   const axes = ["x", "y", "z"].slice(0, d);
   const hasContact = surface.nContactFaces > 0 || surface.pairs?.length > 0;
-  const contactField = (id, label, unit) => ({ id: `contact-${id}`, label, unit, group: "Contact", kind: "sequential", contact: true,
+  const contactField = (id, label, measures) => ({ id: `contact-${id}`, label, unit: unit(measures), group: "Contact", kind: "sequential", contact: true,
     corners: (s) => contactValues(s, id) });
-  const etaUnit = d === 2 ? "S L" : "S L^(3/2)";
+  const etaUnit = unit("stress_norm");
   return [
-    { id: "u", label: "displacement, length", unit: "L", group: "Solution", kind: "sequential",
+    { id: "u", label: "displacement, length", unit: unit("length"), group: "Solution", kind: "sequential",
       corners: (s) => spread.vertex(s, (v) => Math.hypot(...axes.map((_, c) => s.displacement[d * v + c]))),
       inside: (volume) => perPoint(volume, (v) => Math.hypot(...axes.map((_, c) => volume.displacement[d * v + c]))) },
-    ...axes.map((axis, c) => ({ id: `u${axis}`, label: `displacement, ${axis}`, unit: "L", group: "Solution", kind: "diverging",
+    ...axes.map((axis, c) => ({ id: `u${axis}`, label: `displacement, ${axis}`, unit: unit("length"), group: "Solution", kind: "diverging",
       corners: (s) => spread.vertex(s, (v) => s.displacement[d * v + c]),
       inside: (volume) => perPoint(volume, (v) => volume.displacement[d * v + c]) })),
-    ...stressFields(d).map(({ value, ...field }) => ({ ...field, unit: "S", group: "Stress (equilibrated)", trimmed: true,
+    ...stressFields(d).map(({ value, ...field }) => ({ ...field, unit: unit("stress"), group: "Stress (equilibrated)", trimmed: true,
       corners: (s) => spreadStress(s, value), inside: (volume) => stressValues(volume.stress, null, value) })),
     ...(surface.eta.tot ? [{ id: "eta-tot", label: "\u03b7 of the cell, total", unit: etaUnit, group: "Error", kind: "logarithmic",
       corners: (s) => spread.face(s, s.eta.tot) }] : []),
     ...components.filter(({ name }) => surface.eta[name]).map(({ name, meaning }) => ({ id: `eta-${name}`,
       label: `\u03b7 ${name}: ${meaning}`, unit: etaUnit, group: "Error", kind: "logarithmic", corners: (s) => spread.face(s, s.eta[name]) })),
-    ...(hasContact ? [contactField("pressure", "contact pressure", "S"), contactField("friction", "friction, length", "S"),
-      contactField("limit", "limit of friction", "S"), contactField("gap", "gap", "L"), contactField("slip", "slip, length", "L"),
+    ...(hasContact ? [contactField("pressure", "contact pressure", "stress"), contactField("friction", "friction, length", "stress"),
+      contactField("limit", "limit of friction", "stress"), contactField("gap", "gap", "length"), contactField("slip", "slip, length", "length"),
       { id: "contact-status", label: "contact status", unit: "", group: "Contact", kind: "status", contact: true,
         corners: (s) => contactValues(s, "status") }] : []),
     ...(surface.region ? [{ id: "region", label: "region", unit: "", group: "Mesh", kind: "category",

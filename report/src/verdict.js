@@ -1,9 +1,9 @@
 // What came out of a run, in one sentence and a few figures.
 
-import { boundUnit } from "./components.js";
 import { count, element, number, percent, plural } from "./dom.js";
 import { typeset } from "./math.js";
 import { intervalText } from "./quantities.js";
+import { measured, unit } from "./units.js";
 
 const verdicts = {
   certified: { title: "Certified", mark: "\u2713" },
@@ -26,7 +26,7 @@ function pathSentence({ status, steps, tolerance, reason }) {
 function sentence(run) {
   const { status, relative, bound, tolerance, reason } = run;
   if (run.steps && isSolved(run)) return pathSentence(run);
-  const share = relative === null ? `${number(bound)} of a stress that is zero` : `${percent(relative)} of the norm of the stress`;
+  const share = relative === null ? `${measured(number(bound), unit("stress_norm"))} of a stress that is zero` : `${percent(relative)} of the norm of the stress`;
   const guaranteed = `The error, measured by the dual norm of the residual, is guaranteed to be at most ${share}`;
   switch (status) {
     case "certified":
@@ -82,19 +82,18 @@ const targets = { solution: "from the exact solution", tresca_with_computed_thre
 /** `contact`: the summary of contact.js, null where the page has no picture of the contact boundary. */
 function figures(run, contact) {
   if (run.cells === undefined) return null;
-  const force = run.d === 2 ? "S L" : "S L\u00b2";
   return [
     run.steps ? figure(percent(worstStep(run.steps)), "bound of the error", `largest of ${plural(run.steps.length, "load step", "load steps")}`)
-      : run.relative === null ? null : figure(percent(run.relative), "bound of the error", `${number(run.bound)} ${boundUnit(run.d)}`),
+      : run.relative === null ? null : figure(percent(run.relative), "bound of the error", measured(number(run.bound), unit("stress_norm"))),
     run.energy_error?.relative > 0 ? figure(percent(run.energy_error.relative), "error in the energy norm, at most", targets[run.energy_error.guaranteed_for]) : null,
     ...(isSolved(run) ? [
       ...quantityFigures(run),
       safetyFigure(run),
-      contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", `S, ${placeText(contact.place)}`) : null,
+      contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", [unit("stress"), placeText(contact.place)].filter(Boolean).join(", ")) : null,
       contact ? figure(percent(contact.open / contact.size), run.d === 2 ? "length that is open" : "area that is open",
-        `${number(contact.open, 3)} of ${number(contact.size, 3)} ${run.d === 2 ? "L" : "L\u00b2"}`) : null,
-      run.contact ? figure(number(-run.contact.normal), "contact force, normal", force) : null,
-      figure(number(run.max_displacement), "largest displacement", "L")] : []),
+        measured(`${number(contact.open, 3)} of ${number(contact.size, 3)}`, unit("boundary"))) : null,
+      run.contact ? figure(number(-run.contact.normal), "contact force, normal", unit("force")) : null,
+      figure(number(run.max_displacement), "largest displacement", unit("length"))] : []),
     figure(count(run.cells), run.cells === 1 ? "cell" : "cells", `${plural(run.levels.length, "mesh", "meshes")}, degree ${run.p}`),
   ].filter(Boolean);
 }

@@ -51,6 +51,7 @@ tolerance = 0.04
   cube: { exit: 3, status: "Budget used up", text: `
 title = "Cube on a rough floor"
 degree = 1
+units = { length = "mm", force = "N" }
 mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [3, 3, 3] } }
 material = { E = 1000.0, nu = 0.3 }
 [boundary.top]
@@ -122,6 +123,7 @@ stopping = "tolerance"
 const joint = { exit: 0, text: `
 title = "Joint"
 degree = 1
+units = { length = "m", force = "MN" }
 mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [8, 4] } }
 material = { E = 1.0, nu = 0.3 }
 [boundary.left]
@@ -143,6 +145,7 @@ tolerance = 0.9
 const study = { command: "study", exit: 0, text: `
 title = "Block, studied"
 degree = 1
+units = { length = "m", force = "kN" }
 mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
 ${pressedBlock}
 [adapt]
@@ -177,8 +180,19 @@ async function checkCertificate(page, directory, status) {
   assert(verdict.includes(status), verdict);
   if (certificate.relative) assert(verdict.includes(`${Number((100 * certificate.relative).toPrecision(3))}`), verdict);
   await checkLinks(page, directory);
+  await checkUnits(page, certificate.units);
   const rows = readFileSync(`${directory}/newton.csv`, "utf8").trim().split("\n").length - 1;
   assert.equal(await page.locator("#newton tbody tr").count(), rows);
+}
+
+/** Numbers carry the units of the case; where it names none there are no signs in their place. */
+async function checkUnits(page, units) {
+  const text = await page.locator("#page").textContent();
+  assert.doesNotMatch(text, /\[[SLF]\b|\bS L\b|\b[SL][\u00b2\u00b3]/);
+  assert.equal(text.includes("The case names no units"), !units);
+  if (!units) return;
+  const words = `Lengths are in ${units.length}, stresses in ${units.stress}, forces in ${units.force}`;
+  for (const part of [words, `[${units.force}]`, `[${units.length}]`]) assert(text.includes(part), part);
 }
 
 async function checkNarrowAndDark(browser, url) {
@@ -315,6 +329,7 @@ async function checkStudy(browser, directory) {
   for (const link of ["study.csv", "study.json", "reference/report.html", ...Object.keys(found.variants).map((name) => `${name}/report.html`)])
     assert(links.includes(link), `no link to ${link}`);
   assert.equal(await page.locator("#newton tbody tr").count(), found.newton_table.length + 1);
+  assert.match(await page.locator("#reference").textContent(), / kN m\/m.* kN\/m normal, .* kN\/m tangential.* m$/s);
   await checkPrint(page, `${results}/study.pdf`);
   await checkNarrowAndDark(browser, url);
   assert.deepEqual(complaints, []);
@@ -335,6 +350,8 @@ async function checkJoint(browser) {
   await curves.waitFor();
   const last = await curves.innerHTML();
   for (const title of ["effective pressure", "pressure of the water", "damage", "opening of the joint"]) assert(last.includes(title), title);
+  assert.match(last, /effective pressure \[[^\]]*MPa\]/);
+  assert.match(await page.locator("#history").textContent(), /largest displacement \[m\]/);
   assert.equal(await page.locator("#contact-step option").count(), 3);
   await page.locator("#contact-step").selectOption("0");
   await page.waitForFunction((before) => document.querySelector("#contact .chart").innerHTML !== before, last);
