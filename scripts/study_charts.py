@@ -140,7 +140,7 @@ def components(study):
                 axes.plot(x, y, "-", color=colour, marker=marker, markerfacecolor="white", linewidth=1.1, label=what)
         log_axes(axes)
         axes.set_title(f"Components, {VARIANTS[name][0]}")
-    panels[0, 0].set_ylabel("stress x length$^{d/2}$")
+    panels[0, 0].set_ylabel(study.with_unit("stress x length$^{d/2}$", "stress_norm"))
     handles, labels = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, handles, len(labels))
     return figure

@@ -22,6 +22,7 @@ LARGEST_FILE = 300_000  # bytes
 
 CASE_2D = """
 degree = 2
+units = { length = "mm", force = "N" }
 mesh.box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] }
 material = { E = 1, nu = 0.3 }
 [boundary.left]
@@ -103,8 +104,9 @@ def make_study(program, directory, text, dimension):
         writer = csv.DictWriter(stream, rows[0])
         writer.writeheader()
         writer.writerows(rows)
+    units = json.loads((directory / "adaptive/certificate.json").read_text())["units"]
     rates = {"adaptive": {"rates": {"error": -0.5, "bound": -0.5}}, "uniform": {"rates": {"error": None, "bound": None}}}
-    (directory / "study.json").write_text(json.dumps({"title": "A <small> study", "d": dimension, "variants": rates}))
+    (directory / "study.json").write_text(json.dumps({"title": "A <small> study", "d": dimension, "units": units, "variants": rates}))
 
 
 def interrupt(directory):
@@ -149,6 +151,9 @@ def main():
         draw(script, directory)
         for name, content in before.items():
             assert (directory / "figures" / f"{name}.svg").read_bytes() == content, f"{name}.svg differs when drawn again"
+        # What is drawn as paths stands in comments.
+        titles = (directory / "figures/contact.svg").read_text()
+        assert all(f"<!-- {title} -->" in titles for title in ("stress [MPa]", "length [mm]")) == (dimension == 2)
         print(f"{dimension}D: {len(FIGURES)} figures")
     interrupt(output / "2d")
     draw(script, output / "2d")
