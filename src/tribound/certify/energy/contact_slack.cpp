@@ -135,7 +135,6 @@ void ContactSlack<dim>::limit_y(double m, std::span<double> y) const
     double along;
     double across;
   };
-  const std::vector<char> junctions = state_.facets.junctions();
   constexpr double same = 1e-12;
   std::map<Index, Condition> conditions;  // by node
   for (std::size_t k = 0; k < state_.facets.size(); ++k)
@@ -152,7 +151,7 @@ void ContactSlack<dim>::limit_y(double m, std::span<double> y) const
     }
   for (const auto& [node, condition] : conditions)
   {
-    bool is_fixed = junctions[dim * node] != 0;
+    bool is_fixed = state_.junctions[dim * node] != 0;
     for (int a = 0; a < dim; ++a) is_fixed = is_fixed || state_.form.constraints().fixed[dim * node + a] != 0;
     Point<dim> c(&y[dim * node]);
     c = is_fixed ? Point<dim>::Zero()

@@ -40,6 +40,7 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
       t_h(traction),
       bound(energy),
       forces(of.load().begin(), of.load().end()),
+      junctions(on.junctions()),
       is_projected(energy.loads_remainder > 0),
       unresolved(0)
 {

@@ -23,7 +23,8 @@ struct BoundedState
   const Stress<dim>& stress;  ///< equilibrated; tau is made from it
   const AdmissibleTraction<dim>& t_h;
   const EnergyBound& bound;
-  std::vector<double> forces;  ///< L(phi_i) + (t_h, phi_i)_C
+  std::vector<double> forces;   ///< L(phi_i) + (t_h, phi_i)_C
+  std::vector<char> junctions;  ///< of the facets
   /// Whether the solution is one for other loads, the projected ones.
   bool is_projected;
   /// |L(z) - what quadrature makes of it| <= unresolved ||z||_en.

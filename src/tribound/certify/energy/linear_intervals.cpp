@@ -36,6 +36,37 @@ Tensor<dim> LinearIntervals<dim>::holding(std::size_t k) const
   return stiffness_ * result;
 }
 
+namespace
+{
+
+/// What a degree of freedom contributes to [v] on a facet: sign times its basis function, along an axis.
+struct JumpTerm
+{
+  Index dof;
+  std::size_t function;  ///< number on the facet
+  int axis;
+  double sign;  ///< -1 on the master
+};
+
+/// Of all that are not fixed on facet k.
+template <int dim>
+std::vector<JumpTerm> jump_terms(const BoundedState<dim>& state, std::size_t k)
+{
+  std::vector<JumpTerm> terms;
+  const auto add = [&](std::span<const Index> nodes, double sign)
+  {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (int a = 0; a < dim; ++a)
+        if (const Index dof = dim * nodes[i] + a; state.form.constraints().fixed[dof] == 0)
+          terms.push_back({dof, i, a, sign});
+  };
+  add(state.facets.nodes(k), 1);
+  add(state.facets.master_nodes(k), -1);
+  return terms;
+}
+
+}  // namespace
+
 /// (S [phi_j], [phi_i])_C, S the stiffness of the springs.
 template <int dim>
 algebra::Triplets LinearIntervals<dim>::springs() const
@@ -49,25 +80,15 @@ algebra::Triplets LinearIntervals<dim>::springs() const
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         products[i * n + j] += rule.weights[q] * table.values_at(q)[i] * table.values_at(q)[j];
-  const std::vector<char>& fixed = form.constraints().fixed;
   algebra::Triplets entries;
-  const auto add = [&](Index row, Index column, double value)
-  {
-    if (fixed[row] == 0 && fixed[column] == 0) entries.add(row, column, value);
-  };
   for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
     const Tensor<dim> stiffness = form.segments()[k].det() * holding(k);
     if (stiffness.isZero()) continue;
-    const std::array sides = {state_.facets.nodes(k), state_.facets.master_nodes(k)};
-    for (const std::span<const Index> rows : sides)
-      for (const std::span<const Index> columns : sides)
-        for (std::size_t i = 0; i < rows.size(); ++i)
-          for (std::size_t j = 0; j < columns.size(); ++j)
-            for (int a = 0; a < dim; ++a)
-              for (int b = 0; b < dim; ++b)
-                add(dim * rows[i] + a, dim * columns[j] + b,
-                    (rows.data() == columns.data() ? 1 : -1) * products[i * n + j] * stiffness(a, b));
+    const std::vector<JumpTerm> terms = jump_terms(state_, k);
+    for (const auto& [row, i, a, sign_i] : terms)
+      for (const auto& [column, j, b, sign_j] : terms)
+        entries.add(row, column, sign_i * sign_j * products[i * n + j] * stiffness(a, b));
   }
   return entries;
 }
@@ -134,8 +155,7 @@ template <int dim>
 void LinearIntervals<dim>::set_opposite(std::span<const double> z, Natural& natural) const
 {
   const fem::LagrangeSpace<dim>& space = state_.form.space();
-  const std::vector<char> junctions = state_.facets.junctions();
-  std::vector<char> at_rest = junctions;
+  std::vector<char> at_rest = state_.junctions;
   const auto for_each_master = [&](const auto& visit)
   {
     for (std::size_t k = 0; k < state_.facets.size(); ++k)
@@ -147,7 +167,7 @@ void LinearIntervals<dim>::set_opposite(std::span<const double> z, Natural& natu
       [&](Index slave, Index master)
       {
         const auto is_set = [](char flag) { return flag != 0; };
-        if (junctions[slave] != 0 ||
+        if (state_.junctions[slave] != 0 ||
             std::ranges::any_of(std::span(&state_.form.constraints().fixed[slave], dim), is_set))
           at_rest[master] = 1;
       });
