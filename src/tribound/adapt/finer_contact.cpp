@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "tribound/adapt/finer.h"
+#include "tribound/base/error.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/facet_cuts.h"
 #include "tribound/fem/nested.h"
 
@@ -99,9 +101,10 @@ double contact_measure(const contact::NitscheForm<dim>& form)
   return form.space().mesh().ranks().sum(sum);
 }
 
-/// u and the form on a finer mesh; null where Gamma_C would not be the same.
+/// u and the form on a finer mesh, which is the same function; null where Gamma_C would not be the same.
 template <int dim>
-std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form, const Finer<dim>& finer)
+std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                           const Finer<dim>& finer)
 {
   auto result = std::make_unique<FinerContact<dim>>();
   result->grid = std::make_unique<const Grid<dim>>(
@@ -118,10 +121,47 @@ std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form
   constexpr double rounding = 1e-8;
   const double measure = contact_measure(form);
   if (!(std::abs(contact_measure(*result->form) - measure) <= rounding * measure)) return nullptr;
+  require_carried<dim>(form, u, *result);
   return result;
 }
 
+/// What rounding of u can mean for its energy in a cell, the root of it.
+template <int dim>
+double rounding_on(const contact::NitscheForm<dim>& form, Index cell, double largest_u)
+{
+  const problem::Material& material = form.problem().material(form.space().mesh().region(cell));
+  const mesh::CellMap<dim> map = mesh::cell_map(form.space().mesh(), cell);
+  constexpr double unit_round_offs = 1e-13;
+  return unit_round_offs * largest_u * form.space().degree() * map.inverse_transpose.norm() *
+         std::sqrt((2 * material.mu + dim * std::abs(material.lambda)) * map.measure());
+}
+
 }  // namespace
+
+template <int dim>
+void require_carried(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                     const FinerContact<dim>& finer)
+{
+  const std::vector<double> before = contact::cell_energies<dim>(form.problem(), form.space(), u);
+  const std::vector<double> parts = contact::cell_energies<dim>(form.problem(), finer.form->space(), finer.u);
+  double largest_u = 0;
+  for (const double component : u) largest_u = std::max(largest_u, std::abs(component));
+  std::vector<double> after(before.size(), 0.0);
+  std::vector<double> rounding(before.size(), 0.0);
+  for (std::size_t c = 0; c < parts.size(); ++c)
+  {
+    after[finer.parent[c]] += parts[c];
+    rounding[finer.parent[c]] += rounding_on<dim>(*finer.form, static_cast<Index>(c), largest_u);
+  }
+  constexpr double share = 1e-8;
+  const auto norm = [](double energy) { return std::sqrt(std::max(0.0, energy)); };
+  bool is_other = false;
+  for (std::size_t c = 0; c < before.size(); ++c)
+    is_other =
+        is_other || !(std::abs(norm(after[c]) - norm(before[c])) <= share * norm(before[c]) + rounding[c]);
+  if (form.space().mesh().ranks().any(is_other))
+    throw SolveError("the solution has another energy on the finer mesh that it is carried to");
+}
 
 template <int dim>
 std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<dim>& form,
@@ -133,7 +173,7 @@ std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<d
     if (contact::facets_match(mesh, form.segments())) return nullptr;
     const std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
     auto result =
-        carried<2>(form, finer_mesh<2>(form.space(), {u}, {}, {.cuts = cuts, .move = mesh::Move::never}));
+        carried<2>(form, u, finer_mesh<2>(form.space(), {u}, {}, {.cuts = cuts, .move = mesh::Move::never}));
     if (result && contact::facets_match(result->grid->mesh, result->form->segments())) return result;
   }
   return nullptr;
@@ -150,12 +190,17 @@ std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>
   for (const std::size_t k : certify::facets_in_transition<dim>(form, form.traction(u)))
     if (k < form.n_owned_segments()) marked.push_back(form.segments()[k].slave.facet.cell);
   if (!mesh.ranks().any(!marked.empty())) return nullptr;
-  return carried<dim>(form, finer_mesh<dim>(form.space(), {u}, marked,
-                                            {.twins = contact::twin_facets<dim>(mesh, form.segments()),
-                                             .times = times,
-                                             .move = mesh::Move::never}));
+  return carried<dim>(form, u,
+                      finer_mesh<dim>(form.space(), {u}, marked,
+                                      {.twins = contact::twin_facets<dim>(mesh, form.segments()),
+                                       .times = times,
+                                       .move = mesh::Move::never}));
 }
 
+template void require_carried(const contact::NitscheForm<2>&, std::span<const double>,
+                              const FinerContact<2>&);
+template void require_carried(const contact::NitscheForm<3>&, std::span<const double>,
+                              const FinerContact<3>&);
 template std::unique_ptr<FinerContact<2>> matching_contact(const contact::NitscheForm<2>&,
                                                            std::span<const double>);
 template std::unique_ptr<FinerContact<3>> matching_contact(const contact::NitscheForm<3>&,
