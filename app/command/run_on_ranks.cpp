@@ -128,7 +128,8 @@ ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
       });
   io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(checkpoint->file, facts, ranks);
   mesh::Balanced<dim> balanced =
-      mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, io::n_values_of_cell(facts));
+      mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, io::n_values_of_cell(facts),
+                         mesh::box_facets<dim>(ranks, config.mesh));
   const Restart restart{facts, std::move(balanced.cells), std::move(balanced.values), std::move(read.points),
                         ranks.on_first([&] { return is_of_unfinished_pass(checkpoint->file); })};
   return run(config, std::move(balanced.mesh), progress, std::move(first), &restart);

@@ -18,10 +18,12 @@
 #include "support/problem_data.h"
 #include "support/two_blocks.h"
 #include "tribound/adapt/error_bars.h"
+#include "tribound/adapt/finer.h"
 #include "tribound/adapt/finer_contact.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/contact/nitsche/penalty.h"
+#include "tribound/mesh/bisect.h"
 #include "tribound/mesh/share_out.h"
 
 namespace tribound::test
@@ -207,6 +209,38 @@ TEST(Quantities, HaveTheIntervalsOfTheWhole)
   };
   for (int degree = 1; degree <= 3; ++degree) expect_same_intervals.template operator()<2>(degree);
   for (int degree = 1; degree <= 2; ++degree) expect_same_intervals.template operator()<3>(degree);
+}
+
+/// On meshes that ranks refine, weights are those of the first mesh all the same.
+TEST(Quantities, OfFinerMeshesHaveTheIntervalsOfTheWhole)
+{
+  const Ranks ranks = Ranks::world();
+  const auto expect_same_intervals = [&]<int dim>(int degree)
+  {
+    const ProblemData<dim> data = on_obstacles<dim>();
+    const mesh::Mesh<dim> whole(distorted(block<dim>({4, 2}, {3, 2, 2}), degree));
+    const auto near_the_corner = [](const mesh::Mesh<dim>& mesh)
+    {
+      std::vector<Index> marked;
+      for (Index c = 0; c < mesh.n_owned_cells(); ++c)
+        if (mesh::cell_map(mesh, c)(Point<dim>::Constant(1.0 / (dim + 1))).sum() < 1) marked.push_back(c);
+      return marked;
+    };
+    const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr);
+    const fem::LagrangeSpace<dim> space(part, degree);
+    const mesh::Mesh<dim> fine = adapt::finer_mesh<dim>(space, {}, near_the_corner(part)).mesh();
+    const auto expected = intervals<dim>(mesh::bisect<dim>(whole, near_the_corner(whole)).mesh, data, degree);
+    const auto found = intervals<dim>(fine, data, degree);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_NEAR(found[i][0], expected[i][0], 1e-9 * (expected[i][1] + std::abs(expected[i][0])))
+          << dim << "D, p = " << degree << ", " << i;
+  };
+  for (int degree = 1; degree <= 2; ++degree)
+  {
+    expect_same_intervals.template operator()<2>(degree);
+    expect_same_intervals.template operator()<3>(degree);
+  }
 }
 
 TEST(EnergyBound, IsThatOfTheWhole)

@@ -10,6 +10,7 @@
 
 #include "tribound/adapt/error_bars.h"
 #include "tribound/certify/energy/admissible_traction.h"
+#include "tribound/certify/energy/interval_comparison.h"
 #include "tribound/mesh/refine.h"
 #include "verification/random_quantities.h"
 
@@ -103,6 +104,85 @@ TEST(QuantityRandom, NoIntervalFails)
     try_random_block<2>(seed, 1 + static_cast<int>(seed % 4), false, widths);
   widths.print();
   EXPECT_GE(widths.n_narrow_failures, 20);
+}
+
+/// The vertical resultant of T(u) on the bottom with min(1, d / ramp), d the distance from its left end, at
+/// the vertices of the first mesh and linear between them.
+double weighted_force(const DiscreteProblem<2>& c, std::span<const double> u, const mesh::Mesh<2>& first,
+                      double ramp)
+{
+  std::vector<Point<2>> ends;
+  for (const mesh::BoundaryFacet& facet : first.boundary())
+    if (facet.tag >= 0 && first.boundary_names()[facet.tag] == "bottom")
+      for (const Index v : mesh::facet_vertices(first.cell(facet.cell), facet.local))
+        ends.push_back(first.vertex(v));
+  std::ranges::sort(ends, {}, [](const Point<2>& x) { return x[0]; });
+  const auto weight = [&](const Point<2>& x) { return std::min(1.0, (x - ends[0]).norm() / ramp); };
+  const std::vector<Point<2>> t = c.form.traction(u);
+  double sum = 0;
+  for (std::size_t i = 0; i < t.size(); ++i)
+  {
+    const contact::ContactPoint<2>& point = c.form.contact_points()[i];
+    auto right = std::ranges::upper_bound(ends, point.x[0], {}, [](const Point<2>& x) { return x[0]; });
+    const Point<2>& b = *right;
+    const Point<2>& a = *(right - 1);
+    const double s = (point.x - a).norm() / (b - a).norm();
+    sum += point.weight * t[i][1] * ((1 - s) * weight(a) + s * weight(b));
+  }
+  return sum;
+}
+
+/// Forces beside fixed displacements are one number on all meshes: the interval of a coarse one holds the
+/// value of a finer one, whose interval is of the same number.
+template <int dim>
+void expect_one_number(unsigned seed, int p, bool is_on_another)
+{
+  RandomCase<dim> block_of{std::mt19937(seed), is_on_another, dim == 3 || seed % 2 == 0};
+  const ProblemData<dim> data = block_of.data();
+  if (block_of.is_held_above) return;
+  constexpr double ramp = 0.2;  // shorter than facets
+  const Quantities<dim> quantities = {contact_force<dim>("bottom", Point<dim>::Unit(1), ramp),
+                                      contact_force<dim>("bottom", Point<dim>::Unit(0)),
+                                      {.name = "moment",
+                                       .kind = QuantityKind::contact_moment,
+                                       .boundary = "bottom",
+                                       .direction = Point<dim>::Unit(dim - 1),
+                                       .point = Point<dim>::Unit(1)}};  // not the corner, which it leaves
+  const DiscreteProblem<dim> c(block_of.mesh(), data, {.degree = p, .newton = {.tolerance = 1e-11}});
+  const DiscreteProblem<dim> fine(
+      std::move(mesh::refine_uniformly(c.mesh, dim == 2 ? 2 : 1).mesh), data,
+      {.degree = std::min(p + 1, dim == 2 ? 4 : 2), .newton = {.tolerance = 1e-11}});
+  const std::vector<double> fine_u = fine.solve().u;
+  const EnergyBound bound = adapt::energy_bound<dim>(c.form, c.method, c.solve().u, quantities);
+  const EnergyBound of_fine = adapt::energy_bound<dim>(fine.form, fine.method, fine_u, quantities);
+  ASSERT_EQ(bound.reason, "");
+  ASSERT_EQ(of_fine.reason, "");
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+  {
+    const QuantityInterval& found = of_fine.quantities[i];
+    expect_contains(bound.quantities[i], found.value, fmt::format(", {}D, seed {}", dim, seed));
+    EXPECT_NE(found.note.find("linear on the facets of the first mesh"), std::string::npos) << found.note;
+    EXPECT_EQ(certify::compare_intervals(bound, bound.quantities[i], of_fine, found).agree, true)
+        << found.name << ", seed " << seed;
+  }
+  if constexpr (dim == 2)
+    if (!is_on_another)
+    {
+      const auto on_mesh = intervals<2>(fine, {quantities[0]}, fine_u);
+      EXPECT_NEAR(on_mesh[0].value, weighted_force(fine, fine_u, c.mesh, ramp), 1e-12) << "seed " << seed;
+    }
+}
+
+TEST(QuantityRandom, ForcesBesideFixedDisplacementsAreOneNumberOnAllMeshes)
+{
+  expect_one_number<2>(9172, 1, false);
+  for (unsigned seed = 0; seed < n_cases(12); ++seed)
+  {
+    expect_one_number<2>(seed, 1 + static_cast<int>(seed % 3), false);
+    expect_one_number<2>(seed, 1 + static_cast<int>(seed % 3), true);
+  }
+  for (unsigned seed = 0; seed < n_cases(3); ++seed)
+    for (const bool is_on_another : {false, true}) expect_one_number<3>(seed, 1, is_on_another);
 }
 
 /// The solution w of Tresca's problem with the threshold -mu_F t_h^n, which the bottom has along x.

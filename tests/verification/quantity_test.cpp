@@ -54,7 +54,8 @@ TEST_P(QuantityT2D, IsAsSharpAsThatOfAnIndependentProgram)
   expect_contains(found[0], 0.016804338613842063);
   expect_contains(found[1], -0.096161343);
   expect_contains(found[2], -0.041322732);
-  const auto is_weighted = [](const QuantityInterval& interval) { return interval.is_weighted; };
+  const auto is_weighted = [](const QuantityInterval& interval)
+  { return interval.note.find("weighted") != std::string::npos; };
   EXPECT_EQ(std::ranges::count_if(found, is_weighted), 2);  // the forces, beside the clamped side
   const auto half_width = [](const QuantityInterval& interval)
   { return (interval.upper - interval.lower) / 2; };
@@ -188,6 +189,19 @@ void expect_known(const QuantityInterval& interval, double truth)
   EXPECT_TRUE(interval.exact);
   EXPECT_EQ(interval.basis, "equilibrium");
   EXPECT_LE(interval.upper - interval.lower, 1e-13 * (0.8 + std::abs(truth)));  // 0.8: the loads
+}
+
+TEST(QuantityWeight, ThereMustBeOneOnTheFirstMesh)
+{
+  ProblemData<2> data = pressed_block<2>();
+  data.boundaries.push_back(clamped<2>("right"));
+  std::erase_if(data.boundaries, [](const auto& b) { return b.name == "right" && !b.fixes_any(); });
+  const DiscreteProblem<2> coarse(block<2>({1, 1}), data, {.degree = 2});
+  const DiscreteProblem<2> fine(block<2>({2, 1}), data, {.degree = 2});
+  const Quantity<2> force = contact_force<2>("bottom", {0, 1}, 0.1);
+  EXPECT_NE(intervals<2>(coarse, {force}, coarse.solve().u).front().reason.find("begin with a finer one"),
+            std::string::npos);
+  EXPECT_EQ(intervals<2>(fine, {force}, fine.solve().u).front().reason, "");
 }
 
 /// A block of weight 0.3 per volume 2, pressed down by 0.1 on its upper side of length or area 2.

@@ -214,7 +214,7 @@ template <int dim>
 auto make_quadratic(const SurfaceConfig& shape, const mesh::QuadraticFacets* facets,
                     std::span<const int> tags)
 {
-  if (facets == nullptr)
+  if (facets == nullptr || facets->tags.empty())
     throw InputError(shape.kind_where, "the mesh has no second-order facets",
                      "a mesh file of order 2 (gmsh -order 2, Mesh.ElementOrder = 2), or the shape as one of "
                      "plane, circle, sphere, cylinder, surface");

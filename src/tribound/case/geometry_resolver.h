@@ -15,7 +15,7 @@ namespace tribound::case_file
 /// What the mesh knows of the facets of a contact.
 struct ContactFacets
 {
-  const mesh::QuadraticFacets* quadratic;  ///< null: the mesh has order 1
+  const mesh::QuadraticFacets* quadratic;  ///< null, or without any: the mesh has order 1
   std::vector<int> tags;                   ///< their groups, of a pair those of the slave
   std::vector<int> master_tags{};          ///< of a pair those of the master
 };

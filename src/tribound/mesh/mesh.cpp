@@ -48,7 +48,7 @@ Mesh<dim>::Mesh(MeshData<dim> data)
     check_overlap<dim>(data, outer, interfaces);  // bisection keeps the domain
   boundary_ = find_boundary(data, topology);
   check_vertices(data, topology);
-  if (!data.edge_nodes.empty()) data.quadratic_facets = quadratic_facets<dim>(data, boundary_);
+  if (!data.quadratic_facets) data.quadratic_facets = quadratic_facets<dim>(data, boundary_);  // the first
   n_owned_cells_ = static_cast<Index>(data.cells.size());
   n_owned_boundary_ = boundary_.size();
   take(std::move(data), std::move(topology));

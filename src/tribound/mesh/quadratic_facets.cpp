@@ -92,7 +92,9 @@ std::shared_ptr<const QuadraticFacets> quadratic_facets(const MeshData<dim>& dat
   Collector<dim> collector(data);
   for (const BoundaryFacet& facet : boundary)
     if (facet.tag >= 0) collector.add(facet);
-  return std::make_shared<const QuadraticFacets>(collector.take());
+  QuadraticFacets facets = collector.take();
+  facets.first = first_facets<dim>(data, boundary);
+  return std::make_shared<const QuadraticFacets>(std::move(facets));
 }
 
 template <int dim>

@@ -1,13 +1,14 @@
 #pragma once
 
 /// @file quadratic_facets.h
-/// The curved facets of a second-order mesh, of which the cells have the vertices alone.
+/// The facets of the first mesh: the curved ones, of which the cells have the vertices alone, and all.
 
 #include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "tribound/mesh/first_facets.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/mesh.h"
 
@@ -28,18 +29,20 @@ template <int dim>
     return cross(tangents[0], tangents[1]);
 }
 
-/// The facets of the boundary groups as they are in the mesh file, whatever becomes of the cells.
+/// The second-order facets of the boundary groups as they are in the mesh file, whatever becomes of the
+/// cells; of a mesh of order 1 none.
 struct QuadraticFacets
 {
-  std::vector<int> tags;  ///< per facet: position in MeshLabels::boundary_names
+  std::vector<int> tags{};  ///< per facet: position in MeshLabels::boundary_names
   /// Per facet n_facet_nodes: its vertices, so ordered that normal_of() its edges points out of the body,
   /// then the nodes on its local_edges.
-  std::vector<Index> nodes;
-  std::vector<double> points;  ///< dim coordinates per node
+  std::vector<Index> nodes{};
+  std::vector<double> points{};  ///< dim coordinates per node
+  FirstFacets first{};           ///< all facets of the groups by their vertices, of whatever order
 };
 
-/// Those of the tagged facets of `boundary` whose edges all have a node. Throws InputError for a node that is
-/// not finite, and for an edge with two nodes.
+/// Those of the tagged facets of `boundary` whose edges all have a node, and all of them as the first ones.
+/// Throws InputError for a node that is not finite, and for an edge with two nodes.
 template <int dim>
 [[nodiscard]] std::shared_ptr<const QuadraticFacets> quadratic_facets(
     const MeshData<dim>& data, std::span<const BoundaryFacet> boundary);

@@ -9,6 +9,8 @@
 
 #include "tribound/base/sorted.h"
 #include "tribound/mesh/box.h"
+#include "tribound/mesh/first_facets.h"
+#include "tribound/mesh/quadratic_facets.h"
 #include "tribound/mesh/shared_labels.h"
 
 namespace tribound::mesh
@@ -125,6 +127,21 @@ void in_batches(Index n_cells, Index batch, const Work& work)
   for (Index first = 0; first < n_cells; first += batch) work(first, std::min(n_cells, first + batch));
 }
 
+/// The cells of one box or several that a rank makes.
+template <int dim, class Source>
+std::vector<CellRecord<dim>> share_of_boxes(const Ranks& ranks, const Source& source)
+{
+  const std::int64_t n = n_box_cells(source);
+  return box_records<dim>(source, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
+}
+
+template <int dim>
+std::shared_ptr<const QuadraticFacets> facets_of_cells(const Ranks& ranks,
+                                                       std::span<const CellRecord<dim>> cells)
+{
+  return std::make_shared<const QuadraticFacets>(QuadraticFacets{.first = first_facets<dim>(ranks, cells)});
+}
+
 /// `source`: one box or several, which are `all`.
 template <int dim, class Source>
 Mesh<dim> share_out_boxes(const Ranks& ranks, const Source& source, std::span<const BoxMesh> all)
@@ -134,9 +151,8 @@ Mesh<dim> share_out_boxes(const Ranks& ranks, const Source& source, std::span<co
   for (const BoxMesh& box : all)
     for (const std::vector<double>& corner : {box.lower, box.upper}) corners.emplace_back(corner.data());
   const Cube<dim> cube = cube_around<dim>(corners);
-  const std::int64_t n = n_box_cells(source);
-  std::vector<CellRecord<dim>> cells =
-      box_records<dim>(source, n * ranks.rank() / ranks.size(), n * (ranks.rank() + 1) / ranks.size());
+  std::vector<CellRecord<dim>> cells = share_of_boxes<dim>(ranks, source);
+  labels.quadratic_facets = facets_of_cells<dim>(ranks, cells);
   // They come in stretches of the last axis: along the curve they have few neighbours.
   const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells, Move::always);
   cells = ranks.send_to<CellRecord<dim>>(rank_of, cells);
@@ -198,10 +214,22 @@ Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cell
 }
 
 template <int dim>
+std::shared_ptr<const QuadraticFacets> box_facets(const Ranks& ranks, const MeshSource& source)
+{
+  const auto facets = [&ranks](const auto& boxes)
+  { return facets_of_cells<dim>(ranks, share_of_boxes<dim>(ranks, boxes)); };
+  if (const auto* box = std::get_if<BoxMesh>(&source)) return facets(*box);
+  const auto* boxes = std::get_if<Boxes>(&source);
+  return boxes ? facets(*boxes) : nullptr;
+}
+
+template <int dim>
 Balanced<dim> restore(const Ranks& ranks, const Mesh<dim>* first, std::vector<CellRecord<dim>> cells,
-                      std::span<const double> values, int n_values)
+                      std::span<const double> values, int n_values,
+                      const std::shared_ptr<const QuadraticFacets>& facets)
 {
   Origin<dim> origin = origin_of(ranks, first);
+  if (facets) origin.labels.quadratic_facets = facets;
   if (ranks.size() > 1)
     return balance_cells<dim>(ranks, std::move(origin), std::move(cells), values, n_values, Move::always);
   const std::vector<CellName> names = names_of<dim>(cells);
@@ -272,16 +300,18 @@ PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> 
 
 template Mesh<2> share_out(const Ranks&, const Mesh<2>*, Index);
 template Mesh<3> share_out(const Ranks&, const Mesh<3>*, Index);
+template std::shared_ptr<const QuadraticFacets> box_facets<2>(const Ranks&, const MeshSource&);
 template Balanced<2> restore(const Ranks&, const Mesh<2>*, std::vector<CellRecord<2>>,
-                             std::span<const double>, int);
+                             std::span<const double>, int, const std::shared_ptr<const QuadraticFacets>&);
 template std::vector<CellRecord<2>> records_of(const Mesh<2>&, std::span<const Index>);
 template Mesh<2> with_more_ghosts(Mesh<2>, std::vector<Ghost<2>>);
 template PickedOut<2> pick_out(const Mesh<2>&, std::span<const CellRecord<2>>, std::span<const int>);
 template Mesh<2> share_out(const Ranks&, const BoxMesh&);
 template Mesh<2> share_out(const Ranks&, const Boxes&);
 template Balanced<2> balance(const Mesh<2>&, std::vector<CellRecord<2>>, std::span<const double>, int, Move);
+template std::shared_ptr<const QuadraticFacets> box_facets<3>(const Ranks&, const MeshSource&);
 template Balanced<3> restore(const Ranks&, const Mesh<3>*, std::vector<CellRecord<3>>,
-                             std::span<const double>, int);
+                             std::span<const double>, int, const std::shared_ptr<const QuadraticFacets>&);
 template std::vector<CellRecord<3>> records_of(const Mesh<3>&, std::span<const Index>);
 template Mesh<3> with_more_ghosts(Mesh<3>, std::vector<Ghost<3>>);
 template PickedOut<3> pick_out(const Mesh<3>&, std::span<const CellRecord<3>>, std::span<const int>);

@@ -5,6 +5,7 @@
 /// balance.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -62,12 +63,17 @@ template <int dim>
                                     std::span<const double> values, int n_values,
                                     Move move = Move::where_unbalanced);
 
+/// The facets of boxes, MeshLabels::quadratic_facets; null for a file. All ranks call it together.
+template <int dim>
+[[nodiscard]] std::shared_ptr<const QuadraticFacets> box_facets(const Ranks& ranks, const MeshSource& source);
+
 /// A mesh of cells that a rank has from somewhere else, for example a file; `first`: the mesh they come from,
-/// on the first rank, elsewhere null. On one rank it is a whole mesh, that comes from bisect().
+/// on the first rank, elsewhere null. `facets`: of that mesh, where `first` is one of the same boxes with
+/// fewer cells. On one rank it is a whole mesh, that comes from bisect().
 template <int dim>
 [[nodiscard]] Balanced<dim> restore(const Ranks& ranks, const Mesh<dim>* first,
                                     std::vector<CellRecord<dim>> cells, std::span<const double> values,
-                                    int n_values);
+                                    int n_values, const std::shared_ptr<const QuadraticFacets>& facets = {});
 
 /// Own cells as they travel.
 template <int dim>

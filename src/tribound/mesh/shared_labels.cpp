@@ -59,6 +59,9 @@ void copy_quadratic_facets(const Ranks& ranks, std::shared_ptr<const QuadraticFa
   ranks.copy_from_first(copy.tags);
   ranks.copy_from_first(copy.nodes);
   ranks.copy_from_first(copy.points);
+  ranks.copy_from_first(copy.first.tags);
+  ranks.copy_from_first(copy.first.vertices);
+  ranks.copy_from_first(copy.first.points);
   facets = std::make_shared<const QuadraticFacets>(std::move(copy));
 }
 

@@ -59,10 +59,6 @@ TEST(IntervalComparison, WhatMayDifferIsNoContradiction)
     expect_compared(bound, plain, true, false);
     expect_compared(plain, bound, true, false);
   }
-  QuantityInterval weighted = low;
-  weighted.is_weighted = true;
-  EXPECT_EQ(compare_intervals(plain, weighted, plain, high).agree, std::nullopt);
-  EXPECT_EQ(compare_intervals(plain, high, plain, weighted).agree, std::nullopt);
 }
 
 TEST(IntervalComparison, WhatIsExactIsComparedAlways)

@@ -5,9 +5,6 @@
 /// of them.
 
 #include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
@@ -38,7 +35,7 @@ struct ContactResultant
   int tag = -1;  ///< of the boundary; -1: all
   RigidMotion<dim> motion{};
 
-  [[nodiscard]] bool has(const mesh::BoundaryFacet& facet) const { return tag < 0 || facet.tag == tag; }
+  [[nodiscard]] bool has(int boundary) const { return tag < 0 || boundary == tag; }
 };
 
 /// A number up to rounding and what quadrature may miss.
@@ -54,22 +51,5 @@ struct KnownNumber
 template <int dim>
 [[nodiscard]] std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                                           const ContactResultant<dim>& resultant);
-
-/// The motion as a weight of degree 1 on the facets of the resultant that is a jump of functions in H^1_D: 0
-/// on other contact facets, along directions that Gamma_D fixes and where three bodies meet.
-template <int dim>
-struct ContactWeight
-{
-  std::vector<double> at_nodes;       ///< degrees of freedom of the slaves; 0 off these facets
-  std::vector<Point<dim>> at_points;  ///< at the contact points of the form
-  std::string note{};                 ///< where the weight is not the motion itself
-};
-
-/// The motion times min(1, d / ramp) at the vertices, d the distance from where it would jump; ramp = 0: a
-/// tenth of the diagonal of the box around the boundary. obstacles_unfit() says nothing of the form. All
-/// ranks together.
-template <int dim>
-[[nodiscard]] ContactWeight<dim> contact_weight(const contact::NitscheForm<dim>& form,
-                                                const ContactResultant<dim>& resultant, double ramp);
 
 }  // namespace tribound::certify

@@ -137,7 +137,8 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   parts_ = std::make_unique<Parts>(form, norm);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
-  if (reason_.empty() && quantities_) quantities_->prepare(parts_->form, solver, parts_->motions.size() == 0);
+  if (reason_.empty() && quantities_)
+    quantities_->prepare(parts_->form, parts_->facets, solver, parts_->motions.size() == 0);
 }
 
 template <int dim>

@@ -20,7 +20,7 @@ std::vector<double> moved_bodies(const contact::NitscheForm<dim>& form, const me
 {
   std::vector<double> moved(bodies.n, 0.0);
   for (const contact::ContactSegment<dim>& segment : form.segments())
-    if (resultant.has(segment.slave.facet)) moved[bodies.of_cell[segment.slave.facet.cell]] = 1;
+    if (resultant.has(segment.slave.facet.tag)) moved[bodies.of_cell[segment.slave.facet.cell]] = 1;
   form.space().mesh().ranks().max(std::span(moved));
   return moved;
 }
@@ -36,7 +36,7 @@ bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodie
       std::ranges::any_of(form.segments(),
                           [&](const contact::ContactSegment<dim>& segment)
                           {
-                            return (moves(segment.slave.facet) && !resultant.has(segment.slave.facet)) ||
+                            return (moves(segment.slave.facet) && !resultant.has(segment.slave.facet.tag)) ||
                                    (segment.master && moves(segment.master->facet));
                           });
   bool by_conditions = false;

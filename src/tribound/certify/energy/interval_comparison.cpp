@@ -23,8 +23,6 @@ IntervalComparison compare_intervals(const EnergyBound& bound, const QuantityInt
   if (interval.exact && other.exact) return {.agree = meet};
   if (bound.target != EnergyTarget::solution || other_bound.target != EnergyTarget::solution)
     return {.reason = "both are of their computed friction thresholds"};
-  if (interval.is_weighted || other.is_weighted)
-    return {.reason = "the weight is linear on facets: it is another number on another mesh"};
   if (!meet && !(has_all_data(bound) && has_all_data(other_bound)))
     return {.reason = "gaps, thresholds or loads are interpolated, on each mesh in another way"};
   return {.agree = meet};

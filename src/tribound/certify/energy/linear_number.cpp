@@ -1,5 +1,7 @@
 #include "tribound/certify/energy/linear_number.h"
 
+#include <utility>
+
 namespace tribound::certify
 {
 
@@ -13,11 +15,15 @@ double LinearNumber<dim>::base(const BoundedState<dim>& state, const QuantityPar
 }
 
 template <int dim>
-void set_weight(LinearNumber<dim>& number, const contact::NitscheForm<dim>& form,
-                const contact::NitscheForm<dim>& bounded, const ContactResultant<dim>& resultant, double ramp)
+std::string set_weight(LinearNumber<dim>& number, const contact::NitscheForm<dim>& form,
+                       const contact::NitscheForm<dim>& bounded, const ContactWeights<dim>& weights,
+                       const ContactResultant<dim>& resultant, double ramp)
 {
-  number.weight = contact_weight(bounded, resultant, ramp);
-  number.phi = &form == &bounded ? number.weight->at_points : contact_weight(form, resultant, ramp).at_points;
+  ContactWeight<dim> weight = weights(bounded, resultant, ramp);
+  if (!weight.reason.empty()) return weight.reason;
+  number.phi = &form == &bounded ? weight.at_points : weights(form, resultant, ramp).at_points;
+  number.weight = std::move(weight);
+  return {};
 }
 
 template <int dim>
@@ -34,10 +40,12 @@ LinearNumber<dim> loaded_number(const QuantityParts<dim>& parts, const contact::
 
 template struct LinearNumber<2>;
 template struct LinearNumber<3>;
-template void set_weight(LinearNumber<2>&, const contact::NitscheForm<2>&, const contact::NitscheForm<2>&,
-                         const ContactResultant<2>&, double);
-template void set_weight(LinearNumber<3>&, const contact::NitscheForm<3>&, const contact::NitscheForm<3>&,
-                         const ContactResultant<3>&, double);
+template std::string set_weight(LinearNumber<2>&, const contact::NitscheForm<2>&,
+                                const contact::NitscheForm<2>&, const ContactWeights<2>&,
+                                const ContactResultant<2>&, double);
+template std::string set_weight(LinearNumber<3>&, const contact::NitscheForm<3>&,
+                                const contact::NitscheForm<3>&, const ContactWeights<3>&,
+                                const ContactResultant<3>&, double);
 template LinearNumber<2> loaded_number(const QuantityParts<2>&, const contact::NitscheForm<2>&);
 template LinearNumber<3> loaded_number(const QuantityParts<3>&, const contact::NitscheForm<3>&);
 

@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "tribound/certify/energy/contact_weight.h"
 #include "tribound/certify/energy/dual_problem.h"
 #include "tribound/certify/energy/linear_bound.h"
 #include "tribound/certify/energy/quantity_parts.h"
@@ -28,12 +30,13 @@ struct LinearNumber
   [[nodiscard]] double base(const BoundedState<dim>& state, const QuantityParts<dim>& parts) const;
 };
 
-/// A force or moment of contact where equilibrium does not give it, on the forms of u and of the bounds. All
-/// ranks together.
+/// A force or moment of contact where equilibrium does not give it, on the forms of u and of the bounds; the
+/// reason where there is no weight. All ranks together.
 template <int dim>
-void set_weight(LinearNumber<dim>& number, const contact::NitscheForm<dim>& form,
-                const contact::NitscheForm<dim>& bounded, const ContactResultant<dim>& resultant,
-                double ramp);
+[[nodiscard]] std::string set_weight(LinearNumber<dim>& number, const contact::NitscheForm<dim>& form,
+                                     const contact::NitscheForm<dim>& bounded,
+                                     const ContactWeights<dim>& weights,
+                                     const ContactResultant<dim>& resultant, double ramp);
 
 /// A mean displacement or the work of the loads. All ranks together.
 template <int dim>

@@ -46,7 +46,7 @@ QuantityBounds<dim>::QuantityBounds(const contact::NitscheForm<dim>& form,
       number.known = certify::from_equilibrium(form, resultant);
       for (std::size_t i = 0; i < form.n_contact_points(); ++i)
       {
-        const bool counts = resultant.has(form.segments()[i / form.n_segment_points()].slave.facet);
+        const bool counts = resultant.has(form.segments()[i / form.n_segment_points()].slave.facet.tag);
         number.phi.push_back(counts ? resultant.motion(form.contact_points()[i].x) : Point<dim>::Zero());
       }
     }
@@ -70,7 +70,7 @@ bool slides_freely(const contact::NitscheForm<dim>& form)
 }  // namespace
 
 template <int dim>
-void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
+void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, const ObstacleFacets<dim>& facets,
                                   const algebra::SolverOptions& solver, bool is_held)
 {
   solver_ = solver;
@@ -78,6 +78,7 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
   systems_ = std::make_unique<DualSystems<dim>>(bounded, solver);
   is_homogeneous_ = is_homogeneous(bounded);
   work_is_energy_ = is_homogeneous_ && slides_freely(bounded);
+  std::optional<ContactWeights<dim>> weights;
   for (Item& item : items_)
   {
     if (is_energy(item) || !item.reason.empty()) continue;
@@ -88,8 +89,13 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded,
     }
     if (item.parts.resultants.empty()) item.numbers.push_back(loaded_number(item.parts, bounded));
     for (std::size_t i = 0; i < item.parts.resultants.size(); ++i)
-      if (!item.numbers[i].known)
-        set_weight(item.numbers[i], form_, bounded, item.parts.resultants[i], item.parts.quantity.ramp);
+    {
+      if (item.numbers[i].known) continue;
+      if (!weights) weights.emplace(bounded, facets.junctions());
+      const std::string reason = set_weight(item.numbers[i], form_, bounded, *weights,
+                                            item.parts.resultants[i], item.parts.quantity.ramp);
+      if (!reason.empty()) item.reason = reason;
+    }
   }
 }
 
@@ -211,9 +217,7 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
       for (const LinearNumber<dim>& number : item.numbers)
       {
         numbers.push_back(bounded(item, number, state, *of_numbers));
-        if (!number.weight || number.weight->note.empty()) continue;
-        interval.note = number.weight->note;
-        interval.is_weighted = true;
+        if (number.weight && !number.weight->note.empty()) interval.note = number.weight->note;
       }
       combine(interval, item.parts.coefficient, numbers);
     }

@@ -27,7 +27,8 @@ class QuantityBounds
 
   /// Makes what energy bounds of this form, on the same mesh and of no lower degree, need; `is_held`: whether
   /// displacement conditions hold every body by themselves. Throws SolveError.
-  void prepare(const contact::NitscheForm<dim>& bounded, const algebra::SolverOptions& solver, bool is_held);
+  void prepare(const contact::NitscheForm<dim>& bounded, const ObstacleFacets<dim>& facets,
+               const algebra::SolverOptions& solver, bool is_held);
   /// The values of u and the intervals that follow from equilibrium alone; `reason` says why there are no
   /// others.
   [[nodiscard]] std::vector<QuantityInterval> from_equilibrium(std::span<const double> u,

@@ -16,9 +16,7 @@ struct QuantityInterval
   double value = 0;  ///< of u_h; it may lie outside
   double lower = 0;
   double upper = 0;
-  bool exact = false;  ///< but for rounding and what quadrature may miss of the loads
-  /// With a weight that is linear on the facets of the mesh: on another mesh it is another number.
-  bool is_weighted = false;
+  bool exact = false;    ///< but for rounding and what quadrature may miss of the loads
   std::string basis{};   ///< "equilibrium", "duality gap", "energy bound" or "second order"
   std::string note{};    ///< what else there is to know, such as a weight beside fixed displacements
   std::string reason{};  ///< why there is no interval; empty: there is one
