@@ -213,8 +213,9 @@ namespace
 template <int dim>
 void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as_json)
 {
-  problem::Problem<dim> problem(case_file::resolve(config, mesh));
-  if (config.history) problem = problem.at(config.history->program.targets.front());
+  const problem::Problem<dim> given(case_file::resolve(config, mesh));
+  const problem::Problem<dim> problem =
+      config.history ? given.at(config.history->program.targets.front()) : given;
   (void)case_file::moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
   (void)case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
@@ -227,8 +228,11 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   const io::CaseFacts facts = case_file::case_facts(config, dim);
   const io::MeshFacts about_mesh = io::mesh_facts<dim>(problem, space, form.constraints(), config.units);
   const std::string solver = io::describe_solver(solve::choose_method(form, config.method.solver, true));
-  const std::vector<doctor::Finding> findings =
-      doctor::findings(doctor::diagnose(form, config.method, config.adapt, config.units));
+  doctor::Diagnosis diagnosis = doctor::diagnose(form, config.method, config.adapt, config.units);
+  if (config.history && !diagnosis.held_by_contact.empty())
+    diagnosis.beyond_contact =
+        doctor::load_beyond_contact<dim>(given, space, config.history->program.targets);
+  const std::vector<doctor::Finding> findings = doctor::findings(diagnosis);
   print(as_json ? check_json(facts, about_mesh, solver, findings)
                 : check_text(facts, about_mesh, solver) + findings_text(findings));
 }

@@ -173,6 +173,24 @@ TEST(Finish, ARigidMotionIsCertified)
       }
 }
 
+/// Newton's method that fails says when contact may be the cause: alone it holds the block.
+TEST(Finish, AFailureNamesWhatContactAloneHolds)
+{
+  const auto failure = [](const problem::BoundaryCondition<2>& left)
+  {
+    return run(block<2>({4, 2}),
+               {.boundaries = {left, loaded<2>("top", 0.05, -0.1), obstacle<2>("bottom", Coulomb(0.6))}},
+               {.degree = 1, .newton = {.max_steps = 1}, .other_starts = false}, {.max_levels = 0})
+        .verdict;
+  };
+  const certify::Verdict on_floor = failure(loaded<2>("left", 0, 0));
+  EXPECT_EQ(on_floor.status, certify::RunStatus::failed);
+  EXPECT_NE(on_floor.reason.find("; contact that alone holds a body may have opened or slid"),
+            std::string::npos)
+      << on_floor.reason;
+  EXPECT_EQ(failure(clamped<2>("left")).reason.find("slid"), std::string::npos);
+}
+
 /// Carried into the tip of a wedge: contact on a ten-thousandth of a side, where the point of no rule lies.
 TEST(Finish, ANarrowContactIsNoRigidMotion)
 {

@@ -288,5 +288,21 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
   expect(problem::EndoLaw({5, 4, 0.8, 0.3, 3, 0.003}), "must hold of the strengths");
 }
 
+/// A block on its floor, pushed beyond what friction can hold: it is not Newton's method that is to blame.
+TEST(LoadPath, AStepBeyondFrictionSaysSo)
+{
+  Path path({4, 2}, 1);
+  mesh::Mesh<2> mesh(block<2>(path.cells));
+  const problem::Problem<2> problem(
+      mesh, {{.material = problem::lame(path.E, path.nu, problem::PlaneModel::strain)}},
+      {loaded<2>("top", 0, -1), loaded<2>("right", formula("-0.3*t"), 0),
+       obstacle<2>("bottom", Coulomb(0.2))});
+  adapt::LoadPath<2> along(problem, path.method, {}, std::move(mesh));
+  ASSERT_EQ(along.advance(1), "");
+  const std::string why = along.advance(2);
+  EXPECT_NE(why.find("; at t = 2 contact cannot hold the body"), std::string::npos) << why;
+  EXPECT_NE(why.find("friction is too weak"), std::string::npos) << why;
+}
+
 }  // namespace
 }  // namespace tribound::test

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tribound/adapt/certifier.h"
+#include "tribound/adapt/contact_hold.h"
 #include "tribound/adapt/persistent.h"
 #include "tribound/base/clock.h"
 #include "tribound/base/error.h"
@@ -71,9 +72,11 @@ void append_step(const solve::NewtonStep& step, std::vector<CertifiedStep>& step
 }
 
 template <int dim>
-void keep_solution(solve::NewtonResult<dim>&& newton, CertifiedLevel<dim>& level)
+void keep_solution(const contact::NitscheForm<dim>& form, solve::NewtonResult<dim>&& newton,
+                   CertifiedLevel<dim>& level)
 {
   level.failure = std::move(newton.message);
+  if (!level.solved()) level.failure += words_of_hold(form);
   level.converged = newton.status == solve::NewtonStatus::converged;
   level.u = std::move(newton.u);
   level.traction = std::move(newton.traction);
@@ -137,7 +140,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
   for (CertifiedStep& step : result.steps) step.accepted = false;
   result.finishing_steps += static_cast<int>(result.steps.size()) - before;
   result.energy.reset();
-  keep_solution(std::move(newton), result);
+  keep_solution(form, std::move(newton), result);
   {
     const ScopedTimer timer(result.certify_seconds, result.certify_cpu);
     Certifier<dim> certifier(form, method, {}, level.friedrichs);
@@ -218,7 +221,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
     level.delta = regularisation->delta;
     level.delta_updates = regularisation->n_updates;
   }
-  keep_solution(std::move(newton), level);
+  keep_solution(form, std::move(newton), level);
   if (!level.solved())
   {
     level.norms = contact::stress_norms(form.problem(), form.space(), level.u);
@@ -253,8 +256,8 @@ CertifiedLevel<dim> solve_without_bound(const contact::NitscheForm<dim>& form, s
   };
   {
     const ScopedTimer timer(level.solve_seconds, level.solve_cpu);
-    keep_solution(solve_persistently<dim>(form, start, method, go_on, 0, record, std::move(equilibrium)),
-                  level);
+    keep_solution(
+        form, solve_persistently<dim>(form, start, method, go_on, 0, record, std::move(equilibrium)), level);
   }
   level.norms = contact::stress_norms(form.problem(), form.space(), level.u);
   return level;

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "tribound/adapt/contact_hold.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/contact/nitsche/interface_check.h"
@@ -274,7 +275,8 @@ std::string LoadPath<dim>::advance(double t, const Observer& observer, const Ste
       if (arrives) return {};
     }
     else if (!may_cut || std::abs(size) / 2 <= options_.smallest * std::abs(whole))
-      return fmt::format("load step {} at t = {:.9g}: {}", last() ? last()->number + 1 : 1, to, failure);
+      return fmt::format("load step {} at t = {:.9g}: {}{}", last() ? last()->number + 1 : 1, to, failure,
+                         words_of_statics(problem_.with_crack_tips(position_.tips).at(t), grid_->space, t));
     else
     {
       size /= 2;

@@ -147,9 +147,8 @@ class Options
 
 /// Of matrices of Newton's method that factors cannot solve with.
 inline constexpr const char* singular_tangent =
-    "the tangent matrix is singular to working precision: contact that alone holds a body may have opened "
-    "(fix "
-    "a displacement component, or raise nitsche.gamma0)";
+    "the tangent matrix is singular to working precision: contact that alone holds a body may have opened or "
+    "slid (fix a displacement component, or raise nitsche.gamma0)";
 
 /// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
 void configure_mumps(Mat factors, int dim);

@@ -3,6 +3,7 @@
 /// @file diagnosis.h
 /// All that `tribound check` finds out about a case before it is solved.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "tribound/doctor/load_facts.h"
 #include "tribound/doctor/mesh_quality.h"
 #include "tribound/doctor/pair_facts.h"
+#include "tribound/doctor/path_facts.h"
 #include "tribound/doctor/support_facts.h"
 #include "tribound/doctor/units.h"
 
@@ -24,6 +26,7 @@ struct Diagnosis
   int degree = 1;
   bool refines = true;  ///< whether the mesh is adapted
   std::vector<ContactHeldMotion> held_by_contact;
+  std::optional<LoadBeyondContact> beyond_contact;  ///< on a load path
   std::vector<OverconstrainedCorner> corners;
   std::vector<ContactBoundaryFacts> contacts;
   std::vector<PairFacts> pairs;

@@ -53,8 +53,18 @@ Finding held(const ContactHeldMotion& motion)
   return finding;
 }
 
+Finding beyond(const LoadBeyondContact& load)
+{
+  return {.code = "load_beyond_contact",
+          .severity = Severity::warning,
+          .text = fmt::format("at t = {:g} {}", load.t, load.why),
+          .numbers = {{"t", load.t}},
+          .advice = "there is no equilibrium there: under given loads the path ends before it"};
+}
+
 void add_supports(const Diagnosis& diagnosis, Findings& findings)
 {
+  if (diagnosis.beyond_contact) findings.push_back(beyond(*diagnosis.beyond_contact));
   for (const ContactHeldMotion& motion : diagnosis.held_by_contact) findings.push_back(held(motion));
   if (diagnosis.held_by_contact.empty())
     findings.push_back({.code = "held", .text = "displacement conditions alone stop every rigid motion"});

@@ -85,7 +85,7 @@ TEST(RigidMotion, CoulombHoldsUpToTheFrictionAngle)
               HasSubstr("drive it into translation along (-0.9553, -0.2955); friction is too weak"));
 }
 
-TEST(RigidMotion, CoulombConeIn3DIsCircumscribed)
+TEST(RigidMotion, CoulombConeIn3DIsRound)
 {
   const auto slope = [](double angle, double coefficient) {
     return verdict<3>(brick_on_slope(angle), {obstacle<3>("back", Coulomb(coefficient))}, {0, 0, -1});
@@ -93,6 +93,22 @@ TEST(RigidMotion, CoulombConeIn3DIsCircumscribed)
   const double angle = 0.3;
   EXPECT_EQ(slope(angle, std::tan(angle) * 1.001), "held");
   EXPECT_THAT(slope(angle, std::tan(angle) * 0.9), HasSubstr("friction is too weak"));
+  EXPECT_THAT(slope(angle, std::tan(angle) * 0.999), HasSubstr("friction is too weak"));
+}
+
+/// Loads beyond the cone by a thousandth, in directions between the edges of a polyhedron around it.
+TEST(RigidMotion, CoulombIn3DRefusesWhatTheRoundConeDoesNotHold)
+{
+  constexpr double coefficient = 0.5;
+  for (int i = 0; i < 16; ++i)
+  {
+    const double side = 1.001 * coefficient;
+    const double angle = i * std::numbers::pi / 8;
+    EXPECT_THAT(verdict<3>(brick(), {obstacle<3>("bottom", Coulomb(coefficient))},
+                           {side * std::cos(angle), -1, side * std::sin(angle)}),
+                HasSubstr("friction is too weak"))
+        << "direction " << i;
+  }
 }
 
 TEST(RigidMotion, CoulombIn3DRefusesNothingThatTheRoundConeHolds)

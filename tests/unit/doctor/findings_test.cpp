@@ -48,6 +48,14 @@ doctor::Finding finding(const doctor::Diagnosis& diagnosis, const std::string& c
   return found == all.end() ? doctor::Finding{} : *found;
 }
 
+TEST(Findings, ALoadBeyondContact)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.beyond_contact = doctor::LoadBeyondContact{1.5, "contact cannot hold the body"};
+  EXPECT_EQ(finding(diagnosis, "load_beyond_contact").text, "at t = 1.5 contact cannot hold the body");
+  EXPECT_EQ(finding(diagnosis, "load_beyond_contact").severity, doctor::Severity::warning);
+}
+
 TEST(Findings, AHealthyCase)
 {
   for (const doctor::Finding& f : doctor::findings(healthy()))

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "tribound/base/error.h"
 #include "tribound/contact/support/cone.h"
+#include "tribound/contact/support/contact_cone.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
@@ -17,26 +17,6 @@ namespace tribound::contact
 
 namespace
 {
-
-/// Unit vectors perpendicular to n: both in 2D, eight at equal angles in 3D.
-template <int dim>
-std::vector<Point<dim>> tangents(const Point<dim>& n)
-{
-  std::vector<Point<dim>> directions;
-  if constexpr (dim == 2)
-    directions = {Point<2>(-n[1], n[0]), Point<2>(n[1], -n[0])};
-  else
-  {
-    Eigen::Index smallest = 0;
-    n.cwiseAbs().minCoeff(&smallest);
-    const Point<3> first = mesh::cross(n, Point<3>::Unit(smallest)).normalized();
-    const Point<3> second = mesh::cross(n, first);
-    for (int i = 0; i < 8; ++i)
-      directions.push_back(std::cos(i * std::numbers::pi / 4) * first +
-                           std::sin(i * std::numbers::pi / 4) * second);
-  }
-  return directions;
-}
 
 /// The rule on the halves (2D) or quarters (3D) of the facet.
 template <int k>
@@ -92,36 +72,6 @@ void AssemblyCheck<dim>::check_held() const
   const std::string file = named == problem_.boundaries().end() ? "" : named->where.file;
   throw InputError({.file = file, .key = "boundary"},
                    fmt::format("nothing stops {} from: {}", name_, fmt::join(motions, "; ")), hint(free));
-}
-
-template <int dim>
-Eigen::MatrixXd AssemblyCheck<dim>::contact_cone(const MotionBasis& motions, ConeFriction friction) const
-{
-  std::vector<Eigen::VectorXd> generators;
-  const auto add_corner = [&](const AssemblySegment&, const ContactSegment<dim>& segment, const Point<dim>& n,
-                              const std::vector<int>& coefficients, const auto& jump)
-  {
-    const problem::FrictionCone law = problem::cone(segment.contact->law);
-    if (law.glues()) return;  // the motions obey it
-    const Eigen::MatrixXd jumps = jump * motions(coefficients, Eigen::all);
-    const auto add = [&](const Point<dim>& push)
-    {
-      const Eigen::VectorXd work = jumps.transpose() * push;
-      if (work.norm() > 1e-12) generators.push_back(work.normalized());
-    };
-    add(n);
-    if (!law.resists_sliding()) return;
-    if (law.coefficient == 0 && friction == ConeFriction::no_strength) return;
-    const bool holds =
-        friction == ConeFriction::unlimited || (friction == ConeFriction::strong && law.strength != nullptr);
-    const double around = dim == 2 ? 1 : std::cos(std::numbers::pi / 8);  // the circle in the octagon
-    for (const Point<dim>& t : tangents<dim>(n))
-      add(holds ? t : Point<dim>(n + law.coefficient / around * t));
-  };
-  for_each_corner(mesh_, form_.segments(), assembly_, add_corner);
-  Eigen::MatrixXd cone(motions.cols(), static_cast<Eigen::Index>(generators.size()));
-  for (Eigen::Index j = 0; j < cone.cols(); ++j) cone.col(j) = generators[j];
-  return cone;
 }
 
 /// On the parts of the segments on which the rule integrates s; |[z]^t| is convex, the largest at a vertex.
@@ -218,16 +168,27 @@ std::optional<Eigen::VectorXd> AssemblyCheck<dim>::beyond_tresca(const MotionBas
   constexpr double relative = 1e-8;
   const Eigen::Index m = loads.size();
   const double one = loads.norm();
-  const Eigen::MatrixXd cone = contact_cone(motions, ConeFriction::no_strength);
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(m + 1, cone.cols() + 1);
-  columns.topLeftCorner(m, cone.cols()) = cone;
-  columns(m, cone.cols()) = one;
+  const ContactCone<dim> cone(form_, assembly_, motions, ConeFriction::no_strength);
+  const Eigen::Index n = cone.generators().cols();
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(m + 1, n + 1);
+  columns.topLeftCorner(m, n) = cone.generators();
+  columns(m, n) = one;
+  const auto add = [&columns](const Eigen::VectorXd& work, double weight)
+  {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) << work, weight;
+  };
   Eigen::VectorXd target(m + 1);
   target << loads, one;
   for (int i = 0; i < max_points; ++i)
   {
     const Eigen::VectorXd r = project_on_polar_cone(columns, target).head(m);
     if (r.norm() <= tolerance) return {};
+    if (const std::optional<Eigen::VectorXd> outside = cone.steepest(r))
+    {
+      add(*outside, 0);
+      continue;
+    }
     const FrictionWork friction = strength_work(motions, r, form_.data().facet_rule());
     const double driving = r.dot(loads) - missed_work(motions * r);
     if (driving > (1 + relative) * friction.most + tolerance * r.norm())
@@ -237,8 +198,7 @@ std::optional<Eigen::VectorXd> AssemblyCheck<dim>::beyond_tresca(const MotionBas
       const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
       return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
     }
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
-    columns.rightCols(1) << friction.in_motions, one;
+    add(friction.in_motions, one);
   }
   return {};
 }
@@ -267,13 +227,15 @@ void AssemblyCheck<dim>::check_balanced(const Eigen::VectorXd& work, double roun
   if (motions.cols() == 0 || c.norm() <= round_off) return;
 
   const double tolerance = relative * c.norm() + round_off;
-  const Eigen::VectorXd lifted = project_on_polar_cone(contact_cone(motions, ConeFriction::unlimited), c);
+  const auto left_by = [&](ConeFriction friction)
+  { return ContactCone<dim>(form_, assembly_, motions, friction).project_on_polar(c); };
+  const Eigen::VectorXd lifted = left_by(ConeFriction::unlimited);
   // The work of the loads in a projection r on the polar cone is |r|^2.
   const auto is_free = [&](const Eigen::VectorXd& r)
   { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
   if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
 
-  const Eigen::VectorXd slipped = project_on_polar_cone(contact_cone(motions, ConeFriction::strong), c);
+  const Eigen::VectorXd slipped = left_by(ConeFriction::strong);
   if (is_free(slipped))
   {
     // Motions that slide along all of the contact boundary, and the one in which the loads do most work.

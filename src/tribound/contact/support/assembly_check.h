@@ -39,14 +39,6 @@ class AssemblyCheck
   void check_balanced(const Eigen::VectorXd& work, double round_off) const;
 
  private:
-  /// Which friction counts among the forces that grow with the pressure without a limit.
-  enum class ConeFriction
-  {
-    unlimited,    ///< all friction holds whatever is pressed
-    strong,       ///< where there is strength it holds, the rest obeys its coefficient
-    no_strength,  ///< what obeys a coefficient, nothing else
-  };
-
   /// What the strength of friction can do against a motion z at most.
   struct FrictionWork
   {
@@ -55,8 +47,6 @@ class AssemblyCheck
     double missed = 0;           ///< what the rule may miss of it because of s
   };
 
-  /// The work in each motion of the contact forces, one column for each generator of their cone.
-  [[nodiscard]] Eigen::MatrixXd contact_cone(const MotionBasis& motions, ConeFriction friction) const;
   [[nodiscard]] FrictionWork strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
                                            const fem::Quadrature<dim - 1>& rule) const;
   /// What the work of the loads in a motion may miss.

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <vector>
 
+#include "tribound/base/error.h"
 #include "tribound/contact/support/assembly.h"
 #include "tribound/contact/support/assembly_check.h"
 #include "tribound/fem/space.h"
@@ -42,6 +43,20 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
 }
 
 template <int dim>
+std::string why_not_held(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space)
+{
+  try
+  {
+    check_rigid_motions(NitscheForm<dim>(problem, space, 1.0));
+  }
+  catch (const InputError& error)
+  {
+    return error.problem();
+  }
+  return {};
+}
+
+template <int dim>
 void check_rigid_motions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree)
 {
   const fem::LagrangeSpace<dim> space(mesh, degree);
@@ -50,6 +65,8 @@ void check_rigid_motions(const problem::Problem<dim>& problem, const mesh::Mesh<
 
 template void check_rigid_motions(const NitscheForm<2>&, std::span<const double>);
 template void check_rigid_motions(const NitscheForm<3>&, std::span<const double>);
+template std::string why_not_held(const problem::Problem<2>&, const fem::LagrangeSpace<2>&);
+template std::string why_not_held(const problem::Problem<3>&, const fem::LagrangeSpace<3>&);
 template void check_rigid_motions(const problem::Problem<2>&, const mesh::Mesh<2>&, int);
 template void check_rigid_motions(const problem::Problem<3>&, const mesh::Mesh<3>&, int);
 

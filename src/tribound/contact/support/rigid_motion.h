@@ -5,6 +5,7 @@
 /// be named before a factorisation fails on it.
 
 #include <span>
+#include <string>
 
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/mesh/mesh.h"
@@ -20,9 +21,8 @@ namespace tribound::contact
 ///    limited, cannot resist: there is no solution. There is one only if L(z) <= (s, |[z]^t|)_C for every
 ///    rigid motion z, one of each body, with [z] = 0 on ties, [z]^n <= 0 on frictionless and Tresca contact
 ///    and [z]^n + mu_F |[z]^t| <= 0 on Coulomb contact, where (s, .) is over Tresca contact: take z as test
-///    function. Exact up to rounding in 2D and for constant s without friction of Coulomb; for Coulomb's law
-///    in 3D the cone of friction is replaced by an eight-sided one around it, and integrals of loads and of
-///    s |[z]^t| count with their quadrature error. So what is refused has no solution, but some cases without
+///    function. Exact up to rounding, but that integrals of loads and of s |[z]^t| count with their
+///    quadrature error. So what is refused has no solution, but some cases without
 ///    one pass.
 /// Bodies that displacement conditions hold by themselves pass at once. The mesh is a whole one: before it is
 /// shared out or later, since refinement changes neither bodies nor supports. `load` is L(phi_i) for every
@@ -36,6 +36,11 @@ void check_rigid_motions(const NitscheForm<dim>& form)
 {
   check_rigid_motions(form, form.load());
 }
+
+/// What is wrong in these words, empty: nothing; also where data are not valid. The mesh is a whole one.
+template <int dim>
+[[nodiscard]] std::string why_not_held(const problem::Problem<dim>& problem,
+                                       const fem::LagrangeSpace<dim>& space);
 
 /// The same from the mesh alone.
 template <int dim>

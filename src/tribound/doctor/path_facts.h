@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file path_facts.h
+/// What can be said of a load path before it is followed.
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "tribound/fem/space.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::doctor
+{
+
+/// A load factor at which contact cannot balance the loads, whatever the pressures are.
+struct LoadBeyondContact
+{
+  double t = 0;
+  std::string why;  ///< in the words of contact::check_rigid_motions()
+};
+
+/// The first of the load factors at which the problem is such; nothing where there is none, or a bond may
+/// take what contact cannot. The mesh is a whole one.
+template <int dim>
+[[nodiscard]] std::optional<LoadBeyondContact> load_beyond_contact(const problem::Problem<dim>& problem,
+                                                                   const fem::LagrangeSpace<dim>& space,
+                                                                   std::span<const double> load_factors);
+
+}  // namespace tribound::doctor
