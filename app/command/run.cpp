@@ -21,6 +21,7 @@
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/findings.h"
+#include "tribound/doctor/path_facts.h"
 #include "tribound/doctor/support_facts.h"
 #include "tribound/fem/nested.h"
 #include "tribound/io/record/run_statements.h"

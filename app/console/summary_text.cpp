@@ -196,8 +196,9 @@ std::string balance_text(const certify::Balance& balance, const io::CaseFacts& f
 
 std::string certificate_text(const io::RunRecord& run)
 {
-  if (run.levels.empty() || !run.levels.back().bound) return {};
+  if (run.levels.empty()) return {};
   const io::LevelRecord& level = run.levels.back();
+  if (!level.bound) return energy_lines(level, run.facts);
   const certify::Bound& bound = *level.bound;
   const std::optional<double> relative = io::relative_bound(level);
   std::string text =

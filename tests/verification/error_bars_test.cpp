@@ -198,6 +198,66 @@ TEST(ErrorBars, AnInterruptedRunHasNone)
   EXPECT_EQ(told.levels.back().level.energy->reason, "interrupted");
 }
 
+const std::vector<problem::Quantity<2>> two_quantities{
+    {.name = "e", .kind = problem::QuantityKind::energy},
+    {.name = "f", .kind = problem::QuantityKind::contact_force, .boundary = "bottom"}};
+
+/// What gives up in the middle leaves the values of the quantities, with its reason.
+TEST(ErrorBars, QuantitiesOutliveABoundThatGivesUp)
+{
+  mesh::Mesh<2> mesh(box<2>({0, 0}, {1, 1e-7}, {1, 1}));
+  const problem::Problem<2> problem(pressed_block<2>().on(mesh));
+  const adapt::Discretisation<2> flat(std::move(mesh), problem, {.degree = 2});
+  std::vector<double> u(flat.space.n_dofs(), 0.0);
+  for (std::size_t i = 0; i < u.size(); i += 2) u[i] = 1e-3 * flat.space.node_points()[i / 2][0];
+  const certify::EnergyBound bound = adapt::energy_bound<2>(flat.form, {.degree = 2}, u, two_quantities);
+  EXPECT_NE(bound.reason.find("times as long as high: mesh again"), std::string::npos) << bound.reason;
+  ASSERT_EQ(bound.quantities.size(), 2u);
+  for (const certify::QuantityInterval& quantity : bound.quantities) EXPECT_EQ(quantity.reason, bound.reason);
+  EXPECT_EQ(bound.quantities[0].name, "e");
+  EXPECT_NEAR(bound.quantities[0].value, contact::stress_norms(problem, flat.space, u).energy, 1e-20);
+}
+
+/// A mesh that a limit turns down has taken the stress of the level that stays.
+TEST(ErrorBars, ALevelWhoseSuccessorFailedHasThem)
+{
+  mesh::Mesh<2> mesh(block<2>({4, 2}));
+  ProblemData<2> data = pressed_block<2>();
+  const problem::Problem<2> problem(data.on(mesh));
+  const adapt::Method method{.degree = 2, .stopping = {.finish = false}};
+  std::atomic<bool> stop = false;
+  adapt::Levels<2> levels(problem, method, 1e-9,
+                          std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, method),
+                          &stop);
+  levels.ask_for({.levels = EnergyLevels::last}, two_quantities);
+  ASSERT_EQ(levels.advance(), "");
+  const double bound = levels.view().level.estimate.total_sharp;
+  ASSERT_EQ(levels.refine([](const adapt::LevelView<2>&) { return std::vector<Index>{0}; }), "");
+  const auto leave = [&](const adapt::CertifiedStep&) { stop = true; };
+  ASSERT_NE(levels.advance(leave), "");
+  stop = false;
+  EXPECT_TRUE(levels.bound_energy());
+  ASSERT_TRUE(levels.view().level.energy);
+  EXPECT_EQ(levels.view().level.energy->reason, "");
+  EXPECT_EQ(levels.view().level.energy->quantities.size(), 2u);
+  EXPECT_DOUBLE_EQ(levels.view().level.estimate.total_sharp, bound);
+}
+
+/// Facets of one body end a hair beside those of the other: the cells between are not the user's.
+TEST(ErrorBars, CellsCutFlatAreNotBlamedOnTheMesh)
+{
+  const ProblemData<2> data{.boundaries = {clamped<2>("bottom_below"), loaded<2>("top", 0.01, -0.1),
+                                           clamped<2>("left"), clamped<2>("left_below")},
+                            .pairs = {pair<2>("bottom", "top_below")}};
+  mesh::Mesh<2> mesh(on_block<2>(box<2>({1e-5, 0}, {2 + 1e-5, 1}, {3, 1}), {3, 1}));
+  const problem::Problem<2> problem(data.on(mesh));
+  const adapt::Discretisation<2> discrete(std::move(mesh), problem, {.degree = 3});
+  const certify::EnergyBound bound =
+      adapt::energy_bound<2>(discrete.form, {.degree = 3}, std::vector<double>(discrete.space.n_dofs(), 0.0));
+  EXPECT_NE(bound.reason.find("Tribound made it where it cut cells"), std::string::npos) << bound.reason;
+  EXPECT_EQ(bound.reason.find("mesh again"), std::string::npos) << bound.reason;
+}
+
 }  // namespace
 
 }  // namespace tribound::test

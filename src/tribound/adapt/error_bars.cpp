@@ -11,12 +11,25 @@
 #include "tribound/adapt/finer_contact.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
+#include "tribound/certify/energy/quantity_bounds.h"
+#include "tribound/certify/equilibrate/too_flat.h"
 
 namespace tribound::adapt
 {
 
 namespace
 {
+
+/// Of cells that are too flat where the mesh is not the user's: "... times as long as high; Tribound made
+/// it".
+std::string words_of_cut_cells(std::string why)
+{
+  if (!why.ends_with(certify::advice_on_flat_cells)) return why;
+  why.resize(why.size() - certify::advice_on_flat_cells.size());
+  return why +
+         "; Tribound made it where it cut cells until the facets of the bodies matched. First meshes with "
+         "facets of like size on both sides avoid that";
+}
 
 /// work(), or the reason why it fails.
 certify::EnergyBound attempt(const Ranks& ranks, const std::function<certify::EnergyBound()>& work)
@@ -59,12 +72,11 @@ certify::EnergyBound added_up(certify::EnergyBound bound, std::span<const Index>
   return bound;
 }
 
-}  // namespace
-
+/// `is_cut`: whether the mesh is one of Tribound's, in which cells are cut until facets match.
 template <int dim>
-certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
-                                  std::span<const double> u,
-                                  const std::vector<problem::Quantity<dim>>& quantities)
+certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, const Method& method,
+                                     std::span<const double> u,
+                                     const std::vector<problem::Quantity<dim>>& quantities, bool is_cut)
 {
   const Ranks& ranks = form.space().mesh().ranks();
   const auto on_this_mesh = [&] { return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u); };
@@ -79,11 +91,35 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
   {
     const auto matching = matching_contact<dim>(form, u);
     if (!matching) return on_this_mesh();
-    return added_up(energy_bound<dim>(*matching->form, method, matching->u, quantities), matching->parent,
-                    form.space().mesh().n_owned_cells());
+    return added_up(bound_or_reason<dim>(*matching->form, method, matching->u, quantities, true),
+                    matching->parent, form.space().mesh().n_owned_cells());
   };
   certify::EnergyBound bound = attempt(ranks, where_it_is_finer);
-  return bound.reason.empty() ? bound : attempt(ranks, where_it_matches);
+  if (bound.reason.empty()) return bound;
+  bound = attempt(ranks, where_it_matches);
+  if (is_cut) bound.reason = words_of_cut_cells(std::move(bound.reason));
+  return bound;
+}
+
+}  // namespace
+
+template <int dim>
+certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
+                                  std::span<const double> u,
+                                  const std::vector<problem::Quantity<dim>>& quantities)
+{
+  certify::EnergyBound bound = bound_or_reason<dim>(form, method, u, quantities, false);
+  if (bound.quantities.size() == quantities.size()) return bound;
+  return no_energy_bound<dim>(form, u, quantities, bound.reason);
+}
+
+template <int dim>
+certify::EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                     const std::vector<problem::Quantity<dim>>& quantities,
+                                     const std::string& reason)
+{
+  return {.reason = reason,
+          .quantities = certify::QuantityBounds<dim>(form, quantities).from_equilibrium(u, reason)};
 }
 
 const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound, const std::string& name)
@@ -141,5 +177,9 @@ template certify::EnergyBound energy_bound(const contact::NitscheForm<2>&, const
                                            std::span<const double>, const std::vector<problem::Quantity<2>>&);
 template certify::EnergyBound energy_bound(const contact::NitscheForm<3>&, const Method&,
                                            std::span<const double>, const std::vector<problem::Quantity<3>>&);
+template certify::EnergyBound no_energy_bound(const contact::NitscheForm<2>&, std::span<const double>,
+                                              const std::vector<problem::Quantity<2>>&, const std::string&);
+template certify::EnergyBound no_energy_bound(const contact::NitscheForm<3>&, std::span<const double>,
+                                              const std::vector<problem::Quantity<3>>&, const std::string&);
 
 }  // namespace tribound::adapt

@@ -34,11 +34,18 @@ struct ErrorBars
 };
 
 /// The bound of the error of u in the energy norm, and the intervals of the quantities. What fails in it
-/// becomes its reason: the level it belongs to holds all the same.
+/// becomes its reason: the level it belongs to holds all the same, and so do the values of the quantities.
 template <int dim>
 [[nodiscard]] certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
                                                 std::span<const double> u,
                                                 const std::vector<problem::Quantity<dim>>& quantities = {});
+
+/// No bound, for this reason, with the values of the quantities and what follows from equilibrium alone.
+template <int dim>
+[[nodiscard]] certify::EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form,
+                                                   std::span<const double> u,
+                                                   const std::vector<problem::Quantity<dim>>& quantities,
+                                                   const std::string& reason);
 
 /// The interval of that name; null where there is none.
 [[nodiscard]] const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound,

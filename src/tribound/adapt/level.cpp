@@ -151,6 +151,14 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
 }
 
 template <int dim>
+void certify_again(const contact::NitscheForm<dim>& form, const Method& method, CertifiedLevel<dim>& level)
+{
+  const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
+  Certifier<dim> certifier(form, method, {}, level.friedrichs);
+  certifier.complete(level.u, level.traction, level.steps.back(), level);
+}
+
+template <int dim>
 CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                       const Method& method, const StepObserver& observer, double delta,
                                       const std::optional<double>& expected,
@@ -283,6 +291,8 @@ template std::optional<CertifiedLevel<2>> converge(const contact::NitscheForm<2>
                                                    const Method&, const StepObserver&);
 template std::optional<CertifiedLevel<3>> converge(const contact::NitscheForm<3>&, const CertifiedLevel<3>&,
                                                    const Method&, const StepObserver&);
+template void certify_again(const contact::NitscheForm<2>&, const Method&, CertifiedLevel<2>&);
+template void certify_again(const contact::NitscheForm<3>&, const Method&, CertifiedLevel<3>&);
 template bool bound_holds(const CertifiedLevel<2>&, int);
 template bool bound_holds(const CertifiedLevel<3>&, int);
 

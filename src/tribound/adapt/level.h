@@ -176,6 +176,10 @@ template <int dim>
                                                           const Method& method,
                                                           const StepObserver& observer = {});
 
+/// Makes stress, estimate and norms of the solution that the level has, where they were let go of.
+template <int dim>
+void certify_again(const contact::NitscheForm<dim>& form, const Method& method, CertifiedLevel<dim>& level);
+
 /// A solution without any bound: Newton's method from `start` to newton.tolerance, whatever the stopping
 /// criterion, with T itself. The level has no stress, estimate, identities and friedrichs. Otherwise as
 /// solve_and_certify().

@@ -235,19 +235,41 @@ bool Levels<dim>::finish(const StepObserver& observer)
 }
 
 template <int dim>
+bool Levels<dim>::restore_stress()
+{
+  if (has_stress_) return true;
+  try
+  {
+    certify_again<dim>(current_->form, method_, level_);
+  }
+  catch (const std::bad_alloc&)
+  {
+    require_all_failed(current_->mesh.ranks(), out_of_memory);
+    return false;
+  }
+  has_stress_ = true;
+  return true;
+}
+
+template <int dim>
+certify::EnergyBound Levels<dim>::energy_or_reason()
+{
+  const auto without = [&](const char* reason)
+  { return no_energy_bound<dim>(current_->form, level_.u, quantities_, reason); };
+  if (!certify::is_bound(verdict_.status)) return without("there is no bound of the residual");
+  if (interrupted()) return without("interrupted");
+  const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
+  if (level_.converged) level_.equilibrium.reset();  // its factors, for finish(), take most of the memory
+  return energy_bound<dim>(current_->form, method_, level_.u, quantities_);
+}
+
+template <int dim>
 bool Levels<dim>::bound_energy()
 {
-  const bool is_wanted = bars_.levels != EnergyLevels::off && certify::is_bound(verdict_.status);
-  if (!is_wanted || !has_stress_ || level_.energy) return false;
+  const bool is_wanted = bars_.levels != EnergyLevels::off && level_.solved() && !level_.energy;
   const Clock::time_point begin = Clock::now();
-  if (interrupted())
-    level_.energy = certify::EnergyBound{.reason = "interrupted"};
-  else
-  {
-    const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
-    if (level_.converged) level_.equilibrium.reset();  // its factors, for finish(), take most of the memory
-    level_.energy = energy_bound<dim>(current_->form, method_, level_.u, quantities_);
-  }
+  if (!is_wanted || !restore_stress()) return false;
+  level_.energy = energy_or_reason();
   if (verdict_.status == certify::RunStatus::certified)
     if (std::string why = unmet(bars_, *level_.energy, std::sqrt(level_.norms.energy)); !why.empty())
       verdict_ = {certify::RunStatus::budget, std::move(why)};

@@ -114,9 +114,9 @@ class Levels
   /// so without harm; whether it has changed anything.
   bool finish(const StepObserver& observer = {});
 
-  /// Bounds the error of the last level in the energy norm, if it is asked for of any level and there is none
-  /// yet; whether it has changed anything. Not of a level that has lost its stress to a mesh that was given
-  /// up.
+  /// Bounds the error of the last level in the energy norm, with the quantities, if it is asked for of any
+  /// level and has not been done; whether it has changed anything. A level that has lost its stress to a mesh
+  /// that was given up gets it again; without a bound of the residual quantities have their values alone.
   bool bound_energy();
 
   /// Bisects the cells that `mark` names for the last level and carries the solution to the new mesh, which
@@ -143,6 +143,10 @@ class Levels
                                                          std::string& why) const;
   /// Newton's method to its end with one bound; nothing where it does not get there.
   [[nodiscard]] std::optional<CertifiedLevel<dim>> solve_to_the_end(const StepObserver& observer) const;
+  /// The stress and estimate of the last level, if they were let go of; false: there is not the memory.
+  [[nodiscard]] bool restore_stress();
+  /// Of a solution on the last level.
+  [[nodiscard]] certify::EnergyBound energy_or_reason();
   /// By the residual alone.
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   [[nodiscard]] std::string try_to_advance(const StepObserver& observer, bool is_last);

@@ -25,6 +25,8 @@ int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
   const bool is_of_contact =
       quantity.kind == QuantityKind::contact_force || quantity.kind == QuantityKind::contact_moment;
   const bool may_be_all = !is_safety && quantity.kind != QuantityKind::mean_displacement;
+  if (is_of_contact && !problem.has_contact())
+    throw InputError(quantity.where, "nothing touches anything", "forces are those of contact boundaries");
   if (quantity.boundary.empty() && may_be_all) return -1;
   const int tag = group_number(quantity.boundary, boundary_names, quantity.where, "boundary");
   if (is_of_contact && problem.contact(tag) == nullptr)

@@ -14,12 +14,6 @@ namespace
 
 using problem::QuantityKind;
 
-bool is_of_contact(QuantityKind kind)
-{
-  return kind == QuantityKind::contact_force || kind == QuantityKind::contact_moment ||
-         kind == QuantityKind::safety_factor;
-}
-
 /// The measure and the mean outward normal of a boundary; 0 where there is none.
 template <int dim>
 void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& parts)
@@ -101,8 +95,6 @@ QuantityParts<dim> parts_of(const contact::NitscheForm<dim>& form, const problem
   if (quantity.direction && !(quantity.direction->norm() > 0))
     throw InputError(quantity.where, "the direction is 0", "a vector of any other length");
   if (quantity.kind == QuantityKind::energy || quantity.kind == QuantityKind::load_work) return parts;
-  if (!form.problem().has_contact() && is_of_contact(quantity.kind))
-    throw InputError(quantity.where, "nothing touches anything", "forces are those of contact boundaries");
   set_geometry(form, parts);
   if (quantity.kind == QuantityKind::safety_factor)
   {

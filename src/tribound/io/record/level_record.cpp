@@ -44,11 +44,11 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   {
     record.bound = level.estimate.bound();
     record.balance = certify::balance<dim>(form, level.stress, moment_about);
-    record.energy = level.energy;
-    if (record.energy) drop_cells(*record.energy);
   }
   else  // what violates an identity is no bound, and is not shown as one
     for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};
+  record.energy = level.energy;
+  if (record.energy) drop_cells(*record.energy);
   record.times = {.stages = {.solve = level.solve_seconds,
                              .certify = level.certify_seconds,
                              .bisect = level.refinement.bisect,
