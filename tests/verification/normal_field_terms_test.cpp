@@ -46,7 +46,7 @@ double squares_by_hand(const DiscreteProblem<dim>& c, std::size_t k, std::span<c
     std::vector<Point<1>> points;
     for (const Point<1>& s : reference.points) points.emplace_back((part + s[0]) / n_parts);
     const contact::SegmentTables<dim> tables(c.space.basis(), std::span(&segment, 1), points);
-    const auto states = c.form.contact_states(u, k, tables[0]);
+    const auto states = c.form.contact_states(u, k, tables[0], contact::WhichData::given);
     for (int q = 0; q < reference.size(); ++q)
     {
       Point<dim> difference = states[q].traction;

@@ -173,7 +173,8 @@ void DualNorm<dim>::add_contact_load(std::span<const double> u, std::span<double
     const fem::Tabulation<dim> on_slave = contact::tabulate<dim>(basis, whole.slave, points);
     fem::Tabulation<dim> on_master;
     if (whole.master) on_master = contact::tabulate<dim>(basis, *whole.master, points);
-    const auto states = form_.contact_states(u, segment.whole, {points, &on_slave, &on_master});
+    const auto states =
+        form_.contact_states(u, segment.whole, {points, &on_slave, &on_master}, contact::WhichData::given);
     segment.for_each_side(
         [&](const contact::SegmentSide<dim>& side)
         {

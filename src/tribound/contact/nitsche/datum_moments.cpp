@@ -334,6 +334,16 @@ void DatumMoments<k, dim, n>::evaluate(std::span<const Point<n>> moments, std::s
   }
 }
 
+template <int k, int dim, int n>
+Point<n> DatumMoments<k, dim, n>::evaluate(std::span<const Point<n>> moments, const Point<k>& s) const
+{
+  std::vector<double> theta(n_theta_);
+  fem::orthonormal_values<k>(p_ + 1, s, theta);
+  Point<n> value = Point<n>::Zero();
+  for (std::size_t j = 0; j < moments.size(); ++j) value += theta[j] * moments[j];
+  return value;
+}
+
 template struct Datum<2>;
 template struct Datum<2, 3>;
 template struct Datum<3>;

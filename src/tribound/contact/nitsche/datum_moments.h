@@ -87,6 +87,8 @@ class DatumMoments
 
   /// The polynomial with the given moments at the points of the rule.
   void evaluate(std::span<const Point<n>> moments, std::span<Point<n>> values) const;
+  /// The same at one point of the simplex; moments that are not given are 0.
+  [[nodiscard]] Point<n> evaluate(std::span<const Point<n>> moments, const Point<k>& s) const;
 
   [[nodiscard]] const fem::Quadrature<k>& rule() const { return rule_; }
 

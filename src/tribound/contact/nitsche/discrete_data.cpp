@@ -22,6 +22,40 @@ constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts_of_facet = 4096;
 
+/// A lower bound of the gap on the parts of a segment; -HUGE_VAL where there is none.
+template <int dim>
+double smallest_gap(const problem::Field& gap, const SimplexMap<dim - 1, dim>& map,
+                    const DatumOnSimplex<dim - 1, 3>& found)
+{
+  double smallest = HUGE_VAL;
+  std::array<double, dim * dim> vertices;
+  for (const DatumPart<dim - 1, 3>& part : found.parts)
+  {
+    for (int i = 0; i < dim; ++i) std::ranges::copy(map(part.part[i]), vertices.begin() + i * dim);
+    std::array<problem::Enclosure, 1> range;
+    gap.enclose(vertices, dim, range);
+    smallest = std::min(smallest, range[0].bounded() ? range[0].lower : -HUGE_VAL);
+  }
+  return smallest;
+}
+
+/// Beside a kink or a jump the polynomial with the moments of a gap is smaller than the gap is anywhere, and
+/// would push where nothing touches: makes it flatter, with the same mean, until it is not, at the points of
+/// the rule and the corners.
+template <int dim>
+void limit_gap(const DatumMoments<dim - 1, dim, 3>& method, double smallest, std::span<Point<3>> moments)
+{
+  std::vector<Point<dim - 1>> points = method.rule().points;
+  for (const Point<dim - 1>& corner : fem::reference_simplex<dim - 1>()) points.push_back(corner);
+  double lowest = HUGE_VAL;
+  for (const Point<dim - 1>& s : points) lowest = std::min(lowest, method.evaluate(moments, s)[0]);
+  if (lowest >= smallest) return;
+  const double mean = method.evaluate(moments.first(1), points[0])[0];
+  constexpr double inside = 1 - 1e-12;  // so that rounding does not push either
+  const double share = std::max(0.0, inside * (mean - smallest) / (mean - lowest));
+  for (Point<3>& moment : moments.subspan(1)) moment[0] *= share;
+}
+
 }  // namespace
 
 template <int dim>
@@ -175,6 +209,9 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                  DatumOnSimplex<dim - 1, 3> found = contact_moments_(
                      datum, map, {std::sqrt(segment.h), 0}, density * std::sqrt(map.measure), max_parts_);
                  for (auto& moment : found.moments) moment[0] /= segment.gamma;
+                 if (segment.contact->gap && !found.moments.empty())
+                   limit_gap<dim>(contact_moments_, smallest_gap<dim>(*segment.contact->gap, map, found),
+                                  found.moments);
                  for (auto& part : found.parts) part.remainder[0] /= segment.gamma;
                  check_signs(segment, found);
                  if (datum.degree() > degree_ + 2)
@@ -232,24 +269,18 @@ void DiscreteData<dim>::traction(std::size_t facet, std::span<Point<dim>> values
 }
 
 template <int dim>
-void DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t k, std::span<double> gap,
-                                std::span<double> strength, std::span<double> water) const
+ContactData DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::size_t k,
+                                       const Point<dim - 1>& s) const
 {
+  const Point<dim> x = simplex_map(mesh_, segment.slave)(s);
+  const auto gap = [&] { return segment.gap(s, x, segment.normal_at(x)); };
   const auto found = contact_.moments.find(k);
-  std::vector<Point<3>> values(found == contact_.moments.end() ? 0 : facet_rule().size());
-  if (!values.empty()) contact_moments_.evaluate(found->second, values);
-  const SimplexMap<dim - 1, dim> map = simplex_map(mesh_, segment.slave);
-  for (int q = 0; q < facet_rule().size(); ++q)
-  {
-    const Point<dim - 1>& s = facet_rule().points[q];
-    const Point<dim> x = map(s);
-    const bool is_polynomial = !values.empty();
-    gap[q] = is_polynomial && segment.contact->gap ? values[q][0] : segment.gap(s, x, segment.normal_at(x));
-    strength[q] = is_polynomial ? std::max(values[q][1], 0.0)  // in place of a jump it overshoots
-                                : problem::strength_at<dim>(segment.contact->law, x);
-    // Where it overshoots it is negative: its moments are those of a load and stay what they are.
-    water[q] = is_polynomial ? values[q][2] : problem::water_at<dim>(*segment.contact, x);
-  }
+  if (found == contact_.moments.end())
+    return {gap(), problem::strength_at<dim>(segment.contact->law, x),
+            problem::water_at<dim>(*segment.contact, x)};
+  const Point<3> polynomial = contact_moments_.evaluate(found->second, s);
+  // In place of a jump it overshoots: thresholds are not negative, but water has the moments of a load.
+  return {segment.contact->gap ? polynomial[0] : gap(), std::max(polynomial[1], 0.0), polynomial[2]};
 }
 
 template <int dim>

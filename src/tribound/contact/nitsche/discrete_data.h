@@ -37,6 +37,14 @@ struct ContactDatumPart
   double water;     ///< stress
 };
 
+/// What the discrete problem sees at a point of a contact segment.
+struct ContactData
+{
+  double gap;       ///< g, length
+  double strength;  ///< s >= 0 of the law, stress; 0 where it has none
+  double water;     ///< p_w, stress; 0 without water
+};
+
 /// What the data that are no polynomials may leave out of the bound, stress times length^(dim/2).
 struct DataAccuracy
 {
@@ -57,9 +65,10 @@ struct DataEffort
 
 /// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
 /// in the reference coordinates of Mesh::cell, on contact segments in their own. Where a formula is
-/// subdivided they are those of the polynomial of degree p + 1 with the same moments. Boundary facets have
-/// their numbers in Mesh::boundary(). Keeps references to problem and mesh. On several ranks, which construct
-/// it together, ghosts have data, too.
+/// subdivided they are those of the polynomial of degree p + 1 with the same moments; a threshold is not
+/// below 0, and a gap not below its smallest value: its polynomial is made flatter, with the same mean.
+/// Boundary facets have their numbers in Mesh::boundary(). Keeps references to problem and mesh. On several
+/// ranks, which construct it together, ghosts have data, too.
 template <int dim>
 class DiscreteData
 {
@@ -85,9 +94,9 @@ class DiscreteData
   void body_force(Index cell, std::span<Point<dim>> values) const;
   /// g_N on a boundary facet; fixed components are 0.
   void traction(std::size_t facet, std::span<Point<dim>> values) const;
-  /// g, the strength s >= 0 of the law (0 where it has none) and p_w (0 without water) on segment k.
-  void contact(const ContactSegment<dim>& segment, std::size_t k, std::span<double> gap,
-               std::span<double> strength, std::span<double> water) const;
+  /// At the point with coordinates s on segment k.
+  [[nodiscard]] ContactData contact(const ContactSegment<dim>& segment, std::size_t k,
+                                    const Point<dim - 1>& s) const;
 
   [[nodiscard]] LoadRemainder body_remainder(Index cell) const
   {

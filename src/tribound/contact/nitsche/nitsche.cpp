@@ -53,20 +53,17 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
 {
   std::vector<ContactPoint<dim>> points;
   points.reserve(segments_.size() * facet_rule().size());
-  std::vector<double> gap(facet_rule().size());
-  std::vector<double> strength(facet_rule().size());
-  std::vector<double> water(facet_rule().size());
   for (std::size_t k = 0; k < segments_.size(); ++k)
   {
     const ContactSegment<dim>& segment = segments_[k];
     const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
-    data_.contact(segment, k, gap, strength, water);
     const problem::InterfaceState<dim> fresh = problem::fresh_state<dim>(segment.contact->law);
     for (int q = 0; q < facet_rule().size(); ++q)
     {
       const Point<dim> x = map(facet_rule().points[q]);
-      points.push_back({x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap[q], strength[q],
-                        water[q], fresh});
+      const auto [gap, strength, water] = data_.contact(segment, k, facet_rule().points[q]);
+      points.push_back(
+          {x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap, strength, water, fresh});
     }
   }
   return points;
@@ -237,6 +234,14 @@ template <int dim>
 std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const double> u, std::size_t k,
                                                                 const SegmentTable<dim>& table) const
 {
+  return contact_states(u, k, table, WhichData::discrete);
+}
+
+template <int dim>
+std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const double> u, std::size_t k,
+                                                                const SegmentTable<dim>& table,
+                                                                WhichData which) const
+{
   const ContactSegment<dim>& segment = segments_[k];
   const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
   const SegmentValues<dim> on_segment(*problem_, *space_, segment, table);
@@ -249,8 +254,16 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
   {
     const Point<dim> x = map(table.points[q]);
     const Point<dim> n = segment.normal_at(x);
-    const double gap = segment.gap(table.points[q], x, n);
-    const problem::LawPoint<dim> point = is_own ? law_point(k, q) : law_point(k, table.points[q], x, n);
+    const Point<dim - 1>& s = table.points[q];
+    problem::LawPoint<dim> point = is_own ? law_point(k, q) : law_point(k, s, x, n);
+    double gap = is_own ? contact_points(k)[q].gap : segment.gap(s, x, n);
+    if (!is_own && which == WhichData::discrete)
+    {
+      const ContactData seen = data_.contact(segment, k, s);
+      gap = seen.gap;
+      point.strength = seen.strength;
+      point.water = seen.water;
+    }
     const Point<dim> p = on_segment.augmented_traction(u, q) + segment.gamma * gap * n;
     const auto [traction, limit, status] = problem::respond<dim>(segment.contact->law, point, p);
     const Point<dim> jump = on_segment.jump(u, q);

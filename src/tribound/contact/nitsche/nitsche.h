@@ -62,6 +62,13 @@ enum class Linearisation
   newton  ///< T_lin(w) = T(u) + DT(u)[w - u]
 };
 
+/// Which gap, threshold and water T(u) is of.
+enum class WhichData
+{
+  discrete,  ///< as the discrete problem has them: the resultants are integrals of this T(u)
+  given      ///< between the contact points as the problem has them
+};
+
 /// The discrete problem on one mesh. Contact integrals touch only cells on Gamma_C. Contact quantities live
 /// at the quadrature points of the contact segments: point q of segment k has number k * n_segment_points()
 /// + q. Keeps references to problem and space. Where delta > 0 (a stress) is given, the projections of T are
@@ -149,6 +156,9 @@ class NitscheForm
   }
   [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, std::size_t k,
                                                               const SegmentTable<dim>& table) const;
+  [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, std::size_t k,
+                                                              const SegmentTable<dim>& table,
+                                                              WhichData which) const;
 
  private:
   [[nodiscard]] std::vector<ContactPoint<dim>> make_points() const;
