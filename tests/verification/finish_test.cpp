@@ -173,6 +173,33 @@ TEST(Finish, ARigidMotionIsCertified)
       }
 }
 
+/// Nothing loads the body: what formulas of gap and threshold leave out between points does nothing to it.
+TEST(Finish, ABodyAtRestIsCertifiedOnItsFirstMesh)
+{
+  const problem::Field gap = formula("0.1*x^2*exp(-x)");
+  for (int p = 1; p <= 3; ++p)
+    for (const problem::ContactLaw& law :
+         {problem::ContactLaw(Frictionless()), problem::ContactLaw(Coulomb(0.3)),
+          problem::ContactLaw(Tresca(formula("1+sin(x)"))),
+          problem::ContactLaw(Tresca(formula("abs(x-0.3)")))})
+    {
+      const Told told = run(block<2>({4, 2}),
+                            {.boundaries = {clamped<2>("left"), obstacle<2>("bottom", law, gap)},
+                             .material = lame(2.1e11, 0.3)},
+                            {.degree = p});
+      EXPECT_EQ(told.verdict.status, certify::RunStatus::certified) << told.verdict.reason;
+      EXPECT_EQ(told.levels.size(), 1u);
+      EXPECT_EQ(told.levels.back().estimate.total_sharp, 0);
+    }
+  // A gap that is negative between all points of the rule is none.
+  const Told pressed = run(
+      block<2>({4, 2}),
+      {.boundaries = {clamped<2>("left"),
+                      obstacle<2>("bottom", Frictionless(), formula("x > 0.9 && x < 0.901 ? -0.001 : 0.1"))}},
+      {.degree = 2}, {.max_levels = 0});
+  EXPECT_GT(pressed.levels.back().estimate.total_sharp, 0);
+}
+
 /// Newton's method that fails says when contact may be the cause: alone it holds the block.
 TEST(Finish, AFailureNamesWhatContactAloneHolds)
 {

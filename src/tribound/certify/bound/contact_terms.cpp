@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tribound/certify/bound/contact_pieces.h"
+#include "tribound/certify/bound/zero_traction.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
@@ -263,6 +264,12 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   if (!t.reg.empty()) add_traction(k, on_segment(t.reg, k), result.reg2n, result.reg2t);
   if (problem::cone(segment.contact->law).is_tied) return result;  // T = P is its own projection
   const Fields on_k = fields(k, u, t);
+  const auto vanishes = [n = n_](const auto& coefficients)
+  {
+    return std::all_of(coefficients.begin(), coefficients.begin() + n,
+                       [](const auto& c) { return c.isZero(0); });
+  };
+  if (vanishes(on_k.augmented) && vanishes(on_k.dis) && has_no_traction_at_rest(form_, k)) return result;
   std::vector<Part> parts;
   if (form_.data().contact_parts(k).empty())
     parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0, 0}, on_k, {}});
