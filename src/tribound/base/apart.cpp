@@ -11,10 +11,12 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 
+#include "tribound/base/clock.h"
 #include "tribound/base/error.h"
 
 namespace tribound
@@ -75,17 +77,24 @@ double address_space()
 void limit(decltype(RLIMIT_AS) resource, double most)
 {
   rlimit current{};
-  if (::getrlimit(resource, &current) != 0) return;
+  if (std::isinf(most) || ::getrlimit(resource, &current) != 0) return;
   if (current.rlim_cur != RLIM_INFINITY && static_cast<double>(current.rlim_cur) <= most) return;
   current.rlim_cur = static_cast<rlim_t>(most);
   ::setrlimit(resource, &current);
+}
+
+/// Of the address space, beyond what is in use.
+void limit_memory(double bytes)
+{
+  if (const double in_use = address_space(); in_use > 0) limit(RLIMIT_AS, in_use + bytes);
 }
 
 /// Crashes end the child and nothing else: handlers of this program or of a library (MPI would abort all its
 /// processes) are not for it. An interrupt is for the parent to judge, with whom the child ends.
 void prepare_child(pid_t parent, double memory)
 {
-  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGPIPE, SIGXFSZ, SIGCHLD})
+  for (const int signal :
+       {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGPIPE, SIGXFSZ, SIGXCPU, SIGCHLD})
     std::signal(signal, SIG_DFL);
 #ifdef __linux__
   std::signal(SIGINT, SIG_IGN);
@@ -96,8 +105,7 @@ void prepare_child(pid_t parent, double memory)
   (void)parent;
 #endif
   limit(RLIMIT_CORE, 0);
-  const double in_use = address_space();
-  if (memory > 0 && in_use > 0) limit(RLIMIT_AS, in_use + memory);
+  if (memory > 0) limit_memory(memory);
 }
 
 void write_all(int file, const char* bytes, std::size_t size)
@@ -189,8 +197,15 @@ ApartOutcome run_apart(const std::function<std::string()>& work, const ApartLimi
   if (has_head && outcome.result.size() == sizeof(size) + size)
     outcome.result.erase(0, sizeof(size));
   else
-    outcome.end = ApartEnd::crashed;
+    outcome.end = WIFSIGNALED(outcome.status) && WTERMSIG(outcome.status) == SIGXCPU ? ApartEnd::out_of_time
+                                                                                     : ApartEnd::crashed;
   return outcome;
+}
+
+void limit_from_here(double memory, double seconds)
+{
+  limit_memory(memory);
+  limit(RLIMIT_CPU, std::ceil(cpu_seconds() + seconds));
 }
 
 std::string describe_end(int status)

@@ -21,8 +21,9 @@ enum class ApartEnd
 {
   complete,
   crashed,
-  silent,  ///< ended by ApartLimits::silence
-  stopped  ///< ended by ApartLimits::stop
+  out_of_time,  ///< ended by limit_from_here()
+  silent,       ///< ended by ApartLimits::silence
+  stopped       ///< ended by ApartLimits::stop
 };
 
 struct ApartOutcome
@@ -39,6 +40,11 @@ struct ApartOutcome
 /// SolveError where the system has no process to give.
 [[nodiscard]] ApartOutcome run_apart(const std::function<std::string()>& work,
                                      const ApartLimits& limits = {});
+
+/// For `work` that knows by itself how much it may need: from now on this process gets at most so many bytes
+/// of memory more, beyond which allocations fail, and ends as ApartEnd::out_of_time after so many seconds of
+/// CPU time more. Infinity: no limit. Limits that are lower already stay.
+void limit_from_here(double memory, double seconds);
 
 /// "was ended by signal 11 (Segmentation fault)", "ended with exit code 1"; empty for success.
 [[nodiscard]] std::string describe_end(int status);

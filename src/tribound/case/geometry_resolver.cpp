@@ -216,7 +216,7 @@ auto make_quadratic(const SurfaceConfig& shape, const mesh::QuadraticFacets* fac
 {
   if (facets == nullptr || facets->tags.empty())
     throw InputError(shape.kind_where, "the mesh has no second-order facets",
-                     "a mesh file of order 2 (gmsh -order 2, Mesh.ElementOrder = 2), or the shape as one of "
+                     "a mesh file of order 2 (Mesh.ElementOrder = 2), or the shape as one of "
                      "plane, circle, sphere, cylinder, surface");
   return std::make_shared<const mesh::QuadraticSurface<dim>>(*facets, tags, shape.kind_where);
 }

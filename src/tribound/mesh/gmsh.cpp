@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "tribound/base/apart.h"
@@ -84,17 +86,37 @@ std::string load_as_bytes(const std::filesystem::path& file)
   throw InputError(where, problem, hint);
 }
 
+constexpr double share_of_machine = 0.9;
+
+/// Says that a limit of reading_limits() is reached, such as "0.256 GB", and what that means.
+[[noreturn]] void throw_beyond_limits(const std::filesystem::path& file, const std::string& limit)
+{
+  std::error_code unknown;
+  throw InputError({.file = file.string()},
+                   fmt::format("Gmsh needs more than {}, too much for a sound file of {:.3g} MB", limit,
+                               1e-6 * static_cast<double>(std::filesystem::file_size(file, unknown))),
+                   "the file is damaged: a number of entities, nodes or elements in it is wrong; save the "
+                   "mesh again with Gmsh");
+}
+
+[[noreturn]] void throw_no_memory(const std::filesystem::path& file)
+{
+  const double allowed = reading_limits(file).memory;
+  if (allowed < share_of_machine * machine_memory())
+    throw_beyond_limits(file, fmt::format("{:.3g} GB of memory", 1e-9 * allowed));
+  throw InputError(
+      {.file = file.string()},
+      fmt::format("Gmsh needs more than the {:.3g} GB of this machine for it", 1e-9 * machine_memory()),
+      "a coarser mesh; is a mesh size or a number of nodes absurd?");
+}
+
 AnyMeshData mesh_data(const std::filesystem::path& file, std::string_view result)
 {
   ByteReader bytes(result);
   std::size_t answer = refused;
   bytes.get(answer);
   if (answer == refused) throw_refusal(bytes);
-  if (answer == no_memory)
-    throw InputError(
-        {.file = file.string()},
-        fmt::format("Gmsh needs more than the {:.3g} GB of this machine for it", 1e-9 * machine_memory()),
-        "a coarser mesh; is a mesh size or a number of nodes absurd?");
+  if (answer == no_memory) throw_no_memory(file);
   const auto read = [&]<int dim>(MeshData<dim>&& data) -> AnyMeshData
   {
     data.source = {.file = file.string()};
@@ -125,14 +147,13 @@ std::string printed_errors(std::string_view output)
 [[noreturn]] void throw_crashed(const std::filesystem::path& file, const ApartOutcome& outcome)
 {
   const std::string errors = printed_errors(outcome.output);
-  const std::string name = file.filename().string();
   throw InputError(
       {.file = file.string()},
       fmt::format("Gmsh cannot read the file: it {}{}{}", describe_end(outcome.status),
                   errors.empty() ? "" : ": ", errors),
       file.extension() == ".geo"
-          ? fmt::format(
-                "do curves or surfaces cross, or is a size absurd? gmsh itself may show more: gmsh {}", name)
+          ? "do curves or surfaces cross, or is a mesh size absurd? Leave out parts of the geometry to find "
+            "it"
           : "the file is damaged, or has numbers that Gmsh cannot take, such as nodes or elements numbered "
             "below "
             "1 or above 2147483647: save the mesh again with Gmsh (Mesh.Renumber = 1)");
@@ -140,16 +161,14 @@ std::string printed_errors(std::string_view output)
 
 [[noreturn]] void throw_silent(const std::filesystem::path& file, double patience)
 {
-  throw InputError({.file = file.string()},
-                   fmt::format("Gmsh shows no progress for {:g} s and was ended", patience),
-                   "is a coordinate or a mesh size absurd? A geometry that takes so long can be meshed in "
-                   "advance (gmsh -2 "
-                   "or -3 with -save), and the case name the .msh");
+  throw InputError(
+      {.file = file.string()}, fmt::format("Gmsh shows no progress for {:g} s and was ended", patience),
+      "is a coordinate or a mesh size absurd? A mesh that takes so long can be made once, with the "
+      "program gmsh (Debian: apt install gmsh), and the case name the .msh");
 }
 
 AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* stop, double patience)
 {
-  constexpr double share_of_machine = 0.9;
   const ApartOutcome outcome =
       run_apart([&] { return load_as_bytes(file); },
                 {.silence = patience, .memory = share_of_machine * machine_memory(), .stop = stop});
@@ -161,6 +180,8 @@ AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* sto
       throw_silent(file, patience);
     case ApartEnd::crashed:
       throw_crashed(file, outcome);
+    case ApartEnd::out_of_time:
+      throw_beyond_limits(file, fmt::format("{:.3g} s", reading_limits(file).seconds));
     default:
       return mesh_data(file, outcome.result);
   }

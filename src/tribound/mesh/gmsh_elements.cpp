@@ -13,10 +13,10 @@ int mesh_dimension(const Where& where)
 {
   for (const int dim : {3, 2})
     if (!gmsh::element_types(dim).empty()) return dim;
-  throw InputError(
-      where, "the mesh has neither triangles nor tetrahedra",
-      "mesh the surface (gmsh -2) or the volume (gmsh -3), and put it into a physical group if any "
-      "groups exist: Gmsh saves only what is in a group");
+  throw InputError(where, "the mesh has neither triangles nor tetrahedra",
+                   "a 2D problem needs a meshed surface, a 3D problem a meshed volume; put it into a "
+                   "physical group if any "
+                   "groups exist: Gmsh saves only what is in a group");
 }
 
 namespace
@@ -31,7 +31,7 @@ int order_of_simplex(const Where& where, int dim, int type)
   if (order > static_cast<int>(simplex_type.size()))
     throw InputError(where, fmt::format("the mesh has elements of order {} ({})", order, name),
                      "the geometry is straight-sided whatever the degree of the case, and a shape needs no "
-                     "more than order 2; mesh with -order 1 or -order 2 (Mesh.ElementOrder)");
+                     "more than order 2; mesh with Mesh.ElementOrder = 1 or 2");
   throw InputError(where, fmt::format("the mesh has elements that are not simplices ({})", name),
                    "only triangles and tetrahedra; mesh with Mesh.RecombineAll=0 and without Recombine or "
                    "Layers{...} with Recombine");
@@ -50,8 +50,7 @@ int mesh_order(const Where& where, int mesh_dim)
     if (order == 0) order = found;
     if (found != order)
       throw InputError(where, fmt::format("the mesh has elements of order {} and of order {}", order, found),
-                       "all cells and facets of one order: mesh again, with -order 1 or -order 2 "
-                       "(Mesh.ElementOrder)");
+                       "all cells and facets of one order: mesh again, with Mesh.ElementOrder = 1 or 2");
   };
   for (const int dim : {mesh_dim, mesh_dim - 1})
     for (const int type : gmsh::element_types(dim)) look(dim, type);

@@ -241,7 +241,7 @@ void check_plane(const Where& where, const Nodes& nodes, const Simplices<3>& cel
             where,
             fmt::format("the mesh has triangles only, and node {} at {} is not in the plane z = 0", tag,
                         describe(nodes.positions[tag])),
-            "2D meshes live in z = 0; for a 3D problem mesh the volume (gmsh -3)");
+            "2D meshes lie in z = 0; a 3D problem needs the tetrahedra of its volume");
   };
   std::ranges::for_each(cells.nodes, check);
   std::ranges::for_each(cells.edge_nodes, check);

@@ -10,11 +10,23 @@
 namespace tribound::mesh
 {
 
+/// What Gmsh may need for a file, beside its library.
+struct ReadingLimits
+{
+  double memory;   ///< bytes of address space
+  double seconds;  ///< of CPU time
+};
+
+/// Of a .msh by its size: several times as much as sound files need, so that counts in a damaged one, which
+/// Gmsh believes, cost neither gigabytes nor minutes. Of a .geo infinite: a few lines may ask for any mesh.
+[[nodiscard]] ReadingLimits reading_limits(const std::filesystem::path& file);
+
 /// Gmsh holds one global state per process: one session at a time. Its messages go to stdout and stderr.
 class GmshSession
 {
  public:
-  /// Opens a .msh, or opens and meshes a .geo. Throws InputError with Gmsh's own message, placed at `file`.
+  /// Opens a .msh within its reading_limits(), or opens and meshes a .geo; in a process of its own
+  /// (base/apart.h). Throws InputError with Gmsh's own message, placed at `file`, and std::bad_alloc.
   explicit GmshSession(const std::filesystem::path& file);
   ~GmshSession();
   GmshSession(const GmshSession&) = delete;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -119,6 +120,37 @@ TEST(Apart, MemoryIsLimited)
   EXPECT_EQ(outcome.result, "none");
 }
 #endif
+
+#ifndef __SANITIZE_ADDRESS__
+TEST(Apart, WorkLimitsItsOwnMemory)
+{
+  const ApartOutcome outcome = run_apart(
+      []
+      {
+        void* before = std::malloc(std::size_t{1} << 29);
+        limit_from_here(1 << 28, HUGE_VAL);
+        void* after = std::malloc(std::size_t{1} << 29);
+        const std::string answer = std::string(before ? "some" : "none") + (after ? ", some" : ", none");
+        std::free(before);
+        std::free(after);
+        return answer;
+      });
+  EXPECT_EQ(outcome.result, "some, none");
+}
+#endif
+
+TEST(Apart, WorkLimitsItsOwnTime)
+{
+  const ApartOutcome outcome = run_apart(
+      []() -> std::string
+      {
+        limit_from_here(HUGE_VAL, 0.5);
+        for (volatile bool is_busy = true; is_busy;)
+          ;
+        return "ended";
+      });
+  EXPECT_EQ(outcome.end, ApartEnd::out_of_time);
+}
 
 #ifdef __linux__
 TEST(Apart, EndsWithTheProcessThatStartedIt)
