@@ -8,8 +8,7 @@
 
 #include "app/page/page_surface.h"
 #include "tribound/io/fields/contact_line.h"
-#include "tribound/io/file/atomic_file.h"
-#include "tribound/mesh/gmsh_text.h"
+#include "tribound/io/fields/gmsh_file.h"
 
 namespace tribound::app
 {
@@ -56,11 +55,10 @@ std::shared_ptr<const KeptLevel<dim>> KeptLevel<dim>::gathered(const adapt::Leve
                                                                const adapt::Method& method)
 {
   if (!view.discrete.mesh.partition()) return kept;
-  // In 3D the page shows the surface, and of few cells the inside.
-  const std::int64_t most =
-      dim == 2 || output.mesh ? most_in_one : static_cast<std::int64_t>(PageLimits().volume);
+  // In 3D the page shows the surface, and of few cells the inside; without it contact is all that is shown.
+  const std::int64_t most = dim == 2 ? most_in_one : static_cast<std::int64_t>(PageLimits().volume);
   const bool is_small = view.discrete.mesh.n_global_cells() <= most;
-  std::optional<adapt::Excerpt<dim>> excerpt = is_small || (dim == 2 && !kept->t)
+  std::optional<adapt::Excerpt<dim>> excerpt = output.report && (is_small || (dim == 2 && !kept->t))
                                                    ? adapt::excerpt<dim>(view, method, most)
                                                    : adapt::boundary_excerpt<dim>(view, method);
   if (!excerpt) return nullptr;
@@ -83,13 +81,17 @@ void KeptLevel<dim>::write_fields(const std::filesystem::path& directory,
 }
 
 template <int dim>
-void KeptLevel<dim>::write_contact_and_mesh(const case_file::Config& config) const
+void KeptLevel<dim>::write_contact(const std::filesystem::path& directory) const
 {
-  const case_file::OutputConfig& output = config.output;
-  if (output.mesh && is_complete())
-    io::write_file(output.directory / "adapted.msh",
-                   mesh::gmsh_text(discrete->mesh, free_sides(config, discrete->mesh.boundary_names())));
-  io::write_contact_csv(output.directory / "contact.csv", discrete->form, level.u, place());
+  io::write_contact_csv(directory / "contact.csv", discrete->form, level.u, place());
+}
+
+template <int dim>
+void KeptLevel<dim>::write_mesh(const case_file::Config& config) const
+{
+  if (config.output.mesh)
+    io::write_gmsh<dim>(config.output.directory / "adapted.msh", discrete->mesh,
+                        free_sides(config, discrete->mesh.boundary_names()));
 }
 
 template struct KeptLevel<2>;

@@ -56,9 +56,11 @@ struct KeptLevel
   /// bound of every cell, and `further` numbers per cell. Throws WriteError when the file cannot be written.
   void write_fields(const std::filesystem::path& directory,
                     std::span<const io::CellField> further = {}) const;
-  /// contact.csv, and the mesh as adapted.msh where it is wanted; boundaries that the case does not mention
-  /// have no group there. Throws WriteError.
-  void write_contact_and_mesh(const case_file::Config& config) const;
+  /// Writes contact.csv. Throws WriteError.
+  void write_contact(const std::filesystem::path& directory) const;
+  /// Writes the mesh as adapted.msh where it is wanted; boundaries that the case does not mention have no
+  /// group there. All ranks call it together, each with its own level. Throws WriteError.
+  void write_mesh(const case_file::Config& config) const;
 
   int number;
   std::optional<double> t;  ///< of a load step

@@ -122,14 +122,17 @@ void RunReport<dim>::start_writing()
     written_ = Clock::now();
   }
   const bool is_kept = is_path() || record_.levels.back().bound;
+  const bool has_files = is_kept && writes_all() && !is_path();
+  if (has_files && ranks_.size() > 1) in_work_.last->write_mesh(config_);  // all together, thus not beside
   background_.start(
-      [this, record = std::move(record), level = is_kept ? in_work_.last : nullptr,
+      [this, has_files, record = std::move(record), level = is_kept ? in_work_.last : nullptr,
        shown = is_kept ? in_work_.shown : nullptr,
        is_followed = is_path() || record_.status == certify::RunStatus::budget]
       {
         const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
         if (level && writes_all()) write_fields(*level, shown.get());
-        if (shown && writes_all() && !is_path()) shown->write_contact_and_mesh(config_);
+        if (has_files && ranks_.size() == 1) level->write_mesh(config_);
+        if (has_files && shown) shown->write_contact(config_.output.directory);
         if (record) io::write_report(config_.output.directory, *record);
         if (shown && is_followed && shown->fits_page())
           in_work_.page.add(shown->number, shown->discrete->form, shown->level);
@@ -264,7 +267,13 @@ void RunReport<dim>::write_what_holds()
     ranks_.on_first([&] { io::remove_series(config_.output.directory); });
   if (in_work_.last && !writes_all())  // beside the page's data of this level
     timed([&] { write_fields(*in_work_.last, shown); });
-  if (shown && (is_path() || !writes_all())) timed([&] { shown->write_contact_and_mesh(config_); });
+  if (in_work_.last && (is_path() || !writes_all()))
+    timed(
+        [&]
+        {
+          in_work_.last->write_mesh(config_);
+          if (shown) shown->write_contact(config_.output.directory);
+        });
   if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
   if (shown && shown->fits_page())
     timed([&] { in_work_.page.add_last(shown->number, shown->discrete->form, shown->level); });
