@@ -45,7 +45,7 @@ void RunReport<dim>::begin_pass(int pass, const adapt::Grid<dim>& grid)
     before_.emplace(record_, std::move(in_work_));
     io::drop_steps(record_.earlier);
     is_apart_ = true;
-    ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
+    ranks_.on_first([&] { io::remove_series_directory(fields_directory()); });
   }
   record_.levels.clear();
   in_work_ = Pass(config_.output);
@@ -58,16 +58,26 @@ void RunReport<dim>::write_checkpoint(const adapt::ReplayState<dim>& state)
 {
   rethrow(finish_writing());  // the files of the step come first
   const KeptLevel<dim>& last = *in_work_.last;
+  const std::filesystem::path& directory = config_.output.directory;
+  const bool carries = config_.history->refine == case_file::Refine::transfer;
+  const io::LoggedSteps steps{carries ? 0 : state.pass, last.number};
+  ranks_.on_first([&]
+                  { io::append_step(directory / io::step_log_name, steps, io::last_step_rows(record_)); });
   io::CheckpointFacts facts{.dimension = dim,
                             .degree = config_.method.degree,
                             .case_text = record_.effective.text,
-                            .earlier = io::as_earlier(record_, state.pass, state.worst_step)};
+                            .earlier = io::as_earlier(record_, state.pass, state.worst_step),
+                            .steps = steps};
   const io::CheckpointFields fields = io::to_checkpoint(state, facts);
-  const auto write = [&](const std::filesystem::path& file)
-  { io::write_checkpoint<dim>(file, facts, last.discrete->space, fields); };
-  write(config_.output.directory / io::checkpoint_name);
+  const std::filesystem::path file = directory / io::checkpoint_name;
+  io::write_checkpoint<dim>(file, facts, last.discrete->space, fields);
   if (config_.output.checkpoints == case_file::Checkpoints::all)
-    write(fields_directory() / io::checkpoint_name_of(last.number));
+    ranks_.on_first(
+        [&]
+        {
+          io::copy_checkpoint(
+              file, (is_apart_ ? fields_directory() : directory) / io::checkpoint_name_of(last.number));
+        });
 }
 
 /// The worst step has no record yet where it is solved again on the next mesh.
@@ -85,13 +95,11 @@ void RunReport<dim>::complete(const adapt::PassView<dim>& pass)
 {
   rethrow(finish_writing());
   add_mesh(pass);
-  if (std::exchange(is_apart_, false))
-    ranks_.on_first(
-        [&] { io::move_series(config_.output.directory / unfinished_pass, config_.output.directory); });
+  hand_over_pass();
   before_.reset();
   record_.status = pass.verdict.status;
   record_.reason = pass.verdict.reason;
-  write_record();
+  if (has_news()) write_record();
 }
 
 template <int dim>

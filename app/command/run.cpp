@@ -100,13 +100,15 @@ certify::Verdict go_through_levels(const case_file::Config& config, adapt::Level
   return adapt::adapt(levels, strategy);
 }
 
-/// The path that has been followed to its end, once more with half the steps on a finer mesh.
+/// The path that has been followed to its end, once more with half the steps on a finer mesh than that of its
+/// last step; `grid`: of a run that had no step left to do.
 template <int dim>
 void check_history(const case_file::Config& config, const problem::Problem<dim>& problem,
-                   const std::atomic<bool>& stop, const Progress& progress, RunReport<dim>& report)
+                   std::shared_ptr<const adapt::Grid<dim>> grid, const std::atomic<bool>& stop,
+                   const Progress& progress, RunReport<dim>& report)
 {
-  const std::shared_ptr<const adapt::Grid<dim>> grid = report.last_grid();
-  if (!grid) return;  // a run that had nothing left to do
+  if (report.has_check()) return;
+  if (report.last_grid()) grid = report.last_grid();
   io::HistoryCheck check;
   const auto begins = [&](int, const adapt::Grid<dim>& finer)
   {
@@ -136,7 +138,8 @@ void check_history(const case_file::Config& config, const problem::Problem<dim>&
 template <int dim>
 certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<adapt::LoadPath<dim>> path,
                                const std::atomic<bool>& stop, const Progress& progress,
-                               const Restart* restart, RunReport<dim>& report)
+                               std::shared_ptr<const adapt::Grid<dim>> grid, const Restart* restart,
+                               RunReport<dim>& report)
 {
   std::optional<adapt::ReplayState<dim>> from;
   if (restart)
@@ -147,13 +150,13 @@ certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<
   const adapt::ReplayObserver<dim> observer = report.path_observer(progress);
   const problem::Problem<dim>& problem = path->problem();
   const adapt::PathProgram& program = config.history->program;
-  const certify::Verdict verdict =
-      config.history->refine == case_file::Refine::transfer
-          ? adapt::transfer<dim>(*path, program, strategy, observer, state)
-          : adapt::replay<dim>(std::move(path), program, strategy, observer, state);
+  certify::Verdict verdict = config.history->refine == case_file::Refine::transfer
+                                 ? adapt::transfer<dim>(*path, program, strategy, observer, state)
+                                 : adapt::replay<dim>(std::move(path), program, strategy, observer, state);
   path.reset();  // its factors are in the way
-  if (config.history->check && certify::is_bound(verdict.status))
-    check_history<dim>(config, problem, stop, progress, report);
+  if (!config.history->check || !certify::is_bound(verdict.status)) return verdict;
+  report.end(verdict);  // should the program be killed during the check, nothing else is lost
+  check_history<dim>(config, problem, std::move(grid), stop, progress, report);
   return verdict;
 }
 
@@ -192,9 +195,12 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
         problem, config.method, adapt::PathOptions{.tolerance = config.adapt.tolerance}, std::move(mesh),
         &stop, std::move(whole));
     const adapt::Discretisation<dim>& first = path->prepare(config.history->program.targets.front());
-    return report_from(
-        first, [&](RunReport<dim>& report)
-        { return go_along_path<dim>(config, std::move(path), stop, progress, restart, report); });
+    return report_from(first,
+                       [&](RunReport<dim>& report)
+                       {
+                         return go_along_path<dim>(config, std::move(path), stop, progress,
+                                                   restart ? first.grid : nullptr, restart, report);
+                       });
   }
   auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const std::unique_ptr<adapt::Levels<dim>> levels =

@@ -3,6 +3,7 @@
 /// @file run.h
 /// A run, once its case and its mesh are read.
 
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -17,9 +18,6 @@ namespace tribound::app
 
 [[nodiscard]] ExitCode exit_code(certify::RunStatus status);
 
-/// In the directory of results: the files of a pass over load steps in work, after the first.
-inline constexpr const char* unfinished_pass = "unfinished_pass";
-
 /// A run that goes on where another one was.
 struct Restart
 {
@@ -29,6 +27,7 @@ struct Restart
   std::vector<double> points;
   bool is_apart =
       false;  ///< whether it is in a pass after the first, whose files are apart until it is complete
+  std::filesystem::path file{};  ///< the checkpoint
 };
 
 /// Runs the adaptive algorithm on the case, or follows its load steps on meshes that become fine enough for

@@ -20,6 +20,7 @@
 #include "tribound/base/parallel.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/base/ranks.h"
+#include "tribound/io/file/output_directory.h"
 #include "tribound/io/state/checkpoint.h"
 #include "tribound/mesh/box.h"
 #include "tribound/mesh/gmsh.h"
@@ -60,8 +61,8 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& place, co
 bool is_of_unfinished_pass(const std::filesystem::path& file)
 {
   const std::filesystem::path directory = file.parent_path();
-  return directory.filename() == unfinished_pass ||
-         (file.filename() == io::checkpoint_name && std::filesystem::exists(directory / unfinished_pass));
+  return directory.filename() == io::unfinished_pass ||
+         (file.filename() == io::checkpoint_name && std::filesystem::exists(directory / io::unfinished_pass));
 }
 
 /// The case of a checkpoint, whose results go on in the directory.
@@ -69,7 +70,7 @@ case_file::Config restarted_config(const CaseRequest& request, const Checkpoint&
 {
   const io::CheckpointFacts& checkpoint = from.facts;
   std::filesystem::path directory = from.file.has_parent_path() ? from.file.parent_path() : ".";
-  if (directory.filename() == unfinished_pass) directory /= "..";
+  if (directory.filename() == io::unfinished_pass) directory /= "..";
   // Before the others: paths of the effective case lead from there.
   std::vector<std::string> overrides = {fmt::format("output.directory='{}'", directory.string())};
   overrides.insert(overrides.end(), request.overrides.begin(), request.overrides.end());
@@ -130,8 +131,12 @@ ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
   mesh::Balanced<dim> balanced =
       mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, io::n_values_of_cell(facts),
                          mesh::box_facets<dim>(ranks, config.mesh));
-  const Restart restart{facts, std::move(balanced.cells), std::move(balanced.values), std::move(read.points),
-                        ranks.on_first([&] { return is_of_unfinished_pass(checkpoint->file); })};
+  const Restart restart{facts,
+                        std::move(balanced.cells),
+                        std::move(balanced.values),
+                        std::move(read.points),
+                        ranks.on_first([&] { return is_of_unfinished_pass(checkpoint->file); }),
+                        checkpoint->file};
   return run(config, std::move(balanced.mesh), progress, std::move(first), &restart);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/console/console.h"
+#include "app/console/text.h"
 #include "app/shared_file.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/case/resolve.h"
@@ -18,29 +19,6 @@
 
 namespace tribound::app
 {
-
-namespace
-{
-
-/// Seconds of work that a program which is killed may lose: the first levels take less time than files.
-constexpr double most_lost = 1.0;
-
-/// What writing throws, to be thrown again when the level is printed, on all ranks.
-template <typename Write>
-std::exception_ptr failure_of(const Write& write)
-{
-  try
-  {
-    write();
-  }
-  catch (...)
-  {
-    return std::current_exception();
-  }
-  return nullptr;
-}
-
-}  // namespace
 
 template <int dim>
 RunReport<dim>::Pass::Pass(const case_file::OutputConfig& output)
@@ -73,6 +51,9 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   {
     record_.earlier = restart->facts.earlier;
     is_resumed_ = is_path();
+    has_old_files_ = true;
+    n_earlier_steps_ = restart->facts.steps.last;
+    if (is_path()) ranks_.on_first([&] { io::copy_step_log(restart->file, config.output.directory); });
     is_apart_ = is_path() && restart->is_apart;
   }
   if (printed_ == Printed::everything) print(header_text(record_.facts, record_.mesh));
@@ -90,66 +71,6 @@ void RunReport<dim>::update_warnings(const adapt::LevelView<dim>& view)
       {level.bound, level.figures.sigma_norm, level.figures.max_displacement, record_.facts.units},
       is_shared ? doctor::contact_outcomes<dim>(shown->discrete->form, shown->level.u)
                 : doctor::contact_outcomes<dim>(view.discrete.form, view.level.u));
-}
-
-template <int dim>
-std::filesystem::path RunReport<dim>::fields_directory() const
-{
-  return is_apart_ ? config_.output.directory / unfinished_pass : config_.output.directory;
-}
-
-template <int dim>
-void RunReport<dim>::write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const
-{
-  if (!config_.output.vtu) return;
-  const std::filesystem::path directory = fields_directory();
-  level.write_fields(directory);
-  if (shown == nullptr) return;
-  io::write_contact_vtu<dim>(directory / io::level_file_name("contact", level.number), level.place(),
-                             shown->discrete->form, shown->level.u);
-  const int first = is_path() ? 1 : 0;
-  io::write_series(directory, writes_all() ? first : level.number, level.number, level.place().stem());
-}
-
-template <int dim>
-void RunReport<dim>::start_writing()
-{
-  std::optional<io::RunRecord> record;  // a copy, since this one goes on
-  const bool is_due = (writes_all() && !is_path()) || seconds_since(written_) > most_lost;
-  if (ranks_.is_first() && is_due && !is_apart_)
-  {
-    record = record_;
-    written_ = Clock::now();
-  }
-  const bool is_kept = is_path() || record_.levels.back().bound;
-  const bool has_files = is_kept && writes_all() && !is_path();
-  if (has_files && ranks_.size() > 1) in_work_.last->write_mesh(config_);  // all together, thus not beside
-  background_.start(
-      [this, has_files, record = std::move(record), level = is_kept ? in_work_.last : nullptr,
-       shown = is_kept ? in_work_.shown : nullptr,
-       is_followed = is_path() || record_.status == certify::RunStatus::budget]
-      {
-        const ScopedTimer timer(writing_, writing_cpu_, thread_cpu_seconds);
-        if (level && writes_all()) write_fields(*level, shown.get());
-        if (has_files && ranks_.size() == 1) level->write_mesh(config_);
-        if (has_files && shown) shown->write_contact(config_.output.directory);
-        if (record) io::write_report(config_.output.directory, *record);
-        if (shown && is_followed && shown->fits_page())
-          in_work_.page.add(shown->number, shown->discrete->form, shown->level);
-      });
-}
-
-template <int dim>
-std::exception_ptr RunReport<dim>::finish_writing()
-{
-  std::exception_ptr failure = failure_of([&] { background_.wait(); });
-  if (!record_.levels.empty())
-  {
-    io::LevelTimes& times = record_.levels.back().times;
-    times.stages.output += std::exchange(writing_, 0);
-    times.output_cpu += std::exchange(writing_cpu_, 0);
-  }
-  return failure;
 }
 
 template <int dim>
@@ -223,6 +144,9 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadSte
   count_time(begin);
   if (!again) print_level(record_.levels.back());
   rethrow(failure);
+  make_room();
+  if (is_due()) write_record();  // which moves the directory of the fields before
+  if (is_path()) ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
   ranks_.together([&] { start_writing(); });
   count_time(begin);
 }
@@ -238,49 +162,6 @@ template <int dim>
 void RunReport<dim>::print_level(const io::LevelRecord& level) const
 {
   if (printed_ == Printed::everything || printed_ == Printed::levels) print(level_text(level));
-}
-
-template <int dim>
-void RunReport<dim>::write_record()
-{
-  if (is_restarted() && record_.levels.empty()) return;  // nothing new: what there is holds
-  ranks_.on_first([&] { io::write_report(config_.output.directory, record_); });
-  written_ = Clock::now();
-}
-
-template <int dim>
-void RunReport<dim>::write_what_holds()
-{
-  Clock::time_point begin = Clock::now();
-  give_up();
-  if (directory_holds_ || (is_restarted() && record_.levels.empty())) return;
-  std::exception_ptr failure;
-  const KeptLevel<dim>* shown = in_work_.shown.get();
-  const auto timed = [&](const auto& work)
-  {
-    io::LevelTimes& times = record_.levels.back().times;
-    const ScopedTimer timer(times.stages.output, times.output_cpu, thread_cpu_seconds);
-    if (const std::exception_ptr thrown = failure_of(work)) failure = thrown;
-  };
-  // Fields of where the run before has stopped.
-  if (in_work_.last && !writes_all() && is_restarted())
-    ranks_.on_first([&] { io::remove_series(config_.output.directory); });
-  if (in_work_.last && !writes_all())  // beside the page's data of this level
-    timed([&] { write_fields(*in_work_.last, shown); });
-  if (in_work_.last && (is_path() || !writes_all()))
-    timed(
-        [&]
-        {
-          in_work_.last->write_mesh(config_);
-          if (shown) shown->write_contact(config_.output.directory);
-        });
-  if (const std::exception_ptr earlier = finish_writing()) failure = earlier;
-  if (shown && shown->fits_page())
-    timed([&] { in_work_.page.add_last(shown->number, shown->discrete->form, shown->level); });
-  if (!record_.levels.empty()) count_time(begin);
-  write_record();
-  ranks_.on_first([&] { in_work_.page.write(config_.output.directory, record_); });
-  rethrow(failure);
 }
 
 template <int dim>
@@ -304,11 +185,32 @@ void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next)
 }
 
 template <int dim>
-ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
+void RunReport<dim>::end(const certify::Verdict& verdict)
 {
   record_.status = verdict.status;
   record_.reason = verdict.reason;
   write_what_holds();
+  is_ended_ = true;
+}
+
+template <int dim>
+bool RunReport<dim>::has_check() const
+{
+  return !has_news() && ranks_.on_first([&] { return io::has_history_check(config_.output.directory); });
+}
+
+template <int dim>
+void RunReport<dim>::add_check(io::HistoryCheck check)
+{
+  record_.check = std::move(check);
+  if (has_news()) return write_page();
+  ranks_.on_first([&] { io::add_history_check(config_.output.directory, record_); });
+}
+
+template <int dim>
+ExitCode RunReport<dim>::close(const certify::Verdict& verdict)
+{
+  if (!is_ended_) end(verdict);
   const std::string directory = config_.output.directory.string();
   if (printed_ == Printed::everything) print(summary_text(record_, directory));
   if (printed_ == Printed::verdict) print(warnings_text(record_.warnings) + verdict_text(record_, directory));

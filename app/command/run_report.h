@@ -38,6 +38,9 @@ enum class Printed
 /// over the history; the files of passes after the first take the place of those before once they are
 /// complete.
 ///
+/// What the directory holds never says more than its certificate: that is there before the fields of its
+/// last level, and what described another level is removed before it changes.
+///
 /// On several ranks, which call the members together, the first prints and writes, and each writes the fields
 /// on its own cells. What is shown of the solution as one, contact and the page, comes from cells that are
 /// gathered on the first: all, or of large meshes those at the boundary.
@@ -68,8 +71,12 @@ class RunReport
   {
     return in_work_.last ? in_work_.last->discrete->grid : nullptr;
   }
-  /// What came of the path followed once more.
-  void add_check(io::HistoryCheck check) { record_.check = std::move(check); }
+  /// Writes all that there is, before what may follow such as the check of a history.
+  void end(const certify::Verdict& verdict);
+  /// Whether there is nothing new, and the path was followed once more before.
+  [[nodiscard]] bool has_check() const;
+  /// What came of the path followed once more. Throws WriteError.
+  void add_check(io::HistoryCheck check);
   /// A mesh that is begun on, and a level, where the run tells everything.
   void print_mesh(const std::string& caption, const adapt::Grid<dim>& grid) const;
   void print_level(const io::LevelRecord& level) const;
@@ -107,15 +114,23 @@ class RunReport
   /// Those about the last level.
   void update_warnings(const adapt::LevelView<dim>& view);
   void write_fields(const KeptLevel<dim>& level, const KeptLevel<dim>* shown) const;
-  /// Hands the files of the last level that are due to the background.
+  /// Hands the fields of the last level to the background.
   void start_writing();
   /// Waits for them; their time goes to the last level. What writing has thrown.
   [[nodiscard]] std::exception_ptr finish_writing();
   /// On all ranks, if there is one on any.
   void rethrow(const std::exception_ptr& failure) const;
-  /// Tables and certificate, in place.
+  /// Tables and certificate, then the fields of load steps that have waited for them.
   void write_record();
+  /// Whether this run has something that the directory does not hold.
+  [[nodiscard]] bool has_news() const;
   void write_what_holds();
+  void write_page();
+  /// Whether tables and certificate are to be written before the fields of the last level.
+  [[nodiscard]] bool is_due() const;
+  /// Before the files of the last level: of the first one after a restart, removes what a run that went
+  /// another way from there has left.
+  void make_room();
   /// Removes the record of the level, if it is the last, and returns its times.
   io::LevelTimes take_back(int number);
   /// The times of the last level get the wall time since `begin`, which begins anew, and the CPU time since
@@ -127,6 +142,7 @@ class RunReport
   /// Notes the pass, or the mesh, by its worst step.
   void add_mesh(const adapt::PassView<dim>& pass);
   void complete(const adapt::PassView<dim>& pass);
+  void hand_over_pass();
   /// The pass in work leads nowhere: the one before is what holds, where it is there.
   bool give_up();
 
@@ -140,9 +156,14 @@ class RunReport
   Pass in_work_;
   std::optional<std::pair<io::RunRecord, Pass>> before_;  ///< the last complete one, while another is in work
   bool is_resumed_ = false;                               ///< until the first pass begins
+  bool has_old_files_ = false;                            ///< after a restart, until there is something new
+  int n_earlier_steps_ = 0;                               ///< load steps before it
+  bool is_ended_ = false;                                 ///< whether all that there is is written
   bool is_apart_ = false;         ///< whether the pass in work is written apart until it is complete
   bool directory_holds_ = false;  ///< what the run before this one has left there
   Clock::time_point written_ = Clock::now();  ///< when the record was; at first when the run began
+  double cost_ = 0;                           ///< how long that took; s
+  bool must_write_ = false;                   ///< whether the one that is there does not hold any more
   double held_ = 0;                    ///< wall time that the loop has been held up on the last level; s
   double cpu_before_ = cpu_seconds();  ///< CPU time up to the level in work
   double writing_ = 0;                 ///< wall time of what the background writes; s

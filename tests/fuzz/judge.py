@@ -19,11 +19,10 @@ from verdict import Verdict, near
 
 STATUS_OF_EXIT = {0: ["certified"], 2: ["failed", "not certified"], 3: ["budget"]}
 COMPONENTS = ["osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t", "quad", "alg"]
-OF_A_LATER_LEVEL = object()  # contact.csv where a killed run has written it before the certificate of its level
 
 
 def judge(case_file, directory, exit_code, killed=False):
-    """The Verdict on the results in the directory; those of a killed run may hold more than the certificate claims."""
+    """The Verdict on the results in the directory; in those of a killed run the fields of the last level may be missing."""
     verdict = Verdict()
     if not Path(directory).is_dir():
         verdict.check(False, f"exit code {exit_code} without results")
@@ -42,7 +41,7 @@ def judge(case_file, directory, exit_code, killed=False):
 
 def judge_files(verdict, case, results, exit_code, killed):
     if killed:
-        keep_what_is_claimed(results)
+        keep_what_is_claimed(verdict, results)
     else:
         left = [f.name for f in results.directory.iterdir() if f.name.endswith(".part")]
         verdict.check(not left, f"left over: {left}")
@@ -61,19 +60,21 @@ def judge_files(verdict, case, results, exit_code, killed):
     judge_arithmetic(verdict, certificate)
     judge_tables(verdict, results)
     if status in ("certified", "budget"):
-        judge_levels(verdict, case, results)
+        judge_levels(verdict, case, results, killed)
     else:
         verdict.check(certificate.get("bound") is None, f"a bound with status {status!r}")
 
 
-def keep_what_is_claimed(results):
-    """Of the tables and fields, only what belongs to the levels of the certificate: it is written last."""
+def keep_what_is_claimed(verdict, results):
+    """Of the tables only the rows of levels in the certificate, which follows them; fields follow it, and there are no others."""
     n = len(results.certificate["levels"])
     results.convergence = [row for row in results.convergence or [] if row["level"] < n]
     results.newton = [row for row in results.newton or [] if row["level"] < n]
-    results.levels = results.levels[:n]
-    if any(row["level"] >= n for row in results.contact or []):
-        results.contact = OF_A_LATER_LEVEL
+    for name in results.levels:
+        verdict.check(int(name[len("level_") : -len(".vtu")]) < n, f"{name}, and {n} levels in the certificate")
+    bounded = [level["level"] for level in results.certificate["levels"] if level["bound"] is not None]
+    of_contact = {row["level"] for row in results.contact or []}
+    verdict.check(of_contact <= set(bounded[-1:]), f"contact.csv of level {of_contact}, and levels {bounded} with a bound")
 
 
 def judge_arithmetic(verdict, certificate):
@@ -141,13 +142,15 @@ def judge_tables(verdict, results):
             verdict.check(near(last[name], certificate[here]), f"{here} is not that of the last level")
 
 
-def judge_levels(verdict, case, results):
+def judge_levels(verdict, case, results, killed):
     """Every level of which there is a bound and a displacement."""
     certificate = results.certificate
     names = [region["name"] for region in certificate["mesh"]["regions"]]
     bounds = [level for level in certificate["levels"] if level["bound"] is not None]
+    if killed and len(results.levels) == len(bounds) - 1:
+        bounds.pop()  # the certificate is there before the fields
     if not results.levels:
-        verdict.check(case.get("output.vtu", True) is False, "no level_NNN.vtu")
+        verdict.check(killed or case.get("output.vtu", True) is False, "no level_NNN.vtu")
         return
     verdict.check(len(results.levels) == len(bounds), f"{len(results.levels)} VTU files, {len(bounds)} levels with a bound")
     for number, entry in enumerate(bounds):
@@ -157,7 +160,7 @@ def judge_levels(verdict, case, results):
         judge_displacement(verdict, residual, entry, number)
         judge_residual(verdict, case, residual, entry, number)
         if number + 1 == len(bounds):
-            if results.contact is not OF_A_LATER_LEVEL:
+            if not killed or results.contact is not None:
                 judge_contact(verdict, residual, results)
                 judge_moments(verdict, residual, results)
             judge_mesh(verdict, case, residual)

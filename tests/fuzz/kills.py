@@ -79,7 +79,7 @@ def names(directory):
 
 
 def what_is_left(directory, new):
-    """The results of the old run untouched, or the part of the new ones that the certificate claims, or no certificate."""
+    """The results of the old run untouched, or those of the new one that the certificate claims, and no others, or no certificate."""
     out = directory / "out"
     try:
         certificate = read_json(out / "certificate.json") if (out / "certificate.json").exists() else None

@@ -53,7 +53,7 @@ Finding held(const ContactHeldMotion& motion)
   return finding;
 }
 
-Finding beyond(const LoadBeyondContact& load)
+Finding load_beyond(const LoadBeyondContact& load)
 {
   return {.code = "load_beyond_contact",
           .severity = Severity::warning,
@@ -64,7 +64,7 @@ Finding beyond(const LoadBeyondContact& load)
 
 void add_supports(const Diagnosis& diagnosis, Findings& findings)
 {
-  if (diagnosis.beyond_contact) findings.push_back(beyond(*diagnosis.beyond_contact));
+  if (diagnosis.beyond_contact) findings.push_back(load_beyond(*diagnosis.beyond_contact));
   for (const ContactHeldMotion& motion : diagnosis.held_by_contact) findings.push_back(held(motion));
   if (diagnosis.held_by_contact.empty())
     findings.push_back({.code = "held", .text = "displacement conditions alone stop every rigid motion"});

@@ -82,6 +82,10 @@ TEST(VtuSeries, RemovesOnlyWhatARunHasWritten)
       io::write_file(directory / io::level_file_name(stem, level), "");
   io::write_series(directory, 0, 2);
 
+  io::remove_series(directory, 1234);
+  for (const char* stem : {"level", "contact"})
+    EXPECT_TRUE(fs::exists(directory / io::level_file_name(stem, 12)) &&
+                !fs::exists(directory / io::level_file_name(stem, 1234)));
   io::remove_series(directory);
   std::set<std::string> left;
   for (const auto& entry : fs::directory_iterator(directory))
@@ -96,11 +100,13 @@ TEST(Series, ListsTheLevelsThatAreThere)
 {
   const fs::path directory = fs::path(::testing::TempDir()) / "series_of_one";
   fs::create_directories(directory);
-  io::write_series(directory, 7, 7);
+  io::write_file(directory / "level_007.vtu", "");
+  io::write_series(directory, 7, 9);
   std::ifstream file(directory / "series.pvd");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text, ::testing::HasSubstr(R"(timestep="7" part="0" file="level_007.vtu")"));
   EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("level_006")));
+  EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("level_008")));
   fs::remove_all(directory);
 }
 

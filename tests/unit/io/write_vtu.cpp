@@ -103,6 +103,8 @@ int main(int argc, char** argv)
     tribound::test::write<2>(directory, degree, manifest);
     tribound::test::write<3>(directory, degree, manifest);
   }
+  for (const int level : {0, 1})
+    std::ofstream(directory / tribound::io::level_file_name("level", level)) << '\n';
   tribound::io::write_series(directory, 0, 1);
   tribound::test::write_without_contact(directory);
   std::ofstream(directory / "manifest.json") << manifest.dump(2) << '\n';

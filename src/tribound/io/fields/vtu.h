@@ -108,22 +108,24 @@ void write_contact_vtu(const std::filesystem::path& path, const SeriesPlace& pla
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
 /// Writes series.pvd, which lists level_NNN.vtu (or step_NNN.vtu, by the stem), or .pvtu where that is there,
-/// from `first` to `last` with the number as time. Throws WriteError when the file cannot be written.
+/// as far as they are there from `first` to `last`, with the number as time. Throws WriteError when the file
+/// cannot be written.
 void write_series(const std::filesystem::path& directory, int first, int last,
                   std::string_view stem = "level");
 
 /// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu,
 /// the same of steps, contact_NNN.vtu and checkpoint_NNN.h5, N a digit, at least three of NNN, and
-/// series.pvd. Other files stay. Throws InputError when one cannot be removed.
-void remove_series(const std::filesystem::path& directory);
+/// series.pvd; only those from number `first` on, and series.pvd. Other files stay. Throws InputError when
+/// one cannot be removed.
+void remove_series(const std::filesystem::path& directory, int first = 0);
 
-/// A directory for a series that is not complete, without what an earlier run left there. Throws WriteError
-/// where it cannot be made, and as remove_series().
+/// A directory for a series that is not complete, unless it is there. Throws WriteError where it cannot be
+/// made.
 void make_series_directory(const std::filesystem::path& directory);
 /// Removes it with its series; does nothing where it is not there.
 void remove_series_directory(const std::filesystem::path& directory);
-/// Puts the series in `from`, which is removed, in the place of the one in `to`. Throws WriteError when a
-/// file cannot be moved.
+/// Puts all files in `from`, which is removed, into `to`; does nothing where it is not there. Throws
+/// WriteError when one cannot be moved.
 void move_series(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace tribound::io

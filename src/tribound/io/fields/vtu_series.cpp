@@ -1,7 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "tribound/base/error.h"
 #include "tribound/io/fields/vtu.h"
@@ -13,27 +19,57 @@ namespace tribound::io
 namespace
 {
 
-/// Whether a name is `stem`, at least `least` digits and `extension`.
-bool is_numbered(std::string_view name, std::string_view stem, std::size_t least, std::string_view extension)
+constexpr std::string_view series_name = "series.pvd";
+
+/// The number in a name that is `stem`, at least `least` digits and `extension`.
+std::optional<int> number_in(std::string_view name, std::string_view stem, std::size_t least,
+                             std::string_view extension)
 {
-  if (!name.starts_with(stem) || !name.ends_with(extension)) return false;
+  if (!name.starts_with(stem) || !name.ends_with(extension)) return std::nullopt;
   name.remove_prefix(stem.size());
-  if (name.size() < least + extension.size()) return false;
+  if (name.size() < least + extension.size()) return std::nullopt;
   name.remove_suffix(extension.size());
-  return std::ranges::all_of(name, [](char c) { return '0' <= c && c <= '9'; });
+  int number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  const bool is_number = error == std::errc() && end == name.data() + name.size() && name.front() != '-';
+  return is_number ? std::optional(number) : std::nullopt;
 }
 
-/// Whether the name is series.pvd, or one that level_file_name() or level_files() give.
-bool is_series_file(std::string_view name)
+struct NamedSeries
 {
-  return name == "series.pvd" || is_numbered(name, "contact_", 3, ".vtu") ||
-         is_numbered(name, "level_", 3, ".vtu") || is_numbered(name, "level_", 3, ".pvtu") ||
-         is_numbered(name, "step_", 3, ".vtu") || is_numbered(name, "step_", 3, ".pvtu") ||
-         is_numbered(name, "checkpoint_", 3, ".h5");
+  std::string_view stem;
+  std::string_view extension;
+};
+
+/// Those that level_file_name(), level_files() and checkpoint_name_of() give, but directories.
+constexpr std::array<NamedSeries, 6> series_names = {{{"contact_", ".vtu"},
+                                                      {"level_", ".vtu"},
+                                                      {"level_", ".pvtu"},
+                                                      {"step_", ".vtu"},
+                                                      {"step_", ".pvtu"},
+                                                      {"checkpoint_", ".h5"}}};
+
+bool is_series_file(std::string_view name, int first)
+{
+  return std::ranges::any_of(series_names,
+                             [&](const NamedSeries& series)
+                             {
+                               const auto number = number_in(name, series.stem, 3, series.extension);
+                               return number && *number >= first;
+                             });
 }
 
-/// The files of a series in a directory, those in directories of several ranks first, and then these.
-std::vector<std::filesystem::path> series_files(const std::filesystem::path& directory)
+/// Whether it is level_NNN or step_NNN.
+bool is_series_directory(std::string_view name, int first)
+{
+  for (const std::string_view stem : {"level_", "step_"})
+    if (const auto number = number_in(name, stem, 3, "")) return *number >= first;
+  return false;
+}
+
+/// series.pvd and the files that it lists in a directory, from number `first` on; those in directories of
+/// several ranks before these.
+std::vector<std::filesystem::path> series_files(const std::filesystem::path& directory, int first)
 {
   std::error_code error;
   std::vector<std::filesystem::path> files;
@@ -41,12 +77,12 @@ std::vector<std::filesystem::path> series_files(const std::filesystem::path& dir
   {
     const std::string name = entry.path().filename().string();
     const bool is_directory = entry.is_directory(error);
-    if (is_series_file(name) && !is_directory) files.push_back(entry.path());
-    if ((!is_numbered(name, "level_", 3, "") && !is_numbered(name, "step_", 3, "")) || !is_directory)
-      continue;
+    if (!is_directory && name == series_name) files.insert(files.begin(), entry.path());
+    if (!is_directory && is_series_file(name, first)) files.push_back(entry.path());
+    if (!is_directory || !is_series_directory(name, first)) continue;
     bool has_others = false;
     for (const auto& piece : std::filesystem::directory_iterator(entry.path(), error))
-      if (is_numbered(piece.path().filename().string(), "part_", 1, ".vtu"))
+      if (number_in(piece.path().filename().string(), "part_", 1, ".vtu"))
         files.push_back(piece.path());
       else
         has_others = true;
@@ -82,20 +118,20 @@ void write_series(const std::filesystem::path& directory, int first, int last, s
   std::error_code error;
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (int level = first; level <= last; ++level)
-  {
-    const std::string list = fmt::format("{}_{:03}.pvtu", stem, level);
-    text +=
-        fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level,
-                    std::filesystem::exists(directory / list, error) ? list : level_file_name(stem, level));
-  }
+    for (const std::string& name : {fmt::format("{}_{:03}.pvtu", stem, level), level_file_name(stem, level)})
+      if (std::filesystem::exists(directory / name, error))
+      {
+        text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", level, name);
+        break;
+      }
   text += "</Collection>\n</VTKFile>\n";
-  write_file(directory / "series.pvd", text);
+  write_file(directory / series_name, text);
 }
 
-void remove_series(const std::filesystem::path& directory)
+void remove_series(const std::filesystem::path& directory, int first)
 {
   std::error_code error;
-  for (const std::filesystem::path& file : series_files(directory))
+  for (const std::filesystem::path& file : series_files(directory, first))
   {
     std::filesystem::remove(file, error);
     if (error)
@@ -110,7 +146,6 @@ void make_series_directory(const std::filesystem::path& directory)
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw WriteError(directory, "cannot be made: " + error.message(), "a place to write to");
-  remove_series(directory);
 }
 
 void remove_series_directory(const std::filesystem::path& directory)
@@ -122,7 +157,6 @@ void remove_series_directory(const std::filesystem::path& directory)
 
 void move_series(const std::filesystem::path& from, const std::filesystem::path& to)
 {
-  remove_series(to);
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(from, error))
   {

@@ -147,7 +147,9 @@ OutputDirectory::OutputDirectory(const std::filesystem::path& path) : lock_file_
 {
   create_and_try(path);
   lock_ = lock(path, lock_file_);
-  if (lock_ >= 0) remove_unfinished(path);
+  if (lock_ < 0) return;
+  for (const std::filesystem::path& folder : {path, path / unfinished_pass, path / unfinished_steps})
+    remove_unfinished(folder);
 }
 
 OutputDirectory::~OutputDirectory()

@@ -10,6 +10,11 @@
 namespace tribound::io
 {
 
+/// In the directory of results: the files of a pass over load steps in work, after the first; and of load
+/// steps that the certificate does not have yet.
+inline constexpr const char* unfinished_pass = "unfinished_pass";
+inline constexpr const char* unfinished_steps = "unfinished_steps";
+
 /// A directory that belongs to this process until destroyed.
 class OutputDirectory
 {

@@ -100,27 +100,6 @@ Json json(const InterfaceFigures& figures)
   return object;
 }
 
-void add_load_step(Json& object, const LevelRecord& level)
-{
-  const LoadStepRecord& step = *level.load_step;
-  object["t"] = step.t;
-  object["control"] = step.control;
-  object["cuts"] = step.cuts;
-  object["passes"] = step.passes;
-  object["relative_path"] = number_or_null(bound_along_path(level));
-  object["largest_sigma"] = step.largest_sigma;
-  object["dissipated"] = step.dissipated;
-  object["dissipated_friction"] = step.rubbed;
-  object["stored"] = step.all.stored;
-  object["work"] = step.work;
-  object["energy_balance"] = step.balance;
-  object["balance"] = level.balance ? balance_json(*level.balance) : Json(nullptr);
-  for (const auto& [name, value] : step.watched) object["watch"][name] = value;
-  object["interfaces"] = Json::object();
-  for (const InterfaceFigures& figures : step.interfaces)
-    object["interfaces"][figures.boundary] = json(figures);
-}
-
 }  // namespace
 
 Json balance_json(const certify::Balance& balance)
@@ -176,6 +155,27 @@ void add_results(Json& object, const LevelRecord& level)
     if (part.pair) boundary.update(json(*part.pair));
   }
   object["contact"] = contact;
+}
+
+void add_load_step(Json& object, const LevelRecord& level)
+{
+  const LoadStepRecord& step = *level.load_step;
+  object["t"] = step.t;
+  object["control"] = step.control;
+  object["cuts"] = step.cuts;
+  object["passes"] = step.passes;
+  object["relative_path"] = number_or_null(bound_along_path(level));
+  object["largest_sigma"] = step.largest_sigma;
+  object["dissipated"] = step.dissipated;
+  object["dissipated_friction"] = step.rubbed;
+  object["stored"] = step.all.stored;
+  object["work"] = step.work;
+  object["energy_balance"] = step.balance;
+  object["balance"] = level.balance ? balance_json(*level.balance) : Json(nullptr);
+  for (const auto& [name, value] : step.watched) object["watch"][name] = value;
+  object["interfaces"] = Json::object();
+  for (const InterfaceFigures& figures : step.interfaces)
+    object["interfaces"][figures.boundary] = json(figures);
 }
 
 Json level_json(const LevelRecord& level)

@@ -22,6 +22,21 @@ Json times_json(const RunRecord& run)
   return object;
 }
 
+/// The results of the last of the load steps before a restart, as their texts have them.
+void add_results(Json& object, const std::string& earlier_steps)
+{
+  Json last = Json::parse(earlier_steps).back();
+  LevelRecord of_step;
+  of_step.load_step.emplace();
+  Json not_results;
+  add_load_step(not_results, of_step);
+  for (const char* name : {"step", "watch", "finishing_steps", "solver", "newton", "times"})
+    not_results[name] = nullptr;
+  object["balance"] = last.value("balance", Json());
+  for (const auto& [name, _] : not_results.items()) last.erase(name);
+  object.update(last);
+}
+
 /// Behind those of a text.
 Json with_levels(const std::string& earlier, const std::vector<LevelRecord>& levels)
 {
@@ -154,7 +169,8 @@ Json certificate(const RunRecord& run)
               {"gamma0", run.facts.gamma0},
               {"units", units_json(run.facts)}};
   if (!run.levels.empty()) add_results(object, run.levels.back());
-  object["balance"] = nullptr;
+  if (run.levels.empty() && !run.earlier.steps.empty()) add_results(object, run.earlier.steps);
+  if (!object.contains("balance")) object["balance"] = nullptr;
   if (!run.levels.empty() && run.levels.back().balance)
     object["balance"] = balance_json(*run.levels.back().balance);
   object["tolerance"] = run.tolerance;

@@ -1,6 +1,7 @@
 #include "tribound/io/record/report.h"
 
 #include <algorithm>
+#include <fstream>
 #include <span>
 #include <utility>
 
@@ -26,6 +27,16 @@ namespace
 std::string rows_of(const std::string& table)
 {
   return table.substr(table.find('\n') + 1);
+}
+
+std::string first_line(const std::string& table)
+{
+  return table.substr(0, table.find('\n') + 1);
+}
+
+std::int64_t first_cells(const RunRecord& run)
+{
+  return run.earlier.first_cells > 0 ? run.earlier.first_cells : run.mesh.cells;
 }
 
 /// One table after another with the same columns.
@@ -72,22 +83,42 @@ EarlierLevels as_earlier(const RunRecord& run)
   return {.convergence = convergence_csv(run),
           .newton = newton_csv(run),
           .levels = json_text(levels_json(run), -1),
-          .first_cells = run.earlier.first_cells > 0 ? run.earlier.first_cells : run.mesh.cells};
+          .first_cells = first_cells(run)};
 }
 
 EarlierLevels as_earlier(const RunRecord& run, int pass, int worst_step)
 {
-  EarlierLevels earlier = as_earlier(run);
-  earlier.history = history_csv(run);
-  earlier.steps = json_text(steps_json(run), -1);
-  earlier.worst_convergence = run.earlier.worst_convergence;
-  earlier.worst_level = run.earlier.worst_level;
+  const std::span last(&run.levels.back(), 1);
+  EarlierLevels earlier{.convergence = convergence_csv(run),
+                        .newton = first_line(newton_csv(last)),
+                        .levels = json_text(levels_json(run), -1),
+                        .first_cells = first_cells(run),
+                        .history = first_line(history_csv(last)),
+                        .worst_convergence = run.earlier.worst_convergence,
+                        .worst_level = run.earlier.worst_level};
   if (const std::optional<LevelRecord> worst = as_pass(run, pass, worst_step))
   {
     earlier.worst_convergence = convergence_csv(std::span(&*worst, 1));
     earlier.worst_level = json_text(level_json(*worst), -1);
   }
   return earlier;
+}
+
+StepRows last_step_rows(const RunRecord& run)
+{
+  const std::span last(&run.levels.back(), 1);
+  return {rows_of(history_csv(last)), rows_of(newton_csv(last)), json_text(level_json(last.front()), -1)};
+}
+
+void add_steps(EarlierLevels& earlier, std::span<const StepRows> steps)
+{
+  for (const StepRows& step : steps)
+  {
+    earlier.history += step.history;
+    earlier.newton += step.newton;
+    earlier.steps += (earlier.steps.empty() ? "[" : ",") + step.record;
+  }
+  if (!steps.empty()) earlier.steps += "]";
 }
 
 void drop_steps(EarlierLevels& earlier)
@@ -120,6 +151,31 @@ std::optional<LoadStepRecord> last_load_step(const RunRecord& run)
                         .dissipated = last.at("dissipated"),
                         .rubbed = last.at("dissipated_friction"),
                         .work = last.at("work")};
+}
+
+namespace
+{
+
+/// Discarded where there is none.
+Json certificate_in(const std::filesystem::path& directory)
+{
+  std::ifstream file(directory / "certificate.json");
+  return Json::parse(file, nullptr, false);
+}
+
+}  // namespace
+
+bool has_history_check(const std::filesystem::path& directory)
+{
+  return certificate_in(directory).contains("history_check");
+}
+
+void add_history_check(const std::filesystem::path& directory, const RunRecord& run)
+{
+  Json object = certificate_in(directory);
+  if (!object.is_object()) return;
+  object["history_check"] = check_json(run);
+  write_file(directory / "certificate.json", json_text(object));
 }
 
 void write_report(const std::filesystem::path& directory, const RunRecord& run)

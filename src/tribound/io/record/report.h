@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,15 @@ struct EarlierLevels
   std::string worst_level{};
 };
 
+/// A load step as the tables and the certificate have it: lines of history.csv and newton.csv without the
+/// first, which names the columns, and its place in `steps`.
+struct StepRows
+{
+  std::string history{};
+  std::string newton{};
+  std::string record{};
+};
+
 struct RunRecord
 {
   CaseFacts facts;
@@ -56,10 +66,15 @@ struct RunRecord
 /// Whether it goes through load steps.
 [[nodiscard]] bool has_history(const RunRecord& run);
 
-/// All its levels as earlier ones; over a history with its load steps, of which `worst_step` is the worst of
-/// pass number `pass`, which is in work.
+/// All its levels as earlier ones.
 [[nodiscard]] EarlierLevels as_earlier(const RunRecord& run);
+/// Over a history: the passes that are complete, the worst step of pass number `pass`, which is in work, and
+/// the columns of the tables without the rows of its load steps, which add_steps() adds: what is made of each
+/// load step is of the size of one.
 [[nodiscard]] EarlierLevels as_earlier(const RunRecord& run, int pass, int worst_step);
+/// The last load step of this run.
+[[nodiscard]] StepRows last_step_rows(const RunRecord& run);
+void add_steps(EarlierLevels& earlier, std::span<const StepRows> steps);
 
 /// Over a history, when another pass begins: the complete passes alone stay.
 void drop_steps(EarlierLevels& earlier);
@@ -77,6 +92,12 @@ void complete_pass(RunRecord& run, int pass, int worst_step);
 
 /// The text of certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
+
+/// Whether the certificate in the directory has one.
+[[nodiscard]] bool has_history_check(const std::filesystem::path& directory);
+/// Adds that of the run to it; nothing else changes. Does nothing where there is no certificate. Throws
+/// WriteError.
+void add_history_check(const std::filesystem::path& directory, const RunRecord& run);
 
 /// Writes the effective case, convergence.csv, history.csv where there are load steps, newton.csv and
 /// certificate.json, the last one last. Throws

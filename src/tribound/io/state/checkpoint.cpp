@@ -1,6 +1,7 @@
 #include "tribound/io/state/checkpoint.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -8,10 +9,12 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "tribound/base/error.h"
 #include "tribound/fem/nested.h"
+#include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 #include "tribound/io/state/hdf5_file.h"
 #include "tribound/mesh/share_out.h"
@@ -23,7 +26,7 @@ namespace
 {
 
 /// Of the file; another one cannot be read.
-constexpr int format = 2;
+constexpr int format = 3;
 
 constexpr std::array<std::pair<const char*, std::string EarlierLevels::*>, 7> earlier_texts = {
     {{"convergence", &EarlierLevels::convergence},
@@ -59,6 +62,7 @@ Json state_json(const CheckpointFacts& facts)
                {"accuracy", start.accuracy},
                {"case", facts.case_text},
                {"earlier", earlier_json(facts.earlier)},
+               {"logged", {facts.steps.path, facts.steps.last}},
                {"path", facts.path},
                {"functions", facts.n_functions},
                {"cell_values", facts.n_cell_values}};
@@ -78,6 +82,7 @@ CheckpointFacts facts_of(const Json& json)
   facts.start.accuracy = json.at("accuracy");
   facts.case_text = json.at("case");
   facts.earlier = earlier_of(json.at("earlier"));
+  facts.steps = {json.at("logged").at(0), json.at("logged").at(1)};
   facts.path = json.at("path");
   facts.n_functions = json.at("functions");
   facts.n_cell_values = json.at("cell_values");
@@ -224,10 +229,23 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointFacts& 
   file.commit();
 }
 
-CheckpointFacts read_checkpoint_facts(const std::filesystem::path& path, const Ranks& ranks)
+void copy_checkpoint(const std::filesystem::path& from, const std::filesystem::path& to)
 {
-  Hdf5File file(path, Hdf5File::Mode::read, ranks);
-  const std::string text = file.read_text("state");
+  const std::filesystem::path temporary = temporary_name(to, ::getpid());
+  std::error_code error;
+  std::filesystem::remove(temporary, error);
+  std::filesystem::create_hard_link(from, temporary, error);
+  if (error)  // not on this file system
+    std::filesystem::copy_file(from, temporary, std::filesystem::copy_options::overwrite_existing, error);
+  if (!error) std::filesystem::rename(temporary, to, error);
+  if (error) throw WriteError(to, "cannot be written: " + error.message(), hint_for_writing(error.value()));
+}
+
+namespace
+{
+
+CheckpointFacts facts_in(const std::filesystem::path& path, const std::string& text)
+{
   try
   {
     const Json json = Json::parse(text);
@@ -241,6 +259,15 @@ CheckpointFacts read_checkpoint_facts(const std::filesystem::path& path, const R
     throw InputError({.file = path.string()}, std::string("is a damaged checkpoint: ") + error.what(),
                      "start the run anew");
   }
+}
+
+}  // namespace
+
+CheckpointFacts read_checkpoint_facts(const std::filesystem::path& path, const Ranks& ranks)
+{
+  CheckpointFacts facts = facts_in(path, Hdf5File(path, Hdf5File::Mode::read, ranks).read_text("state"));
+  if (facts.steps.last > 0) add_steps(facts.earlier, read_steps(path, facts.steps, ranks));
+  return facts;
 }
 
 template <int dim>

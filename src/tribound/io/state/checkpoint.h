@@ -14,6 +14,7 @@
 #include "tribound/adapt/levels.h"
 #include "tribound/base/ranks.h"
 #include "tribound/io/record/report.h"
+#include "tribound/io/state/step_log.h"
 #include "tribound/mesh/partition.h"
 
 namespace tribound::io
@@ -31,6 +32,7 @@ struct CheckpointFacts
   adapt::LevelStart start{};
   std::string case_text{};  ///< the effective case
   EarlierLevels earlier{};  ///< the tables up to here
+  LoggedSteps steps{};      ///< of a run over load steps: their rows, which are in a file of their own
   std::string path{};       ///< of a run over load steps (path_checkpoint.h); else empty
   int n_functions = 1;      ///< CheckpointFields::functions
   int n_cell_values = 0;    ///< CheckpointFields::cell_values, of each cell
@@ -63,8 +65,11 @@ template <int dim>
 void write_checkpoint(const std::filesystem::path& file, const CheckpointFacts& facts,
                       const fem::LagrangeSpace<dim>& space, const CheckpointFields& fields);
 
+/// A file that has the same as one that was written, without writing it again. Throws WriteError.
+void copy_checkpoint(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// All ranks call them together; how many there are does not matter. They throw InputError for a file that is
-/// no checkpoint, or that of another version.
+/// no checkpoint, or that of another version, or whose load steps are missing.
 [[nodiscard]] CheckpointFacts read_checkpoint_facts(const std::filesystem::path& file, const Ranks& ranks);
 template <int dim>
 [[nodiscard]] CheckpointCells<dim> read_checkpoint_cells(const std::filesystem::path& file,

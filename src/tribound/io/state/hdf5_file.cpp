@@ -125,9 +125,11 @@ std::uint64_t Hdf5File::n_own_rows(const std::string& name, int width)
   const Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   const Handle space(set.good() ? H5Dget_space(set.get()) : -1, H5Sclose);
   Shape all{};
-  const bool good = space.good() && H5Sget_simple_extent_ndims(space.get()) == 2 &&
+  hsize_t n_bytes = 0;  // of the file: a damaged number of rows must not cost their memory
+  const bool good = H5Fget_filesize(file_, &n_bytes) >= 0 && space.good() &&
+                    H5Sget_simple_extent_ndims(space.get()) == 2 &&
                     H5Sget_simple_extent_dims(space.get(), all.data(), nullptr) == 2 &&
-                    all[1] == static_cast<hsize_t>(width);
+                    all[1] == static_cast<hsize_t>(width) && all[0] <= n_bytes / all[1];
   require(good, "read");
   const auto begin = [&](int rank) { return all[0] * rank / ranks_.size(); };
   return begin(ranks_.rank() + 1) - begin(ranks_.rank());
