@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace tribound::mesh
 {
@@ -33,14 +34,12 @@ std::array<double, dim> barycentric_in(const FacetMap<dim>& map, const Point<dim
     result[1] = (moments[0] * gram(1, 1) - moments[1] * gram(0, 1)) / det;
     result[2] = (moments[1] * gram(0, 0) - moments[0] * gram(1, 0)) / det;
   }
+  result[0] -= std::accumulate(result.begin() + 1, result.end(), 0.0);
   constexpr double rounding = 1e-9;
-  for (int i = 1; i < dim; ++i)
-  {
-    if (std::abs(result[i]) <= rounding) result[i] = 0;
-    if (std::abs(result[i] - 1) <= rounding) result[i] = 1;
-    result[0] -= result[i];
-  }
-  if (std::abs(result[0]) <= rounding) result[0] = 0;
+  for (double& lambda : result)
+    if (std::abs(lambda) <= rounding) lambda = 0;
+  const double sum = std::accumulate(result.begin(), result.end(), 0.0);
+  for (double& lambda : result) lambda /= sum;  // 1 where the others are 0
   return result;
 }
 
