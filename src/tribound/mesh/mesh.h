@@ -65,7 +65,7 @@ struct MeshLabels
   std::vector<std::string> boundary_names{};
   Where source{};  ///< for messages
   std::vector<Interface> interfaces{};
-  /// See mesh/quadratic_facets.h; null for a mesh of order 1.
+  /// Of the first mesh, see mesh/quadratic_facets.h: all its facets, and those of second order.
   std::shared_ptr<const QuadraticFacets> quadratic_facets{};
 };
 
