@@ -29,6 +29,7 @@
 #include "tribound/mesh/cut_facets.h"
 #include "tribound/mesh/cut_open.h"
 #include "tribound/mesh/describe.h"
+#include "tribound/mesh/first_facet_finder.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/mesh.h"
@@ -82,10 +83,12 @@
 #include "tribound/certify/bound/friedrichs.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/energy/free_motions.h"
 #include "tribound/certify/energy/interval_comparison.h"
 #include "tribound/certify/energy/quantity_interval.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/equilibrate/stress.h"
+#include "tribound/certify/equilibrate/too_flat.h"
 
 // What deserves a look before and after.
 #include "tribound/doctor/diagnosis.h"

@@ -11,7 +11,6 @@
 #include "tribound/adapt/finer_contact.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
-#include "tribound/certify/energy/quantity_bounds.h"
 #include "tribound/certify/equilibrate/too_flat.h"
 
 namespace tribound::adapt
@@ -110,16 +109,7 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
 {
   certify::EnergyBound bound = bound_or_reason<dim>(form, method, u, quantities, false);
   if (bound.quantities.size() == quantities.size()) return bound;
-  return no_energy_bound<dim>(form, u, quantities, bound.reason);
-}
-
-template <int dim>
-certify::EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                     const std::vector<problem::Quantity<dim>>& quantities,
-                                     const std::string& reason)
-{
-  return {.reason = reason,
-          .quantities = certify::QuantityBounds<dim>(form, quantities).from_equilibrium(u, reason)};
+  return certify::no_energy_bound<dim>(form, u, quantities, bound.reason);
 }
 
 const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound, const std::string& name)
@@ -177,9 +167,5 @@ template certify::EnergyBound energy_bound(const contact::NitscheForm<2>&, const
                                            std::span<const double>, const std::vector<problem::Quantity<2>>&);
 template certify::EnergyBound energy_bound(const contact::NitscheForm<3>&, const Method&,
                                            std::span<const double>, const std::vector<problem::Quantity<3>>&);
-template certify::EnergyBound no_energy_bound(const contact::NitscheForm<2>&, std::span<const double>,
-                                              const std::vector<problem::Quantity<2>>&, const std::string&);
-template certify::EnergyBound no_energy_bound(const contact::NitscheForm<3>&, std::span<const double>,
-                                              const std::vector<problem::Quantity<3>>&, const std::string&);
 
 }  // namespace tribound::adapt

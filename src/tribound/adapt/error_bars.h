@@ -40,13 +40,6 @@ template <int dim>
                                                 std::span<const double> u,
                                                 const std::vector<problem::Quantity<dim>>& quantities = {});
 
-/// No bound, for this reason, with the values of the quantities and what follows from equilibrium alone.
-template <int dim>
-[[nodiscard]] certify::EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form,
-                                                   std::span<const double> u,
-                                                   const std::vector<problem::Quantity<dim>>& quantities,
-                                                   const std::string& reason);
-
 /// The interval of that name; null where there is none.
 [[nodiscard]] const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound,
                                                              const std::string& name);

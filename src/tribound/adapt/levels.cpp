@@ -255,7 +255,7 @@ template <int dim>
 certify::EnergyBound Levels<dim>::energy_or_reason()
 {
   const auto without = [&](const char* reason)
-  { return no_energy_bound<dim>(current_->form, level_.u, quantities_, reason); };
+  { return certify::no_energy_bound<dim>(current_->form, level_.u, quantities_, reason); };
   if (!certify::is_bound(verdict_.status)) return without("there is no bound of the residual");
   if (interrupted()) return without("interrupted");
   const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);

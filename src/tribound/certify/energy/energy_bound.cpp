@@ -93,6 +93,13 @@ std::string why_no_energy_bound(const contact::NitscheForm<dim>& form)
   return {};
 }
 
+template <int dim>
+EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                            std::span<const problem::Quantity<dim>> quantities, const std::string& reason)
+{
+  return {.reason = reason, .quantities = QuantityBounds<dim>(form, quantities).from_equilibrium(u, reason)};
+}
+
 /// What the functions on a mesh share. For p = 1 the form is that of degree 2.
 template <int dim>
 struct EnergyEstimator<dim>::Parts
@@ -264,6 +271,10 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
 
 template std::string why_no_energy_bound(const contact::NitscheForm<2>&);
 template std::string why_no_energy_bound(const contact::NitscheForm<3>&);
+template EnergyBound no_energy_bound(const contact::NitscheForm<2>&, std::span<const double>,
+                                     std::span<const problem::Quantity<2>>, const std::string&);
+template EnergyBound no_energy_bound(const contact::NitscheForm<3>&, std::span<const double>,
+                                     std::span<const problem::Quantity<3>>, const std::string&);
 template class EnergyEstimator<2>;
 template class EnergyEstimator<3>;
 

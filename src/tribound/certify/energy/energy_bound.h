@@ -60,6 +60,13 @@ inline constexpr double cell_balance_limit = 1e-8;
 template <int dim>
 [[nodiscard]] std::string why_no_energy_bound(const contact::NitscheForm<dim>& form);
 
+/// No bound of u, for this reason, with the values of the quantities and what follows of them from
+/// equilibrium alone. Throws InputError for quantities that the problem does not have. All ranks together.
+template <int dim>
+[[nodiscard]] EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                          std::span<const problem::Quantity<dim>> quantities,
+                                          const std::string& reason);
+
 template <int dim>
 class QuantityBounds;
 
