@@ -100,8 +100,7 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
   CLI::App* schema = app.add_subcommand("schema", "Print the case format as a JSON Schema, for editors");
   for (CLI::App* command : {init, info, schema}) command->group(program_commands);
-  CLI::App* check =
-      app.add_subcommand("check", "Read and examine a case without solving it, say what to mend");
+  CLI::App* check = app.add_subcommand("check", "Check a case without solving it and report what to correct");
   CLI::App* run = app.add_subcommand("run", "Solve a case and write its results");
   CLI::App* verify = app.add_subcommand(
       "verify", "Compare the bound of a case with the error it bounds (slow: for small cases)");

@@ -30,7 +30,7 @@ void request_stop(int)
 void report_crash(int)
 {
   constexpr std::string_view text =
-      "tribound: crashed, which it should not do whatever the input: please report the case\n"
+      "tribound: crashed: an internal error, please report the case\n"
       "  hint: are numbers absurdly large or small? Results written before hold\n";
   (void)!::write(STDERR_FILENO, text.data(), text.size());
   ::_exit(static_cast<int>(ExitCode::failed));

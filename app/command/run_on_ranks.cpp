@@ -83,9 +83,8 @@ case_file::Config restarted_config(const CaseRequest& request, const Checkpoint&
                      "a run goes on with its degree");
   if (config.history.has_value() == checkpoint.path.empty())
     throw InputError({.file = config.file},
-                     checkpoint.path.empty()
-                         ? "goes over load steps, but the run of the checkpoint did not"
-                         : "has no load steps, but the run of the checkpoint goes over some",
+                     checkpoint.path.empty() ? "has load steps, but the run of the checkpoint had none"
+                                             : "has no load steps, but the run of the checkpoint had some",
                      "a run goes on with [history], or without");
   return config;
 }

@@ -159,7 +159,7 @@ DECEITS = {
 def crash_is_found(directory):
     """A program that ends as app/interrupt.cpp lets it."""
     fake = directory / "crashing"
-    fake.write_text("#!/bin/sh\necho 'tribound: crashed, which it should not do' >&2\nexit 2\n")
+    fake.write_text("#!/bin/sh\necho 'tribound: crashed: an internal error' >&2\nexit 2\n")
     fake.chmod(0o755)
     return program.misbehaviour(program.run(fake, ["run", "case.toml"], directory))[:1]
 

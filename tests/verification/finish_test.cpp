@@ -212,7 +212,7 @@ TEST(Finish, AFailureNamesWhatContactAloneHolds)
   };
   const certify::Verdict on_floor = failure(loaded<2>("left", 0, 0));
   EXPECT_EQ(on_floor.status, certify::RunStatus::failed);
-  EXPECT_NE(on_floor.reason.find("; contact that alone holds a body may have opened or slid"),
+  EXPECT_NE(on_floor.reason.find("; the contact that holds a body may have opened or slid"),
             std::string::npos)
       << on_floor.reason;
   EXPECT_EQ(failure(clamped<2>("left")).reason.find("slid"), std::string::npos);

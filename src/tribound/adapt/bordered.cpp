@@ -113,7 +113,7 @@ std::string Bordered<dim>::operator()(const FormAt& form_at, const PathMeasure<d
       if (observer) observer(step);
     }
     if (now.norm <= tolerance && std::abs(now.measure - target) <= options.measure_tolerance) return {};
-    if (!std::isfinite(now.norm) || !std::isfinite(now.measure)) return "its iterates grow beyond all bounds";
+    if (!std::isfinite(now.norm) || !std::isfinite(now.measure)) return "its iterates diverge";
     if (k == options.max_steps)
       return fmt::format("{} steps of Newton's method for u and t are not enough", k);
     step = {.step = k + 1, .degree = now.form->space().degree(), .gamma0 = now.form->gamma0()};
@@ -121,7 +121,7 @@ std::string Bordered<dim>::operator()(const FormAt& form_at, const PathMeasure<d
     const State then(form_at(later.t), later, measure);
     move(now, then, measure, target, options, point, step);
     step.seconds = seconds_since(begin);
-    if (!std::isfinite(point.t)) return "what is given does not change with t there";
+    if (!std::isfinite(point.t)) return "the prescribed data do not change with t there";
     if (!(std::abs(point.t - options.t_before) <= options.largest_change))
       return fmt::format("t would change by more than {:.6g}, the largest step of the list",
                          options.largest_change);

@@ -16,7 +16,7 @@ std::string words_of_hold(const contact::NitscheForm<dim>& form)
   const auto is_tied = [](const problem::Contact* contact) { return problem::cone(contact->law).is_tied; };
   if (std::ranges::any_of(form.problem().contacts(), is_tied)) return {};
   if (certify::FreeMotions<dim>(form.problem(), form.space().mesh()).size() == 0) return {};
-  return "; contact that alone holds a body may have opened or slid";
+  return "; the contact that holds a body may have opened or slid";
 }
 
 template <int dim>

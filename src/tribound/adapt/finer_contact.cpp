@@ -160,7 +160,7 @@ void require_carried(const contact::NitscheForm<dim>& form, std::span<const doub
     is_other =
         is_other || !(std::abs(norm(after[c]) - norm(before[c])) <= share * norm(before[c]) + rounding[c]);
   if (form.space().mesh().ranks().any(is_other))
-    throw SolveError("the solution has another energy on the finer mesh that it is carried to");
+    throw SolveError("the solution changes its energy when it is transferred to the finer mesh");
 }
 
 template <int dim>

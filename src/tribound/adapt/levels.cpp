@@ -182,8 +182,8 @@ certify::Verdict Levels<dim>::judge(const CertifiedLevel<dim>& level) const
       certify::judge(level.estimate, level.identities, method_.degree, level.norms, tolerance_);
   if (level.tightened && !certify::is_bound(verdict.status))
     verdict.reason +=
-        "; solving the systems anew as far as rounding lets them be, with solver.tolerance = 0, did not mend "
-        "it: are materials of very different stiffness, nu near 0.5 or very flat cells involved?";
+        "; solving the systems again to rounding accuracy (solver.tolerance = 0) did not help: check for "
+        "materials of very different stiffness, nu near 0.5 and very flat cells";
   return verdict;
 }
 

@@ -100,7 +100,7 @@ std::string LoadPath<dim>::try_step(const Attempt& attempt, const StepObserver& 
   step->reference_force = position_.reference_force;
   solve_with_crack(*step, attempt, observer);
   if (!step->level.solved()) return step->level.failure;
-  if (has_run_away(step->level.steps, method_)) return "the displacement grows beyond all bounds";
+  if (has_run_away(step->level.steps, method_)) return "the displacement diverges";
   if (attempt.fault)
     if (std::string why = attempt.fault(step->at->discrete.form, step->level.u); !why.empty()) return why;
   commit(std::move(step));

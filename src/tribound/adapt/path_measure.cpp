@@ -89,9 +89,11 @@ int gauged_boundary(const problem::Problem<dim>& problem, const Gauge& gauge)
   for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries()) names.push_back(boundary.name);
   const int tag = problem::group_number(gauge.boundary, names, gauge.where, "boundary");
   if (gauge.component.value_or(0) >= dim)
-    throw InputError(gauge.where, "names the third component of two", "one of " + gauge.boundary + ".x, .y");
+    throw InputError(gauge.where, "has a z component, but the case is 2D",
+                     "one of " + gauge.boundary + ".x, .y");
   if (!gauge.component && problem.contact(tag) == nullptr)
-    throw InputError(gauge.where, fmt::format("\"{}\" touches nothing that could open", gauge.boundary),
+    throw InputError(gauge.where,
+                     fmt::format("\"{}\" is not on a contact boundary, so it has no opening", gauge.boundary),
                      "a boundary with contact, or a component: " + gauge.boundary + ".x");
   if (!gauge.component && gauge.jump != Jump::opening && !problem.contact(tag)->base)
     throw InputError(gauge.where, fmt::format("the interface of \"{}\" has no heel", gauge.boundary),

@@ -268,7 +268,7 @@ void check_transfer(const problem::Problem<dim>& problem, const Where& where)
 {
   if (dim == 3 && !problem.pairs().empty())
     throw InputError(
-        where, "carries what contact remembers to finer meshes, which between bodies in 3D cannot be done",
+        where, "transfers the contact history to finer meshes; this is not available between bodies in 3D",
         "refine = \"replay\": the path is followed again on each mesh");
 }
 

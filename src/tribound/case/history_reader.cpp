@@ -217,12 +217,12 @@ void check_control(const TableReader& table, const Config& config)
     if (const Node* node = table.find(key)) throw InputError(node->where, problem, hint);
   };
   if (by_damage && !any_contact(config, can_be_damaged))
-    refuse("control", "goes by damage, and no interface can be damaged",
+    refuse("control", "is controlled by damage, but no interface has a bond",
            "an interface with a bond, or \"load\"");
   if (by_damage && any_contact(config, is_endo))
-    refuse("control", "goes by damage, which law = \"endo\" does not offer",
+    refuse("control", "is controlled by damage, which law = \"endo\" does not support",
            "{ displacement = ..., step = ... }");
-  if (!by_damage) refuse("damage_step", "goes with control by damage", "control = \"auto\" or \"damage\"");
+  if (!by_damage) refuse("damage_step", "requires control by damage", "control = \"auto\" or \"damage\"");
   if (program.following != adapt::Following::load)
   {
     if (std::ranges::adjacent_find(program.targets, std::ranges::not_equal_to()) == program.targets.end())
@@ -231,8 +231,8 @@ void check_control(const TableReader& table, const Config& config)
     return;
   }
   constexpr auto hint = "control = \"auto\", \"damage\" or { displacement = ..., step = ... }";
-  refuse("stop", "is for paths that go on after the values of t", hint);
-  refuse("then", "is for paths that go on after the values of t", hint);
+  refuse("stop", "requires a path that continues after the values of t", hint);
+  refuse("then", "requires a path that continues after the values of t", hint);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ problem::ContactLaw read_joint(const TableReader& table)
   table.read("cohesion", joint.cohesion);
   table.read("slip_length", joint.slip_length);
   if (const Node* slip_length = table.find("slip_length"); slip_length != nullptr && joint.cohesion == 0)
-    throw InputError(slip_length->where, "without cohesion there is nothing to lose by slip",
+    throw InputError(slip_length->where, "slip_length requires a cohesion",
                      "cohesion = 0.7 beside it, or neither");
   table.read("coefficient", joint.coefficient);
   table.read("stick", joint.stick);

@@ -104,7 +104,7 @@ Node& item_of(Node::Array& items, const Entry& entry, const Where& array)
     throw InputError(
         entry.where,
         fmt::format("{} is an array of {}, where \"{}\" is no item", array.key, items.size(), entry.name),
-        fmt::format("{}.0 is the first one", array.key));
+        fmt::format("{}.0 is the first item", array.key));
   return items[number];
 }
 

@@ -148,7 +148,7 @@ problem::Contact read_pair_law(const TableReader& table)
   const Node* interface = table.find("interface");
   if (interface == nullptr) return problem::Contact(read_law(table, problem::law_kinds()), std::nullopt);
   if (const Node* other = table.excluded_by("interface"))
-    throw InputError(other->where, "stands beside interface", "it belongs into the table of interface");
+    throw InputError(other->where, "stands beside interface", "move it to the interface table");
   return read_interface(TableReader(*interface, interface_table()), std::nullopt);
 }
 
@@ -163,7 +163,7 @@ ContactConfig read_pair(const Node& node)
     table.read("gap", config.contact.gap);
   else if (const Node* gap = table.find("gap"))
     throw InputError(gap->where, "does not belong to friction = \"tied\"",
-                     "what is tied moves as one, whatever lies between");
+                     "tied sides move together, whatever the gap between them");
   else
     config.contact.gap = problem::Field(0.0, node.where);
   config.geometry = read_pair_geometry(table);

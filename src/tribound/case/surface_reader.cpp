@@ -120,7 +120,7 @@ SurfaceConfig read_surface(const Entry& entry, bool is_obstacle, const std::file
   SurfaceConfig surface{.name = entry.name, .where = entry.where};
   const std::string hint = fmt::format("one of them: {}", fmt::join(one_table(is_obstacle).one_of, ", "));
   const std::string given = table.only(hint, "another surface");
-  if (given.empty()) throw InputError(entry.where, "says nothing of the surface", hint);
+  if (given.empty()) throw InputError(entry.where, "does not define a surface", hint);
   surface.kind = static_cast<Kind>(std::ranges::find(kind_names, given) - kind_names.begin());
   const Node* found = table.find(given);
   surface.kind_where = found->where;
@@ -139,7 +139,7 @@ SurfaceConfig read_surface(const Entry& entry, bool is_obstacle, const std::file
     case Kind::distance:
       surface.distance = read_formula(*found);
       if (problem::Field(surface.distance, found->where).uses_time())
-        throw InputError(found->where, "names t, the load factor, and obstacles do not move",
+        throw InputError(found->where, "contains the load factor t, but obstacles do not move",
                          "a gap that names t, such as gap = \"0.1*t\", in place of the obstacle");
       break;
     case Kind::surface:

@@ -154,7 +154,7 @@ problem::Field to_field(const Node& node)
     fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
   const double number = to_number(node);
   if (std::abs(number) > reasonable.upper)
-    throw InputError(node.where, fmt::format("is beyond all physics, {}", number),
+    throw InputError(node.where, fmt::format("is too large to compute with: {}", number),
                      "its square must be a number, too: take other units");
   return problem::Field(number, node.where);
 }

@@ -117,7 +117,7 @@ void read_water(const TableReader& interface, problem::Contact& contact)
   const TableReader table(*node, water_table());
   if (const Node* other = table.excluded_by("pressure"))
     throw InputError(other->where, "stands beside pressure",
-                     "water is given by its pressure or by its levels; heel and toe for the figures stand "
+                     "give water by its pressure or by its levels; heel and toe for the figures belong "
                      "beside water");
   if (table.has("pressure"))
   {
@@ -126,7 +126,7 @@ void read_water(const TableReader& interface, problem::Contact& contact)
   }
   for (const char* key : {"heel", "toe"})
     if (const Node* other = interface.find(key))
-      throw InputError(other->where, "stands beside water that has its own",
+      throw InputError(other->where, "is also given in water",
                        "the line of the water is that of the figures, too");
   problem::Seepage seepage = read_seepage(table);
   contact.base = seepage.line;

@@ -28,7 +28,7 @@ std::string fault(const Joint& law)
   if (!(law.slip_length > 0)) return "the slip length must be positive";
   if (std::isfinite(law.slip_length) && law.cohesion <= 0) return "a slip length needs a cohesion";
   if (law.stick && law.tension.strength <= 0) return "what sticks until it breaks needs a tensile strength";
-  return law.stick && law.cohesion > 0 ? "what sticks until it breaks has no cohesion beside that" : "";
+  return law.stick && law.cohesion > 0 ? "stick excludes a cohesion" : "";
 }
 
 double Joint::softening_slope() const

@@ -119,8 +119,8 @@ TEST(Geometry, MistakesOfSurfacesAreNamed)
 {
   const auto obstacle = [](const std::string& table)
   { return message(on_b("obstacle = 'o'", "[obstacle.o]\n" + table)); };
-  EXPECT_THAT(obstacle("translate = [0, 1]\n"), AllOf(HasSubstr("obstacle.o: says nothing of the surface"),
-                                                      HasSubstr("plane, circle, sphere")));
+  EXPECT_THAT(obstacle("translate = [0, 1]\n"),
+              AllOf(HasSubstr("obstacle.o: does not define a surface"), HasSubstr("plane, circle, sphere")));
   EXPECT_THAT(
       obstacle("plane = { point = [0, 0], normal = [0, 1] }\ncircle = { centre = [0, 0], radius = 1 }\n"),
       HasSubstr("case.toml:7:10: obstacle.o.circle: circle stands beside another surface"));

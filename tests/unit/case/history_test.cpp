@@ -218,7 +218,7 @@ TEST(Interface, Mistakes)
               HasSubstr("what sticks until it breaks needs a tensile strength"));
   EXPECT_THAT(
       message_of_law("law = 'joint', tensile_strength = 1, fracture_energy = 1, cohesion = 1, stick = true"),
-      HasSubstr("what sticks until it breaks has no cohesion beside that"));
+      HasSubstr("stick excludes a cohesion"));
   EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1, fracture_energy = 1, coefficient = 0.5, "
                              "unloading = 'vertical'"),
               HasSubstr("friction goes with unloading to the origin only"));

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "boundary.bottom.contact.threshold: must not be negative", ""},
         BadOverride{"boundary.top.traction.2=1",
                     "boundary.top.traction.2: boundary.top.traction is an array of 2",
-                    "boundary.top.traction.0 is the first one"},
+                    "boundary.top.traction.0 is the first item"},
         BadOverride{"boundary.top.traction.x=1",
                     "boundary.top.traction.x: boundary.top.traction is an array of 2", ""},
         BadOverride{"boundary.top.traction=[1, 2", "not valid TOML", "quotes"},

@@ -76,7 +76,7 @@ TEST_F(StepLog, StepsThatAreMissingAreNamed)
 {
   append(0, 1, "one");
   EXPECT_THAT(test::message_of([&] { (void)history(0, 2, checkpoint); }),
-              HasSubstr("checkpoint_steps.jsonl: has not the rows of load step 2"));
+              HasSubstr("checkpoint_steps.jsonl: lacks the rows of load step 2"));
 }
 
 TEST_F(StepLog, AddsUpToTheEarlierSteps)

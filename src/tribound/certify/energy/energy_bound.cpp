@@ -89,7 +89,7 @@ std::string why_no_energy_bound(const contact::NitscheForm<dim>& form)
 {
   if (std::string unfit = obstacles_unfit(form); !unfit.empty()) return unfit;
   if (form.space().mesh().ranks().any(form.history() != nullptr && form.history()->states().size() > 0))
-    return "contact remembers earlier load steps";
+    return "contact has a history of earlier load steps";
   return {};
 }
 

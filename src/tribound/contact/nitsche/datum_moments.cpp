@@ -194,9 +194,8 @@ void DatumMoments<k, dim, n>::require_bounds(const Datum<dim, n>& datum, const S
       throw InputError(
           term.value->where(),
           fmt::format("may be unbounded near the point ({:.6g})", fmt::join(x.data(), x.data() + dim, ", ")),
-          "keep it bounded, such as 1/max(x, 1e-12) for 1/x; if it is, write it so that this is seen, such "
-          "as "
-          "1/((x - 0.5)^2 + 0.01) for 1/(x^2 - x + 0.26)");
+          "bound it, such as 1/max(x, 1e-12) for 1/x; if it is bounded, rewrite it so that interval "
+          "arithmetic can show this, such as 1/((x - 0.5)^2 + 0.01) for 1/(x^2 - x + 0.26)");
   }
 }
 

@@ -48,7 +48,7 @@ std::vector<StepRows> steps_in(const std::filesystem::path& log, const LoggedSte
   if (missing < which.last)
     throw InputError(
         {.file = log.string()},
-        fmt::format("has not the rows of load step {}, which the checkpoint goes on from", missing + 1),
+        fmt::format("lacks the rows of load step {}, from which the checkpoint continues", missing + 1),
         fmt::format("keep {} in the directory of the checkpoint, or start the run anew", step_log_name));
   return steps;
 }
