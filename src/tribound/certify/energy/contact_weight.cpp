@@ -135,7 +135,8 @@ std::vector<char> ContactWeights<dim>::jumps(const contact::NitscheForm<dim>& fo
     for (int i = 0; i < dim; ++i)
       if (const auto& [facet, barycentric] = places_[k]; is_on(facet, resultant))
         for (const std::array<double, dim>& vertex : barycentric)
-          if (vertex[i] == 1) named.push_back(first_.vertices_of<dim>(facet)[i]);
+          if (vertex[i] != 0 && std::ranges::count(vertex, 0.0) > 0)  // at its ends, or those of its edge
+            named.push_back(first_.vertices_of<dim>(facet)[i]);
   std::vector<char> is_reached(result.size(), 0);
   mark_on_all_ranks(form.space().mesh().ranks(), named, is_reached);
   for (std::size_t v = 0; v < result.size(); ++v)
