@@ -125,14 +125,20 @@ std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form
   return result;
 }
 
-/// What rounding of u can mean for its energy in a cell, the root of it.
+/// What rounding of u and of coordinates, between which u changes, can mean for its energy in a cell, the
+/// root of it.
 template <int dim>
 double rounding_on(const contact::NitscheForm<dim>& form, Index cell, double largest_u)
 {
-  const problem::Material& material = form.problem().material(form.space().mesh().region(cell));
-  const mesh::CellMap<dim> map = mesh::cell_map(form.space().mesh(), cell);
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const problem::Material& material = form.problem().material(mesh.region(cell));
+  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
+  double farthest = 0;
+  for (const Index v : mesh.cell(cell)) farthest = std::max(farthest, mesh.vertex(v).cwiseAbs().maxCoeff());
+  const double derivative = form.space().degree() * map.inverse_transpose.norm();  // over values
   constexpr double unit_round_offs = 1e-13;
-  return unit_round_offs * largest_u * form.space().degree() * map.inverse_transpose.norm() *
+  constexpr double of_places = 1e-15;
+  return (unit_round_offs + of_places * farthest * derivative) * largest_u * derivative *
          std::sqrt((2 * material.mu + dim * std::abs(material.lambda)) * map.measure());
 }
 
