@@ -302,7 +302,7 @@ TEST(QuadraticGeometry, MistakesAreNamed)
   const std::string alone = on_bottom("gap = 0, shape = 'foot'", shape_table);
   EXPECT_EQ(message(alone), "");
   EXPECT_THAT(message(alone, 1), AllOf(HasSubstr("shape.foot.mesh: the mesh has no second-order facets"),
-                                       HasSubstr("-order 2")));
+                                       HasSubstr("Mesh.ElementOrder = 2")));
   EXPECT_THAT(message(on_bottom("gap = 0, shape = 'foot'", "[shape.foot]\nmesh = 'order3'\n")),
               AllOf(HasSubstr("shape.foot.mesh"), HasSubstr("order2")));
   EXPECT_THAT(message(on_bottom("gap = 0, shape = 'foot'", shape_table + "translate = [0, 1]\n")),
