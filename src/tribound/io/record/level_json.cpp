@@ -171,6 +171,8 @@ void add_load_step(Json& object, const LevelRecord& level)
   object["stored"] = step.all.stored;
   object["work"] = step.work;
   object["energy_balance"] = step.balance;
+  object["effective_normal"] = step.effective_normal;
+  object["effective_tangential"] = step.tangential;
   object["balance"] = level.balance ? balance_json(*level.balance) : Json(nullptr);
   for (const auto& [name, value] : step.watched) object["watch"][name] = value;
   object["interfaces"] = Json::object();

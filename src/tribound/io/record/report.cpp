@@ -148,6 +148,8 @@ std::optional<LoadStepRecord> last_load_step(const RunRecord& run)
   if (run.earlier.steps.empty()) return std::nullopt;
   const Json last = Json::parse(run.earlier.steps).back();
   return LoadStepRecord{.t = last.at("t"),
+                        .effective_normal = last.at("effective_normal"),
+                        .tangential = last.at("effective_tangential"),
                         .dissipated = last.at("dissipated"),
                         .rubbed = last.at("dissipated_friction"),
                         .work = last.at("work")};
