@@ -68,6 +68,7 @@ const Table& quantity_table()
   static const Table table = []
   {
     std::vector<std::string> words;
+    words.reserve(kinds.size());
     for (const KeyGroup& kind : kinds) words.emplace_back(kind.word);
     return Table{
         .name = "quantity",
