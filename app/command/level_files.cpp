@@ -73,6 +73,7 @@ void KeptLevel<dim>::write_fields(const std::filesystem::path& directory,
       level.estimate,
       {.regularised = level.delta_updates.has_value(), .paired = !discrete->form.problem().pairs().empty()});
   std::vector<io::CellField> fields;
+  fields.reserve(components.size() + further.size());
   for (const auto& [name, values] : components) fields.push_back({name, values});
   fields.insert(fields.end(), further.begin(), further.end());
   const std::array tensors = {io::equilibrated_stress_field(discrete->space, level.stress)};

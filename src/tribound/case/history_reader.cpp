@@ -38,6 +38,7 @@ std::vector<double> equal_steps(const Node& node)
   const auto to = table.get<double>("to");
   const auto count = table.get<int>("count");
   std::vector<double> steps;
+  steps.reserve(count);
   for (int i = 0; i < count; ++i)
     steps.push_back(
         i + 1 == count ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));

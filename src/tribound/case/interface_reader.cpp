@@ -99,6 +99,7 @@ std::vector<Key> constants()
 Table interface_table(const std::vector<Key>& others)
 {
   std::vector<std::string> words;
+  words.reserve(laws.size());
   for (const KeyGroup& law : laws) words.emplace_back(law.word);
   const std::vector<Key> own = {{"law", one_of(words), "\"joint\", \"mixed\" or \"endo\""},
                                 {"broken", datum()},
