@@ -62,11 +62,11 @@ class Program:
         if directory is None:
             with tempfile.TemporaryDirectory() as scratch:
                 return self.run(case, "output.vtu=false", *assignments, directory=Path(scratch), verdicts=verdicts)
-        arguments = [self.path, "run", ROOT / case, "--set", f'output.directory="{directory}"']
+        arguments = [self.path, "run", case, "--set", f'output.directory="{Path(directory).resolve()}"']
         for assignment in assignments:
             arguments += ["--set", assignment]
         before = cpu_seconds()
-        process = subprocess.run(arguments, capture_output=True, text=True, timeout=TIME_LIMIT)
+        process = subprocess.run(arguments, capture_output=True, text=True, timeout=TIME_LIMIT, cwd=ROOT)
         if process.returncode not in verdicts:
             raise SystemExit(f"{case} {' '.join(assignments)}: exit code {process.returncode}\n{process.stderr}")
         return Result(Path(directory), process.stdout, cpu_seconds() - before)
