@@ -10,7 +10,9 @@ package=$(ls "$source"/build/package/*.deb)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-lintian --fail-on error,warning "$package"
+# One package has program, library and headers (docs/decisions.md), and CPack calls ldconfig itself.
+not_meant=package-name-doesnt-match-sonames,link-to-shared-library-in-wrong-package,lacks-ldconfig-trigger,maintscript-calls-ldconfig
+lintian --fail-on error,warning --suppress-tags "$not_meant" "$package"
 
 dpkg-deb --extract "$package" "$scratch/files"
 if grep -rlF "$source" "$scratch/files"; then
