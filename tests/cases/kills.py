@@ -192,6 +192,15 @@ def scenario(name, case, before, arguments, ranks=1, stride=1):
     return problems
 
 
+def agree(one, other):
+    """Whether they differ by rounding alone: after a restart nodes come in another order, and sums with them."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(agree(value, other[key]) for key, value in one.items())
+    if isinstance(one, float) and isinstance(other, float):
+        return abs(one - other) <= 1e-8 * abs(one)
+    return one == other
+
+
 def a_check_of_the_history_that_is_killed():
     """The results are there before the check begins, and a restart that has nothing left to do makes up for it."""
     with tempfile.TemporaryDirectory() as folder:
@@ -210,7 +219,7 @@ def a_check_of_the_history_that_is_killed():
                 continue
             found = True
             tribound(folder, "--restart", "out")
-            if read_certificate(folder / "out").get("history_check") != whole:
+            if not agree(whole, read_certificate(folder / "out").get("history_check")):
                 return [f"killed at change {kill_at}: no check after a restart that had nothing left to do"]
         return [] if found else ["no place where all is there but the check"]
 
