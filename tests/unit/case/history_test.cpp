@@ -149,7 +149,7 @@ TEST(History, DirectionsFollowTheLoadFactorAndObstaclesDoNot)
   EXPECT_NEAR(n[0], 0.6, 1e-15);
   EXPECT_NEAR(n[1], -0.8, 1e-15);
   EXPECT_THAT(message("boundary.b.contact = { obstacle = 'ramp' }\n[obstacle.ramp]\ndistance = 'y - t*x'\n"),
-              HasSubstr("obstacle.ramp.distance: names t"));
+              HasSubstr("obstacle.ramp.distance: contains the load factor t"));
 }
 
 TEST(Interface, Joint)
@@ -222,7 +222,7 @@ TEST(Interface, Mistakes)
   EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1, fracture_energy = 1, coefficient = 0.5, "
                              "unloading = 'vertical'"),
               HasSubstr("friction goes with unloading to the origin only"));
-  EXPECT_THAT(message_of_law("law = 'joint', slip_length = 1"), HasSubstr("without cohesion"));
+  EXPECT_THAT(message_of_law("law = 'joint', slip_length = 1"), HasSubstr("slip_length requires a cohesion"));
   EXPECT_THAT(message_of_law("law = 'mixed', tensile_strength = 1"),
               HasSubstr("boundary.b.interface.fracture_energy: is missing"));
   EXPECT_THAT(message_of_law("law = 'endo', normal_stiffness = 0"), HasSubstr("must be positive"));
