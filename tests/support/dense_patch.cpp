@@ -1,9 +1,9 @@
 #include "support/dense_patch.h"
 
-#include <Eigen/QR>
 #include <vector>
 
 #include "support/dense_problem.h"
+#include "tribound/base/dense_factors.h"
 
 namespace tribound::test
 {
@@ -156,10 +156,7 @@ MatrixXd solve(const DenseData<dim>& given, const DensePatch<dim>& patch)
     rows.row(i) /= norm;
     rhs.row(i) /= norm;
   }
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(1e-10);
-  decomposition.compute(rows);
-  return goal + decomposition.solve(rhs - rows * goal);
+  return goal + least_norm_solution(rows, rhs - rows * goal, 1e-10);
 }
 
 }  // namespace

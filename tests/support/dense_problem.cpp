@@ -1,7 +1,8 @@
 #include "support/dense_problem.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+
+#include "tribound/base/dense_factors.h"
 
 namespace tribound::test
 {
@@ -65,13 +66,17 @@ std::vector<Motion<dim>> hardly_stopped(const DenseData<dim>& given, const Dense
       }
   }
   if (values.isZero(0)) return all;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(fixed, values);
+  // fixed x = lambda values x with values = L L^T: the eigenvectors are L^{-T} y
+  const MatrixXd lower = CholeskyFactors(values).lower();
+  const MatrixXd half = solve_lower(lower, fixed).transpose();
+  const SymmetricEigen eigen = symmetric_eigen(solve_lower(lower, half));
+  const MatrixXd vectors = solve_lower_transposed(lower, eigen.vectors);
   std::vector<Motion<dim>> result;
-  for (int k = 0; k < n && eigen.eigenvalues()[k] < 0.35 * 0.35; ++k)
+  for (int k = 0; k < n && eigen.values[k] < 0.35 * 0.35; ++k)
   {
     Motion<dim>& z = result.emplace_back(all[0]);
     z.spin.setZero();
-    for (int i = 0; i < n; ++i) z.spin += eigen.eigenvectors()(i, k) * all[i].spin;
+    for (int i = 0; i < n; ++i) z.spin += vectors(i, k) * all[i].spin;
   }
   return result;
 }

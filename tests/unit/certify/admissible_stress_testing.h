@@ -5,13 +5,14 @@
 /// stress as a dense one, by collocation: nothing here is shared with certify/energy but the meaning of
 /// coefficients.
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/certify/energy/admissible_stress.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
@@ -190,8 +191,8 @@ class DenseAdmissible
     Eigen::MatrixXd metric(n_entries, n_entries);
     for (int a = 0; a < n_entries; ++a)
       for (int b = 0; b < n_entries; ++b) metric(a, b) = compliance_of<dim>(material, unit(a), unit(b));
-    const Eigen::MatrixXd root = metric.llt().matrixU();
-    const Eigen::MatrixXd inverse = root.inverse();
+    const Eigen::MatrixXd root = CholeskyFactors(metric).lower().transpose();
+    const Eigen::MatrixXd inverse = inverse_of(root);
     Eigen::MatrixXd scaled = Eigen::MatrixXd::Zero(matrix_.rows(), matrix_.cols());
     Eigen::VectorXd target = Eigen::VectorXd::Zero(matrix_.cols());
     const Eigen::VectorXd v = coefficients_of_v();
@@ -202,11 +203,9 @@ class DenseAdmissible
         scaled.middleCols(b * block, block) += inverse(a, b) * matrix_.middleCols(a * block, block);
         target.segment(a * block, block) += root(a, b) * v.segment(b * block, block);
       }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    solver.compute(scaled);
-    rank_ = solver.rank();
-    const Eigen::VectorXd difference = solver.solve(data_vector_ - scaled * target);
+    const Eigen::ArrayXd pivots = PivotedQr(scaled).upper().diagonal().array().abs();
+    rank_ = (pivots > 1e-9 * pivots[0]).count();
+    const Eigen::VectorXd difference = least_norm_solution(scaled, data_vector_ - scaled * target, 1e-9);
     residual_ = (scaled * (target + difference) - data_vector_).norm() / data_vector_.norm();
     square_ = difference.squaredNorm();
     tau_ = v;

@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "support/dimensions.h"
+#include "tribound/base/dense_factors.h"
 
 namespace tribound::test
 {
@@ -84,8 +84,8 @@ class ControlPoint : public ::testing::Test
       if (closed) rows += along;
       if (sticks) rows += Tensor<dim>::Identity() - along;
     }
-    const Eigen::SelfAdjointEigenSolver<Tensor<dim>> eigen(rows);  // all of rows is semidefinite
-    return eigen.eigenvectors().leftCols((eigen.eigenvalues().array() < 1e-12).count());
+    const SymmetricEigen eigen = symmetric_eigen(rows);  // all of rows is semidefinite
+    return eigen.vectors.leftCols((eigen.values.array() < 1e-12).count());
   }
 
   std::mt19937 random{11};

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -149,7 +149,7 @@ class Fields
     Eigen::Matrix2d edges;
     edges << b - a, c - a;
     std::vector<double> theta(n_);
-    fem::orthonormal_values<2>(degree_ + 1, edges.partialPivLu().solve(x - a), theta);
+    fem::orthonormal_values<2>(degree_ + 1, edges.inverse() * (x - a), theta);
     Point<2> sum = Point<2>::Zero();
     for (int i = 0; i < n_; ++i)
       for (int c2 = 0; c2 < 2; ++c2) sum[c2] += field[(2 * static_cast<int>(k) + c2) * n_ + i] * theta[i];

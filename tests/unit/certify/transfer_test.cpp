@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/dimensions.h"
+#include "tribound/base/dense_factors.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
@@ -73,8 +74,8 @@ double supremum(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, i
     products += rule.weights[q] * det * phi_vector() * theta_vector().transpose();
   }
   b -= products * moments;
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse(a);  // constants are its kernel
-  return std::sqrt((b.transpose() * inverse.solve(b)).trace());
+  const Eigen::MatrixXd x = least_norm_solution(a, b);  // constants are the kernel of a
+  return std::sqrt((b.transpose() * x).trace());
 }
 
 template <class T>

@@ -3,12 +3,12 @@
 /// @file transfer_testing.h
 /// Random cells, and tractions on parts of one of their facets.
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/certify/bound/transfer.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
@@ -96,7 +96,7 @@ inline double closed_form(const mesh::Mesh<3>& mesh, const mesh::BoundaryFacet& 
   const Point<3> apex = mesh.vertices()[mesh.cell(facet.cell)[facet.local]];
   Eigen::Matrix<double, 3, 2> edges;
   edges << x1 - x0, x2 - x0;
-  const Eigen::Vector2d foot = edges.colPivHouseholderQr().solve(apex - x0);
+  const Eigen::Vector2d foot = PivotedQr(edges).solve(apex - x0);
   const double height = (apex - x0 - edges * foot).norm();
   const double double_area = mesh::cross(x1 - x0, x2 - x0).norm();
   const int n = fem::polynomial_dimension(2, degree);
@@ -129,7 +129,7 @@ inline double closed_form(const mesh::Mesh<3>& mesh, const mesh::BoundaryFacet& 
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(n, 3);
   at_points([&](double weight, const Point<2>& s, const Point<3>& t)
             { moments += weight * monomials(s) * t.transpose(); });
-  const Eigen::MatrixXd projection = gram.ldlt().solve(moments);
+  const Eigen::MatrixXd projection = CholeskyFactors(gram).solve(moments);
   double plain = 0;
   double weighted = 0;
   at_points(

@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <string>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/support/support.h"
 #include "unit/contact/rigid_motion_testing.h"
@@ -127,7 +127,7 @@ std::pair<int, int> free_motions(const mesh::MeshData<dim>& mesh, const ProblemD
     for (int i = 0; i < n; ++i)
       if (!c.form.constraints().fixed[i]) matrix(i, j) = column[i] - at_zero[i];
   }
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
+  const Eigen::VectorXd values = right_singular(matrix).values;
   return {motions, static_cast<int>((values.array() < 1e-11 * values[0]).count())};
 }
 
