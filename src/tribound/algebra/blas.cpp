@@ -13,14 +13,14 @@ namespace tribound::algebra
 namespace
 {
 
-/// A function of the process by its name; null where there is none.
+/// The function of this name in the process; null where there is none.
 template <typename Function>
 Function* find_function(const char* name)
 {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
 }
 
-/// OpenBLAS's name of the processor whose kernels it runs; empty where BLAS is another.
+/// OpenBLAS's name of the processor whose kernels it runs; empty for another BLAS.
 std::string_view kernels()
 {
   const auto name = find_function<const char*()>("openblas_get_corename");
@@ -28,7 +28,7 @@ std::string_view kernels()
 }
 
 /// The kernels for the vector instructions that this processor has; null where OpenBLAS's choice cannot be
-/// bettered.
+/// improved.
 const char* kernels_of_instructions()
 {
 #ifdef __x86_64__
@@ -60,7 +60,7 @@ void choose_blas_kernels()
   constexpr std::string_view of_unknown = "Prescott";
   const char* chosen = kernels_of_instructions();
   if (kernels() != of_unknown || !chosen || std::getenv(variable)) return;
-  // What OpenBLAS does when it is loaded, anew: it has no other way to choose.
+  // Repeats what OpenBLAS does when it is loaded: nothing else makes it choose again.
   const auto forget = find_function<void()>("gotoblas_dynamic_quit");
   const auto choose = find_function<void()>("gotoblas_dynamic_init");
   if (!forget || !choose) return;

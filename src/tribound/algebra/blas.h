@@ -8,10 +8,10 @@
 namespace tribound::algebra
 {
 
-/// OpenBLAS gives processors younger than itself the kernels of the oldest it knows, a third as fast in
-/// factorisations. Where it has done so, this makes it take those for the vector instructions that the
-/// processor has. Nothing changes with another library, a processor that it knows, or a choice by the
-/// environment variable OPENBLAS_CORETYPE. To be called before any other function of the library, on one
+/// On processors newer than itself OpenBLAS falls back to the kernels of the oldest processor it knows, a
+/// third as fast in factorisations. In that case this selects the kernels for the vector instructions that
+/// the processor has. Nothing changes with another library, a processor that OpenBLAS knows, or a choice by
+/// the environment variable OPENBLAS_CORETYPE. To be called before any other function of the library, on one
 /// thread.
 void choose_blas_kernels();
 
@@ -22,7 +22,7 @@ struct BlasFacts
 };
 [[nodiscard]] BlasFacts blas_facts();
 
-/// From now on so many threads, if the library is OpenBLAS.
+/// Sets the number of threads, if the library is OpenBLAS.
 void set_blas_threads(int n);
 
 }  // namespace tribound::algebra

@@ -15,7 +15,7 @@ using detail::wrap;
 namespace
 {
 
-/// A zero pivot means that the matrix is not positive definite; nothing else may go wrong.
+/// A zero pivot means that the matrix is not positive definite; any other failure is an error.
 bool succeeded(Mat factors)
 {
   MatFactorError error = MAT_FACTOR_NOERROR;
@@ -56,7 +56,7 @@ SparseCholesky::SparseCholesky(const SparseMatrix& a, int dim)
   const detail::Options options(false, a.sharing());
   factors_ = detail::start_cholesky(a, dim);
   if (!detail::factorise_cholesky(a, factors_.get())) return;
-  // A pivot that is no number counts as none of them; it spoils every solution.
+  // A NaN pivot counts neither as negative nor as zero, but it spoils every solution.
   const std::vector<double> ones(a.size(), 1.0);
   std::vector<double> x(a.size());
   solve(ones, x);

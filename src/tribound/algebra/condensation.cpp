@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tribound/algebra/petsc_detail.h"
-// After PETSc's other headers: it does not stand alone.
+// Must follow PETSc's other headers: it is not self-contained.
 #include <petscblaslapack.h>
 
 #include "tribound/algebra/dense.h"
@@ -19,7 +19,7 @@ using detail::check;
 namespace
 {
 
-/// The Schur complement that MUMPS leaves, column by column: a view. On one process its lower half.
+/// A view of the Schur complement that MUMPS leaves, by columns; on one process only its lower half.
 class SchurComplement
 {
  public:
@@ -68,7 +68,7 @@ Condensation::Condensation(int dim, SparseRows k, std::vector<Index> layer, std:
   set_load(b);
 }
 
-/// Ranks have their own unknowns in ascending order, and one rank after the other.
+/// The unknowns of each rank are in ascending order, one rank after the other.
 void Condensation::find_places(Index n_unknowns)
 {
   const auto number = [this](Index i)
@@ -113,7 +113,7 @@ void Condensation::factorise(const SparseMatrix& k, int dim)
   ISDestroy(&rows);
   check(error, "factorising");
   if (!detail::factorise_cholesky(k, factors_.get())) throw SolveError(not_positive);
-  check(MatMumpsSetIcntl(factors_.get(), 26, 0), "factorising");  // solves with the rest alone
+  check(MatMumpsSetIcntl(factors_.get(), 26, 0), "factorising");  // solves with the rest only
 }
 
 void Condensation::couple(const SparseRows& k)
@@ -179,7 +179,7 @@ void Condensation::condense()
       });
 }
 
-/// With the forces c of the rest on layer and trace u_0 = C_LL^{-1} c_L, g = c_G - W^T c_L.
+/// With the load c condensed onto layer and trace: u_0 = C_LL^{-1} c_L, g = c_G - W^T c_L.
 void Condensation::set_load(std::span<const double> b)
 {
   b_.assign(b.begin(), b.end());

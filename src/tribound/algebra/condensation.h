@@ -14,48 +14,47 @@
 namespace tribound::algebra
 {
 
-/// K u = b + f with symmetric K and forces f that act on the trace unknowns alone, reduced to them:
-/// S x = g + f for x = u on the trace, S = K_GG - K_GR K_RR^{-1} K_RG (R: the rest, G: the trace), and
-/// u = u_0 - W x on a layer of unknowns beside the trace. K may be singular where the trace alone holds a
-/// body.
+/// K u = b + f with symmetric K and forces f that act on the trace unknowns alone, reduced to them: S x = g +
+/// f for x = u on the trace, S = K_GG - K_GR K_RR^{-1} K_RG (R: the rest, G: the trace), and u = u_0 - W x on
+/// a layer of unknowns beside the trace. K may be singular where only the trace holds a body.
 ///
-/// MUMPS factorises K without layer and trace and leaves the Schur complement C on these; dense factors by
-/// LAPACK do the rest: S = C_GG - C_GL C_LL^{-1} C_LG, W = C_LL^{-1} C_LG. Elsewhere u follows from its
+/// MUMPS factorises K without layer and trace and leaves the Schur complement C on these. Dense factors by
+/// LAPACK then give S = C_GG - C_GL C_LL^{-1} C_LG and W = C_LL^{-1} C_LG. Elsewhere u follows from its
 /// values on layer and trace by the sparse factors.
 ///
-/// On several ranks u and b have entries for all unknowns of the rank, x and what else stands on trace or
-/// layer for those of all ranks, the same everywhere: the first has the dense matrices. All ranks call the
-/// members together.
+/// On several ranks u and b have entries for all unknowns of the rank. x and all other vectors on trace or
+/// layer have entries for the unknowns of all ranks, the same everywhere; the first rank has the dense
+/// matrices. All ranks call the members together.
 class Condensation
 {
  public:
-  /// `k`: the rows of own unknowns of K; `layer` and `trace` are distinct own unknowns, of all ranks neither
-  /// is empty. `dim` is that of the mesh and selects the ordering. Throws SolveError when K with the trace
-  /// held is not positive definite.
+  /// `k`: the rows of K of own unknowns. `layer` and `trace` are disjoint lists of own unknowns; over all
+  /// ranks neither is empty. `dim` is that of the mesh and selects the ordering. Throws SolveError when K
+  /// with the trace held is not positive definite.
   Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
                std::span<const double> b, Sharing sharing = {});
 
-  /// Unknowns of all ranks on the trace.
+  /// Number of unknowns of all ranks on the trace.
   [[nodiscard]] std::size_t n_trace() const { return n_trace_; }
-  /// Values of unknowns there, and on layer and trace.
+  /// The entries of `values` on the trace, and on layer and trace.
   [[nodiscard]] std::vector<double> on_trace(std::span<const double> values) const;
   [[nodiscard]] std::vector<double> on_layer_and_trace(std::span<const double> values) const;
   /// u on layer and trace.
   [[nodiscard]] std::vector<double> near(std::span<const double> x) const;
-  /// Gives the unknowns of this rank on layer and trace, ghosts included, their values.
+  /// Sets u at the unknowns of this rank on layer and trace, ghosts included.
   void put(std::span<const double> layer_and_trace, std::span<double> u) const;
   /// u everywhere but at ghosts: a solve with the sparse factors.
   [[nodiscard]] std::vector<double> expand(std::span<const double> x) const;
 
-  /// Another b.
+  /// Replaces b.
   void set_load(std::span<const double> b);
   /// g.
   [[nodiscard]] std::span<const double> load() const { return load_; }
   /// S x.
   [[nodiscard]] std::vector<double> multiply(std::span<const double> x) const;
-  /// d with (S + N_GG - N_GL W) d = r up to `tolerance` (absolute, Euclidean) or round-off, by LU factors;
-  /// `n` has rows on the trace, columns on trace and layer, and those of own rows count. Throws SolveError
-  /// when the matrix is singular to working precision.
+  /// Solves (S + N_GG - N_GL W) d = r up to `tolerance` (absolute, Euclidean) or round-off, by LU factors.
+  /// `n` has rows on the trace and columns on trace and layer; only rows of own unknowns count. Throws
+  /// SolveError when the matrix is singular to working precision.
   [[nodiscard]] std::vector<double> solve(const Triplets& n, std::span<const double> r,
                                           double tolerance) const;
 
@@ -77,7 +76,7 @@ class Condensation
   [[nodiscard]] std::vector<double> of_all(std::span<const Index> own, std::span<const double> values) const;
   /// K_RR^{-1} b, without layer and trace.
   [[nodiscard]] std::vector<double> solve_rest(std::span<const double> b) const;
-  /// What work() makes on the first rank, everywhere.
+  /// The result of work() on the first rank, everywhere.
   template <class Work>
   [[nodiscard]] std::vector<double> by_first(const Work& work) const;
   [[nodiscard]] std::vector<double> transposed_tangent(std::span<const Entry> n) const;
@@ -87,7 +86,7 @@ class Condensation
   int block_size_;
   std::vector<Index> layer_;            ///< own unknowns
   std::vector<Index> trace_;            ///< own unknowns
-  std::vector<std::int64_t> all_kept_;  ///< of all ranks, layer in front, as the matrix numbers its rows
+  std::vector<std::int64_t> all_kept_;  ///< of all ranks, layer first, as the matrix numbers its rows
   std::size_t n_layer_ = 0;             ///< of all ranks
   std::size_t n_trace_ = 0;             ///< of all ranks
   std::vector<int> position_;           ///< of an unknown of this rank in all_kept_; -1 for others

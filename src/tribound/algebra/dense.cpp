@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "tribound/algebra/petsc_detail.h"
-// After PETSc's other headers: it does not stand alone.
+// Must follow PETSc's other headers: it is not self-contained.
 #include <petscblaslapack.h>
 
 #include "tribound/base/norm.h"
@@ -27,7 +27,7 @@ std::vector<double> detail::solve_dense(const std::vector<double>& m, std::span<
 {
   constexpr int max_refinements = 3;
   constexpr double lost = 1e-2;     // of the right-hand side
-  constexpr double useless = 1e-6;  // of the right-hand side: as little is left by factors that are of use
+  constexpr double useless = 1e-6;  // of the right-hand side: useful factors leave no more
   std::vector<double> lu = m;
   const auto size = static_cast<PetscBLASInt>(r.size());
   std::vector<PetscBLASInt> pivots(r.size());

@@ -14,8 +14,8 @@ namespace tribound::algebra::detail
 void add_product(double a, std::span<const double> matrix, std::size_t rows, std::size_t columns,
                  bool transposed, std::span<const double> x, std::span<double> y);
 
-/// d with M d = r up to `tolerance` (absolute, Euclidean) or round-off, by LU factors; `m` is M^T. Throws
-/// SolveError when it is singular to working precision, as a tangent matrix.
+/// Solves M d = r up to `tolerance` (absolute, Euclidean) or round-off, by LU factors; `m` is M^T. Throws
+/// SolveError for a singular tangent when M is singular to working precision.
 [[nodiscard]] std::vector<double> solve_dense(const std::vector<double>& m, std::span<const double> r,
                                               double tolerance);
 

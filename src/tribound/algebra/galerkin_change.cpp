@@ -18,7 +18,7 @@ MatHandle share(Mat a)
   return MatHandle(a);
 }
 
-/// What P^T A P is put together from.
+/// The parts of P^T A P.
 struct Change
 {
   MatHandle interpolation;
@@ -40,7 +40,7 @@ std::unique_ptr<Change> split(Mat coarse, Mat interpolation, Mat changing)
   return change;
 }
 
-/// In the place of the numeric phase of the product.
+/// Replaces the numeric phase of the product.
 PetscErrorCode add_change(Mat coarse)
 {
   PetscFunctionBegin;

@@ -1,17 +1,16 @@
 #pragma once
 
 /// @file galerkin_change.h
-/// P^T A P again for a matrix of which only a part has changed.
+/// Recomputes P^T A P when only a part of A has changed.
 
 #include "tribound/algebra/petsc_detail.h"
 
 namespace tribound::algebra::detail
 {
 
-/// `coarse` is the product P^T A P by MatPtAP(), and of A nothing will change but what `changing`, whose
-/// entries are among those of A, contributes. From now on MatPtAP() with MAT_REUSE_MATRIX adds the product of
-/// that part to the rest, which is kept. The result is P^T `changing` P, valid as long as `coarse` is, for
-/// the next coarser level.
+/// `coarse` is P^T A P by MatPtAP(). From now on only the contribution of `changing` to A will change; its
+/// entries are among those of A. MatPtAP() with MAT_REUSE_MATRIX then adds the product of that part to the
+/// rest, which is kept. Returns P^T `changing` P for the next coarser level, valid as long as `coarse` is.
 [[nodiscard]] Mat renew_by_change(Mat coarse, Mat interpolation, Mat changing);
 
 }  // namespace tribound::algebra::detail

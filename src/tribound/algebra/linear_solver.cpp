@@ -17,9 +17,9 @@ using detail::check;
 namespace
 {
 
-/// When GMRES stops: at the target, when `small_enough`, if there is one, finds its residual so, after
-/// `budget` iterations, or, if `forecast` is set, as soon as the rate of convergence says that the budget
-/// will not do.
+/// GMRES stops at the target, when `small_enough` (if there is one) accepts its residual, after `budget`
+/// iterations, or, if `forecast` is set, as soon as the rate of convergence shows that the budget will not
+/// suffice.
 struct StopRule
 {
   double target;
@@ -27,11 +27,11 @@ struct StopRule
   bool forecast;
   std::function<bool(Vec)> small_enough;
   std::vector<double> history{};
-  double asked_at = HUGE_VAL;  ///< the norm of the residual when it was asked last
+  double asked_at = HUGE_VAL;  ///< the norm of the residual when small_enough was last asked
 };
 
-/// Asks when the residual is half as long as the last time: the residual itself costs a product with the
-/// matrix, and the question about as much.
+/// Asks only when the residual has halved since the last time: the residual itself costs a product with the
+/// matrix, and the test about as much.
 bool is_small_enough(KSP ksp, double residual, StopRule& rule)
 {
   constexpr double often_enough = 0.5;
@@ -48,8 +48,8 @@ PetscErrorCode stop(KSP ksp, PetscInt iteration, PetscReal residual, KSPConverge
                     void* context)
 {
   constexpr int window = 4;
-  // After a tenth of the budget, factors of another contact state have left 0.9 of the residual and more,
-  // those that pay at most 0.6 (T2D and its 3D sibling, 5k to 100k degrees of freedom).
+  // After a tenth of the budget, factors of another contact state had left 0.9 of the residual and more,
+  // those worth keeping at most 0.6 (T2D and its 3D sibling, 5k to 100k degrees of freedom).
   constexpr double hopeless = 0.8;
   auto& rule = *static_cast<StopRule*>(context);
   rule.history.push_back(residual);
@@ -88,8 +88,8 @@ bool iterate(KSP ksp, Vec b, StopRule& rule, Vec x, From from)
   return reason > 0;
 }
 
-/// GMRES iterations that cost about as much as the factorisation in `ksp`. A model of counts, not of clocks,
-/// so that a run can be repeated to the last bit.
+/// GMRES iterations that cost about as much as the factorisation in `ksp`. The model counts operations and
+/// measures no time, so that a run can be repeated to the last bit.
 int iterations_worth_a_factorisation(KSP ksp)
 {
   PC pc = nullptr;
@@ -107,8 +107,8 @@ int iterations_worth_a_factorisation(KSP ksp)
   const double n_entries = entries < 0 ? -1e6 * entries : entries;
   PetscInt n = 0;
   check(MatGetSize(factors, &n, nullptr), "querying a factorisation");
-  // Fitted to MUMPS 5.5 with OpenBLAS on one core with AVX-512, within 15 % of what was measured: 2D from
-  // 100k to 500k degrees of freedom (10 and 12 iterations), 3D from 20k to 60k (35 and 55 iterations).
+  // Fitted to MUMPS 5.5 with OpenBLAS on one core with AVX-512, within 15 % of the measurements: 2D from 100k
+  // to 500k degrees of freedom (10 and 12 iterations), 3D from 20k to 60k (35 and 55 iterations).
   constexpr double per_flop = 1.8e-11;         // seconds, in the factorisation
   constexpr double per_entry = 1.7e-8;         // of the factors, in the factorisation
   constexpr double per_entry_solve = 5.5e-10;  // of the factors, in a forward and backward solve
@@ -118,7 +118,7 @@ int iterations_worth_a_factorisation(KSP ksp)
   return std::clamp(static_cast<int>(factorisation / solve), 3, 60);
 }
 
-/// Multigrid crashes on a matrix that has become 0, or no numbers, by under- or overflow.
+/// Multigrid crashes on a matrix that underflow has made 0 or overflow infinite or NaN.
 void check_magnitude(const SparseMatrix& a)
 {
   double largest = 0;
@@ -225,8 +225,8 @@ void LinearSolver::configure_direct(const SparseMatrix& a)
   const bool symmetric = kind_ == MatrixKind::positive_definite;
   if (symmetric) check(MatSetOption(a.handle(), MAT_SPD, PETSC_TRUE), "creating a solver");
   check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU), "creating a solver");
-  // UMFPACK saves milliseconds below 10k degrees of freedom in 2D and costs 20 % more in 3D: only when asked
-  // for. It has no factorisation of symmetric matrices, nor on several ranks.
+  // UMFPACK saves milliseconds below 10k degrees of freedom in 2D and costs 20 % more in 3D, so it is used
+  // only on request. It has no symmetric factorisation, and none on several ranks.
   const bool umfpack = config_.package == DirectPackage::umfpack && !symmetric && !a.sharing();
   check(PCFactorSetMatSolverType(pc, umfpack ? MATSOLVERUMFPACK : MATSOLVERMUMPS), "creating a solver");
   if (umfpack) return;
@@ -249,8 +249,8 @@ void LinearSolver::prepare(const SparseMatrix& a, Mat product)
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_TRUE), "factorising");
 }
 
-/// Iterations after which a factorisation is the better choice, where there is one: as many as cost three of
-/// them in 3D (measured with p = 2: 90 take as long as one at 13k degrees of freedom, 130 at 28k).
+/// Iterations after which a factorisation, where there is one, is the better choice: as many as cost three
+/// factorisations in 3D (measured with p = 2: 90 take as long as one at 13k degrees of freedom, 130 at 28k).
 int LinearSolver::patience(std::int64_t n) const
 {
   return config_.method == LinearMethod::iterative
@@ -327,7 +327,7 @@ LinearSolve LinearSolver::attempt(const SparseMatrix& a, Vec b, double tolerance
                          : "GMRES with multigrid did not converge in " + std::to_string(iterations) +
                                " iterations (try [solver] method = \"direct\" or a larger max_iterations)");
   // With the interpolation kept, a new multigrid hierarchy costs 10 to 15 of its iterations (3D, 40k to
-  // 300k), where only a part changes 4 to 6.
+  // 300k), or 4 to 6 if only a part changes.
   const int of_hierarchy = changing_ ? 5 : 12;
   reuse_budget_ = direct ? iterations_worth_a_factorisation(ksp_.get()) : iterations + of_hierarchy;
   result.iterations += iterations;

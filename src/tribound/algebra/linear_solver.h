@@ -23,7 +23,7 @@ enum class LinearMethod
 {
   automatic,
   direct,     ///< LU factors of the whole matrix
-  condensed,  ///< the problem condensed onto the contact boundary, where dense LU factors do
+  condensed,  ///< the problem condensed onto the contact boundary, with dense LU factors
   iterative   ///< multigrid
 };
 
@@ -59,12 +59,12 @@ struct LinearSolve
   bool fell_back = false;   ///< whether multigrid failed and the direct solver took its place
 };
 
-/// Whether the residual b - A x is small enough; what ghosts have in it means nothing. All ranks call it
+/// Whether the residual b - A x is small enough; its entries at ghosts mean nothing. All ranks call it
 /// together.
 using ResidualTest = std::function<bool(std::span<const double>)>;
 
-/// What is known about a matrix. Of a symmetric positive definite one a direct solver computes half the
-/// factors.
+/// What is known about a matrix. If it is symmetric positive definite, a direct solver computes only half of
+/// the factors.
 enum class MatrixKind
 {
   general,
@@ -76,36 +76,36 @@ enum class MatrixKind
 /// (bench/README.md).
 inline constexpr Index direct_limit_3d = 5'000;
 
-/// Direct or iterative for a whole matrix, as configured or by dimension and size: factorisations in 2D at
-/// every size that fits, in 3D up to `direct_limit` degrees of freedom. `condensed` is taken for automatic.
+/// Direct or iterative for a whole matrix, as configured or by dimension and size: a factorisation in 2D at
+/// every size that fits, in 3D up to `direct_limit` degrees of freedom. `condensed` is treated as automatic.
 [[nodiscard]] LinearMethod choose_method(const SolverOptions& config, int dim, std::int64_t n_dofs,
                                          Index direct_limit = direct_limit_3d);
 
 /// Solves the linear systems of one Newton loop by flexible GMRES, preconditioned by a factorisation (then
 /// one iteration is the rule) or by multigrid. The preconditioner is kept for the next systems as long as the
-/// additional iterations cost less than a new one. Where multigrid was not asked for by name and fails, a
+/// additional iterations cost less than a new one. If multigrid fails and was not asked for by name, a
 /// factorisation takes its place for the rest of the loop.
 class LinearSolver
 {
  public:
-  /// For matrices of this space: multigrid goes through lower degrees and coarser meshes. All ranks call it
-  /// together, as solve().
+  /// For matrices of this space: multigrid goes through lower degrees and coarser meshes. All ranks call this
+  /// and solve() together.
   template <int dim>
   LinearSolver(const SolverOptions& config, const fem::LagrangeSpace<dim>& space,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
-  /// For any others; `nodes`: positions of the nodes; degree of freedom dim * node + component.
+  /// For other matrices; `nodes`: positions of the nodes; degree of freedom dim * node + component.
   template <int dim>
   LinearSolver(const SolverOptions& config, std::span<const Point<dim>> nodes,
                MatrixKind kind = MatrixKind::general, Index direct_limit = direct_limit_3d);
 
-  /// x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off, or whose residual the test, if
-  /// there is one, finds small enough; on several ranks with the values of ghosts. Throws SolveError when A
-  /// is singular or the iteration stalls.
+  /// Computes x with |A x - b| <= tolerance (absolute, Euclidean) up to round-off, or with a residual that
+  /// the test, if there is one, finds small enough; on several ranks x includes the values of ghosts. Throws
+  /// SolveError when A is singular or the iteration stalls.
   LinearSolve solve(const SparseMatrix& a, std::span<const double> b, double tolerance, std::span<double> x,
                     const ResidualTest& small_enough = {});
 
-  /// All matrices to come are a constant one plus this part, whose entries are among theirs and which has the
-  /// values of the matrix that is being solved with: multigrid is renewed at the cost of the part.
+  /// All matrices to come are a constant one plus `part`, whose entries are among theirs and which always has
+  /// its values for the matrix being solved with. Multigrid is then renewed at the cost of the part.
   void set_changing_part(const SparseMatrix& part) { changing_ = part.handle(); }
 
   [[nodiscard]] LinearMethod method() const { return method_; }

@@ -17,12 +17,12 @@ namespace
 
 constexpr const char* making = "making multigrid levels";
 
-/// Degrees of freedom of the coarsest space up to which it is solved by a factorisation: that costs little
-/// beside the finer levels, and aggregation of a few cells with very different materials trebles the
+/// The coarsest space is solved by a factorisation up to this many degrees of freedom: that costs little
+/// beside the finer levels, while aggregation of a few cells with very different materials trebles the
 /// iterations.
 constexpr std::int64_t factorised = 5000;
 
-/// The degrees of freedom that nothing couples: whose row is 0 beside the diagonal. Those of ghosts, too.
+/// Marks the decoupled degrees of freedom, whose row is 0 off the diagonal. Ghosts are marked, too.
 std::vector<char> decoupled(Mat a, int dim, const Sharing& sharing)
 {
   PetscInt begin = 0;
@@ -48,8 +48,8 @@ std::vector<char> decoupled(Mat a, int dim, const Sharing& sharing)
 }
 
 /// The interpolation of the nodes for every component, between the functions that vanish at the fixed degrees
-/// of freedom. Fixed ones of the coarse space, those with weight at fixed ones of the fine space, keep their
-/// largest weight alone: it belongs to no other, and P^T A P gets a diagonal there.
+/// of freedom. A coarse degree of freedom with weight at a fixed fine one is fixed. It keeps its largest
+/// weight only, which belongs to it alone, so that P^T A P gets a diagonal entry there.
 Triplets free_weights(const NodeInterpolation& nodes, int dim, const std::vector<char>& fixed)
 {
   constexpr int none = -1;
@@ -111,7 +111,7 @@ bool is(PC pc, PCType type)
   return result == PETSC_TRUE;
 }
 
-/// Products with an interpolation by aggregation and with its transpose are in single precision from now on.
+/// From now on products with an interpolation by aggregation and with its transpose are in single precision.
 void transfer_in_single(PC pc, PetscInt level, Mat interpolation)
 {
   Mat restriction = nullptr;
@@ -175,7 +175,7 @@ void Multigrid::configure(PC pc) const
     check(PCFactorSetMatSolverType(inner, MATSOLVERMUMPS), making);
     return;
   }
-  // Two cycles: as few iterations as with a factorisation on P^1.
+  // Two cycles need as few iterations as a factorisation on P^1.
   check(KSPSetType(solver, KSPRICHARDSON), making);
   check(KSPSetNormType(solver, KSP_NORM_NONE), making);
   check(KSPSetTolerances(solver, 0, 0, PETSC_DEFAULT, 2), making);
@@ -185,7 +185,7 @@ void Multigrid::configure(PC pc) const
 void Multigrid::renew(PC pc, const SparseMatrix& a)
 {
   sharing_ = a.sharing();
-  if (!hierarchy_.steps.empty() && !is(pc, PCMG)) return;  // options have made it something else
+  if (!hierarchy_.steps.empty() && !is(pc, PCMG)) return;  // options have chosen another preconditioner
   if (!made_) return make_levels(pc, a);
   Mat fine = a.handle();
   for (const Level& level : levels_)

@@ -14,24 +14,24 @@ struct _p_PC;
 namespace tribound::algebra
 {
 
-/// V-cycles over a hierarchy of spaces. A step smooths by two Chebyshev iterations with the diagonal before
-/// and after, and leads to the matrix P^T A P of the coarser space, P the inclusion. On the coarsest space
-/// stands a factorisation where it is small, otherwise smoothed aggregation with rigid body modes (PETSc's
-/// GAMG): all there is if the hierarchy has no steps. Degrees of freedom whose row is 0 beside the diagonal,
-/// those that Gamma_D fixes, stay decoupled on all levels.
+/// V-cycles over a hierarchy of spaces. Each step smooths by two Chebyshev iterations with the diagonal
+/// before and after, and passes to the matrix P^T A P of the coarser space, where P is the inclusion. The
+/// coarsest space is solved by a factorisation if it is small, otherwise by smoothed aggregation with rigid
+/// body modes (PETSc's GAMG); that is all there is if the hierarchy has no steps. Degrees of freedom whose
+/// row is 0 off the diagonal, those fixed on Gamma_D, stay decoupled on all levels.
 class Multigrid
 {
  public:
   explicit Multigrid(NodeHierarchy hierarchy) : hierarchy_(std::move(hierarchy)) {}
 
-  /// Makes `pc` this preconditioner, before its options are read.
+  /// Makes `pc` this preconditioner; to be called before its options are read.
   void configure(_p_PC* pc) const;
   /// Gives `pc` the coarse matrices of `a`, before its set-up; products with them are in single precision.
-  /// Interpolations and patterns are made for the first `a`; later ones must have its pattern.
+  /// Interpolations and patterns are made for the first `a`; later ones must have the same pattern.
   void renew(_p_PC* pc, const SparseMatrix& a);
-  /// After its set-up: products on the levels of aggregation, too, are in single precision from
-  /// now on. If `changing` is not null, the next matrices will differ from this one in that part alone, whose
-  /// entries are among theirs: renewing the levels then costs what it costs for the part.
+  /// To be called after its set-up. From now on products on the levels of aggregation are in single
+  /// precision, too. If `changing` is not null, the next matrices will differ from this one in that part
+  /// alone, whose entries are among theirs: renewing the levels then costs only what the part costs.
   void settle(_p_PC* pc, _p_Mat* changing) const;
 
  private:

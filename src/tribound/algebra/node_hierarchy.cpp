@@ -14,8 +14,8 @@ namespace
 {
 
 /// The basis function of `node`, degree q, at the node x of degree p, both given by their barycentric
-/// coordinates times the degree: prod_v binomial(q lambda_v, node_v). In integers but for the quotient, so
-/// that zeros are exact.
+/// coordinates times the degree: prod_v binomial(q lambda_v, node_v). Integer arithmetic up to the final
+/// quotient keeps zeros exact.
 template <std::size_t n>
 double weight(const std::array<int, n>& node, int q, const std::array<int, n>& x, int p)
 {
@@ -49,7 +49,7 @@ NodeInterpolation inclusion(const fem::LagrangeSpace<dim>& coarse, const fem::La
   return result;
 }
 
-/// The value of a function at a vertex from those at the vertices of a cell of a coarser mesh.
+/// Expresses the value of a function at a vertex by those at the vertices of a cell of a coarser mesh.
 struct Row
 {
   std::array<Index, 4> vertices{};
@@ -64,8 +64,8 @@ struct Row
   }
 };
 
-/// P^1 on the mesh with the first n_coarse vertices in P^1 on that with the first n_fine. A halved edge lies
-/// in one coarse cell, so that v(middle) = (v(a) + v(b)) / 2.
+/// The inclusion of P^1 on the mesh with the first n_coarse vertices in P^1 on that with the first n_fine. A
+/// halved edge lies in one coarse cell, so that v(middle) = (v(a) + v(b)) / 2.
 NodeInterpolation inclusion(const mesh::Ancestry& ancestry, Index n_coarse, Index n_fine)
 {
   std::vector<Row> rows(n_fine);
@@ -83,9 +83,9 @@ NodeInterpolation inclusion(const mesh::Ancestry& ancestry, Index n_coarse, Inde
   return result;
 }
 
-/// P^1 on the mesh and on some of those before it. A step over several meshes leaves what is between their
-/// sizes to the smoother of the finest: towards the corner of a square, with as many cells added each time,
-/// steps over 1, 2, 3, 4, 5 meshes take 12, 20, 33, 51, 76 iterations.
+/// Inclusions between P^1 on the mesh and on some of its ancestors. A step over several meshes leaves the
+/// scales between them to the smoother of the finest: with refinement towards the corner of a square, as many
+/// cells added each time, steps over 1, 2, 3, 4, 5 meshes take 12, 20, 33, 51, 76 iterations.
 std::vector<NodeInterpolation> inclusions(const mesh::Ancestry& ancestry, Index n_vertices)
 {
   constexpr std::ptrdiff_t most_meshes = 3;

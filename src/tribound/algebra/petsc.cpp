@@ -110,18 +110,17 @@ Options::Options(bool multigrid, const Sharing& sharing)
   if (multigrid)
   {
     // Graded meshes have vertices of high valence: with PETSc's single level of aggressive coarsening the
-    // second and third matrix had 2.8 times the entries of the first, and Galerkin's products took four
-    // fifths of a first step. Weak couplings must not glue aggregates together, or iterations grow by a
-    // third.
+    // second and third matrix had 2.8 times the entries of the first, and the Galerkin products took four
+    // fifths of a first step. Weak couplings must not join aggregates, or iterations grow by a third.
     for (const std::string prefix : {"-tribound_", "-tribound_mg_coarse_"})  // the second below P^p
     {
       set_default(prefix + "pc_gamg_aggressive_coarsening", "20");  // forgotten if set by a call
       set_default(prefix + "pc_gamg_threshold", "0.02");
     }
     set_default("-tribound_mg_coarse_mat_mumps_icntl_14", "40");  // see configure_mumps()
-    // Products as R A P in place of a scalable algorithm, and rows one by one: both take up to a third off.
-    // The matrices on the levels are made by PETSc, out of reach for anything but its options.
-    if (!sharing) set_default("-matptap_via", "rap");  // several ranks do not have it
+    // Triple products as R A P instead of a scalable algorithm, and rows one by one: both save up to a third.
+    // PETSc makes the matrices on the levels, so that only its options reach them.
+    if (!sharing) set_default("-matptap_via", "rap");  // not available on several ranks
     set_default("-mat_no_inode", "true");
   }
   check(PetscOptionsPush(own_), "setting solver options");
@@ -144,9 +143,9 @@ void configure_mumps(Mat factors, int dim)
 {
   check(MatMumpsSetIcntl(factors, 6, 0), "creating a solver");  // the diagonal is good: no column permutation
   check(MatMumpsSetIcntl(factors, 14, 40), "creating a solver");  // room for pivoting, percent
-  // In 2D approximate minimum fill takes a quarter of the time of PORD, the ordering that MUMPS chooses, and
-  // the factorisation 25 % less to 15 % more (p = 1, 2, 4, 100k to 900k degrees of freedom); in 3D 30 % more.
-  // PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option: see Options.
+  // In 2D approximate minimum fill takes a quarter of the time of PORD, the ordering that MUMPS chooses; the
+  // factorisation then takes 25 % less to 15 % more (p = 1, 2, 4, 100k to 900k degrees of freedom), in 3D 30
+  // % more. PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option: see Options.
   if (dim == 2) check(MatSetOptionsPrefix(factors, "tribound_2d_"), "creating a solver");
 }
 
@@ -157,7 +156,7 @@ using detail::check;
 namespace
 {
 
-/// A variable of the environment in its scope, unless it has a value already or is to have none.
+/// Sets an environment variable in its scope, unless it has a value already or the value given is empty.
 class Variable
 {
  public:
@@ -177,14 +176,14 @@ class Variable
   const char* name_;
 };
 
-/// By mpirun or a batch system, which have chosen how MPI runs.
+/// Whether mpirun or a batch system has started this process and chosen how MPI runs.
 bool is_launched()
 {
   constexpr std::array variables = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
   return std::ranges::any_of(variables, [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-/// A directory of its own; empty where there is none.
+/// Makes a directory of our own; empty if that fails.
 std::filesystem::path make_directory()
 {
   std::error_code error;
@@ -193,9 +192,9 @@ std::filesystem::path make_directory()
   return name;
 }
 
-/// Alone, Open MPI puts its files into the directory: in the common one a process that starts may fail
-/// because another one, ending, removes it. And it starts no daemon, which takes longer than MPI itself and
-/// would serve further processes only. Neither is for children.
+/// If alone, Open MPI puts its files into `directory`: in the common one a starting process may fail because
+/// an ending one removes it. It also starts no daemon, which takes longer than MPI itself and would only
+/// serve further processes. Child processes inherit neither setting.
 bool start_mpi(bool alone, const std::filesystem::path& directory)
 {
   const Variable files("OMPI_MCA_orte_tmpdir_base", directory.string());
@@ -210,7 +209,7 @@ Environment::Environment()
 {
   PetscBool has_petsc = PETSC_FALSE;
   check(PetscInitialized(&has_petsc), "starting");
-  if (!has_petsc) choose_blas_kernels();  // else BLAS may have been called
+  if (!has_petsc) choose_blas_kernels();  // otherwise BLAS may have been called already
   int has_mpi = 0;
   MPI_Initialized(&has_mpi);
   if (has_mpi == 0)
@@ -223,7 +222,7 @@ Environment::Environment()
   if (!has_petsc)
   {
     check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"),
-          "starting");  // signals are the program's
+          "starting");  // the program handles signals
     check(PetscInitializeNoArguments(), "starting");
     started_petsc_ = true;
   }

@@ -20,10 +20,10 @@ struct _p_Mat;
 namespace tribound::algebra
 {
 
-/// MPI (with threads: PT-Scotch deadlocks otherwise), PETSc and a communicator for the matrices. What the
-/// program that uses the library has started already is taken as it is, and left running; the rest ends when
-/// this is destroyed. One per process, alive as long as matrices and solvers are. Throws SolveError where MPI
-/// or PETSc do not start.
+/// MPI (with threads: PT-Scotch deadlocks otherwise), PETSc and a communicator for the matrices. Whatever the
+/// program that uses the library has started already is used as it is and left running; the rest ends when
+/// this is destroyed. One per process, alive as long as matrices and solvers are. Throws SolveError if MPI or
+/// PETSc does not start.
 class Environment
 {
  public:
@@ -54,11 +54,11 @@ struct MatDeleter
 };
 using MatHandle = std::unique_ptr<_p_Mat, MatDeleter>;
 
-/// How nodes are shared out between ranks; null: they are this process's alone.
+/// How nodes are shared out between ranks; null: this process has them all.
 using Sharing = std::shared_ptr<const fem::NodeNumbers>;
 
 /// A square sparse matrix, in PETSc. On several ranks each has the rows of its own nodes. Vectors then have
-/// entries for all unknowns of the rank; those of ghosts are not read, and 0 in results.
+/// entries for all unknowns of the rank; those of ghosts are not read, and are 0 in results.
 class SparseMatrix
 {
  public:
@@ -74,7 +74,7 @@ class SparseMatrix
   [[nodiscard]] static SparseMatrix sum(const SparseMatrix& a, const SparseMatrix& b);
   /// Unknowns of this rank, ghosts included.
   [[nodiscard]] Index size() const { return size_; }
-  /// Of all ranks, without ghosts.
+  /// Unknowns of all ranks, without ghosts.
   [[nodiscard]] std::int64_t global_size() const;
   [[nodiscard]] const Sharing& sharing() const { return sharing_; }
   [[nodiscard]] int block_size() const { return block_size_; }
@@ -90,7 +90,7 @@ class SparseMatrix
 
  private:
   SparseMatrix() = default;
-  /// On one rank: with these rows.
+  /// On one rank: a matrix like this one with these rows.
   SparseMatrix(const SparseMatrix& like, SparseRows rows);
   void create();
   void take(SparseRows rows);
@@ -99,7 +99,7 @@ class SparseMatrix
   Index size_ = 0;
   int block_size_ = 1;
   Sharing sharing_;
-  bool has_more_ = false;    ///< on several ranks: a sum whose second pattern is not within the first
+  bool has_more_ = false;    ///< on several ranks: a sum whose second pattern is not contained in the first
   SparseRows rows_;          ///< on one rank: the memory of mat_
   std::vector<int> places_;  ///< in rows_, of the entries it was made of
   MatHandle mat_;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file petsc_detail.h
-/// What the files of this folder that use PETSc share; includes PETSc's own headers.
+/// What the files of this folder that use PETSc share. Includes PETSc's own headers.
 
 #include <petscksp.h>
 
@@ -24,10 +24,10 @@ struct VecDeleter
 };
 using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 
-/// Of this process alone, and of the library alone: what other parts of the program send gets in nobody's
-/// way.
+/// A communicator of this process alone, private to the library: messages of other parts of the program do
+/// not interfere.
 [[nodiscard]] MPI_Comm communicator();
-/// The same of the ranks that share nodes.
+/// The same for the ranks that share nodes.
 [[nodiscard]] MPI_Comm communicator(const Sharing& sharing);
 
 /// A PETSc vector on the caller's memory: the entries that this process has.
@@ -35,7 +35,7 @@ using VecHandle = std::unique_ptr<_p_Vec, VecDeleter>;
 /// The same for reading: PETSc has no vectors of const.
 [[nodiscard]] VecHandle wrap(std::span<const double> values, MPI_Comm processes = communicator());
 
-/// The entries of a rank's own nodes, in their order, and back; `block_size` of each.
+/// The entries of a rank's own nodes, in their order, and back; `block_size` per node.
 template <class T>
 [[nodiscard]] std::vector<T> owned_entries(const fem::NodeNumbers& nodes, int block_size,
                                            std::span<const T> values)
@@ -54,8 +54,8 @@ void put_owned_entries(const fem::NodeNumbers& nodes, int block_size, std::span<
   for (const Index node : nodes.owned)
     for (int a = 0; a < block_size; ++a) values[block_size * node + a] = *next++;
 }
-/// Calls operation(x, y) with PETSc vectors of what this process owns of x and y, entries for all unknowns of
-/// its own: y is x's image, those of ghosts in y stay as they are.
+/// Calls operation(x, y), which computes y from x, with PETSc vectors of the entries that this process owns.
+/// The arguments x and y have entries for all its unknowns; those of ghosts in y stay as they are.
 template <class Operation>
 void on_owned_entries(const Sharing& sharing, int block_size, std::span<const double> x, std::span<double> y,
                       const Operation& operation)
@@ -67,7 +67,7 @@ void on_owned_entries(const Sharing& sharing, int block_size, std::span<const do
   operation(wrap(own_x, processes).get(), wrap(std::span(own_y), processes).get());
   put_owned_entries<double>(*sharing, block_size, own_y, y);
 }
-/// The other way: entries for all unknowns from a vector of what this process owns; 0 for those of ghosts.
+/// The reverse: entries for all unknowns from a vector of what this process owns; 0 for those of ghosts.
 [[nodiscard]] std::vector<double> from_owned_entries(const Sharing& sharing, int block_size, Vec owned);
 /// The number of an unknown in PETSc's rows.
 [[nodiscard]] inline PetscInt global_unknown(const fem::NodeNumbers& nodes, int block_size, int unknown)
@@ -81,21 +81,21 @@ void on_owned_entries(const Sharing& sharing, int block_size, std::span<const do
   return own >= 0 && own < static_cast<std::int64_t>(nodes.owned.size());
 }
 
-/// Whether destroying an object of several processes would wait for the others while this one alone may be
-/// leaving by an exception: then it stays.
+/// Whether destroying an object of several processes would wait for the others while this process alone may
+/// be leaving by an exception. Such an object is not destroyed.
 [[nodiscard]] bool waits_for_others(PetscObject object);
 
-/// What a process has of a matrix: its rows, with the columns of own unknowns and, apart, with those of
-/// others.
+/// The part of a matrix that a process has: its rows, with the columns of own unknowns and, separately, those
+/// of others.
 struct LocalBlocks
 {
   Mat own = nullptr;
-  Mat others = nullptr;               ///< null: of a sequential matrix
+  Mat others = nullptr;               ///< null for a sequential matrix
   const PetscInt* columns = nullptr;  ///< of `others`, as the whole matrix numbers them, ascending
 };
 [[nodiscard]] LocalBlocks local_blocks(Mat a);
 
-/// What attach() has left with a matrix under a key; null: nothing.
+/// What attach() has stored with a matrix under a key; null if nothing.
 template <class T>
 [[nodiscard]] T* find_attached(Mat a, const char* key)
 {
@@ -107,7 +107,7 @@ template <class T>
   return static_cast<T*>(found);
 }
 
-/// Leaves an object with a matrix, which destroys it in the end.
+/// Stores an object with a matrix, which destroys it in the end.
 template <class T>
 T& attach(Mat a, const char* key, std::unique_ptr<T> object)
 {
@@ -129,8 +129,8 @@ T& attach(Mat a, const char* key, std::unique_ptr<T> object)
   return result;
 }
 
-/// PETSc's options while it is alive: those of the process, which stay as they are, and what the library sets
-/// beside them unless the process does. Around whatever reads options: setting up solvers.
+/// PETSc's options while this is alive: those of the process, unchanged, and defaults of the library for
+/// those that the process does not set. To surround whatever reads options: setting up solvers.
 class Options
 {
  public:
@@ -145,12 +145,12 @@ class Options
   PetscOptions own_ = nullptr;
 };
 
-/// Of matrices of Newton's method that factors cannot solve with.
+/// Message for tangent matrices of Newton's method that the factors cannot solve with.
 inline constexpr const char* singular_tangent =
     "the tangent matrix is singular to working precision: contact that alone holds a body may have opened or "
     "slid (fix a displacement component, or raise nitsche.gamma0)";
 
-/// What all factorisations by MUMPS have in common; `factors` are not yet started, `dim` is that of the mesh.
+/// Settings common to all factorisations by MUMPS; `factors` are not yet started, `dim` is that of the mesh.
 void configure_mumps(Mat factors, int dim);
 /// MUMPS's Cholesky factors of a symmetric matrix without pivoting, not yet computed.
 [[nodiscard]] MatHandle start_cholesky(const SparseMatrix& a, int dim);

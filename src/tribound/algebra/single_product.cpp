@@ -19,9 +19,9 @@ namespace
 {
 
 constexpr const char* making = "making a matrix in single precision";
-constexpr const char* key = "tribound_single";  // under which it is kept with the matrix
+constexpr const char* key = "tribound_single";  // under which the blocks are kept with the matrix
 
-/// 1 / x, and 0 where that is beyond the range of numbers.
+/// 1 / x, or 0 where that is beyond the range of numbers.
 double inverse_of(double x)
 {
   return x >= std::numeric_limits<double>::min() ? 1 / x : 0;
@@ -59,7 +59,7 @@ class SingleBlocks
   /// The matrix has changed.
   void set_stale() { is_stale_ = true; }
 
-  /// y = A x, or z + A x if there is a z, which may be y.
+  /// y = A x, or z + A x if z is given; z may be y.
   void multiply(Mat a, std::span<const double> x, std::span<const double> z, std::span<double> y)
   {
     update(a);
@@ -144,7 +144,7 @@ class SingleBlocks
 #pragma omp parallel for schedule(static) num_threads(n_threads)
     for (PetscInt i = 0; i < n; ++i)
     {
-      std::array<Lanes, width> sums;  // one for each column: an addition need not wait for that before
+      std::array<Lanes, width> sums;  // one per column: additions need not wait for each other
       sums.fill(Lanes::Zero());
       for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k)
       {
@@ -168,12 +168,12 @@ class SingleBlocks
   PetscObjectState pattern_ = -1;  ///< of the matrix whose blocks these are
   std::vector<PetscInt> begin_;    ///< per block row
   std::vector<PetscInt> columns_;  ///< per block
-  std::vector<float> entries_;     ///< and room behind them for Lanes
+  std::vector<float> entries_;     ///< with padding for Lanes
   std::vector<float> x_;           ///< working space
   std::vector<PetscInt> place_;    ///< working space: of a block of the row, by its column
 };
 
-/// Those kept with the matrix.
+/// The blocks kept with the matrix.
 SingleBlocks& blocks_of(Mat a)
 {
   if (auto* blocks = find_attached<SingleBlocks>(a, key)) return *blocks;
@@ -218,7 +218,7 @@ PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
   return multiply_and_add_single(a, x, nullptr, y);
 }
 
-/// The product that a matrix had, or that of its own columns where others are with other processes.
+/// The original product of a matrix; on several processes, of its block of own columns.
 struct Exact
 {
   Mat a;

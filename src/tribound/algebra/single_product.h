@@ -1,22 +1,22 @@
 #pragma once
 
 /// @file single_product.h
-/// Products in single precision, for preconditioners: a matrix in blocks of floats is a third of its size in
-/// double precision with an index per entry, and products take as long as reading it.
+/// Products in single precision, for preconditioners. In blocks of floats a matrix has a third of its size in
+/// double precision with an index per entry, and a product takes as long as reading it.
 
 #include "tribound/algebra/petsc_detail.h"
 
 namespace tribound::algebra::detail
 {
 
-/// From now on MatMult() with this matrix is in single precision: to some 1e-7 of |A| |x|, whatever their
-/// units; on several ranks the columns of own unknowns are. To be called again when the matrix has changed.
+/// From now on MatMult() with this matrix is in single precision, accurate to some 1e-7 of |A| |x| in any
+/// units; on several ranks only the columns of own unknowns are. Call it again when the matrix has changed.
 void multiply_in_single(Mat a);
 
 /// The same for MatMultAdd(), which multigrid calls with interpolations.
 void interpolate_in_single(Mat p);
 
-/// The same for one that is needed exactly as well, while this is alive.
+/// The same, while this is alive, for a matrix that is needed exactly as well.
 class SingleProduct
 {
  public:
@@ -25,7 +25,7 @@ class SingleProduct
   SingleProduct(const SingleProduct&) = delete;
   SingleProduct& operator=(const SingleProduct&) = delete;
 
-  /// A matrix whose product is that of `a` before. Not to be used for anything else, nor later.
+  /// A matrix with the original product of `a`. For products only, and only while this is alive.
   [[nodiscard]] Mat exact() const { return exact_.get(); }
 
  private:

@@ -48,8 +48,8 @@ PetscErrorCode multiply_rows(Mat a, Vec x, Vec y)
   PetscFunctionReturn(0);
 }
 
-/// From now on products with this matrix use threads, if there are more than one and it is large; PETSc's own
-/// use one. The same result for any number of them.
+/// From now on products with this matrix use threads, if there are several and the matrix is large; PETSc's
+/// own use one. The result does not depend on their number.
 void multiply_in_threads(Mat a)
 {
   constexpr PetscInt worth_threads = 10'000;
@@ -74,7 +74,7 @@ void SparseMatrix::create()
   check(MatSetBlockSize(mat, block_size_), "creating a matrix");
 }
 
-/// Once it has entries: on several ranks PETSc 3.18 crashes where the first option comes earlier.
+/// Called once there are entries: on several ranks PETSc 3.18 crashes if the first option is set earlier.
 void SparseMatrix::settle()
 {
   check(MatSetOption(mat_.get(), MAT_USE_INODES, PETSC_FALSE),
@@ -189,7 +189,7 @@ std::vector<double> SparseMatrix::diagonal() const
 namespace
 {
 
-/// PETSc learns that the values have changed.
+/// Tells PETSc that the values have changed.
 void tell_changed(Mat mat)
 {
   PetscScalar* values = nullptr;
@@ -216,7 +216,7 @@ void SparseMatrix::set_values(std::span<const double> values)
 namespace
 {
 
-/// Rows and columns of a matrix, given back at the end.
+/// Rows and columns of a matrix, returned to PETSc on destruction.
 class Pattern
 {
  public:
@@ -254,7 +254,7 @@ class Pattern
   PetscBool done_ = PETSC_FALSE;
 };
 
-/// As far as this process has them.
+/// Whether the pattern of `a` contains that of `b`, as far as this process has them.
 bool contains_pattern(Mat a, Mat b)
 {
   const detail::LocalBlocks of_a = detail::local_blocks(a);

@@ -10,7 +10,7 @@
 namespace tribound::algebra
 {
 
-// Contact has many entries for one place: a marker for each column tells sooner than a sort which they are.
+// Contact has many entries for one place: a marker per column finds them faster than a sort.
 SparseRows pattern_of(Index n, const Triplets& entries, std::vector<int>& places)
 {
   const auto counts = [&](std::size_t k) { return entries.rows[k] >= 0 && entries.cols[k] >= 0; };
@@ -25,7 +25,7 @@ SparseRows pattern_of(Index n, const Triplets& entries, std::vector<int>& places
     if (counts(k)) by_row[next[entries.rows[k]]++] = static_cast<int>(k);
 
   SparseRows rows;
-  std::vector<int> place(n, -1);  // of a column in this row; less than `first`: it is not in it yet
+  std::vector<int> place(n, -1);  // of a column in this row; less than `first`: not yet in the row
   for (Index i = 0; i < n; ++i)
   {
     const std::span<const int> in_row(by_row.data() + begin[i], by_row.data() + begin[i + 1]);
@@ -62,7 +62,7 @@ SparseRows sum(const SparseRows& a, const SparseRows& b)
 namespace
 {
 
-/// Adds row i of `a` to that of `sum`, which has its columns.
+/// Adds row i of `a` to that of `sum`, which contains its columns.
 void add_row(const SparseRows& a, std::size_t i, SparseRows& sum)
 {
   int place = sum.begin[i];

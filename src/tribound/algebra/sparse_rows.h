@@ -12,14 +12,14 @@
 namespace tribound::algebra
 {
 
-/// The pattern of n rows of entries, with values 0. `places`: of each entry in it, -1 of those that do not
-/// count.
+/// The pattern of `entries` as n rows, with values 0. `places`: the position of each entry in it, -1 for
+/// those that do not count.
 [[nodiscard]] SparseRows pattern_of(Index n, const Triplets& entries, std::vector<int>& places);
 
 /// a + b, whose pattern is the union of theirs.
 [[nodiscard]] SparseRows sum(const SparseRows& a, const SparseRows& b);
 
-/// The same again with other values, into what sum(a, b) has returned.
+/// The same for other values of a and b, stored in a result of sum(a, b).
 void assign_sum(const SparseRows& a, const SparseRows& b, SparseRows& result);
 
 }  // namespace tribound::algebra

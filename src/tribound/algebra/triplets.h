@@ -50,14 +50,14 @@ struct SparseRows
   std::vector<int> columns;
   std::vector<double> values;
 
-  /// To the last row.
+  /// Adds an entry to the last row.
   void add(int column, double value)
   {
     columns.push_back(column);
     values.push_back(value);
   }
   void end_row() { begin.push_back(static_cast<int>(columns.size())); }
-  /// The rows of another after these.
+  /// Appends the rows of another matrix.
   void append(const SparseRows& more)
   {
     const int shift = begin.back();

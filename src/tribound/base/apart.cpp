@@ -25,14 +25,14 @@ namespace tribound
 namespace
 {
 
-/// The most of its output that is kept, and what is left when it is cut.
+/// Output longer than most_output is cut to its last kept_output bytes.
 constexpr std::size_t most_output = 1 << 17;
 constexpr std::size_t kept_output = 1 << 16;
 
 /// How long the parent waits before it looks at its flag and its clock again.
 constexpr int tick_milliseconds = 50;
 
-/// Both ends of a pipe, closed when done with.
+/// Both ends of a pipe, closed on destruction.
 class Pipe
 {
  public:
@@ -83,14 +83,14 @@ void limit(decltype(RLIMIT_AS) resource, double most)
   ::setrlimit(resource, &current);
 }
 
-/// Of the address space, beyond what is in use.
+/// Limits the address space to what is in use and `bytes` more.
 void limit_memory(double bytes)
 {
   if (const double in_use = address_space(); in_use > 0) limit(RLIMIT_AS, in_use + bytes);
 }
 
-/// Crashes end the child and nothing else: handlers of this program or of a library (MPI would abort all its
-/// processes) are not for it. An interrupt is for the parent to judge, with whom the child ends.
+/// A crash must end the child alone: the signal handlers of this program and of libraries (MPI would abort
+/// all its processes) are reset. Interrupts are for the parent to handle; the child ends with it.
 void prepare_child(pid_t parent, double memory)
 {
   for (const int signal :
@@ -120,7 +120,7 @@ void write_all(int file, const char* bytes, std::size_t size)
   }
 }
 
-/// The size of the result, then the result.
+/// Runs `work`, then writes the size of the result and the result.
 [[noreturn]] void be_child(const std::function<std::string()>& work, int result_end, int output_end)
 {
   ::dup2(output_end, STDOUT_FILENO);
@@ -143,7 +143,7 @@ bool take(int file, std::string& to)
   return n > 0 || (n < 0 && errno == EINTR);
 }
 
-/// Reads both pipes until they end, or a limit does.
+/// Reads both pipes until they end or a limit is reached.
 ApartEnd listen(int result_end, int output_end, const ApartLimits& limits, ApartOutcome& outcome)
 {
   std::array<pollfd, 2> files = {pollfd{result_end, POLLIN, 0}, pollfd{output_end, POLLIN, 0}};

@@ -34,16 +34,16 @@ struct ApartOutcome
   int status = 0;        ///< as of waitpid()
 };
 
-/// Runs `work` in a copy of this process (fork), and hands over what it returns; its output on stdout and
-/// stderr is kept, not shown. `work` must not throw, nor use threads or OpenMP teams that this process has
-/// started. The copy is gone when this returns, and ends with this process should that be killed. Throws
-/// SolveError where the system has no process to give.
+/// Runs `work` in a copy of this process (fork) and returns its result; its output on stdout and stderr is
+/// kept, not shown. `work` must not throw, nor use threads or OpenMP teams that this process has started. The
+/// copy is gone when this returns, and ends with this process if that is killed. Throws SolveError if the
+/// system cannot start a process.
 [[nodiscard]] ApartOutcome run_apart(const std::function<std::string()>& work,
                                      const ApartLimits& limits = {});
 
-/// For `work` that knows by itself how much it may need: from now on this process gets at most so many bytes
-/// of memory more, beyond which allocations fail, and ends as ApartEnd::out_of_time after so many seconds of
-/// CPU time more. Infinity: no limit. Limits that are lower already stay.
+/// For `work` that knows how much it needs: from now on this process can allocate at most `memory` bytes
+/// more, and ends as ApartEnd::out_of_time after `seconds` more of CPU time. Infinity: no limit. Lower limits
+/// already in force stay.
 void limit_from_here(double memory, double seconds);
 
 /// "was ended by signal 11 (Segmentation fault)", "ended with exit code 1"; empty for success.

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file dense_factors.h
-/// Factors, inverses and eigenvalues of small dense matrices, by Eigen. Its decompositions take long to
-/// compile: they stand behind this interface and are compiled once.
+/// Factors, inverses and eigenvalues of small dense matrices, by Eigen. Eigen's decompositions are slow to
+/// compile; behind this interface they are compiled once.
 
 #include <Eigen/Core>
 #include <memory>
@@ -17,7 +17,7 @@ class CholeskyFactors
   CholeskyFactors() = default;
   explicit CholeskyFactors(const Eigen::MatrixXd& a);
 
-  /// Whether A was positive definite; what follows assumes it.
+  /// Whether A was positive definite; the other members assume it.
   [[nodiscard]] bool is_definite() const { return is_definite_; }
   /// The lower triangular L.
   [[nodiscard]] const Eigen::MatrixXd& lower() const { return lower_; }
@@ -33,18 +33,18 @@ class CholeskyFactors
 [[nodiscard]] Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& b);
 [[nodiscard]] Eigen::MatrixXd solve_lower_transposed(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& b);
 
-/// A^{-1} b by LU factors with partial pivoting; A is regular.
+/// A^{-1} b by LU factors with partial pivoting; A is nonsingular.
 [[nodiscard]] Eigen::MatrixXd solve_regular(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// A^{-1} by LU factors with partial pivoting; A is regular.
+/// A^{-1} by LU factors with partial pivoting; A is nonsingular.
 [[nodiscard]] Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& a);
 
-/// The x with the least |x| among those with the least |A x - b|. Columns that depend on others up to
-/// `threshold`, relative to the largest pivot, count as dependent; 0: up to rounding.
+/// The least-squares solution with the least norm: the least |x| among those with the least |A x - b|.
+/// Columns count as linearly dependent up to `threshold`, relative to the largest pivot; 0: up to rounding.
 [[nodiscard]] Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
                                                   double threshold = 0);
 
-/// A P = Q R by reflections, the longest rest of a column first.
+/// A P = Q R by reflections with column pivoting: the longest remaining column first.
 class PivotedQr
 {
  public:
@@ -59,7 +59,7 @@ class PivotedQr
   [[nodiscard]] Eigen::MatrixXd permuted(const Eigen::MatrixXd& x) const;
   /// Q x, reflection by reflection.
   [[nodiscard]] Eigen::MatrixXd times_q(Eigen::MatrixXd x) const;
-  /// An x with the least |A x - b|, 0 in columns that depend on others.
+  /// A least-squares solution x, 0 in columns that depend on others.
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
 
  private:
@@ -74,7 +74,7 @@ struct SymmetricEigen
   Eigen::MatrixXd vectors;
 };
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
-/// Of a tridiagonal matrix.
+/// The same for a tridiagonal matrix.
 [[nodiscard]] SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal,
                                                const Eigen::VectorXd& off_diagonal);
 /// Its eigenvalues alone.

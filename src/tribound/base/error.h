@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file error.h
-/// The exceptions of Tribound: one for what the user can mend, one for a computation that failed.
+/// The exceptions of Tribound: one for errors that the user can fix, one for computations that failed.
 
 #include <span>
 #include <stdexcept>
@@ -11,7 +11,7 @@
 namespace tribound
 {
 
-/// Where in the input something stands. Fields that do not apply are empty or 0.
+/// A place in the input. Fields that do not apply are empty or 0.
 struct Where
 {
   std::string file{};  ///< case file, mesh file, or "--set"

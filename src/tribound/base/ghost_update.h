@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file ghost_update.h
-/// Values of what several ranks have, from its owner to the others.
+/// Copies the values of items that several ranks have from their owners to the others.
 
 #include <cassert>
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace tribound
 {
 
-/// Items, such as cells or nodes, of which a rank owns some and has copies of some that others own: ghosts.
+/// Items such as cells or nodes. A rank owns some, and has copies (ghosts) of some that other ranks own.
 class GhostUpdate
 {
  public:
@@ -43,7 +43,7 @@ class GhostUpdate
     set_neighbours(sent, received);
   }
 
-  /// values[n_per_item * item + i] of every ghost become those of its owner. The neighbours call it together.
+  /// Sets values[n_per_item * item + i] of every ghost to its owner's. The neighbours call it together.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void operator()(std::span<T> values, int n_per_item = 1) const
@@ -52,7 +52,7 @@ class GhostUpdate
   }
 
  private:
-  /// What goes to or comes from another rank.
+  /// The items that go to or come from another rank.
   struct Neighbour
   {
     int rank;

@@ -15,8 +15,8 @@ namespace tribound
 namespace
 {
 
-/// The smallest number that the files `name` hold in `mount` and the folders from there to `mount`/`group`;
-/// infinity where they say "max" or are not there.
+/// The smallest number in the files `name` of `mount` and of the folders from there to `mount`/`group`;
+/// infinity where they say "max" or do not exist.
 double smallest_limit(const std::filesystem::path& mount, const std::filesystem::path& group,
                       const char* name)
 {

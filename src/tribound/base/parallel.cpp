@@ -28,7 +28,7 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, i
 #pragma omp parallel for schedule(dynamic, grain) if (n > worth_threads * grain)
   for (std::size_t i = 0; i < n; ++i)
   {
-    if (i > failed) continue;  // of no interest any more
+    if (i > failed) continue;  // no longer of interest
     try
     {
       body(i);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file parallel.h
-/// Loops shared out to threads.
+/// Loops distributed to threads.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,16 +13,16 @@ namespace tribound
 
 /// How many threads OpenMP offers here.
 [[nodiscard]] int max_threads();
-/// From now on at most so many.
+/// From now on at most `n` threads.
 void set_max_threads(int n);
 
-/// body(i) for i = 0, ..., n - 1, shared out to the threads that OpenMP offers, `grain` at a time, if there
-/// are enough of them. Of the exceptions thrown, the one with the smallest i is thrown on, so that a message
-/// does not depend on the number of threads.
+/// body(i) for i = 0, ..., n - 1, distributed to the threads that OpenMP offers, `grain` at a time, if n is
+/// large enough. Of the exceptions thrown, that of the smallest i is rethrown, so that a message does not
+/// depend on the number of threads.
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, int grain = 64);
 
-/// zero + term(0) + ... + term(n - 1), shared out to threads. The order of the sum depends on n alone, and so
-/// does its round-off.
+/// zero + term(0) + ... + term(n - 1), distributed to threads. The order of the sum depends on n alone, and
+/// so does its round-off.
 template <class Sum, class Term>
 [[nodiscard]] Sum parallel_sum(std::size_t n, const Sum& zero, const Term& term)
 {
@@ -41,7 +41,7 @@ template <class Sum, class Term>
 }
 
 /// work(i) for i = 0, ..., n - 1, each in a thread of its own. Of the exceptions thrown, that of the smallest
-/// i is thrown on.
+/// i is rethrown.
 void in_threads(int n, const std::function<void(int)>& work);
 
 }  // namespace tribound

@@ -38,7 +38,7 @@ struct Ranks::Communicator
 
   MPI_Comm handle = MPI_COMM_NULL;
   MPI_Comm ending = MPI_COMM_NULL;   ///< for all_arrive()
-  MPI_Comm machine = MPI_COMM_NULL;  ///< of the ranks on one
+  MPI_Comm machine = MPI_COMM_NULL;  ///< of the ranks on the same machine
 };
 
 namespace
@@ -56,7 +56,7 @@ enum class Kind : char
   other
 };
 
-/// An exception as it travels: its kind and texts, each with a 0 behind it.
+/// A serialised exception: its kind and its texts, each terminated by a 0.
 class Report
 {
  public:

@@ -21,37 +21,38 @@
 namespace tribound
 {
 
-/// The processes (ranks) that compute together. All of them call a member together, in the same order; what
-/// decides over that must be a result of one or the same everywhere. On one rank each member is the identity.
+/// The processes (ranks) that compute together. The members are collective: all ranks call them in the same
+/// order. Whatever decides on a call must be the result of such a call or the same on all ranks. On one rank
+/// each member is the identity.
 class Ranks
 {
  public:
   /// This process alone.
   Ranks() = default;
-  /// All that were started together. MPI runs already, and longer than this and its copies are used.
+  /// All processes that were started together. MPI must be running, and must outlive this and its copies.
   [[nodiscard]] static Ranks world();
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] bool is_first() const { return rank_ == 0; }
 
-  /// Sums over the ranks, number by number, added in their order: the same bits everywhere.
+  /// Entrywise sums over the ranks, added in rank order: the same bits everywhere.
   void sum(std::span<double> x) const;
   [[nodiscard]] double sum(double x) const;
   void sum(std::span<std::int64_t> x) const;
   [[nodiscard]] std::int64_t sum(std::int64_t x) const;
-  /// Over the ranks before this one.
+  /// Sum over the ranks before this one.
   [[nodiscard]] std::int64_t before(std::int64_t x) const;
-  /// The largest over the ranks, number by number.
+  /// Entrywise maxima over the ranks.
   void max(std::span<double> x) const;
   [[nodiscard]] double max(double x) const;
-  /// Over the ranks on the same machine as this one.
+  /// Sum over the ranks on the same machine as this one.
   [[nodiscard]] double sum_on_machine(double x) const;
   [[nodiscard]] bool any(bool x) const;
-  /// What the first rank says: clocks, memory and signals differ.
+  /// The value of the first rank, for what differs between ranks: clocks, memory and signals.
   [[nodiscard]] bool first_says(bool x) const;
 
-  /// out[r] goes to rank r, empty ones cost nothing; the result has what came from each.
+  /// Sends out[r] to rank r (nothing is sent where it is empty); returns what came from each rank.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   [[nodiscard]] std::vector<std::vector<T>> send(const std::vector<std::vector<T>>& out) const
@@ -70,8 +71,7 @@ class Ranks
     return in;
   }
 
-  /// Of the items, `n_each` at a time, the k-th go to rank rank_of[k]; the result has what came, in the order
-  /// of the ranks.
+  /// Sends the k-th group of `n_each` items to rank rank_of[k]; returns what came, in rank order.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   [[nodiscard]] std::vector<T> send_to(std::span<const int> rank_of, std::span<const T> items,
@@ -96,10 +96,10 @@ class Ranks
     int rank;
     std::span<std::byte> bytes;
   };
-  /// Between neighbours that know from and to whom, and how much; no other rank takes part.
+  /// Exchange between neighbours that know their partners and the sizes; no other rank takes part.
   void transfer(std::span<const Outgoing> out, std::span<const Incoming> in) const;
 
-  /// The items of all ranks in their order, on the first; elsewhere nothing.
+  /// The items of all ranks in rank order on the first rank; nothing elsewhere.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   [[nodiscard]] std::vector<T> gather(std::span<const T> items) const
@@ -120,7 +120,7 @@ class Ranks
     return all;
   }
 
-  /// The items that the first rank has, everywhere.
+  /// Copies the items of the first rank to all ranks.
   void copy_from_first(std::vector<char>& bytes) const;
   template <class T>
   requires std::is_trivially_copyable_v<T>
@@ -135,8 +135,8 @@ class Ranks
     std::ranges::copy(bytes, chars().begin());
   }
 
-  /// work(). If it throws on some ranks, all of them throw: those what they have thrown, the others what the
-  /// lowest of them has, with its number. For everything that may fail on a rank of its own.
+  /// work(). If it throws on some ranks, all ranks throw: those their own exceptions, the others that of the
+  /// lowest rank that failed, with its number. For everything that may fail on a single rank.
   template <class Work>
   auto together(const Work& work) const
   {
@@ -170,8 +170,8 @@ class Ranks
     }
   }
 
-  /// What work() gives on the first rank, which alone does it, on all of them: plain data. What it throws
-  /// there all of them throw.
+  /// Calls work() on the first rank alone and returns its result, plain data, on all ranks. If it throws, all
+  /// ranks throw.
   template <class Work>
   auto on_first(const Work& work) const
   {
@@ -202,7 +202,7 @@ class Ranks
   /// MPI's communicator, as const MPI_Comm*, for libraries that take one; null on one rank.
   [[nodiscard]] const void* mpi_communicator() const;
 
-  /// For a rank that gives up: whether all ranks call this within so many seconds. If not, they wait for this
+  /// For a rank that gives up: whether all ranks call this within `seconds`. If not, the others wait for this
   /// one somewhere else, for ever, unless it calls end_all().
   [[nodiscard]] bool all_arrive(double seconds) const;
   /// Ends the processes of all ranks with this exit code.
@@ -222,7 +222,7 @@ class Ranks
     return all;
   }
 
-  /// Room for what comes from a rank.
+  /// Provides the memory for what comes from a rank.
   using Receiver = std::function<std::span<std::byte>(int rank, std::size_t n_bytes)>;
   void send_bytes(std::span<const std::span<const std::byte>> out, const Receiver& receiver) const;
   void agree(const std::exception_ptr& failure) const;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file sorted.h
-/// Lists without order and repetitions.
+/// Sorted lists without repetitions.
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 namespace tribound
 {
 
-/// Sorts the items by their keys and leaves one of each key. Keys are compared by < and ==.
+/// Sorts the items by their keys and keeps one of each key. Keys are compared by < and ==.
 template <class Item, class Key = std::identity>
 void sort_and_unite(std::vector<Item>& items, Key key = {})
 {

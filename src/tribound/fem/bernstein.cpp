@@ -13,7 +13,7 @@ namespace tribound::fem
 namespace
 {
 
-/// All (a_1, ..., a_k) with a sum of at most the degree; a_0 is the rest of it.
+/// All (a_1, ..., a_k) with a sum of at most the degree; a_0 is the remainder.
 template <int k>
 std::vector<Eigen::Array<int, k, 1>> exponents(int degree)
 {
@@ -39,7 +39,7 @@ double bernstein(int degree, const Eigen::Array<int, k, 1>& a, const Point<k>& x
 
 using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// B_a at node i of the basis, a that of node j: more digits than a double, so that the inverse has all.
+/// B_a at node i of the basis, a that of node j, in more digits than a double: the inverse has all digits.
 template <int k>
 LongMatrix bernstein_at_nodes(const LagrangeBasis<k>& basis)
 {

@@ -12,16 +12,16 @@ namespace tribound::fem
 {
 
 /// The matrix, [coefficient * rule.size() + point], that gives the coefficients b_a of q = sum_a b_a B_a, |a|
-/// = degree, from its values at the points of a rule exact for products of two polynomials of the degree: min
-/// b <= q <= max b on the simplex, since the B_a = |a|!/a! lambda^a are positive and add up to 1; halving the
-/// simplex brings the b_a four times as close to q. Of values that are no polynomial's it takes the L2
-/// projection.
+/// = degree, from the values of q at the points of a rule exact for products of two polynomials of the
+/// degree. Then min b <= q <= max b on the simplex, since the B_a = |a|!/a! lambda^a are positive and add up
+/// to 1; halving the simplex brings the b_a four times as close to q. If the values are not those of a
+/// polynomial, the result is the L2 projection.
 template <int k>
 [[nodiscard]] std::vector<double> bernstein_from_points(const Quadrature<k>& rule, int degree);
 
 /// The matrix, [node * n + coefficient], that gives the values of q = sum_a b_a B_a at the nodes of the basis
 /// from b, both in the order of the nodes: a is that of LagrangeBasis::node(). On an edge or a facet of the
-/// simplex q has the coefficients of the nodes there.
+/// simplex, the coefficients of q are those of the nodes there.
 template <int k>
 [[nodiscard]] std::vector<double> values_from_bernstein(const LagrangeBasis<k>& basis);
 

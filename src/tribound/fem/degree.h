@@ -11,8 +11,8 @@
 namespace tribound::fem
 {
 
-/// The largest degree p of the method: there are kernels for the equilibration up to it. Spaces, in which a
-/// richer solution is looked for, may have more.
+/// The largest degree p of the method: the equilibration has kernels up to it. Spaces in which a richer
+/// solution is sought may have a higher degree.
 inline constexpr int max_degree = 4;
 
 /// Throws InputError unless 1 <= p <= max_degree.
@@ -23,8 +23,7 @@ inline void require_degree(int p)
                      "the polynomial degree p, 1 to " + std::to_string(max_degree));
 }
 
-/// f(std::integral_constant<int, p>()) for a degree that is known when the program runs. Throws as
-/// require_degree() does.
+/// f(std::integral_constant<int, p>()) for a degree known at run time only. Throws as require_degree() does.
 template <int lowest = 1, class Function>
 void with_degree(int p, const Function& f)
 {

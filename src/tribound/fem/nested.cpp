@@ -34,7 +34,7 @@ void append_values(const LagrangeSpace<dim>& space, Index cell, std::span<const 
     values.insert(values.end(), u.begin() + dim * node, u.begin() + dim * (node + 1));
 }
 
-/// From the reference coordinates of a cell to its points.
+/// The point of a cell with these reference coordinates.
 template <int dim>
 Point<dim> point_in(const mesh::CellRecord<dim>& cell, const Point<dim>& xhat)
 {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file nested.h
-/// Functions carried to a space that contains theirs.
+/// Transfers functions to a space that contains theirs.
 
 #include <cstddef>
 #include <span>
@@ -30,9 +30,9 @@ template <int dim>
                                                      std::span<const double> u, std::span<const Index> parent,
                                                      const LagrangeSpace<dim>& fine);
 
-/// The values of u at the nodes of cells nested in own cells of a mesh, cell by cell,
-/// [(cell n_nodes + i) dim + component], the nodes as the basis of the space has them on the vertices of the
-/// record; cells[c] lies in cell parent[c]. They go where the cells go.
+/// The values of u at the nodes of cells nested in own cells of a mesh, cell by cell, [(cell n_nodes + i) dim
+/// + component]. The nodes are those of the basis of the space on the vertices of the record; cells[c] lies
+/// in cell parent[c]. The values can travel with the cells.
 template <int dim>
 [[nodiscard]] std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<const double> u,
                                                 std::span<const mesh::CellRecord<dim>> cells,
@@ -43,21 +43,21 @@ template <int dim>
 [[nodiscard]] std::vector<double> cell_values(const LagrangeSpace<dim>& space, std::span<const double> u,
                                               std::span<const Index> cells);
 
-/// So many numbers of each cell, cell by cell.
+/// n_each numbers per cell, cell by cell.
 struct CellColumn
 {
   std::span<const double> values;
   std::size_t n_each;
 };
-/// Columns side by side: of every cell the numbers of the first, then those of the next, as they travel with
-/// it.
+/// Columns side by side: for every cell the numbers of the first column, then those of the next, to travel
+/// with the cell.
 [[nodiscard]] std::vector<double> beside_each_other(std::span<const CellColumn> columns, std::size_t n_cells);
-/// A column of them: of every cell, which has `width` numbers, n_each from `first` on.
+/// A column of them: for every cell, n_each of its `width` numbers, from `first` on.
 [[nodiscard]] std::vector<double> cell_column(std::span<const double> values, std::size_t width,
                                               std::size_t first, std::size_t n_each);
 
-/// The function with such values on own cells cells[0], cells[1], ..., all that there are. All ranks call it
-/// together, and agree on the values at common nodes.
+/// The function with these values on all own cells, which are cells[0], cells[1], .... All ranks call it
+/// together, and their values agree at common nodes.
 template <int dim>
 [[nodiscard]] std::vector<double> from_cell_values(const LagrangeSpace<dim>& space,
                                                    std::span<const Index> cells,

@@ -14,7 +14,7 @@ namespace
 
 constexpr std::int64_t unknown = -1;
 
-/// The nodes of which this rank is the lowest with own cells around them.
+/// The nodes for which this rank is the lowest with own cells around them.
 template <int dim>
 std::vector<Index> find_owned(const mesh::Partition<dim>& partition, Index n_nodes,
                               std::span<const Index> cell_nodes, int n_cell_nodes)
@@ -33,9 +33,9 @@ std::vector<Index> find_owned(const mesh::Partition<dim>& partition, Index n_nod
   return owned;
 }
 
-/// Tells the ghost cells the numbers of their nodes. Owners of cells know those of nodes that they own at
-/// first, then those of all nodes of their cells, since the owner of such a node has a cell around it, and
-/// so at last those of all nodes of ghosts.
+/// Tells the ghost cells the numbers of their nodes. At first the owner of a cell knows the numbers of the
+/// nodes that it owns. After one round it knows those of all nodes of its cells, since the owner of each has
+/// a cell around it; after the second, ghosts have those of all their nodes.
 template <int dim>
 void tell_ghosts(const mesh::Partition<dim>& partition, std::span<const Index> cell_nodes, int n_cell_nodes,
                  std::span<std::int64_t> global)

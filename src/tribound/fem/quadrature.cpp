@@ -14,12 +14,12 @@ namespace tribound::fem
 namespace
 {
 
-/// Makes the rule on [0, 1] that of 1 - t, which it is up to rounding; points ascend.
+/// Makes the rule on [0, 1] exactly symmetric under t -> 1 - t, as it is up to rounding; points ascend.
 void make_symmetric(Quadrature<1>& rule)
 {
   for (int i = 0, j = rule.size() - 1; i <= j; ++i, --j)
   {
-    const double right = 0.5 * (1 + (rule.points[j][0] - rule.points[i][0]));  // from 1/2 on 1 - t is exact
+    const double right = 0.5 * (1 + (rule.points[j][0] - rule.points[i][0]));  // 1 - t is exact for t >= 1/2
     rule.points[j][0] = right;
     rule.points[i][0] = 1 - right;
     rule.weights[i] = rule.weights[j] = 0.5 * (rule.weights[i] + rule.weights[j]);
@@ -27,7 +27,7 @@ void make_symmetric(Quadrature<1>& rule)
 }
 
 /// The n-point Gauss rule on [0, 1] for the weight (1 - t)^alpha, from the eigenvalues of the Jacobi matrix
-/// (Golub and Welsch 1969). For alpha = 0 it is symmetric, 1 - t for t, to the last digit: rounding leaves
+/// (Golub and Welsch 1969). For alpha = 0 it is symmetric under t -> 1 - t to the last digit. Rounding leaves
 /// the eigenvalues symmetric only up to some units of it, which depend on how a compiler contracts products.
 Quadrature<1> gauss_jacobi(int n, int alpha)
 {

@@ -21,8 +21,8 @@ struct Quadrature
 };
 
 /// A rule exact for polynomials of total degree <= `degree` on the k-simplex, k = 1, 2, 3: Gauss-Legendre for
-/// k = 1, else one that no permutation of the vertices changes ([WV15], [JS21]: symmetric_rules.h) up to
-/// degree 20 on the triangle and 17 on the tetrahedron, and Gauss-Jacobi in collapsed coordinates above.
+/// k = 1, else a fully symmetric one ([WV15], [JS21]: symmetric_rules.h) up to degree 20 on the triangle and
+/// 17 on the tetrahedron, and Gauss-Jacobi in collapsed coordinates above.
 template <int k>
 [[nodiscard]] Quadrature<k> quadrature(int degree);
 

@@ -1,8 +1,8 @@
 /// @file quadrature_tetrahedron.cpp
-/// Up to degree 8 the rules of [JS21], 9 from [WV15], from 10 on those that PyFR [WFV14] has from the same
-/// search; all found again to all digits by Newton's method on the moments. A rule with more unknowns than
-/// moments is one of a family: those published for degrees 9, 10 and 11 have points on the boundary, up to
-/// rounding. Here stand other members of their families, found by lowering the sum of 1/lambda.
+/// The rules of [JS21] up to degree 8, of [WV15] for degree 9, and from degree 10 on those that PyFR [WFV14]
+/// has from the same search; all recomputed to all digits by Newton's method on the moments. A rule with more
+/// unknowns than moments belongs to a family. The members published for degrees 9, 10 and 11 have points on
+/// the boundary, up to rounding; the tables have other members, found by lowering the sum of 1/lambda.
 
 #include "tribound/fem/symmetric_rules.h"
 

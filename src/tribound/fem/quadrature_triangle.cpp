@@ -1,6 +1,6 @@
 /// @file quadrature_triangle.cpp
-/// The rules of [WV15], found again to all digits by Newton's method on the moments. Degrees 3, 16 and 18
-/// have none of their own: the next one has as many points, or lies better inside.
+/// The rules of [WV15], recomputed to all digits by Newton's method on the moments. Degrees 3, 16 and 18 have
+/// no rule of their own: the next one has as many points, or its points lie better inside.
 
 #include "tribound/fem/symmetric_rules.h"
 

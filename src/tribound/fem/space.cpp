@@ -229,7 +229,7 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
     }
   };
   mesh.ranks().together([&] { std::ranges::for_each(mesh.boundary(), fix_on); });
-  // A node of ghosts may be on Gamma_D through a cell that is not here.
+  // A node of a ghost cell may be on Gamma_D through a cell that this rank does not have.
   space.update(std::span(constraints.fixed));
   space.update(std::span(constraints.values));
   return constraints;

@@ -45,9 +45,9 @@ class LagrangeSpace
   {
     return numbers_ ? static_cast<Index>(numbers_->owned.size()) : n_nodes_;
   }
-  /// Ascending local numbers, k = 0, ..., n_owned_nodes() - 1.
+  /// Local numbers of own nodes, ascending, k = 0, ..., n_owned_nodes() - 1.
   [[nodiscard]] Index owned_node(Index k) const { return numbers_ ? numbers_->owned[k] : k; }
-  /// Of all ranks.
+  /// Degrees of freedom of all ranks.
   [[nodiscard]] std::int64_t n_global_dofs() const
   {
     return dim * (numbers_ ? numbers_->n : std::int64_t{n_nodes_});
@@ -57,7 +57,7 @@ class LagrangeSpace
   [[nodiscard]] double dot(std::span<const double> a, std::span<const double> b) const;
   /// Euclidean length, likewise.
   [[nodiscard]] double norm(std::span<const double> values) const;
-  /// Values at nodes of other ranks become those that the owners have.
+  /// Sets the values at nodes of other ranks to those of their owners.
   template <class T>
   void update(std::span<T> values) const
   {

@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file symmetric_rules.h
-/// Tables of rules on triangle and tetrahedron that no permutation of the vertices changes; weights are
-/// positive, points inside.
+/// Tables of fully symmetric rules on the triangle and the tetrahedron; weights are positive, points inside.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +10,7 @@
 namespace tribound::fem
 {
 
-/// The points that permutations of its barycentric coordinates make of one, each of the same weight, relative
+/// All points obtained from one by permuting its barycentric coordinates. Each has the same weight, relative
 /// to the measure of the simplex. The names in the tables tell which coordinates are equal: s211(w, a, b) has
 /// twelve points (a, a, b, 1 - 2a - b).
 template <int k>
@@ -21,7 +20,7 @@ struct Orbit
   std::array<double, k + 1> lambda;
 };
 
-/// The orbits of a rule exact to the degree or beyond; none above the reach of the tables.
+/// The orbits of a rule exact to the degree or beyond; none above the degrees of the tables.
 template <int k>
 [[nodiscard]] std::span<const Orbit<k>> symmetric_rule(int degree);
 

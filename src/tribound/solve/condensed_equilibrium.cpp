@@ -42,7 +42,7 @@ CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form)
 namespace
 {
 
-/// Of a matrix, at own unknowns.
+/// The diagonal of a matrix, at own unknowns.
 template <int dim>
 std::vector<double> diagonal(const algebra::SparseRows& matrix, const fem::LagrangeSpace<dim>& space)
 {
@@ -56,7 +56,7 @@ std::vector<double> diagonal(const algebra::SparseRows& matrix, const fem::Lagra
   return result;
 }
 
-/// The unknowns x are the displacement on the contact boundary, of all ranks on each.
+/// The unknowns x are the displacement on the contact boundary; every rank has those of all ranks.
 template <int dim>
 class CondensedEquilibrium final : public Equilibrium<dim>
 {

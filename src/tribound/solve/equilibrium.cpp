@@ -31,11 +31,10 @@ ExternalForces external_forces(const contact::NitscheForm<dim>& form)
 namespace
 {
 
-/// What condensation keeps, where it is to be used. It costs less than factorising the tangents where it
-/// keeps little: in 2D a factorisation takes about n^{3/2} operations, dense ones the cube of their size.
-/// Measured on blocks and strips with p = 1, 2, 4: from scratch, with 11 to 15 steps, condensing takes as
-/// long from 13 to 18 n^{1/2} kept unknowns on; on adaptive meshes, with one step or two, it makes no
-/// difference at 6 n^{1/2}.
+/// The unknowns that condensation keeps, if it is to be used. It costs less than factorising the tangents if
+/// it keeps few: in 2D a sparse factorisation takes about n^{3/2} operations, a dense one the cube of its
+/// size. Measured on blocks and strips with p = 1, 2, 4: from scratch, with 11 to 15 steps, condensing breaks
+/// even at 13 to 18 n^{1/2} kept unknowns; on adaptive meshes, with one step or two, at 6 n^{1/2}.
 template <int dim>
 std::optional<CondensedDofs> worth_condensing(const contact::NitscheForm<dim>& form,
                                               const algebra::SolverOptions& options, bool from_scratch)

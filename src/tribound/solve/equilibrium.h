@@ -13,30 +13,30 @@
 namespace tribound::solve
 {
 
-/// What loads and prescribed displacements do.
+/// The forces due to loads and prescribed displacements.
 struct ExternalForces
 {
   std::vector<double> load;  ///< L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0
-  double scale = 0;          ///< size of the forces that balance: residuals are measured against it
+  double scale = 0;          ///< size of the forces in balance: residuals are measured against it
 };
 template <int dim>
 [[nodiscard]] ExternalForces external_forces(const contact::NitscheForm<dim>& form);
 
-/// Find unknowns x with K x = load + contact forces of the tractions that the displacement of x has. What the
-/// unknowns are is up to the implementation: all of u, or those on the contact boundary. Keeps factors of its
-/// matrices for the next solve, and a reference to the form, which is not used when it follows another.
+/// Find unknowns x with K x = load + contact forces of the tractions at the displacement of x. The unknowns
+/// depend on the implementation: all of u, or those on the contact boundary. Keeps factors of its matrices
+/// for the next solve, and a reference to the form, which is no longer used once it follows another.
 template <int dim>
 class Equilibrium
 {
  public:
   virtual ~Equilibrium() = default;
 
-  /// From now on it is that of this form, on the same space with the same stiffness, the same fixed degrees
-  /// of freedom and the same contact pattern: loads, prescribed values and what contact remembers may differ.
-  /// Factors stay. All ranks together.
+  /// From now on uses this form. It has the same space, stiffness, fixed degrees of freedom and contact
+  /// pattern; loads, prescribed values and the state that contact remembers may differ. Factors are kept. All
+  /// ranks call it together.
   virtual void follow(const contact::NitscheForm<dim>& form) = 0;
 
-  /// The unknowns of a displacement whose fixed degrees of freedom have their values.
+  /// The unknowns of a displacement that has the prescribed values at the fixed degrees of freedom.
   [[nodiscard]] virtual std::vector<double> unknowns(std::span<const double> u) const = 0;
   /// Sets u on the cells at the contact boundary, where tractions need it; other entries may stay as they
   /// are.
@@ -44,19 +44,19 @@ class Equilibrium
   /// u everywhere.
   [[nodiscard]] virtual std::vector<double> displacement(std::span<const double> x) const = 0;
 
-  /// K x; what fixed degrees of freedom have in it is not used.
+  /// K x; its entries at fixed degrees of freedom are not used.
   [[nodiscard]] virtual std::vector<double> internal_forces(std::span<const double> x) const = 0;
   /// load - K x + (t, [phi_i])_C for t at the contact points of the form, 0 at fixed degrees of freedom.
   [[nodiscard]] virtual std::vector<double> residual(std::span<const double> internal_forces,
                                                      std::span<const Point<dim>> traction) const = 0;
-  /// Euclidean length of entries of the unknowns: of a residual, say. All ranks call it together, as solve().
+  /// Euclidean length of a vector of unknowns, such as a residual. All ranks call it together, as solve().
   [[nodiscard]] virtual double norm(std::span<const double> x) const = 0;
-  /// What a residual cannot resolve: round-off in K x, estimated through the diagonal of the stiffness.
+  /// The round-off in K x, which a residual cannot resolve, estimated by the diagonal of the stiffness.
   [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
 
-  /// d with (K + contact) d = r, contact by NitscheForm::contact_tangent_values(), |residual| <= tolerance up
-  /// to round-off; an iteration may end when its residual is `small_enough`. Throws SolveError when the
-  /// matrix is singular.
+  /// Solves (K + contact) d = r, `contact` by NitscheForm::contact_tangent_values(), to |residual| <=
+  /// tolerance up to round-off; an iteration may end when its residual is `small_enough`. Throws SolveError
+  /// when the matrix is singular.
   virtual algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r,
                                      double tolerance, std::span<double> d,
                                      const algebra::ResidualTest& small_enough) = 0;
@@ -74,8 +74,8 @@ template <int dim>
                                                                    ExternalForces forces,
                                                                    const algebra::SolverOptions& options);
 
-/// The degrees of freedom of own nodes that condensation keeps: free ones of nodes on the contact boundary,
-/// and of the other nodes of cells there.
+/// The degrees of freedom of own nodes that condensation keeps: the free ones of nodes on the contact
+/// boundary (trace) and of the other nodes of cells there (layer).
 struct CondensedDofs
 {
   std::vector<Index> layer;
@@ -84,16 +84,16 @@ struct CondensedDofs
 template <int dim>
 [[nodiscard]] CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form);
 
-/// The displacement on the contact boundary, everything else condensed. Throws SolveError when the stiffness
-/// is not positive definite with the contact boundary held.
+/// The displacement on the contact boundary, with everything else condensed out. Throws SolveError when the
+/// stiffness is not positive definite with the contact boundary held.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheForm<dim>& form,
                                                                       const ExternalForces& forces,
                                                                       CondensedDofs dofs);
 
-/// Which of the two, by options.method. Where it is automatic, condensation is for 2D, as long as the
-/// unknowns that it keeps are at most 12 n^{1/2} of n, or 6 n^{1/2} where few steps are to come: not
-/// `from_scratch`. Else as algebra::choose_method.
+/// One of the two, by options.method. If that is automatic, condensation is used in 2D as long as it keeps at
+/// most 12 n^{1/2} of n unknowns, or 6 n^{1/2} if few steps are to come (not `from_scratch`). Otherwise as
+/// algebra::choose_method.
 template <int dim>
 [[nodiscard]] algebra::LinearMethod choose_method(const contact::NitscheForm<dim>& form,
                                                   const algebra::SolverOptions& options, bool from_scratch);

@@ -23,14 +23,14 @@ struct NewtonOptions
   double tolerance = 1e-10;  ///< relative residual
   int max_steps = 50;
   bool damping = true;  ///< false: always full steps (for comparisons; may cycle)
-  /// The largest force of earlier load steps, if > 0: residuals are relative to forces no smaller, for a
-  /// state without load has no size of its own, and at most ten times larger, or one far off would set its
-  /// own.
+  /// The largest force of earlier load steps, if > 0. Residuals are relative to the force of the problem, but
+  /// to no less than this, as a state without load has no scale of its own, and to at most ten times this, as
+  /// one far off would set its own scale.
   double reference_force = 0;
-  /// Whether t^k of the result is in equilibrium; a start for another solve has no use for it.
+  /// Whether t^k of the result must be in equilibrium; a start for another solve does not need it.
   bool balanced = true;
-  /// Whether <R_lin, phi_i>, by which u^k and t^k are out of equilibrium, is small enough not to be solved
-  /// any better; absent: when it is as small as solver.tolerance asks for.
+  /// Whether <R_lin, phi_i>, by which u^k and t^k are out of equilibrium, is small enough to be solved no
+  /// further; absent: when it meets solver.tolerance.
   algebra::ResidualTest small_enough{};
 };
 
@@ -65,7 +65,7 @@ struct NewtonResult
   std::vector<double> u;             ///< u^k, dofs of the space
   std::vector<Point<dim>> traction;  ///< t^k at the contact points of the form
   std::vector<NewtonStep> steps;
-  std::shared_ptr<Equilibrium<dim>> equilibrium;  ///< what was solved with, for more of the same form
+  std::shared_ptr<Equilibrium<dim>> equilibrium;  ///< the solver used, to solve more of the same form
 };
 
 /// What an observer of the iteration sees after each step.
@@ -76,9 +76,9 @@ struct NewtonIterate
   std::span<const double> contact_u;     ///< u^k on the cells at the contact boundary, elsewhere anything
   std::span<const Point<dim>> traction;  ///< t^k
   bool converged;                        ///< the residual is below the tolerance, and t^k is T(u^k)
-  /// u^k everywhere. Where the linear system was solved loosely, this solves it better first, until
-  /// NewtonOptions::small_enough, and u^k, t^k and the iterations of the step change: from then on, t^k is in
-  /// equilibrium. It may be called again when small_enough asks for more.
+  /// u^k everywhere. If the linear system was solved loosely, this solves it further first, up to
+  /// NewtonOptions::small_enough, which changes u^k, t^k and the iterations of the step. From then on t^k is
+  /// in equilibrium. It may be called again when small_enough asks for more.
   std::function<std::span<const double>()> u;
 
   /// u^k everywhere as a loose solve has left it.
@@ -102,11 +102,10 @@ template <int dim>
 using NewtonObserver = std::function<NewtonAdvice(const NewtonIterate<dim>&)>;
 
 /// Solves the discrete problem, with T_delta in the place of T for delta > 0. `start` is a solution carried
-/// from a coarser mesh (then the first step linearises there), or empty (then the first step is closed and
-/// sticking). `observer` is called after each step and says what to do with its iterate. t^k is in
-/// equilibrium with u^k whatever delta is, and goes on when delta changes. `equilibrium` of the same form, or
-/// of one with another gamma_0, may be given to save its factors. Throws SolveError when a matrix is
-/// singular.
+/// from a coarser mesh (then the first step linearises there), or empty (then the first step takes contact as
+/// closed and sticking). `observer` is called after each step and says what to do with its iterate. t^k is in
+/// equilibrium with u^k for any delta, and is kept when delta changes. `equilibrium` of the same form, or of
+/// one with another gamma_0, may be given to reuse its factors. Throws SolveError when a matrix is singular.
 template <int dim>
 [[nodiscard]] NewtonResult<dim> solve(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                       const NewtonOptions& newton, const algebra::SolverOptions& solver,

@@ -69,8 +69,8 @@ void NewtonIteration<dim>::regularise(double delta)
   set_residual(equilibrium_->residual(internal_, form_.traction(u_, delta_)));
 }
 
-/// Relative residual to which the linear system of step k is solved: as loosely as Newton's method converges,
-/// [EisenstatWalker96, choice 2]. Multigrid alone gains by it.
+/// Relative residual to which the linear system of step k is solved, adapted to the convergence of Newton's
+/// method [EisenstatWalker96, choice 2]. Only multigrid gains by it.
 template <int dim>
 double NewtonIteration<dim>::forcing_term() const
 {
@@ -81,7 +81,7 @@ double NewtonIteration<dim>::forcing_term() const
   return std::clamp(0.9 * std::pow(residual_norm_ / norm_before_, 2), smallest, largest);
 }
 
-/// Residual of a linear system that is as good as none.
+/// Residual at which a linear system counts as solved exactly.
 template <int dim>
 double NewtonIteration<dim>::tight_target(std::span<const double> rhs) const
 {
@@ -89,8 +89,8 @@ double NewtonIteration<dim>::tight_target(std::span<const double> rhs) const
                    1e-14 * equilibrium_->norm(rhs)});
 }
 
-/// Brings t^k into equilibrium with u^k where a loose solve has left it: corrects both by the tangent of step
-/// k, under which K u^k - (t^k, v)_C changes by the defect.
+/// Brings t^k into equilibrium with u^k after a loose solve. Corrects both by the tangent of step k, so that
+/// K u^k - (t^k, v)_C changes by the defect.
 template <int dim>
 void NewtonIteration<dim>::balance_traction()
 {
@@ -137,8 +137,8 @@ std::string NewtonIteration<dim>::describe_residual() const
                      config_.tolerance);
 }
 
-/// Moves u by alpha times the direction with the largest alpha = 1, 1/2, 1/4, ... that lowers the residual,
-/// or, when none does, with the best of them. Returns alpha.
+/// Moves u by alpha times the direction, with the largest alpha = 1, 1/2, 1/4, ... that lowers the residual,
+/// or the best of them if none does. Returns alpha.
 template <int dim>
 double NewtonIteration<dim>::search(std::span<const double> direction, bool full_step)
 {
@@ -172,7 +172,7 @@ double NewtonIteration<dim>::search(std::span<const double> direction, bool full
   return best.alpha;
 }
 
-/// Solves with the tangent of the step; says at which step it failed.
+/// Solves with the tangent of the step; a failure names the step.
 template <int dim>
 algebra::LinearSolve NewtonIteration<dim>::solve_tangent(std::span<const double> rhs, double target,
                                                          std::span<double> delta,
@@ -194,7 +194,7 @@ void NewtonIteration<dim>::step(contact::Linearisation kind)
   const bool first = report_.step == 1;
   linearised_ = {kind, u_, delta_};
   std::vector<double> target_u = u_;
-  std::vector<double> rhs = residual_;  // T_lin = T where it is linearised
+  std::vector<double> rhs = residual_;  // T_lin = T at the point of linearisation
   if (first)
   {
     equilibrium_->displace_contact(x_, target_u);

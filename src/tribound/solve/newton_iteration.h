@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file newton_iteration.h
-/// One iterate after another of the generalised Newton method, method section 2.
+/// The iterates of the generalised Newton method, method section 2.
 
 #include <algorithm>
 #include <memory>
@@ -27,30 +27,30 @@ class NewtonIteration
   NewtonIteration(const contact::NitscheForm<dim>& form, const NewtonOptions& newton, double linear_tolerance,
                   double delta, std::shared_ptr<Equilibrium<dim>> equilibrium);
 
-  /// u^0, with what is prescribed; empty: 0 elsewhere.
+  /// Sets u^0: `start` with the prescribed values; if it is empty, 0 elsewhere.
   void initialise(std::span<const double> start);
-  /// Step k begins.
+  /// Begins step k.
   void begin(int k);
   /// Solves a(u + delta, v) - (T_lin(u + delta), v)_C = L(v), moves along delta and updates t^k. Throws
   /// SolveError, which names the step.
   void step(contact::Linearisation kind);
-  /// From here on T_delta with this delta: the residual of u^k becomes another.
+  /// From now on uses T_delta with this delta, which changes the residual of u^k.
   void regularise(double delta);
   /// u^k everywhere, computed when it is first asked for, with t^k in equilibrium.
   [[nodiscard]] std::vector<double>& displacement();
-  /// The same as the result of the iteration: balanced only where NewtonOptions::balanced asks for it. An
-  /// observer that has asked for u has bounded it: it is not solved for any better.
+  /// The same as the result of the iteration: balanced only if NewtonOptions::balanced asks for it. An
+  /// observer that has asked for u has a bound for it, so that it is solved no further.
   [[nodiscard]] std::vector<double> take_displacement();
 
   /// Whether nothing is loaded and nothing moves.
   [[nodiscard]] bool at_rest() const { return scale_ == 0 && residual_norm_ == 0; }
   [[nodiscard]] bool in_balance() const { return residual_norm_ <= smallest_residual(); }
-  /// Whether t^k = T(u^k) as far as it matters: forces at the contact points, with a margin for their number,
-  /// so that where degrees of freedom feel them all the residual decides.
+  /// Whether t^k = T(u^k) as far as it matters, by forces at the contact points. A margin allows for their
+  /// number, so that the residual decides wherever all of them act on degrees of freedom.
   [[nodiscard]] bool traction_settled() const;
   [[nodiscard]] double residual_norm() const { return residual_norm_; }
   [[nodiscard]] std::string describe_residual() const;
-  /// Of step k.
+  /// The report of step k.
   [[nodiscard]] NewtonStep& report() { return report_; }
   [[nodiscard]] std::span<const double> contact_displacement() const { return u_; }
   [[nodiscard]] std::vector<Point<dim>>& traction() { return traction_; }

@@ -66,7 +66,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
     contact_.set_values(contact);
     tangent_.assign_sum(stiffness_, contact_);
     const algebra::LinearSolve result = linear_solver_.solve(tangent_, r, tolerance, d, small_enough);
-    for (std::size_t i = 0; i < d.size(); ++i)  // multigrid moves fixed ones as far as the tolerance lets it
+    for (std::size_t i = 0; i < d.size(); ++i)  // multigrid moves fixed ones within its tolerance
       if (form_->constraints().fixed[i]) d[i] = 0;
     return result;
   }
