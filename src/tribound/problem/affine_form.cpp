@@ -22,7 +22,7 @@ AffineForm combine(const AffineForm& a, const AffineForm& b, Function function)
   return result;
 }
 
-/// By the number b, that may carry rounding of its own.
+/// `a` times the number b, which may carry rounding of its own.
 AffineForm product(const AffineForm& a, const AffineForm& b)
 {
   AffineForm result;

@@ -28,7 +28,7 @@ ContactLaw make(std::span<const Field> values)
   return L(values);
 }
 
-/// Of all laws without bond: they come first.
+/// The kinds of all laws without bond, which come first.
 template <class... L>
 constexpr auto kinds_of(const std::variant<L...>* /*type*/)
 {
@@ -49,7 +49,7 @@ template <class L>
 constexpr bool has_bond =
     std::derived_from<L, Joint> || std::derived_from<L, Mixed> || std::derived_from<L, Endo>;
 
-/// What a law with a bond has, or the value for those without.
+/// of(law) for a law with a bond, `without` for the others.
 template <class Value, class Of>
 Value of_bond(const ContactLaw& law, const Value& without, const Of& of)
 {
@@ -125,7 +125,7 @@ Point<dim> water_pressure(const LawPoint<dim>& point)
   return point.water * point.normal;
 }
 
-// Of the effective traction, without water.
+// The response of the effective traction, without water.
 template <int dim>
 Response<dim> respond_effectively(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
                                   double delta)

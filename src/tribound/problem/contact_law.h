@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file contact_law.h
-/// The laws of contact at one point, method section 2: what the traction T is as a function of
-/// P = sigma n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
+/// The laws of contact at one point, method section 2: the traction T as a function of P = sigma n - gamma (u
+/// - g n), so that P^n = P.n and P^t = P - P^n n.
 ///
 /// A law is a struct that satisfies `Law`, with its functions in contact_law.cpp or, where it has a bond, in
 /// interface_law.h, and a place in the variant ContactLaw. Everything else (form, bound, statics, case file,
@@ -24,7 +24,7 @@
 namespace tribound::problem
 {
 
-/// The answer to P.
+/// The response to P.
 template <int dim>
 struct Response
 {
@@ -33,8 +33,8 @@ struct Response
   ContactStatus status;  ///< of the law itself, without regularisation
 };
 
-/// What friction can hold at most: |T^t| <= strength + coefficient |T^n|. In S_h this is so with equality
-/// where the contact is closed; S_h is then affine in P^n and the strength.
+/// The most that friction can hold: |T^t| <= strength + coefficient |T^n|. In S_h equality holds where the
+/// contact is closed; S_h is then affine in P^n and the strength.
 struct FrictionCone
 {
   const Field* strength = nullptr;  ///< s(x) >= 0, stress; null for 0
@@ -43,7 +43,7 @@ struct FrictionCone
   bool is_bonded = false;           ///< at first it holds more than this, until it breaks
   bool holds_tension = false;       ///< the bond does
 
-  /// Whether the sides are one as long as nothing breaks.
+  /// Whether the two sides are joined as long as nothing breaks.
   [[nodiscard]] bool glues() const { return is_tied || holds_tension; }
   /// Whether there is anything to hold.
   [[nodiscard]] bool resists_sliding() const
@@ -109,7 +109,7 @@ struct Coulomb
   [[nodiscard]] std::string words() const;
 };
 
-/// [u] = 0, between bodies alone: T(P) = P.
+/// [u] = 0, only between bodies: T(P) = P.
 struct Tied
 {
   static constexpr std::string_view name = "tied";
@@ -199,10 +199,10 @@ inline constexpr std::array law_names = {Frictionless::name, Tresca::name,   Cou
                                          JointLaw::name,     MixedLaw::name, EndoLaw::name};
 static_assert(law_names.size() == std::variant_size_v<ContactLaw>);
 
-/// What follows is that of a joint with water in it: with T_e, the effective traction by which the law
-/// answers without water,
+/// The following functions include the water in a joint: with T_e, the effective traction of the law without
+/// water,
 ///     T(P) = T_e(P + p_w n) - p_w n,   DT(P) = DT_e(P + p_w n).
-/// Limits, states, what is stored and dissipated are those of the effective traction.
+/// Limits, states, stored and dissipated energies are those of the effective traction.
 
 /// T(P) with limit and status; T_delta with the regularised projections of method section 7 for delta > 0.
 template <int dim>
@@ -214,18 +214,18 @@ template <int dim>
 [[nodiscard]] Tensor<dim> tangent(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
                                   double delta = 0);
 
-/// What a step that ends with P commits: of Joint, Mixed and Endo their own answer; of friction without bond
-/// that of Joint with the same cone, the slip; of Tied nothing. `point.gamma` is needed.
+/// What a step that ends with P commits: for Joint, Mixed and Endo their own response; for friction without
+/// bond that of a Joint with the same cone, the slip; for Tied nothing. Needs `point.gamma`.
 template <int dim>
 [[nodiscard]] InterfaceResponse<dim> advance(const ContactLaw& law, const LawPoint<dim>& point,
                                              const Point<dim>& P);
 
-/// The state before the first step, where the interface is not broken.
+/// The state of an unbroken interface before the first step.
 template <int dim>
 [[nodiscard]] InterfaceState<dim> fresh_state(const ContactLaw& law);
 
-/// The state that a law can have nearest to one between points: 0 <= D <= 1, q >= 0, and of a joint whose
-/// cohesion is lost by slip q <= D slip_c while D < 1.
+/// The admissible state of a law that is nearest to one interpolated between points: 0 <= D <= 1, q >= 0, and
+/// for a joint whose cohesion is lost by slip q <= D slip_c while D < 1.
 template <int dim>
 [[nodiscard]] InterfaceState<dim> admissible(const ContactLaw& law, InterfaceState<dim> state);
 
@@ -240,7 +240,7 @@ template <int dim>
 
 [[nodiscard]] FrictionCone cone(const ContactLaw& law);
 
-/// Whether it is one of interface_law.h.
+/// Whether it is one of the laws of interface_law.h.
 [[nodiscard]] bool has_memory(const ContactLaw& law);
 
 /// Such as "Tresca friction, threshold 0.03".

@@ -160,8 +160,8 @@ class EndoStep
             (mu * n_ + e) * by_force.transpose() + k_t_ / point_.gamma * turning};
   }
 
-  /// The root of G above `lowest`, or `lowest` where damage does not grow. G > 0 at 1; by Newton's method
-  /// between ends that enclose the root.
+  /// The root of G above `lowest`, or `lowest` where damage does not grow. G > 0 at 1. Newton's method
+  /// between brackets.
   [[nodiscard]] double find_damage(double lowest) const
   {
     const auto G = [this](double alpha) { return driving(alpha, flow(alpha)); };

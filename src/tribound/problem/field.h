@@ -30,17 +30,17 @@ struct FieldFunction
   std::function<void(std::span<const double> x, int dim, std::span<double> values)> values;
   /// Its total degree if it is a polynomial.
   int degree = not_polynomial;
-  /// Values and derivatives over simplices as Formula::enclose gives them. Where it is empty and the function
-  /// no polynomial, nobody knows what it does between the points at which it was evaluated: the certificate
-  /// then says that this is not covered.
+  /// Values and derivatives over simplices, as Formula::enclose gives them. If this is empty and the function
+  /// is no polynomial, its values between the points of evaluation are unknown: the certificate then says
+  /// that this is not covered.
   std::function<void(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients)> enclose =
       {};
 
   static constexpr int not_polynomial = 1'000'000;
 };
 
-/// A scalar datum. Use of one object by several threads at once is safe; copies are cheap. What it returns of
-/// a formula is described in formula.h.
+/// A scalar datum. Several threads may use one object at once; copies are cheap. Its results for a formula
+/// are described in formula.h.
 class Field
 {
  public:
@@ -53,14 +53,14 @@ class Field
   /// The function; `where` stands for it in messages.
   explicit Field(FieldFunction function, Where where = {.file = {}, .key = "a function of the program"});
 
-  /// The formula `text` for t = 1, found at `where`. Without x, y, z in it, it is folded to a constant.
-  /// Throws InputError: a syntax error or an unknown name (with the position in `text`), more than one
-  /// result ("1,5"), an assignment, a constant that is not finite.
+  /// The formula `text` for t = 1, found at `where`. If it names none of x, y, z, it is folded to a constant.
+  /// Throws InputError: a syntax error or an unknown name (with the position in `text`), more than one result
+  /// ("1,5"), an assignment, a constant that is not finite.
   Field(std::string text, Where where);
   /// The same; messages about its values call it `name`.
   Field(std::string text, Where where, std::string name);
 
-  /// The same datum at the load factor t. Throws InputError where it is a constant that is not finite then.
+  /// The same datum at the load factor t. Throws InputError if it is then a constant that is not finite.
   [[nodiscard]] Field at(double t) const;
   /// Whether it is a formula that names t.
   [[nodiscard]] bool uses_time() const { return in_time_ != nullptr; }
@@ -98,7 +98,7 @@ class Field
   [[nodiscard]] double constant() const { return value_; }
   /// Whether it is the constant 0.
   [[nodiscard]] bool is_zero() const { return is_constant() && value_ == 0.0; }
-  /// Whether enclose() knows anything: of all but functions without FieldFunction::enclose.
+  /// Whether enclose() knows anything: true for all but functions without FieldFunction::enclose.
   [[nodiscard]] bool is_enclosed() const { return !function_ || function_->enclose; }
   /// Whether it is a formula that names z.
   [[nodiscard]] bool uses_z() const;

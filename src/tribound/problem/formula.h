@@ -14,7 +14,7 @@
 namespace tribound::problem
 {
 
-/// An interval that holds all values of something. Nothing but (-inf, inf) has an infinite end.
+/// An interval that contains all values of something. Only (-inf, inf) has infinite ends.
 struct Enclosure
 {
   double lower = -std::numeric_limits<double>::infinity();
@@ -33,18 +33,18 @@ struct Affine
   double b = 0.0;
 };
 
-/// Which points of a region K count where a switch is zero, up to rounding, on its boundary.
+/// Which points of a region K count where a switch vanishes, up to rounding, on the boundary of K.
 enum class Sides
 {
-  inside,  ///< those inside: what happens on the boundary only does not
+  inside,  ///< those inside: what happens only on the boundary does not count
   closed,  ///< the boundary, too
   around   ///< those near K, too: whatever f may be on any side
 };
 
 struct FormulaProgram;
 
-/// A scalar formula in x, y, z (grammar in docs/case-format.md; pi, e and t are constants). Use of one object
-/// by several threads at once is safe; copies share what was parsed.
+/// A scalar formula in x, y, z (grammar in docs/case-format.md; pi, e and t are constants). Several threads
+/// may use one object at once; copies share the parsed formula.
 class Formula
 {
  public:
@@ -83,16 +83,16 @@ class Formula
   [[nodiscard]] std::span<const Affine> switches() const;
 
   /// Encloses the formula and its derivatives over the convex hull K of `vertices` (dim coordinates each:
-  /// those of a cell, of a facet): coefficient n holds (1/n!) d^n/dt^n f(xi + t (x - c)) at t = 0 for all xi,
+  /// those of a cell, of a facet). Coefficient n holds (1/n!) d^n/dt^n f(xi + t (x - c)) at t = 0 for all xi,
   /// x in K, c the mean of the vertices; coefficient 0 holds f on K. As many as `coefficients` has, at most
-  /// max_order + 1. Those of which nothing is known, as where f jumps, kinks or is undefined in K, are (-inf,
-  /// inf). Where a switch is zero on the boundary of K only (up to rounding), f counts as `sides` says; where
+  /// max_order + 1. Unknown ones, as where f jumps, kinks or is undefined in K, are (-inf, inf). Where a
+  /// switch is zero only on the boundary of K (up to rounding), `sides` says which values of f count. Where
   /// it is zero on all of K, all branches that rounding may take count: only x > a is decided by values.
   void enclose(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients,
                Sides sides = Sides::inside) const;
 
-  /// The same of f(X(.)), where enclose() of coordinate k of X would give coordinates[k] and zeros behind
-  /// them. A coordinate that is not there is 0.
+  /// The same for f(X(.)), where enclose() of coordinate k of X would give coordinates[k] followed by zeros.
+  /// Missing coordinates are 0.
   void enclose_composed(std::span<const std::array<Enclosure, 3>> coordinates,
                         std::span<Enclosure> coefficients) const;
 

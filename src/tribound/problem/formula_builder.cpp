@@ -9,7 +9,7 @@ namespace tribound::problem
 namespace
 {
 
-/// Values with more affine pieces count as unknown, and more switches are not listed: it bounds the time.
+/// Values with more affine pieces count as unknown, and more switches are not listed. This bounds the time.
 constexpr std::size_t max_pieces = 16;
 constexpr std::size_t max_switches = 256;
 
@@ -20,7 +20,7 @@ bool same(const AffineForm& a, const AffineForm& b)
   return a.c == b.c;
 }
 
-/// Adds `form`, once; `pieces` becomes empty, unknown, when there are too many.
+/// Adds `form` unless it is there; `pieces` becomes empty (unknown) when there are too many.
 bool insert(Pieces& pieces, const AffineForm& form)
 {
   if (std::ranges::any_of(pieces, [&](const AffineForm& piece) { return same(piece, form); })) return true;

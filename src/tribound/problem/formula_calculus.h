@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file formula_calculus.h
-/// Formulas made from formulas: other coordinates put in, derivatives.
+/// Formulas made from formulas: substitution of coordinates, derivatives.
 
 #include <span>
 #include <string>
@@ -12,7 +12,7 @@
 namespace tribound::problem
 {
 
-/// `text` with coordinates[i], a formula, in the place of x, y, z. Throws as Formula does.
+/// `text` with the formulas coordinates[i] substituted for x, y, z. Throws as Formula does.
 [[nodiscard]] std::string composed(const std::string& text, std::span<const std::string> coordinates,
                                    const Where& where);
 

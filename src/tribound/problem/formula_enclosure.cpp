@@ -72,7 +72,7 @@ class Evaluator
     return a.series.n_known > 0 ? signs_in(a.series.c[0]) : any_sign;
   }
 
-  /// Of a - b.
+  /// The signs of a - b.
   [[nodiscard]] int signs_of_difference(const Value& a, const Value& b) const
   {
     if (a.affine && b.affine)
@@ -85,7 +85,7 @@ class Evaluator
     return s.n_known > 0 && t.n_known > 0 ? signs_in(s.c[0] - t.c[0]) : any_sign;
   }
 
-  /// One of the two, it is not known which: values from combine(values of a, values of b).
+  /// Pushes one of the two, not known which: its values are combine(values of a, values of b).
   template <class Combine>
   void push_undecided(const Value& a, const Value& b, Combine combine)
   {
@@ -272,7 +272,7 @@ class Evaluator
 IntervalSeries evaluate(std::span<const Node> nodes, const Region& region, int n_coefficients,
                         std::span<const std::array<Enclosure, 3>> coordinates = {})
 {
-  thread_local std::vector<Value> stack;  // kept: it costs as much as the evaluation
+  thread_local std::vector<Value> stack;  // kept: making it costs as much as the evaluation
   return Evaluator(region, coordinates, n_coefficients, stack)(nodes);
 }
 

@@ -66,7 +66,7 @@ class Parser
   }
 
  private:
-  /// Counts the recursion while it lives.
+  /// Counts the depth of the recursion while it lives.
   class Level
   {
    public:
@@ -107,7 +107,7 @@ class Parser
 
   void skip_blanks() { position_ = std::min(text_.find_first_not_of(' ', position_), text_.size()); }
 
-  /// Whether `symbol` stands here; steps behind it, and behind blanks.
+  /// Whether `symbol` comes next; if so, steps past it and past blanks.
   bool accept(std::string_view symbol)
   {
     skip_blanks();
@@ -230,8 +230,8 @@ class Parser
     position_ = end;
   }
 
-  /// The function at `begin`, its arguments from `end` on. Of those of any number of arguments, arguments are
-  /// taken in one by one: max(a, b, c) = max(max(a, b), c).
+  /// The function at `begin`, with its arguments from `end` on. A function of any number of arguments takes
+  /// them in one by one: max(a, b, c) = max(max(a, b), c).
   void call(const NamedFunction& function, std::size_t begin, std::size_t end)
   {
     position_ = end;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file formula_program.h
-/// What a formula is parsed to: operations in postfix order.
+/// A parsed formula: operations in postfix order.
 
 #include <array>
 #include <span>

@@ -62,7 +62,7 @@ int Region::signs(const AffineForm& form) const
   if (form.is_constant()) return sign_of(form.c[3]);
   const Range range = range_of(form);
   if (!std::isfinite(range.scale)) return any_sign;
-  // A facet in the plane x = a: at all its points, too, x > b is decided in the same way.
+  // A facet in the plane x = a: x > b is decided in the same way at all of its points, too.
   const bool is_exact = range.lower == range.upper && form.is_shifted_variable();
   const double e = is_exact ? 0.0 : form.rounding(range.scale);
   const int closed_signs = signs_in({range.lower - e, range.upper + e});

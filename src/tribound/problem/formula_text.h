@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file formula_text.h
-/// The text of a formula: where a mistake in it is, and its names.
+/// The text of a formula: positions of mistakes, and names.
 
 #include <span>
 #include <string>
@@ -30,7 +30,7 @@ struct NamedFunction
 
 [[nodiscard]] bool is_name_character(char c);
 
-/// The position behind the number that starts at `begin`.
+/// The position after the number that starts at `begin`.
 [[nodiscard]] std::size_t skip_number(const std::string& text, std::size_t begin);
 
 /// Throws InputError at the first name that is neither a variable, nor a constant, nor a function.

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file interface_law.h
-/// Interfaces with a memory at one point: bonds that soften and break, friction on the slip since the last
+/// Interfaces with memory at one point: bonds that soften and break, and friction on the slip since the last
 /// committed step (method section 12).
 ///
 /// With the jump delta = (g - u^n) n - u^t (obstacles; -[u]^t and g - [u]^n between bodies) a law is a graph
@@ -43,10 +43,10 @@ struct LawPoint
   double strength = 0;  ///< of FrictionCone at the point, stress
   double gamma = 0;     ///< of method section 2; needed by laws with a bond and where something slipped
   InterfaceState<dim> state{};  ///< at the last committed step
-  double water = 0;             ///< p_w, stress: the law holds of the effective traction T + p_w n
+  double water = 0;             ///< p_w, stress: the law holds for the effective traction T + p_w n
 };
 
-/// The answer to P = sigma n - gamma (u^n - g) n - gamma_t u^t, gamma_t = tangential_weight() gamma.
+/// The response to P = sigma n - gamma (u^n - g) n - gamma_t u^t, gamma_t = tangential_weight() gamma.
 template <int dim>
 struct InterfaceResponse
 {
@@ -57,7 +57,7 @@ struct InterfaceResponse
   double opening = 0;          ///< delta*^n
   double slip_limit = 0;       ///< what |T^t| may reach; infinite where nothing slips
   double dissipated = 0;       ///< by this step, energy per area
-  double rubbed = 0;           ///< the part of it that friction takes
+  double rubbed = 0;           ///< the part of it due to friction
   double stored = 0;           ///< in the interface, energy per area
   ContactStatus status = ContactStatus::stick;
 };
@@ -91,8 +91,8 @@ struct Tension
   [[nodiscard]] double dissipated(double before, double after) const;
 };
 
-/// "joint": Mohr-Coulomb friction, |T^t| <= s - mu T^n + c (1 - D), with a cohesion c that is lost on a slip
-/// of slip_c, and tension softening; compression is rigid. Without bond this is unilateral contact with
+/// "joint": Mohr-Coulomb friction, |T^t| <= s - mu T^n + c (1 - D), with a cohesion c that is lost over a
+/// slip of slip_c, and tension softening; compression is rigid. Without bond this is unilateral contact with
 /// friction on the slip since the last step.
 struct Joint
 {
@@ -125,9 +125,9 @@ struct Mixed
   [[nodiscard]] double softening_slope() const { return tension.slope(); }
 };
 
-/// "endo": elastic and plastic joint with damage [R70125, JOINT_MECA_ENDO]: with S(a) = (1-a)^3 / a^{1/2}
-/// the energy 1/2 K_n (delta^n - p^n)^2 + 1/2 K_t |delta^t - p^t|^2 + 1/2 S(alpha) (B_n p_n^2 + B_t |p_t|^2)
-/// + D_1 alpha, plastic flow along the normals of |X^t| + mu X^n <= 0, X = sigma - S B p.
+/// "endo": elastic-plastic joint with damage [R70125, JOINT_MECA_ENDO]. With S(a) = (1-a)^3 / a^{1/2} its
+/// energy is 1/2 K_n (delta^n - p^n)^2 + 1/2 K_t |delta^t - p^t|^2 + 1/2 S(alpha) (B_n p_n^2 + B_t |p_t|^2) +
+/// D_1 alpha; plastic flow is along the normals of |X^t| + mu X^n <= 0, X = sigma - S B p.
 struct Endo
 {
   double normal_stiffness;      ///< K_n > 0, stress per length, as K_t, B_n and B_t
@@ -140,7 +140,7 @@ struct Endo
   [[nodiscard]] double fresh_damage() const { return 0; }
   [[nodiscard]] double tangential_weight() const { return 1; }
   [[nodiscard]] double softening_slope() const;
-  /// Strengths of the fresh joint in tension and in shear; it must be that mu tension <= cohesion <=
+  /// Strengths of the fresh joint in tension and in shear; they must satisfy mu tension <= cohesion <=
   /// 2^{1/2} mu tension.
   [[nodiscard]] double tensile_strength() const;
   [[nodiscard]] double cohesion() const;

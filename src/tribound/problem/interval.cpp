@@ -7,7 +7,7 @@ namespace tribound::problem
 namespace
 {
 
-/// Whether some offset + k period, k integer, lies in `a`, or so near that rounding forbids to deny it.
+/// Whether some offset + k period, k integer, lies in `a`, or so near that rounding does not rule it out.
 bool contains_multiple(const Enclosure& a, double offset, double period)
 {
   const double slack = 16 * std::numeric_limits<double>::epsilon() * (a.magnitude() + period);
@@ -15,7 +15,7 @@ bool contains_multiple(const Enclosure& a, double offset, double period)
   return offset + k * period <= a.upper + slack;
 }
 
-/// The image under a function that is 1 at maximum + 2 pi k, -1 at half a period from there, monotone
+/// The image under a function that is 1 at maximum + 2 pi k, -1 half a period from there, and monotone in
 /// between.
 template <class Function>
 Enclosure wave(const Enclosure& a, double maximum, Function function)

@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file interval.h
-/// Interval arithmetic. Ends of a result are moved outward by more than their rounding error (and, for a
-/// function of the C library, than its error), so that no rounding mode need be switched; only underflow is
-/// not enclosed.
+/// Interval arithmetic. The ends of a result are moved outward by more than their rounding error (for a
+/// function of the C library, by more than its error), so that the rounding mode need not be switched. Only
+/// underflow is not enclosed.
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +70,7 @@ inline constexpr int library_error = 4;
   return outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
 }
 
-/// The smallest interval that holds both.
+/// The smallest interval that contains both.
 [[nodiscard]] inline Enclosure hull(const Enclosure& a, const Enclosure& b)
 {
   return {std::min(a.lower, b.lower), std::max(a.upper, b.upper)};

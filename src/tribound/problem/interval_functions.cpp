@@ -8,8 +8,8 @@ namespace tribound::problem
 namespace
 {
 
-/// By how much a range may exceed the domain of a function and still count as touching its end: as much as
-/// rounding makes of it. (The function is undefined beyond: every value that there is is enclosed.)
+/// By how much a range may exceed the domain of a function, because of rounding, and still count as touching
+/// its end. (The function is undefined beyond it, so that every existing value is enclosed.)
 constexpr double domain_slack = 1e-9;
 
 /// Larger integer exponents are treated as real ones.
@@ -24,7 +24,7 @@ Enclosure chain_rule(const IntervalSeries& a, const IntervalSeries& g, int n)
   return sum / exactly(n);
 }
 
-/// The series f(a) of value f(a_0) and, from the coefficients before it, coefficient next(f, n), until one
+/// The series f(a) with the value f(a_0); coefficient n is next(f, n), by those before it, until one
 /// overflows.
 template <class Next>
 IntervalSeries build(const IntervalSeries& a, const Enclosure& value, Next next)

@@ -12,8 +12,8 @@
 namespace tribound::problem
 {
 
-/// The first `n_known` coefficients are finite intervals, zero from `length` on. Of the others nothing is
-/// known: of all where the function may be undefined, of all but the first where it may jump or kink.
+/// The first `n_known` coefficients are finite intervals, zero from `length` on. The others are unknown: all
+/// of them where the function may be undefined, all but the first where it may jump or kink.
 struct IntervalSeries
 {
   int n_known = 0;
@@ -23,12 +23,12 @@ struct IntervalSeries
 
 /// The constant series of `value`.
 [[nodiscard]] IntervalSeries constant_series(const Enclosure& value, int n_known);
-/// Values in `value`, nothing known of the derivatives.
+/// Values in `value`, unknown derivatives.
 [[nodiscard]] IntervalSeries values_only(const Enclosure& value);
 /// Nothing known.
 [[nodiscard]] IntervalSeries unknown_series();
 
-// Of series of which at least one coefficient is known.
+// For series with at least one known coefficient.
 [[nodiscard]] IntervalSeries negate(const IntervalSeries& a);
 [[nodiscard]] IntervalSeries add(const IntervalSeries& a, const IntervalSeries& b);
 [[nodiscard]] IntervalSeries subtract(const IntervalSeries& a, const IntervalSeries& b);

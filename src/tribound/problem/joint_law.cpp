@@ -47,7 +47,7 @@ struct Value
   Point<dim> gradient = Point<dim>::Zero();
 };
 
-/// P at a point of a joint, in parts, and its damage.
+/// P at a point of a joint, split into its parts, and its damage.
 template <int dim>
 class JointStep
 {
@@ -151,7 +151,7 @@ class JointStep
     return result;
   }
 
-  /// Of the bond in tension: while it opens, and where slip breaks it when it is open.
+  /// Dissipated by the bond in tension: while it opens, and where slip breaks it when it is open.
   [[nodiscard]] double dissipated_by_opening(double normal_traction) const
   {
     const Tension& tension = law_.tension;
@@ -168,7 +168,7 @@ class JointStep
     return energy;
   }
 
-  /// c (1 - D) over a slip of length x, D growing with it.
+  /// Dissipated by the cohesion c (1 - D) over a slip of length x, with D growing.
   [[nodiscard]] double dissipated_by_cohesion(double x) const
   {
     const double c = law_.cohesion;
@@ -185,7 +185,7 @@ class JointStep
   const LawPoint<dim>& point_;
   Point<dim> n_;
   double p_n_;         ///< P^n
-  Point<dim> p_t_;     ///< P^t with the slip that is remembered
+  Point<dim> p_t_;     ///< P^t with the remembered slip
   double a_;           ///< |P^t|
   Point<dim> e_;       ///< its direction
   double friction_;    ///< R = s - mu min(P^n, 0)

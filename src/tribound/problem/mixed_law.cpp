@@ -50,7 +50,7 @@ Softened soften(const Tension& tension, double gamma, double r, double damage)
   return {r - gamma * largest, 1, damage, 0};
 }
 
-/// What friction takes of P^t, with its derivative by P; `holds`: all of it.
+/// The part of P^t that friction takes, with its derivative by P; `holds`: it takes all.
 template <int dim>
 struct FrictionPart
 {
@@ -98,7 +98,7 @@ InterfaceResponse<dim> respond(const Mixed& law, const LawPoint<dim>& point, con
   }
   else
   {
-    const Point<dim> p_c = p_t - rubbing.traction;  // what the bond takes
+    const Point<dim> p_c = p_t - rubbing.traction;  // the part that the bond takes
     const Tensor<dim> d_p_c = Tensor<dim>::Identity() - along - rubbing.derivative;
     const double pulling = std::max(p_n, 0.0);
     const double r = std::sqrt(pulling * pulling + p_c.squaredNorm() / law.tangential_weight());

@@ -14,8 +14,8 @@
 namespace tribound::problem
 {
 
-/// The value at x, >= 0. One that may be 0 within the rounding of x is: "y" on a floor y = 0 whose points
-/// have rounded coordinates. Throws InputError naming the point where it is negative.
+/// The value at x, >= 0. A negative value counts as 0 if it may be 0 within the rounding of x: "y" on a floor
+/// y = 0 whose points have rounded coordinates. Otherwise throws InputError naming the point.
 template <int dim>
 [[nodiscard]] double nonnegative_at(const Field& field, const Point<dim>& x)
 {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file normal_field.h
-/// The direction along which contact acts, in place of the facet's normal.
+/// The direction along which contact acts, in place of the normal of the facet.
 
 #include <array>
 #include <span>
@@ -17,8 +17,8 @@ namespace tribound::problem
 class NormalField
 {
  public:
-  /// N by its components, one per dimension: of length 1 everywhere, not only where they are evaluated, such
-  /// as formulas divided by their length.
+  /// N by its components, one per dimension. It must have length 1 everywhere, not only where it is
+  /// evaluated, as formulas divided by their length do.
   explicit NormalField(std::vector<Field> components);
 
   /// N at x. Throws InputError naming the point where its length is not 1 up to rounding.
@@ -31,7 +31,7 @@ class NormalField
   [[nodiscard]] std::span<const Field> components() const { return components_; }
   [[nodiscard]] std::span<Field> components() { return components_; }
   [[nodiscard]] bool is_constant() const;
-  /// Whether all components are.
+  /// Whether all components are enclosed.
   [[nodiscard]] bool is_enclosed() const;
 
  private:

@@ -55,7 +55,7 @@ std::vector<BoundaryCondition<dim>> of_each_boundary(std::span<const std::string
   return boundaries;
 }
 
-/// The side of each boundary. It stands in one pair at most, on one side of it, and has then no condition.
+/// The side of each boundary. A boundary is in at most one pair, on one side, and then has no condition.
 template <int dim>
 std::vector<PairSide> sides_of(std::span<const std::string> names,
                                const std::vector<BoundaryCondition<dim>>& conditions,

@@ -42,9 +42,9 @@ struct Contact
   std::optional<NormalField> normal{};
   /// What gap and N were made from, in words, such as "obstacle floor"; empty: what is given.
   std::string geometry{};
-  /// Not 0 where a bond is broken before the first step; absent: nowhere.
+  /// Nonzero where the bond is broken before the first step; absent: nowhere.
   std::optional<Field> broken{};
-  /// The signed distance from the true surface of the body; absent: the facets are that.
+  /// The signed distance from the true surface of the body; absent: the facets are the true surface.
   std::optional<Field> true_surface{};
   std::optional<Water> water{};    ///< in the joint; absent: none
   std::optional<BaseLine> base{};  ///< along which the figures of a hydraulic structure are taken
@@ -63,8 +63,8 @@ struct Pairing
   double reach = std::numeric_limits<double>::infinity();  ///< largest |Pi(x) - x|
 };
 
-/// Contact between two parts of the boundaries of elastic bodies, each all facets of some named boundaries on
-/// which nothing else holds. Where nothing of the master lies opposite, the slave is free of traction.
+/// Contact between two parts of the boundaries of elastic bodies, each all facets of some named boundaries
+/// without other conditions. Where nothing of the master lies opposite, the slave is traction-free.
 template <int dim>
 struct ContactPair
 {
@@ -75,14 +75,14 @@ struct ContactPair
   Where where{};  ///< for messages
 };
 
-/// The side of a pair that a boundary is; pair -1: of none.
+/// The side of a pair that a boundary belongs to; pair -1: none.
 struct PairSide
 {
   int pair = -1;
   bool is_slave = false;
 };
 
-/// What holds on one named part of the boundary.
+/// The conditions on one named part of the boundary.
 template <int dim>
 struct BoundaryCondition
 {
@@ -112,9 +112,9 @@ template <int dim>
 template <int dim>
 [[nodiscard]] BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Field gap = 0.0);
 
-/// The strength s(x) >= 0 of the law's friction cone, 0 where it has none. A value that may be 0 within the
-/// rounding of x is: "y" on a floor y = 0 whose points have rounded coordinates. Throws InputError naming the
-/// point where it is negative.
+/// The strength s(x) >= 0 of the law's friction cone, 0 where it has none. A negative value counts as 0 if it
+/// may be 0 within the rounding of x: "y" on a floor y = 0 whose points have rounded coordinates. Otherwise
+/// throws InputError naming the point.
 template <int dim>
 [[nodiscard]] double strength_at(const ContactLaw& law, const Point<dim>& x);
 

@@ -2,8 +2,8 @@
 
 /// @file projection.h
 /// The two projections of the contact conditions and their generalised derivatives, method section 2, and
-/// what takes their place in the regularised variant, method section 7: with delta > 0 all are C^1, with
-/// delta = 0 they are the projections themselves.
+/// their regularised counterparts, method section 7: with delta > 0 all are C^1, with delta = 0 they are the
+/// projections themselves.
 
 #include <cmath>
 

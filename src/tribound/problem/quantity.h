@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantity.h
-/// Numbers that are wanted of a solution: energies, forces, displacements.
+/// Quantities of interest of a solution: energies, forces, displacements.
 
 #include <optional>
 #include <span>
@@ -57,16 +57,16 @@ struct Quantity
   /// e, of any length but 0; absent: the mean outward normal of the boundary.
   std::optional<Point<dim>> direction;
   std::optional<Point<dim>> point;  ///< of moments; absent: the origin
-  /// Where displacements are fixed or another contact boundary begins, forces and moments are not taken
+  /// Where displacements are fixed or another contact boundary begins, forces and moments cannot be taken
   /// alone: they are weighted by min(1, d / ramp), d the distance from there. 0: a tenth of the diagonal of
   /// the box around the boundary.
   double ramp = 0;
   Where where;  ///< for messages
 };
 
-/// The number of its boundary, -1 where it is one of all contact boundaries or of the whole. Throws
-/// InputError where there is no such boundary, no contact where a force or moment is wanted, and no Coulomb
-/// friction alone where a safety factor is.
+/// The number of its boundary; -1 if it refers to all contact boundaries or to the whole. Throws InputError
+/// if there is no such boundary, no contact for a force or moment, or anything but Coulomb friction alone for
+/// a safety factor.
 template <int dim>
 [[nodiscard]] int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
                                   std::span<const std::string> boundary_names);

@@ -53,7 +53,7 @@ std::vector<std::string> from(std::span<const double> point)
   return result;
 }
 
-/// The surface at distance `radius` of where w, which points away from there, is 0.
+/// The surface at distance `radius` from the zeros of w, which points away from them.
 Surface round(const std::vector<std::string>& w, double radius, Positive side)
 {
   const std::string r = length(w);

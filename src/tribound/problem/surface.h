@@ -2,8 +2,8 @@
 
 /// @file surface.h
 /// Surfaces by formulas: rigid obstacles, and the true shape of a body whose boundary is meshed by straight
-/// facets. What contact makes of them, gaps and directions, are formulas as well, so that the certificate
-/// encloses them like any other datum.
+/// facets. The gaps and directions of contact that follow from them are formulas as well, so that the
+/// certificate encloses them like any other datum.
 
 #include <optional>
 #include <span>
@@ -44,13 +44,13 @@ enum class Positive
                                Positive side);
 
 /// The zeros of `formula`, of `dim` coordinates: phi = formula / |grad formula|, which is the distance to
-/// first order, exactly that where |grad formula| = 1. Throws as Formula does.
+/// first order, and exactly where |grad formula| = 1. Throws as Formula does.
 [[nodiscard]] Surface implicit(const std::string& formula, int dim, const Where& where);
 
 /// The surface moved by `by`.
 [[nodiscard]] Surface moved(const Surface& surface, std::span<const double> by, const Where& where);
 
-/// What contact is made from; `where` stands for them in messages.
+/// The surfaces that contact is made from; `where` stands for them in messages.
 struct ContactGeometry
 {
   std::optional<Surface> obstacle{};  ///< phi > 0 where the body is

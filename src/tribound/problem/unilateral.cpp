@@ -32,7 +32,7 @@ Limit limit(const Coulomb& law, double /*strength*/, double p_n, double delta)
           -law.coefficient * negative_part_derivative(p_n, delta)};
 }
 
-/// P with the slip that friction without bond remembers.
+/// P with the slip remembered by friction without bond.
 template <int dim>
 Point<dim> remembered(const LawPoint<dim>& point, const Point<dim>& P)
 {

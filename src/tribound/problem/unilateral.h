@@ -8,8 +8,8 @@
 namespace tribound::problem
 {
 
-/// T = [P^n]_- n + [P^t]_S of Frictionless, Tresca or Coulomb, P with gamma times the slip that the point
-/// remembers; regularised projections for delta > 0. P, S, delta: stresses.
+/// T = [P^n]_- n + [P^t]_S of Frictionless, Tresca or Coulomb, P with gamma times the slip remembered at the
+/// point; regularised projections for delta > 0. P, S, delta: stresses.
 template <int dim, FrictionLaw L>
 [[nodiscard]] Response<dim> respond_unilaterally(const L& law, const LawPoint<dim>& point,
                                                  const Point<dim>& P, double delta);

@@ -12,8 +12,8 @@
 namespace tribound::problem
 {
 
-/// What the unit of a number is that of. L is a length, S a stress, d the dimension. Forces, moments and
-/// energies are per unit of depth in 2D.
+/// The kind of quantity that a unit belongs to. L is a length, S a stress, d the dimension. Forces, moments
+/// and energies are per unit of depth in 2D.
 enum class UnitOf
 {
   length,
@@ -46,20 +46,20 @@ inline constexpr std::array<std::pair<const char*, UnitOf>, 11> unit_names = {
 class Units
 {
  public:
-  /// Of a case that names none: all labels are empty.
+  /// For a case that names none: all labels are empty.
   Units() = default;
-  /// Names out of length_names() and force_names().
+  /// Names from length_names() and force_names().
   Units(std::string_view length, std::string_view force);
 
   [[nodiscard]] bool are_named() const { return !length_.empty(); }
-  /// Such as "N/mm^3", in 2D "N mm/mm" for moments. Stresses by their own names where they have one: MPa for
-  /// N/mm^2, psi for lbf/in^2. Those of lengths, stresses, body forces and fracture energies are the same in
-  /// any dimension.
+  /// Such as "N/mm^3", in 2D "N mm/mm" for moments. Stresses have their own names where there are such: MPa
+  /// for N/mm^2, psi for lbf/in^2. Labels of lengths, stresses, body forces and fracture energies are the
+  /// same in any dimension.
   [[nodiscard]] std::string label(UnitOf what, int dimension = 3) const;
-  /// " MPa", as it stands behind a number; empty where no units are named.
+  /// " MPa", as it follows a number; empty where no units are named.
   [[nodiscard]] std::string behind(UnitOf what, int dimension = 3) const;
 
-  /// In a unit of length or stress; 1 where none are named.
+  /// Metres in a unit of length, pascals in a unit of stress; 1 where none are named.
   [[nodiscard]] double metres() const;
   [[nodiscard]] double pascals() const;
 

@@ -23,7 +23,7 @@ struct Node
   double pressure;
 };
 
-/// The broken line of the pressures; the same pressures before the first and behind the last of them.
+/// The piecewise linear pressure, constant before the first node and after the last.
 std::vector<Node> profile(const Seepage& seepage, double tip)
 {
   const auto pressure = [&](const Field& level, double height)
@@ -84,8 +84,8 @@ Water::Water(Field pressure) : pressure_(std::move(pressure)) {}
 
 Water::Water(Seepage seepage) : seepage_(std::move(seepage)), pressure_(from_levels()) {}
 
-/// p_toe and sum_j (k_{j-1} - k_j) max(0, s_j - s), k_j the fall per length behind node j: its kinks are
-/// those that Field::switches() tells.
+/// p_toe and sum_j (k_{j-1} - k_j) max(0, s_j - s), k_j the fall per length behind node j. Its kinks are
+/// those in Field::switches().
 Field Water::from_levels() const
 {
   require_level(seepage_->head);

@@ -2,7 +2,7 @@
 
 /// @file water.h
 /// Water in a joint (method section 12.6): its pressure p_w >= 0 acts on the body as -p_w n, and the law of
-/// the interface holds of the effective traction T + p_w n [T43].
+/// the interface holds for the effective traction T + p_w n [T43].
 
 #include <array>
 #include <optional>
@@ -47,14 +47,14 @@ struct Drain
   bool from_full_head = false;  ///< E counts from the pressure of the heel, not from that without the drain
 };
 
-/// Pressures in the base of a hydraulic structure. With s the distance from the heel along heel -> toe, the
-/// last coordinate y being the height,
+/// Pressures in the base of a hydraulic structure. With s the distance from the heel along heel -> toe, and
+/// the last coordinate y the height,
 ///     p_heel = weight max(0, head - y_heel),   p_toe = weight max(0, tail - y_toe);
-/// p_w falls linearly from p_heel at s = a0 over the drain, if it works, to p_toe at s = L, and is constant
-/// before and behind, a0 = a where the crack carries full pressure and 0 where it does not. At the drain
+/// p_w falls linearly from p_heel at s = a0, through the drain if it works, to p_toe at s = L, and is
+/// constant before and behind; a0 = a if the crack carries full pressure, else 0. At the drain
 ///     p_d = p_toe + (1 - E) (p_heel - p_toe) (L - X) / (L - a0),   without the last factor from the full
 ///     head.
-/// A crack whose tip a reaches X takes the drain away.
+/// A crack whose tip a reaches X disables the drain.
 struct Seepage
 {
   Field head;          ///< level of the water upstream, a height; no function of place
@@ -78,7 +78,7 @@ class Water
   [[nodiscard]] const Field& pressure() const { return pressure_; }
   /// Null where the pressure is given.
   [[nodiscard]] const Seepage* seepage() const { return seepage_ ? &*seepage_ : nullptr; }
-  /// Whether p_w depends on the tip of the crack: it carries pressure or may take a drain away.
+  /// Whether p_w depends on the tip of the crack: it carries pressure or may disable a drain.
   [[nodiscard]] bool follows_crack() const { return seepage_ && (seepage_->crack || seepage_->drain); }
   /// a, the distance of the tip of the crack from the heel.
   [[nodiscard]] double crack_tip() const { return tip_; }
