@@ -42,8 +42,8 @@ class Forest
   /// Asks for `times` bisections of a root.
   void demand(Index root, int times) { nodes_[root].due = times; }
 
-  /// Bisects what is due, and every leaf with an edge that has a middle, until there is none. This ends:
-  /// bisected dim times each, all cells of a conforming mesh make a conforming one [AMP00], so that no leaf
+  /// Performs the bisections due, and bisects every leaf with a halved edge, until none is left. This ends:
+  /// all cells of a conforming mesh, bisected dim times each, form a conforming one [AMP00], so that no leaf
   /// gets below the next multiple of dim. The order does not change the result.
   void close()
   {
@@ -86,7 +86,7 @@ class Forest
     return data;
   }
 
-  /// The leaves as cells that travel, and the root of each in `parent`.
+  /// The leaves as records that travel, and the root of each in `parent`.
   [[nodiscard]] std::vector<CellRecord<dim>> records(std::vector<Index>& parent) const
   {
     std::vector<CellRecord<dim>> result;
@@ -113,7 +113,7 @@ class Forest
         local_edges<dim>, [&](const auto& edge) { return middles_.find(cell[edge[0]], cell[edge[1]]) >= 0; });
   }
 
-  /// Work that may fail: on all ranks then.
+  /// Work that may fail, and then fails on all ranks.
   template <class Work>
   void together(const Work& work) const
   {
@@ -168,8 +168,8 @@ class Forest
       nodes_.push_back({.cell = child(node.cell, kept, middle), .due = std::max(node.due - 1, 0)});
   }
 
-  /// Makes the middle of an edge, and those of the edges opposite, and queues the roots that contain it:
-  /// those that contain both ends, since they are convex. `is_news`: other ranks do not know.
+  /// Makes the middle of an edge, and those of the opposite edges, and queues the roots that contain it:
+  /// those that contain both ends, since they are convex. `is_news`: other ranks do not know of it.
   Index halve_edge(Index a, Index b, bool is_news)
   {
     if (shared_) shared_->add_middle(a, b, is_news);
@@ -242,8 +242,8 @@ class Forest
     }
   }
 
-  /// A child has the facet opposite to the vertex that it has lost, opposite to its last one, halves of the
-  /// others, and one inside opposite to the vertex that it keeps.
+  /// The last facet of a child is the parent's facet opposite to the lost vertex. The facet opposite to the
+  /// kept vertex is inside; the others are halves of the parent's.
   static CellTags<dim> child_tags(const Cell<dim>& parent, const CellTags<dim>& tags, int kept,
                                   const Cell<dim>& child)
   {
@@ -255,8 +255,8 @@ class Forest
     return result;
   }
 
-  /// The pieces of a facet with its marked edge in front: like cells, the halves of a face are marked
-  /// opposite to the new vertex.
+  /// The pieces of a facet, marked edge first. As in cells, the halves of a face are marked opposite to the
+  /// new vertex.
   void add_facets(const TaggedFacet<dim>& facet, std::vector<TaggedFacet<dim>>& pieces) const
   {
     const Index middle = middles_.find(facet.vertices[0], facet.vertices[1]);
@@ -284,7 +284,7 @@ class Forest
   std::vector<Index> roots_;                   ///< that contain each middle, one middle behind the other
   std::vector<std::size_t> roots_end_;         ///< per middle
   std::vector<Index> common_;                  ///< working space
-  std::vector<Index> queue_;                   ///< roots to look at, in the order of their turns
+  std::vector<Index> queue_;                   ///< roots to be processed, in this order
   std::vector<char> queued_;                   ///< per root
   std::optional<SharedVertices<dim>> shared_;  ///< of a mesh that is shared out
 };

@@ -25,8 +25,8 @@ std::vector<std::int64_t> united(const Ranks& ranks, std::vector<std::int64_t> v
   return values;
 }
 
-/// Per part of what is here the lowest root of its body's cells: found here, then again and again where
-/// ghosts say that it goes on on another rank.
+/// Per local part, the lowest root of the cells of its body: found locally, then again and again as long as
+/// ghosts lower it from other ranks.
 template <int dim>
 std::vector<std::int64_t> lowest_roots(const Partition<dim>& partition, std::span<const int> part,
                                        int n_parts)

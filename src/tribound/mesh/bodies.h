@@ -16,8 +16,8 @@ struct Bodies
   int n = 0;
 };
 
-/// They are numbered by their first cells, the same on all ranks, which call it together. Of cells that are
-/// picked out: those of the mesh they come from.
+/// Bodies are numbered by their first cells, the same on all ranks, which call it together. For cells that
+/// are picked out: the numbers of the mesh they come from.
 template <int dim>
 [[nodiscard]] Bodies number_bodies(const Mesh<dim>& mesh);
 

@@ -80,7 +80,7 @@ struct Grid
     for (int i = 0; i < dim; ++i) x[i] = std::lerp(box.lower[i], box.upper[i], double(at[i]) / n_cubes[i]);
     return x;
   }
-  /// Of a corner of a cube.
+  /// The grid point of a corner of a cube.
   [[nodiscard]] std::array<Index, dim> corner(std::array<Index, dim> cube, Index corner) const
   {
     for (int i = 0; i < dim; ++i) cube[i] += corner >> i & 1;
@@ -92,7 +92,7 @@ struct Grid
     for (int i = 0; i < dim; ++i) v += at[i] * stride[i];
     return v;
   }
-  /// In the order of for_each_grid_point().
+  /// The cube with this number in the order of for_each_grid_point().
   [[nodiscard]] std::array<Index, dim> cube(std::int64_t number) const
   {
     std::array<Index, dim> at;

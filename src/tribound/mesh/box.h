@@ -14,8 +14,8 @@
 namespace tribound::mesh
 {
 
-/// Throws InputError for a box that is not one of 2 or 3 dimensions, has no volume or no cells, or more of
-/// them than an Index can number the edges of.
+/// Throws InputError for a box that is not of 2 or 3 dimensions, has no volume or no cells, or has more cells
+/// than allow Index to number the edges.
 void require_valid(const BoxMesh& box);
 
 /// Vertex (i, j) has number j (nx+1) + i; square (i, j) is cut from lower left to upper right into
@@ -30,29 +30,29 @@ template <int dim>
 template <int dim>
 [[nodiscard]] MeshData<dim> box_meshes(const Boxes& boxes);
 
-/// Its names. Throws as require_valid() does.
+/// The names of a box. Throws as require_valid() does.
 template <int dim>
 [[nodiscard]] MeshLabels box_labels(const BoxMesh& box);
 
-/// Those of several, each with its own. Throws as box_meshes() does.
+/// The names of several boxes, each with its own. Throws as box_meshes() does.
 template <int dim>
 [[nodiscard]] MeshLabels box_labels(const Boxes& boxes);
 
-/// How many cells it has, or they have.
+/// The number of cells of a box or of several.
 [[nodiscard]] std::int64_t n_box_cells(const BoxMesh& box);
 [[nodiscard]] std::int64_t n_box_cells(const Boxes& boxes);
-/// Nothing of a file.
+/// Nothing for a file.
 [[nodiscard]] std::optional<std::int64_t> n_box_cells(const MeshSource& source);
 
-/// One of the same sides with half as many cells in each direction, again and again, until there are at most
-/// so many.
+/// A box with the same sides and half as many cells in each direction, halved again until there are at most
+/// `most_cells`.
 [[nodiscard]] BoxMesh coarser_box(BoxMesh box, std::int64_t most_cells);
-/// Each with its share of so many.
+/// Each with its share of `most_cells`.
 [[nodiscard]] Boxes coarser_box(Boxes boxes, std::int64_t most_cells);
 /// A file stays as it is.
 [[nodiscard]] MeshSource coarser_box(MeshSource source, std::int64_t most_cells);
 
-/// Its cells number first, ..., last - 1 as first_records() gives them, without the others.
+/// The cells number first, ..., last - 1, as first_records() gives them, made without the others.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> box_records(const BoxMesh& box, std::int64_t first,
                                                        std::int64_t last);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file box_tree.h
-/// Finding boxes: those that a line meets, or another box.
+/// Search for the boxes that a line or another box meets.
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 namespace tribound::mesh
 {
 
-/// The part of first <= l <= last for which from + l direction is in the box: none if the result descends.
+/// The part of first <= l <= last where from + l direction is in the box; empty if the result descends.
 template <int dim>
 [[nodiscard]] std::array<double, 2> part_in_box(const BoundingBox<dim>& box, const Point<dim>& from,
                                                 const Point<dim>& direction, std::array<double, 2> interval)
@@ -43,14 +43,14 @@ template <int dim>
   return (a.lower.array() <= b.upper.array()).all() && (a.upper.array() >= b.lower.array()).all();
 }
 
-/// Of x from the box; 0 inside.
+/// Square of the distance of x from the box; 0 inside.
 template <int dim>
 [[nodiscard]] double square_distance(const BoundingBox<dim>& box, const Point<dim>& x)
 {
   return (x - x.cwiseMax(box.lower).cwiseMin(box.upper)).squaredNorm();
 }
 
-/// A binary tree of boxes: O(n log n) to build, a visit goes into the boxes that it accepts.
+/// A binary tree of boxes: O(n log n) to build; a search descends into the boxes that it accepts.
 template <int dim>
 class BoxTree
 {

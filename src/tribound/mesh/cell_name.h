@@ -22,8 +22,8 @@ namespace tribound::mesh
   return h ^ (h >> 33);
 }
 
-/// A cell as a cell of the first mesh and the way down from there. The names of the cells of a mesh ascend in
-/// the order in which bisect() numbers them.
+/// A cell, given by its ancestor in the first mesh and the path from there. The names of the cells of a mesh
+/// ascend in the order in which bisect() numbers them.
 struct CellName
 {
   /// 42 halvings of h in 3D, 64 in 2D.
@@ -43,7 +43,7 @@ struct CellName
     ++name.depth;
     return name;
   }
-  /// The cell it is a child of; not of one of the first mesh.
+  /// The cell that it is a child of; not for cells of the first mesh.
   [[nodiscard]] constexpr CellName parent() const
   {
     CellName name = *this;
@@ -53,8 +53,8 @@ struct CellName
   }
 };
 
-/// A vertex as its position, to the bit, and what tells apart vertices in one place, as on the two sides of a
-/// joint or of a contact: now or after bisection, whether the meshes match or not.
+/// A vertex, given by its position, to the bit, and by an origin. The origin distinguishes vertices in one
+/// place, as on the two sides of a joint or of a contact, now or after bisection, matching meshes or not.
 template <int dim>
 struct VertexName
 {
@@ -66,7 +66,7 @@ struct VertexName
   [[nodiscard]] Point<dim> point() const { return Eigen::Map<const Point<dim>>(position.data()); }
 };
 
-/// The name at a point; -0 becomes 0, which has other bits.
+/// The name at a point; -0, which has other bits, becomes 0.
 template <int dim>
 [[nodiscard]] VertexName<dim> vertex_name(const Point<dim>& x, std::uint64_t origin)
 {
@@ -83,8 +83,8 @@ template <int dim>
   return h;
 }
 
-/// The vertex that bisection puts between two, in either order. Hashes that are equal by chance would matter
-/// only among the few vertices in one place.
+/// The vertex that bisection puts between two, in either order. Equal hashes by chance would only matter
+/// among the few vertices in one place.
 template <int dim>
 [[nodiscard]] VertexName<dim> middle(const VertexName<dim>& a, const VertexName<dim>& b)
 {

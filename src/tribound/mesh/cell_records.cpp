@@ -20,7 +20,7 @@ std::vector<CellTags<dim>> cell_tags(std::size_t n_cells, std::span<const Bounda
 namespace
 {
 
-/// Those of cells first, ..., last - 1. `region`: that of a cell.
+/// The records of cells first, ..., last - 1. `region`: the region of a cell.
 template <int dim, class Region>
 std::vector<CellRecord<dim>> first_records(std::span<const Point<dim>> points,
                                            std::span<const Cell<dim>> cells,

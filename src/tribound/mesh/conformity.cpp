@@ -16,7 +16,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// Boxes of facets, hashed into grids: a facet lives in the grid of spacing size / 2^level next above its
+/// Boxes of facets, hashed into grids. A facet is in the grid of spacing size / 2^level next above its
 /// diameter, in the few grid cells that its bounding box meets. A point looks into one cell per level in use.
 template <int dim>
 class FacetSearch
@@ -153,8 +153,8 @@ template <int dim>
       "the two sides in a [[contact]]");
 }
 
-/// Points of a facet by which it is seen to overlap another one: its centre and, where vertices may hang,
-/// points beside its corners.
+/// Points of a facet that reveal an overlap with another one: its centre and, where vertices may hang, points
+/// beside its corners.
 template <int dim>
 std::vector<Point<dim>> inner_points(const OuterFacet<dim>& facet, bool with_corners)
 {
@@ -167,9 +167,9 @@ std::vector<Point<dim>> inner_points(const OuterFacet<dim>& facet, bool with_cor
   return points;
 }
 
-/// Whether facets that share an inner point of one of them may: in planes of different directions it is no
-/// more than a line that they share; opposite sides of an interface lie on each other; and the sides of two
-/// bodies that overlap may lie in one plane.
+/// Whether facets that share an inner point of one of them may do so. In planes of different directions they
+/// share no more than a line; opposite sides of an interface lie on each other; and the sides of two bodies
+/// that overlap may lie in one plane.
 template <int dim>
 bool may_overlap(const OuterFacet<dim>& a, const OuterFacet<dim>& b, const Interfaces<dim>& interfaces)
 {
@@ -207,8 +207,8 @@ void check_touching(const MeshData<dim>& data, std::span<const OuterFacet<dim>> 
   }
 }
 
-/// In 3D two triangulations may have the same vertices: only the faces tell them apart. Interfaces excuse
-/// vertices, but only opposite facets.
+/// In 3D two triangulations may have the same vertices and differ in the faces only. Interfaces excuse
+/// coinciding vertices, but only opposite facets.
 template <int dim>
 void check_overlapping(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                        const FacetSearch<dim>& search, const Interfaces<dim>& interfaces)

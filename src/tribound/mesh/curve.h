@@ -21,12 +21,12 @@ struct Cube
 template <int dim>
 [[nodiscard]] Cube<dim> cube_around(std::span<const Point<dim>> points);
 
-/// Place of a point along Hilbert's curve, in which what is close in the key is close in space, from a grid
-/// of 2^31 (2D) or 2^21 (3D) steps along each axis [Skilling04].
+/// Position of a point along Hilbert's curve, on a grid of 2^31 (2D) or 2^21 (3D) steps along each axis
+/// [Skilling04]. Points with close keys are close in space.
 template <int dim>
 [[nodiscard]] std::uint64_t hilbert_key(const Cube<dim>& cube, const Point<dim>& x);
 
-/// The same along Morton's curve, which costs less and jumps.
+/// The same along Morton's curve, which is cheaper and jumps.
 template <int dim>
 [[nodiscard]] std::uint64_t morton_key(const Cube<dim>& cube, const Point<dim>& x);
 

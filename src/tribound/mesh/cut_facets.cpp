@@ -15,7 +15,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// A part of a cell, vertices as the cell has them.
+/// A part of a cell, with its vertices in the order of the cell.
 struct Piece
 {
   Cell<2> vertices;
@@ -85,7 +85,7 @@ class Pieces
   }
 
  private:
-  /// Piece k as bisection goes on with it: cells that are whole as before.
+  /// Piece k as bisection continues with it; whole cells are as before.
   [[nodiscard]] MarkedCell<2> marked(std::size_t k) const
   {
     const Cell<2>& vertices = pieces_[k].vertices;
@@ -93,12 +93,12 @@ class Pieces
                ? marked_cell<2>(points_, mesh_.cells(), mesh_.bisection_types(), parent_[k])
                : longest_edges_marked<2>(points_, vertices);
   }
-  /// The number of a vertex in a piece; 3: it is none of it.
+  /// The number of a vertex in a piece; 3 if it has none there.
   [[nodiscard]] static std::size_t local(const Piece& piece, Index v)
   {
     return std::ranges::find(piece.vertices, v) - piece.vertices.begin();
   }
-  /// The half with one end of the facet that is cut in the middle.
+  /// One half of a piece whose facet is cut at `middle`: the one that keeps the end `kept` of the facet.
   [[nodiscard]] Piece half(const Piece& whole, Index kept, Index lost, Index middle, int number) const
   {
     if (mesh_.partition() && whole.name.depth == CellName::max_depth)
@@ -110,7 +110,7 @@ class Pieces
     result.tags[local(whole, kept)] = facet_inside;
     return result;
   }
-  /// Cuts the piece that has the facet, and of what is left of it the part that has the next cut.
+  /// Cuts the piece that has the facet, then the remaining part with the next cut, and so on.
   void cut(const FacetCuts& facet, std::vector<Piece>& pieces)
   {
     const std::array<Index, 2> ends = facet_vertices(mesh_.cell(facet.cell), facet.local);

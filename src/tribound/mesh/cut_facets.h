@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file cut_facets.h
-/// Cells cut in fans, so that boundary facets end where something else wants them to, in 2D.
+/// Cells cut in fans, in 2D, so that boundary facets end at given points.
 
 #include <span>
 #include <vector>
@@ -20,13 +20,13 @@ struct FacetCuts
   std::vector<double> at;  ///< ascending in (0, 1), from the first vertex of facet_vertices() to the second
 };
 
-/// The mesh with new vertices at the cuts and the cells there cut from them to the vertex opposite: what lies
-/// beside these cells stays as it is. A cell may have cuts on several facets. Regions, tags and names are
-/// inherited; bisection starts anew with the longest edges of the pieces. Throws InputError where that is no
-/// mesh.
+/// The mesh with new vertices at the cuts, and the cells there cut from them to the opposite vertex; all
+/// other cells stay as they are. A cell may have cuts on several facets. Regions, tags and names are
+/// inherited; bisection starts anew with the longest edges of the pieces. Throws InputError where the result
+/// is no mesh.
 [[nodiscard]] Bisected<2> cut_facets(const Mesh<2>& mesh, std::span<const FacetCuts> cuts);
 
-/// Own cells of a rank likewise; `cuts` are of own cells. Throws InputError, on all ranks, where cells
+/// The same for own cells of a rank; `cuts` are of own cells. Throws InputError, on all ranks, where cells
 /// outgrow CellName::max_depth.
 [[nodiscard]] BisectedPart<2> cut_facets_part(const Mesh<2>& mesh, std::span<const FacetCuts> cuts);
 

@@ -37,7 +37,7 @@ class Cut
   {
   }
 
-  /// Marks the facets of the group with number `tag` and tells their sides apart.
+  /// Marks the facets of the group with number `tag` and distinguishes their sides.
   void add_joint(int tag);
   void open();
 
@@ -49,7 +49,7 @@ class Cut
   void mark(const TaggedFacet<dim>& tagged, std::vector<Index>& facets);
   /// Gives the side of `from` to all sides of facets of the joint that continue it or its opposite.
   void spread(FacetSide from, int tag, const std::map<Ridge, int>& n_facets);
-  /// The side of a facet of the joint that is reached around the ridge; nothing where the body ends before.
+  /// The side of a facet of the joint that is reached around the ridge; nothing if the body ends before.
   [[nodiscard]] std::optional<FacetSide> follow(FacetSide side, const Ridge& ridge, int tag) const;
   [[nodiscard]] std::array<Ridge, dim> ridges(Index facet) const;
   [[nodiscard]] Index across(Index facet, Index cell) const
@@ -57,9 +57,9 @@ class Cut
     const auto [first, second] = topology_.facet_cells[facet];
     return first == cell ? second : first;
   }
-  /// Divides the cells around v; all parts but the first get a copy of it.
+  /// Divides the cells around v into parts; all but the first get a copy of it.
   void split(Index v);
-  /// Gives the edges between copies the nodes of the edges that were there.
+  /// Gives the edges between copies the nodes of the original edges.
   void copy_edge_nodes();
 
   MeshData<dim>& data_;
@@ -236,7 +236,7 @@ void Cut<dim>::open()
   for (TaggedFacet<dim>& tagged : data_.facets)
   {
     const Index f = topology_.facet(tagged.vertices);
-    if (f < 0)  // an error that others name
+    if (f < 0)  // an error that others report
       facets.push_back(tagged);
     else if (joint_[f] < 0)
       facets.push_back({seen_from(f, topology_.facet_cells[f][0]), tagged.tag});

@@ -19,7 +19,7 @@ std::array<Point<dim>, dim> first_corners(const FirstFacets& facets, std::size_t
   return points;
 }
 
-/// Of x in a facet, up to rounding in its plane.
+/// Barycentric coordinates of x in a facet, up to rounding in its plane.
 template <int dim>
 std::array<double, dim> barycentric_in(const FacetMap<dim>& map, const Point<dim>& x)
 {
@@ -67,7 +67,7 @@ auto FirstFacetFinder<dim>::operator()(int tag, const std::array<Point<dim>, dim
   constexpr double close = 1e-3;  // of the diameter: rounding is far less
   const double near = close * diameter(vertices);
   Place best{};
-  double least = HUGE_VAL;  // how far the vertices are outside, over the size of the facet
+  double least = HUGE_VAL;  // how far the vertices are outside, relative to the size of the facet
   tree_.traverse([&](const BoundingBox<dim>& box) { return square_distance(box, centre) <= near * near; },
                  [&](std::size_t k)
                  {

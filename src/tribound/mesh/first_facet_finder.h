@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file first_facet_finder.h
-/// Where facets of a mesh lie in those of the first mesh.
+/// Locates facets of a mesh in those of the first mesh.
 
 #include <array>
 #include <cstddef>
@@ -19,16 +19,16 @@ template <int dim>
 class FirstFacetFinder
 {
  public:
-  /// Among those of the groups for which `is_meant(tag)`. Keeps a reference.
+  /// Searches the groups for which `is_meant(tag)`. Keeps a reference.
   FirstFacetFinder(const FirstFacets& facets, const std::function<bool(int)>& is_meant);
 
   struct Place
   {
     std::size_t facet;  ///< of FirstFacets
-    /// Per vertex of the facet that is looked for; 0 and 1 are not rounded.
+    /// Per vertex of the given facet; 0 and 1 are not rounded.
     std::array<std::array<double, dim>, dim> barycentric;
   };
-  /// The facet of that group which contains the facet with these vertices.
+  /// The facet of this group that contains the facet with these vertices.
   [[nodiscard]] Place operator()(int tag, const std::array<Point<dim>, dim>& vertices) const;
 
  private:

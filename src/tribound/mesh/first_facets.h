@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file first_facets.h
-/// The boundary of the first mesh, that others come from by cutting cells: functions that are linear on its
-/// facets are the same on all of them.
+/// The boundary of the first mesh, from which others come by cutting cells: functions that are linear on its
+/// facets are the same on all meshes.
 
 #include <cstddef>
 #include <span>
@@ -35,10 +35,10 @@ struct FirstFacets
   }
 };
 
-/// Those of a first mesh. `boundary`: as find_boundary() gives it.
+/// The facets of a first mesh. `boundary`: as find_boundary() gives it.
 template <int dim>
 [[nodiscard]] FirstFacets first_facets(const MeshData<dim>& data, std::span<const BoundaryFacet> boundary);
-/// Those of a first mesh of which each rank has some cells, on all ranks. They call it together.
+/// The same for a first mesh of which each rank has some cells, on all ranks. They call it together.
 template <int dim>
 [[nodiscard]] FirstFacets first_facets(const Ranks& ranks, std::span<const CellRecord<dim>> cells);
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file geometry.h
-/// Affine geometry of simplices: reference map, measures, diameters, normals. Inline: the loops over cells of
-/// assembly call these.
+/// Affine geometry of simplices: reference map, measures, diameters, normals. Inline, since the loops over
+/// cells of assembly call these.
 
 #include <algorithm>
 #include <array>
@@ -37,8 +37,8 @@ struct CellMap
   [[nodiscard]] double measure() const { return det / factorial<dim>; }
 };
 
-/// The map x = x_0 + J s from the reference facet onto a facet, from its own vertices: a coordinate that they
-/// share is that of every point to the last bit, wherever the vertex opposite is.
+/// The map x = x_0 + J s from the reference facet onto a facet, from its own vertices alone. A coordinate
+/// that they share is that of every point, to the last bit, wherever the opposite vertex is.
 template <int dim>
 struct FacetMap
 {
@@ -84,7 +84,7 @@ template <int dim>
   return box;
 }
 
-/// Around a mesh, on several ranks around all its parts. They call it together.
+/// The box around a mesh, on several ranks around all its parts. They call it together.
 template <int dim>
 [[nodiscard]] BoundingBox<dim> box_around(const Mesh<dim>& mesh)
 {
@@ -122,8 +122,8 @@ template <int dim>
   return result;
 }
 
-/// Whether x comes first: by the first coordinate in which they differ by more than `zero`. What is chosen so
-/// does not depend on how the mesh is numbered.
+/// Whether x comes before y: compares the first coordinate in which they differ by more than `zero`. A choice
+/// by this order does not depend on the numbering of the mesh.
 template <int dim>
 [[nodiscard]] bool comes_before(const Point<dim>& x, const Point<dim>& y, double zero = 0)
 {
@@ -178,7 +178,7 @@ template <int dim>
   return map;
 }
 
-/// Of a facet with these vertices, in ascending local order: that of facet_to_cell().
+/// The map of a facet with these vertices in ascending local order, that of facet_to_cell().
 template <int dim>
 [[nodiscard]] FacetMap<dim> facet_map(const std::array<Point<dim>, dim>& points)
 {
@@ -188,7 +188,7 @@ template <int dim>
   return map;
 }
 
-/// Of facet `local` of `cell`.
+/// The map of facet `local` of `cell`.
 template <int dim>
 [[nodiscard]] FacetMap<dim> facet_map(const Mesh<dim>& mesh, Index cell, int local)
 {
@@ -202,7 +202,7 @@ template <int dim>
   return diameter(points_of(mesh.vertices(), mesh.cell(cell)));
 }
 
-/// Local facet `local` of a cell, seen from that cell, with these vertices in ascending local order.
+/// Local facet `local`, seen from its cell, with these vertices in ascending local order.
 template <int dim>
 [[nodiscard]] FacetGeometry<dim> facet_geometry(const std::array<Point<dim>, dim>& points, int local)
 {

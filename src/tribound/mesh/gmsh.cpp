@@ -26,7 +26,7 @@ namespace
 
 using AnyMeshData = std::variant<MeshData<2>, MeshData<3>>;
 
-/// What the first number of a result says: the dimension of the mesh that follows, or
+/// The first number of a result: the dimension of the mesh that follows, or one of these.
 enum Answer : std::size_t
 {
   refused = 0,  ///< an InputError follows
@@ -42,7 +42,7 @@ std::string refusal(const InputError& error)
   return bytes.take();
 }
 
-/// In the child: the mesh, or why there is none.
+/// Runs in the child: the mesh, or why there is none.
 std::string load_as_bytes(const std::filesystem::path& file)
 {
   ByteWriter bytes;
@@ -88,7 +88,7 @@ std::string load_as_bytes(const std::filesystem::path& file)
 
 constexpr double share_of_machine = 0.9;
 
-/// Says that a limit of reading_limits() is reached, such as "0.256 GB", and what that means.
+/// Reports that a limit of reading_limits(), such as "0.256 GB", is reached, and what that means.
 [[noreturn]] void throw_beyond_limits(const std::filesystem::path& file, const std::string& limit)
 {
   std::error_code unknown;

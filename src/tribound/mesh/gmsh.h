@@ -19,8 +19,8 @@ using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
 /// 0). Physical groups of dimension dim are regions, of dimension dim-1 boundaries; without physical groups
 /// of dimension dim everything is one region.
 ///
-/// Gmsh works in a copy of this process (base/apart.h): whatever it does with a file, crash, hang, use up
-/// memory, is answered by an InputError. It is given up after `patience` seconds without a sign of progress,
+/// Gmsh works in a copy of this process (base/apart.h). Whatever it does with a file (crash, hang, use up
+/// memory), the result is an InputError. It is given up after `patience` seconds without a sign of progress,
 /// or as soon as `stop` is true, which ends in a SolveError. Gmsh's state in this process is not touched.
 [[nodiscard]] AnyMesh read_gmsh(const MeshFile& source, const FindSeams& seams = {},
                                 const std::atomic<bool>* stop = nullptr, double patience = 300);
@@ -28,7 +28,7 @@ using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
 /// The version of Gmsh's library.
 [[nodiscard]] std::string gmsh_version();
 
-/// The mesh a case asks for; `stop` as above.
+/// The mesh that a case asks for; `stop` as above.
 [[nodiscard]] AnyMesh read_mesh(const MeshSource& source, const FindSeams& seams = {},
                                 const std::atomic<bool>* stop = nullptr);
 

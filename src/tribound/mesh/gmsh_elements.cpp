@@ -39,8 +39,8 @@ int order_of_simplex(const Where& where, int dim, int type)
 
 }  // namespace
 
-// Gmsh tells the type of the first element of an entity for all of that shape, and reading nodes by type
-// overruns its arrays where a second-order element comes later: look at each element first.
+// Gmsh reports the type of the first element of an entity for all elements of that shape. Reading nodes by
+// type then overruns its arrays if a second-order element comes later, so each element is looked at first.
 int mesh_order(const Where& where, int mesh_dim)
 {
   int order = 0;

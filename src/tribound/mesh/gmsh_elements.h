@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file gmsh_elements.h
-/// Which elements the model that Gmsh has loaded consists of.
+/// The elements of the model that Gmsh has loaded.
 
 #include <array>
 
@@ -16,8 +16,8 @@ inline constexpr std::array<std::array<int, 4>, 2> simplex_type = {{{15, 1, 2, 4
 /// 3 if there are solids of any shape, else 2. Throws InputError where there are no surfaces either.
 [[nodiscard]] int mesh_dimension(const Where& where);
 
-/// The order of the cells and of their facets, 1 or 2. Throws InputError where they are no simplices, of
-/// different orders or of higher ones.
+/// The order of the cells and of their facets, 1 or 2. Throws InputError if they are no simplices, of
+/// different orders, or of higher order.
 [[nodiscard]] int mesh_order(const Where& where, int mesh_dim);
 
 }  // namespace tribound::mesh

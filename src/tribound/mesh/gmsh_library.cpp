@@ -17,7 +17,7 @@ namespace
 /// The handle of dlopen(); kept until the process ends.
 void* library = nullptr;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// Gmsh's C interface turns exceptions into an error number: this tells that one was for want of memory.
+/// Gmsh's C interface turns exceptions into an error number; this records a lack of memory.
 std::atomic<bool> memory_was_short = false;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 [[noreturn]] void report_short_memory()
@@ -122,7 +122,7 @@ int element_type_as(std::size_t element)
 
 std::string load()
 {
-  // The first as the dynamic linker would find it, the other where the build has found it.
+  // The first as the dynamic linker finds it, the other where the build has found it.
   for (const char* name : {TRIBOUND_GMSH_SONAME, TRIBOUND_GMSH_LIBRARY})
     if (library == nullptr) library = ::dlopen(name, RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) return ::dlerror();

@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file gmsh_library.h
-/// Gmsh's library, loaded when it is needed: with the geometry kernel and the windows it brings along it
-/// takes longer to start than many a case to solve. These are those of its functions that are used here, by
-/// the names they have in Gmsh's own interfaces. Each throws GmshError where Gmsh reports a failure.
+/// Gmsh's library, loaded on demand: with its geometry kernel and its windows it takes longer to start than
+/// many cases take to solve. Declares the functions used here, by the names they have in Gmsh's own
+/// interfaces. Each throws GmshError where Gmsh reports a failure.
 
 #include <cstddef>
 #include <stdexcept>
@@ -14,14 +14,14 @@
 namespace tribound::mesh::gmsh
 {
 
-/// What has failed; the reason is in log().
+/// What failed; the reason is in log().
 class GmshError : public std::runtime_error
 {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Loads the library; once is enough. Before, no other function may be called. Returns why it cannot be
+/// Loads the library; once is enough. No other function may be called before. Returns why it cannot be
 /// loaded, or an empty text.
 [[nodiscard]] std::string load();
 /// The version whose interface is used, such as "4.8.0".
@@ -45,7 +45,7 @@ using Entity = std::pair<int, int>;
 [[nodiscard]] std::vector<double> position(int point);
 [[nodiscard]] std::vector<Entity> physical_groups(int dim);
 [[nodiscard]] std::string physical_name(const Entity& group);
-/// Their tags, negative where an entity is turned round.
+/// Tags of the entities of a group, negative where an entity is reversed.
 [[nodiscard]] std::vector<int> entities_of(const Entity& group);
 
 /// Meshes the geometry up to this dimension.
@@ -58,7 +58,7 @@ struct Nodes
   std::vector<double> x;  ///< 3 coordinates each
 };
 
-/// Of the entities of one dimension without their boundaries; dim = -1: all nodes.
+/// Nodes of the entities of one dimension without their boundaries; dim = -1: all nodes.
 [[nodiscard]] Nodes nodes(int dim = -1);
 
 /// The types of the elements of this dimension.

@@ -131,7 +131,7 @@ std::string describe_nodes(const Nodes& nodes, const std::array<std::size_t, n>&
 }
 
 /// Gmsh orients the surfaces of a plane geometry up or down: an entity whose cells are all negative is
-/// turned. Cells of both signs in one entity are left to the verification of the mesh.
+/// reversed. Cells of both signs in one entity are left to the verification of the mesh.
 template <int dim>
 void orient(const Nodes& nodes, std::span<std::array<std::size_t, dim + 1>> cells)
 {
@@ -197,7 +197,7 @@ Simplices<dim> read_facets(const Where& where, const Groups& groups, int order)
 }
 
 /// Numbers the corners of cells and facets in ascending order of their tags and returns their positions.
-/// Nodes on edges are dropped; others where they stem from points of the geometry, else they are an error.
+/// Nodes on edges are dropped; others, too, if they stem from points of the geometry, else they are an error.
 template <int dim>
 std::vector<Point<dim>> number_vertices(const Where& where, Nodes& nodes, const Simplices<dim + 1>& cells,
                                         const Simplices<dim>& facets, bool is_geo)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file gmsh_load.h
-/// What gmsh.cpp runs in a process of its own: reading a file, or meshing it, by Gmsh's library.
+/// The part of gmsh.cpp that runs in a process of its own: reads or meshes a file by Gmsh's library.
 
 #include <filesystem>
 #include <variant>

@@ -22,7 +22,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// The errors that Gmsh has logged, the first of them.
+/// The errors that Gmsh has logged, the first few of them.
 std::string logged_errors()
 {
   constexpr int most = 5;
@@ -70,7 +70,7 @@ void stop_gmsh()
 /// Coordinates beyond this have squares and volumes outside the range of a double.
 constexpr double largest_coordinate = 1e60;
 
-/// Gmsh does not end where a point of the geometry is not finite, or absurdly far away.
+/// Gmsh does not terminate if a point of the geometry is not finite, or absurdly far away.
 void check_points(const std::filesystem::path& file)
 {
   for (const auto& [_, tag] : gmsh::entities(0))
@@ -130,7 +130,7 @@ GmshSession::GmshSession(const std::filesystem::path& file)
     check_points(file);
     if (dim >= 2 && gmsh::element_types(dim).empty())
     {
-      // Errors go to the log instead of being thrown, within a team of threads where nobody catches them.
+      // Errors go to the log: thrown in a team of threads, nobody would catch them.
       gmsh::set_number("General.AbortOnError", 0);
       attempt(
           file, "mesh the geometry",

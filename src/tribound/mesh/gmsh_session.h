@@ -17,8 +17,8 @@ struct ReadingLimits
   double seconds;  ///< of CPU time
 };
 
-/// Of a .msh by its size: several times as much as sound files need, so that counts in a damaged one, which
-/// Gmsh believes, cost neither gigabytes nor minutes. Of a .geo infinite: a few lines may ask for any mesh.
+/// For a .msh by its size: several times what sound files need, so that wrong counts in a damaged one, which
+/// Gmsh believes, cost neither gigabytes nor minutes. For a .geo infinite: a few lines may ask for any mesh.
 [[nodiscard]] ReadingLimits reading_limits(const std::filesystem::path& file);
 
 /// Gmsh holds one global state per process: one session at a time. Its messages go to stdout and stderr.

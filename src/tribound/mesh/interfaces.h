@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file interfaces.h
-/// Where the boundaries of bodies may touch and overlap: on the two sides of a declared interface.
+/// Where the boundaries of bodies may touch and overlap: the two sides of a declared interface.
 
 #include <set>
 #include <span>
@@ -14,7 +14,7 @@ namespace tribound::mesh
 {
 
 /// The interfaces of a mesh that is not verified yet. Facets are those of the topology with one cell; bodies
-/// are parts of the mesh that are connected through facets.
+/// are the parts of the mesh connected through facets.
 template <int dim>
 class Interfaces
 {
@@ -22,14 +22,14 @@ class Interfaces
   Interfaces(const MeshData<dim>& data, const Topology<dim>& topology);
 
   [[nodiscard]] bool empty() const { return sides_.empty(); }
-  /// Whether they are the two sides of one interface.
+  /// Whether two facets are on opposite sides of one interface.
   [[nodiscard]] bool are_opposite(Index f, Index g) const;
   /// Whether one may cross the other: they are opposite, or belong to two bodies that an interface joins.
   [[nodiscard]] bool may_cross(Index f, Index g) const;
-  /// Whether both sides of the interface of the facet are on its body: it is that of a slit.
+  /// Whether both sides of the facet's interface are on its body, so that it is a slit.
   [[nodiscard]] bool is_of_slit(Index f) const;
-  /// Whether vertex v may lie on facet f of those that it lies on without being a corner: v has a facet that
-  /// is in an interface, and f belongs to another body which that interface joins, or to one with a facet
+  /// Whether vertex v may lie on facet f, one of those that it lies on without being a corner. v must have a
+  /// facet in an interface. f must belong to another body joined by that interface, or to a body with a facet
   /// among `touched` that is in an interface and of another body or opposite. So several bodies may meet in a
   /// point.
   [[nodiscard]] bool may_touch(Index v, Index f, std::span<const Index> touched) const;

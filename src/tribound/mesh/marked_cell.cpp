@@ -28,14 +28,13 @@ constexpr bool second_in_plane(std::uint8_t type)
   return type >= 9;
 }
 
-/// The marked edges of the facets 0 and 1 meet in one vertex: with the refinement edge they span a plane.
+/// The marked edges of the facets 0 and 1 meet in a vertex, and so span a plane with the refinement edge.
 constexpr bool in_plane(std::uint8_t type)
 {
   return marked_opposite_to(type, 0) == marked_opposite_to(type, 1) && marked_opposite_to(type, 0) != 0;
 }
 
-/// The squared distance, computed in one way only whatever the compiler makes of it, since lengths are
-/// compared.
+/// The squared distance, computed in the same way by every compiler, since lengths are compared.
 template <int dim>
 double squared_distance(const Point<dim>& x, const Point<dim>& y)
 {
@@ -44,8 +43,8 @@ double squared_distance(const Point<dim>& x, const Point<dim>& y)
   return sum;
 }
 
-/// The longest of the edges between the vertices; of equally long ones the last in the lexicographic order of
-/// the coordinates of its ends, lower end first.
+/// The longest of the edges between the vertices; among equally long ones the last in the lexicographic order
+/// of the coordinates of its ends, lower end first.
 template <int dim, std::size_t n>
 std::array<Index, 2> longest_edge(std::span<const Point<dim>> points, const std::array<Index, n>& vertices)
 {

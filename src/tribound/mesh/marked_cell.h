@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file marked_cell.h
-/// Cells with marked edges, and how they are inherited: the rules of Arnold, Mukherjee and Pouly [AMP00], in
+/// Cells with marked edges, and how marks are inherited: the rules of Arnold, Mukherjee and Pouly [AMP00], in
 /// 2D newest vertex bisection.
 ///
 /// Every triangle of the mesh, in 3D every face of a tetrahedron, has a marked edge, the same from both
@@ -35,7 +35,7 @@ struct MarkedCell
 template <int dim>
 inline constexpr int n_bisection_types = dim == 2 ? 1 : 18;
 
-/// The vertices of local facet `local`, its marked edge (in 2D the facet itself) in front.
+/// The vertices of local facet `local`, its marked edge (in 2D the facet itself) first.
 template <int dim>
 [[nodiscard]] std::array<Index, dim> marked_facet(const MarkedCell<dim>& cell, int local);
 
@@ -43,12 +43,12 @@ template <int dim>
 template <int dim>
 [[nodiscard]] MarkedCell<dim> child(const MarkedCell<dim>& parent, int kept, Index middle);
 
-/// The cell with its longest edge and the longest edges of its faces marked. Edges of one length are told
-/// apart by the coordinates of their ends, so that the numbers of the vertices do not matter.
+/// The cell with its longest edge and the longest edges of its faces marked. Edges of equal length are
+/// ordered by the coordinates of their ends, so that the numbers of the vertices do not matter.
 template <int dim>
 [[nodiscard]] MarkedCell<dim> longest_edges_marked(std::span<const Point<dim>> points, const Cell<dim>& cell);
 
-/// Cell c of `cells` as bisection goes on with it: with the type that it has, or, where `types` is empty,
+/// Cell c of `cells` as bisection continues with it: with the type that it has, or, where `types` is empty,
 /// with its longest edges marked.
 template <int dim>
 [[nodiscard]] MarkedCell<dim> marked_cell(std::span<const Point<dim>> points,

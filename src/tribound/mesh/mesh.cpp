@@ -14,7 +14,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// The arrays of a part.
+/// The arrays of a part of a mesh.
 template <int dim>
 MeshData<dim> data_of(MeshPart<dim>& part, MeshLabels&& labels)
 {

@@ -24,7 +24,7 @@ namespace tribound::mesh
 template <int dim>
 using Cell = std::array<Index, dim + 1>;
 
-/// A facet named by its vertices, in a group; what a reader finds.
+/// A facet named by its vertices, in a group, as a reader finds it.
 template <int dim>
 struct TaggedFacet
 {
@@ -32,7 +32,7 @@ struct TaggedFacet
   int tag;  ///< position in MeshData::boundary_names
 };
 
-/// A node inside an edge of a facet; what a reader of a second-order mesh finds.
+/// A node inside an edge of a facet, as a reader of a second-order mesh finds it.
 template <int dim>
 struct EdgeNode
 {
@@ -50,15 +50,15 @@ struct BoundaryFacet
   int tag;    ///< position in Mesh::boundary_names(), or -1 for a facet in no group
 };
 
-/// The meshes that bisect() has led through. Each has the vertices of the one before, with their numbers, and
-/// middles of edges behind them.
+/// The meshes that bisect() has passed through. Each has the vertices of the one before, with their numbers,
+/// followed by middles of edges.
 struct Ancestry
 {
-  std::vector<Index> n_vertices;                   ///< of the meshes before this one, the given one first
-  std::vector<std::array<Index, 2>> halved_edges;  ///< ends, per vertex behind those of the given mesh
+  std::vector<Index> n_vertices;                   ///< of the meshes before this one, the original one first
+  std::vector<std::array<Index, 2>> halved_edges;  ///< ends, per vertex after those of the original mesh
 };
 
-/// What the parts of a mesh have in common with each other and with the meshes that are made from it.
+/// What the parts of a mesh share with each other and with the meshes made from it.
 struct MeshLabels
 {
   std::vector<std::string> region_names{};
@@ -78,13 +78,13 @@ struct MeshData : MeshLabels
   std::vector<int> regions{};  ///< per cell: position in region_names
   std::vector<TaggedFacet<dim>> facets{};
   std::vector<EdgeNode<dim>> edge_nodes{};  ///< of `facets`; empty for a mesh of order 1
-  /// Per cell: how bisect() goes on with it, see mesh/marked_cell.h. Empty for a mesh that does not come from
-  /// bisect(), which then starts from the longest edges.
+  /// Per cell: how bisect() continues with it, see mesh/marked_cell.h. Empty for a mesh that does not come
+  /// from bisect(), which then starts from the longest edges.
   std::vector<std::uint8_t> bisection_types{};
   Ancestry ancestry{};  ///< empty for a mesh that does not come from bisect()
 };
 
-/// The vertices of a local facet, by numbers or names: those of the cell but number `local`, in ascending
+/// The vertices of a local facet, by numbers or names: those of the cell except number `local`, in ascending
 /// local order.
 template <class Vertex, std::size_t n>
 [[nodiscard]] constexpr std::array<Vertex, n - 1> facet_vertices(const std::array<Vertex, n>& cell, int local)
@@ -142,9 +142,9 @@ struct MeshPart;
 template <int dim>
 struct Partition;
 
-/// A conforming simplicial mesh of a polygon or polyhedron, or the part of one that a rank has: its own cells
-/// and, behind them, ghosts, others' cells around them or opposite to them. The outer facets of ghosts are no
-/// boundary.
+/// A conforming simplicial mesh of a polygon or polyhedron, or the part of one that a rank has: its own
+/// cells, followed by ghosts, which are cells of other ranks around them or opposite to them. The outer
+/// facets of ghosts are not boundary.
 template <int dim>
 class Mesh
 {
@@ -155,7 +155,7 @@ class Mesh
   /// interfaces, tagged facets that are not on the boundary or in two groups, a vertex
   /// whose cells are not connected through facets.
   explicit Mesh(MeshData<dim> data);
-  /// Verifies what can be seen from here. Throws InputError, on this rank alone.
+  /// Verifies what this rank can see. Throws InputError, on this rank alone.
   Mesh(MeshPart<dim> part, MeshLabels labels);
 
   [[nodiscard]] Index n_vertices() const { return static_cast<Index>(vertices_.size()); }
@@ -173,21 +173,21 @@ class Mesh
   [[nodiscard]] std::span<const std::uint8_t> bisection_types() const { return bisection_types_; }
   [[nodiscard]] const Ancestry& ancestry() const { return ancestry_; }
   [[nodiscard]] std::span<const Interface> interfaces() const { return labels_.interfaces; }
-  /// All of these, which a mesh made from this one inherits.
+  /// All labels; a mesh made from this one inherits them.
   [[nodiscard]] const MeshLabels& labels() const { return labels_; }
 
   [[nodiscard]] const Topology<dim>& topology() const { return *topology_; }
 
-  /// The first cells are those of this rank; of a whole mesh all.
+  /// The first cells are those of this rank; on a whole mesh all.
   [[nodiscard]] Index n_owned_cells() const { return n_owned_cells_; }
   /// Whether a vertex has an own cell; all its cells are then here.
   [[nodiscard]] bool has_patch(Index v) const { return has_patch_.empty() || has_patch_[v] != 0; }
   /// How the mesh is shared out; null for a whole mesh.
   [[nodiscard]] const Partition<dim>* partition() const { return partition_.get(); }
-  /// Of the whole mesh.
+  /// Numbers of the whole mesh.
   [[nodiscard]] std::int64_t n_global_cells() const;
   [[nodiscard]] std::int64_t n_global_vertices() const;
-  /// The ranks that have a part; of a whole mesh this one alone.
+  /// The ranks that have a part; for a whole mesh this one alone.
   [[nodiscard]] const Ranks& ranks() const { return ranks_; }
   /// The facets of own cells come first in boundary().
   [[nodiscard]] std::size_t n_owned_boundary() const { return n_owned_boundary_; }
@@ -228,8 +228,8 @@ template <int dim>
 template <int dim>
 [[nodiscard]] Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells);
 
-/// For each cell the number of its part that is connected through facets, parts numbered by their first
-/// cells.
+/// For each cell the number of the part connected through facets that it is in; parts are numbered by their
+/// first cells.
 template <int dim>
 [[nodiscard]] std::vector<int> connected_parts(const Topology<dim>& topology);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file mesh_bytes.h
-/// Mesh data and errors as a string of bytes, to be handed from one process to another of the same program.
+/// Mesh data and errors as a string of bytes, to be passed between processes of the same program.
 
 #include <cstring>
 #include <string>
@@ -44,7 +44,7 @@ class ByteWriter
   std::string bytes_;
 };
 
-/// Takes them out again, in the same order.
+/// Extracts the values again, in the same order.
 class ByteReader
 {
  public:
@@ -84,7 +84,7 @@ class ByteReader
   std::string_view bytes_;
 };
 
-/// All that a reader fills; the source is left to who asked for it.
+/// All that a reader fills in; the source is left to the caller.
 template <int dim>
 void put(ByteWriter& bytes, const MeshData<dim>& data)
 {

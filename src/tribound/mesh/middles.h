@@ -11,8 +11,8 @@
 namespace tribound::mesh
 {
 
-/// The middles of edges, found by their ends. A list of edges at the end with the larger number: an edge that
-/// bisection makes has its newer end there, so that the lists stay short.
+/// The middles of edges, found by their ends. Each edge is in the list of its end with the larger number.
+/// That is the newer end of an edge that bisection makes, so that the lists stay short.
 class Middles
 {
  public:
@@ -28,7 +28,7 @@ class Middles
     return middle;
   }
 
-  /// Gives the edge a middle: the vertex next in number.
+  /// Gives the edge a middle: the vertex with the next number.
   Index add(Index a, Index b)
   {
     if (a < b) std::swap(a, b);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file outer_facets.h
-/// The facets with one cell, ready for being searched: what of a mesh may touch or cross itself.
+/// The facets with one cell, prepared for searches: they are where a mesh may touch or cross itself.
 
 #include <array>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace tribound::mesh
 {
 
-/// What is nearer to a facet than this multiple of its diameter lies on it and does not cross it.
+/// Whatever is nearer to a facet than this multiple of its diameter lies on it and does not cross it.
 inline constexpr double coincidence = 1e-9;
 
 /// A facet of the topology with one cell.
@@ -26,7 +26,7 @@ struct OuterFacet
   double diameter;
 };
 
-/// All of them, cell by cell; the cells may be unverified.
+/// All outer facets, cell by cell; the cells may be unverified.
 template <int dim>
 [[nodiscard]] std::vector<OuterFacet<dim>> outer_facets(const MeshData<dim>& data,
                                                         const Topology<dim>& topology)

@@ -49,7 +49,7 @@ std::array<double, dim> barycentric(const OuterFacet<dim>& facet, const Point<di
   }
 }
 
-/// Where the segment from a to b crosses the facet, its ends clear of the facet's plane; nothing if it does
+/// Where the segment from a to b, its ends clear of the facet's plane, crosses the facet; nothing if it does
 /// not. A crossing on the rim of the facet counts.
 template <int dim>
 std::optional<Point<dim>> crossing(const Point<dim>& a, const Point<dim>& b, const OuterFacet<dim>& facet)
@@ -65,7 +65,7 @@ std::optional<Point<dim>> crossing(const Point<dim>& a, const Point<dim>& b, con
   return x;
 }
 
-/// Where an edge of `first` crosses `second`, edges that share a vertex with it excepted.
+/// Where an edge of `first` crosses `second`, except edges that share a vertex with it.
 template <int dim>
 std::optional<Point<dim>> crossing(const OuterFacet<dim>& first, const OuterFacet<dim>& second)
 {
@@ -104,9 +104,9 @@ void check_crossings(const MeshData<dim>& data, std::span<const OuterFacet<dim>>
   }
 }
 
-/// How many cells cover the points just outside the facet: a ray from there leaves as many cells more than it
-/// enters. Nothing where it meets the rim of a facet. Bodies that an interface joins with that of the facet
-/// do not count.
+/// How many cells cover the points just outside the facet: as many as a ray from there leaves more than it
+/// enters. Nothing if it meets the rim of a facet. Bodies that an interface joins with that of the facet do
+/// not count.
 template <int dim>
 std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<dim>& tree,
                          const Interfaces<dim>& interfaces, std::size_t start, const Point<dim>& direction)
@@ -136,8 +136,8 @@ std::optional<int> cover(std::span<const OuterFacet<dim>> facets, const BoxTree<
   return is_clear ? std::optional(sum) : std::nullopt;
 }
 
-/// A facet of every connected part of the boundary, from which it is seen what lies outside: not one of a
-/// slit, outside of which its own body goes on.
+/// A facet of every connected part of the boundary, from which the outside is examined. No facet of a slit:
+/// outside of it its own body continues.
 template <int dim>
 std::vector<std::size_t> parts(std::span<const OuterFacet<dim>> facets, std::size_t n_vertices,
                                const Interfaces<dim>& interfaces)

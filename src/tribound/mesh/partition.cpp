@@ -50,7 +50,7 @@ std::vector<VertexName<dim>> number_vertices(const Cube<dim>& cube, std::span<co
   return vertices;
 }
 
-/// The vertices that may have cells on other ranks: those of facets inside with one cell here.
+/// The vertices that may have cells on other ranks: those of inner facets with one cell here.
 template <int dim>
 std::vector<Index> outer_vertices(std::span<const CellRecord<dim>> cells, const Topology<dim>& topology)
 {
@@ -66,8 +66,8 @@ std::vector<Index> outer_vertices(std::span<const CellRecord<dim>> cells, const 
   return vertices;
 }
 
-/// Per vertex the ranks that ask for it, this one included. Each vertex is looked after by one of the ranks,
-/// chosen by its hash, which all that have it tell.
+/// Per vertex the ranks that ask for it, this one included. One rank, chosen by the hash of the vertex,
+/// answers for it, and all ranks that have it report to that rank.
 template <int dim>
 std::vector<std::vector<int>> asking_ranks(const Ranks& ranks, std::span<const VertexName<dim>> vertices)
 {
@@ -137,7 +137,7 @@ std::vector<Ghost<dim>> find_ghosts(const Ranks& ranks, const Cube<dim>& cube,
   return ghosts;
 }
 
-/// has_patch and sharers.
+/// Sets has_patch and sharers.
 template <int dim>
 void set_sharers(std::span<const Cell<dim>> corners, Partition<dim>& partition)
 {
@@ -161,7 +161,7 @@ void set_sharers(std::span<const Cell<dim>> corners, Partition<dim>& partition)
                       partition.sharers_begin.begin());
 }
 
-/// Those of all ranks; each is counted by the lowest that has it.
+/// The vertices of all ranks; each is counted by the lowest rank that has it.
 template <int dim>
 std::int64_t count_vertices(const Partition<dim>& partition)
 {
@@ -175,7 +175,7 @@ std::int64_t count_vertices(const Partition<dim>& partition)
   return partition.ranks.sum(n_counted_here);
 }
 
-/// Of own cells in ascending order.
+/// `owned`: the own cells in ascending order.
 template <int dim>
 MeshPart<dim> make_part(const Ranks& ranks, const Cube<dim>& cube, std::vector<CellRecord<dim>> owned,
                         std::vector<Ghost<dim>> ghosts)

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file partition.h
-/// How a mesh is shared out between ranks: every rank has cells of its own and, as ghosts, one layer of the
-/// others' around them and whatever else it needs.
+/// How a mesh is shared out between ranks: every rank has its own cells and ghosts, which are one layer of
+/// other ranks' cells around them and whatever else it needs.
 
 #include <array>
 #include <cstdint>
@@ -29,12 +29,12 @@ enum FacetTag : std::int32_t
 template <int dim>
 using CellTags = std::array<std::int32_t, dim + 1>;
 
-/// Those of all cells. `boundary`: as find_boundary() gives it.
+/// The tags of all cells. `boundary`: as find_boundary() gives it.
 template <int dim>
 [[nodiscard]] std::vector<CellTags<dim>> cell_tags(std::size_t n_cells,
                                                    std::span<const BoundaryFacet> boundary);
 
-/// A cell as it travels between ranks. The order of its vertices is part of it.
+/// A cell as it is sent between ranks. The order of its vertices is part of it.
 template <int dim>
 struct CellRecord
 {
@@ -52,7 +52,7 @@ struct CellRecord
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> first_records(const MeshData<dim>& data,
                                                          std::span<const BoundaryFacet> boundary);
-/// Those of the cells number first, ..., last - 1.
+/// The records of the cells number first, ..., last - 1.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> first_records(const Mesh<dim>& mesh, Index first, Index last);
 
@@ -65,8 +65,8 @@ struct Ghost
 };
 
 /// What a rank knows of how the mesh is shared out. Its own cells come first, in ascending order of their
-/// names, then ghosts likewise: every cell of others that has a vertex in common with one of its own, and
-/// what with_more_ghosts() has added. The vertices are in ascending order of (morton_key, name), which is the
+/// names, then ghosts likewise: every cell of other ranks that shares a vertex with one of its own, and those
+/// that with_more_ghosts() has added. The vertices are in ascending order of (morton_key, name), which is the
 /// same on all ranks.
 template <int dim>
 struct Partition
@@ -77,14 +77,14 @@ struct Partition
   std::vector<CellName> names;            ///< per cell
   std::vector<int> ghost_owners;          ///< per ghost cell
   std::vector<VertexName<dim>> vertices;  ///< per vertex
-  /// Per vertex, whether it has an own cell: then all its cells are here. Not of cells that are picked out of
-  /// a mesh.
+  /// Per vertex, whether it has an own cell: then all its cells are here. Not for cells that are picked out
+  /// of a mesh.
   std::vector<char> has_patch;
   std::vector<std::int32_t> sharers_begin;  ///< per vertex, into `sharers`; one more at the end
   std::vector<int> sharers;     ///< other ranks with own cells around a vertex that has a patch, ascending
   std::int64_t n_cells = 0;     ///< of the whole mesh
   std::int64_t n_vertices = 0;  ///< of the whole mesh
-  std::vector<int> bodies;      ///< per cell, of cells that are picked out: as number_bodies() numbers them
+  std::vector<int> bodies;      ///< per cell, if cells are picked out: as number_bodies() numbers them
 
   [[nodiscard]] std::span<const int> sharers_of(Index v) const
   {
@@ -102,8 +102,8 @@ struct MeshPart
 };
 
 /// The part of a rank that owns the cells `owned`, in any order, with its ghosts. All ranks call it together.
-/// Cells around a vertex are connected through facets inside that contain it; between ranks nothing else is
-/// exchanged than what lies along their common surface.
+/// Cells around a vertex must be connected through inner facets that contain it. Ranks exchange only what
+/// lies along their common surface.
 template <int dim>
 [[nodiscard]] MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube,
                                         std::vector<CellRecord<dim>> owned);
@@ -115,9 +115,9 @@ template <int dim>
                                               std::vector<CellRecord<dim>> owned,
                                               std::vector<Ghost<dim>> ghosts);
 
-/// Where cells should be for all ranks to have the same weight: stretches of the curve along which `keys`
-/// ascend. Nothing of the size of the mesh is exchanged, and where a cell goes does not depend on where it
-/// is.
+/// The rank of each cell such that all ranks have the same weight: stretches of the curve along which `keys`
+/// ascend. Nothing of the size of the mesh is exchanged, and the new rank of a cell does not depend on its
+/// present one.
 [[nodiscard]] std::vector<int> balanced_ranks(const Ranks& ranks, std::span<const std::uint64_t> keys,
                                               std::span<const std::int64_t> weights);
 
@@ -126,7 +126,7 @@ template <int dim>
 [[nodiscard]] std::vector<std::uint64_t> centre_keys(const Cube<dim>& cube,
                                                      std::span<const CellRecord<dim>> cells);
 
-/// Values of ghost cells from their owners.
+/// Updates values of ghost cells from their owners.
 template <int dim>
 [[nodiscard]] GhostUpdate cell_update(const Partition<dim>& partition);
 

@@ -46,7 +46,7 @@ std::map<Edge, Point<dim>> nodes_by_edge(const MeshData<dim>& data)
   return nodes;
 }
 
-/// Numbers the nodes in the order in which facets name them.
+/// Numbers the nodes in the order in which the facets name them.
 template <int dim>
 class Collector
 {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quadratic_facets.h
-/// The facets of the first mesh: the curved ones, of which the cells have the vertices alone, and all.
+/// The facets of the first mesh: the curved ones, of which cells only have the vertices, and all.
 
 #include <array>
 #include <memory>
@@ -29,26 +29,26 @@ template <int dim>
     return cross(tangents[0], tangents[1]);
 }
 
-/// The second-order facets of the boundary groups as they are in the mesh file, whatever becomes of the
-/// cells; of a mesh of order 1 none.
+/// The second-order facets of the boundary groups as in the mesh file, whatever becomes of the cells; none
+/// for a mesh of order 1.
 struct QuadraticFacets
 {
   std::vector<int> tags{};  ///< per facet: position in MeshLabels::boundary_names
-  /// Per facet n_facet_nodes: its vertices, so ordered that normal_of() its edges points out of the body,
+  /// Per facet n_facet_nodes: its vertices, ordered so that normal_of() its edges points out of the body,
   /// then the nodes on its local_edges.
   std::vector<Index> nodes{};
   std::vector<double> points{};  ///< dim coordinates per node
   FirstFacets first{};           ///< all facets of the groups by their vertices, of whatever order
 };
 
-/// Those of the tagged facets of `boundary` whose edges all have a node, and all of them as the first ones.
+/// The tagged facets of `boundary` whose edges all have a node, and all tagged ones as the first facets.
 /// Throws InputError for a node that is not finite, and for an edge with two nodes.
 template <int dim>
 [[nodiscard]] std::shared_ptr<const QuadraticFacets> quadratic_facets(
     const MeshData<dim>& data, std::span<const BoundaryFacet> boundary);
 
-/// How far the facets of the group `tag` are from the straight ones with their vertices: at the middles of
-/// edges, in 3D of facets, too. 0 where it is no more than the coordinates are rounded by.
+/// The distance of the facets of the group `tag` from the straight ones with their vertices: at the middles
+/// of edges, in 3D also of facets. 0 where it is within the rounding of the coordinates.
 template <int dim>
 [[nodiscard]] double sagitta(const QuadraticFacets& facets, int tag);
 

@@ -14,7 +14,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// Relative, of squares of distances: parts that are nearer by no more than rounding are not looked into.
+/// Relative, for squared distances: parts that are nearer by no more than rounding are not searched.
 constexpr double rounding = 1e-13;
 
 /// Bernstein coefficients of a part differ from values by the square of its size: 2^-52.
@@ -34,7 +34,7 @@ std::optional<int> node_of(const std::array<double, dim>& l)
 
 }  // namespace
 
-/// By how many facets have a node, in 3D of an edge; a vertex is on the rim if one of its edges is.
+/// A node is on the rim if only one facet has it, in 3D on an edge; a vertex there if one of its edges is.
 template <int dim>
 void QuadraticSurface<dim>::find_rim(std::span<const Index> nodes)
 {

@@ -16,7 +16,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Of barycentric coordinates.
 constexpr double end_of_steps = 16 * epsilon;
 
-/// The zero in [0, 1] of a cubic that increases there, by its Bernstein coefficients; an end if it has none
+/// The zero in [0, 1] of an increasing cubic, given by its Bernstein coefficients; an end if there is none
 /// inside. Newton's method between brackets.
 double zero_of_increasing(const std::array<double, 4>& b)
 {
@@ -43,7 +43,7 @@ double zero_of_increasing(const std::array<double, 4>& b)
   return t;
 }
 
-/// Of coefficients by their four corners: the same in every order of them.
+/// Numbers of coefficients by their four corners: the same in every order of them.
 template <int dim>
 constexpr auto numbers = []
 {
@@ -61,7 +61,7 @@ constexpr auto numbers = []
   return result;
 }();
 
-/// Corner i.
+/// The barycentric coordinates of corner i.
 template <int dim>
 std::array<double, dim> unit(int i)
 {
@@ -197,7 +197,7 @@ auto QuadraticPiece<dim>::tangents(const Barycentric& l) const -> std::array<Poi
   return result;
 }
 
-/// Newton's method on a convex function that is less inside than on the boundary; it is damped so that it
+/// Newton's method on a convex function that is smaller inside than on the boundary, damped so that it
 /// descends and stays inside.
 template <int dim>
 auto QuadraticPiece<dim>::minimiser_inside() const -> Barycentric
@@ -233,7 +233,7 @@ auto QuadraticPiece<dim>::minimiser_inside() const -> Barycentric
     double length = 1;
     Barycentric next = at(length);
     const auto is_inside = [&] { return std::ranges::all_of(next, [](double value) { return value > 0; }); };
-    // The last step gains less than rounding errors tell.
+    // The gain of the last step is within rounding errors.
     if (-change.dot(gradient) <= epsilon * d.squaredNorm() || change.norm() <= end_of_steps)
       return is_inside() ? next : l;
     for (int halving = 0; !(is_inside() && polar(next, next).squaredNorm() < d.squaredNorm()); ++halving)
@@ -246,7 +246,7 @@ auto QuadraticPiece<dim>::minimiser_inside() const -> Barycentric
   return l;
 }
 
-// Convex: the least value on the edges is that of the part unless the function falls from there to the
+// Convex: the least value on the edges is that of the part, unless the function decreases from there to the
 // inside.
 template <int dim>
 auto QuadraticPiece<dim>::minimiser() const -> Barycentric

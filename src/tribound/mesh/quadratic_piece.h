@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quadratic_piece.h
-/// How far a point is from a part of a second-order facet: bounds, convexity, minimum, subdivision.
+/// The distance of a point from a part of a second-order facet: bounds, convexity, minimum, subdivision.
 
 #include <array>
 
@@ -31,18 +31,18 @@ struct QuadraticPiece
 
   /// Contains D on the part.
   [[nodiscard]] BoundingBox<dim> box() const;
-  /// <= |D|^2 on the part: the least of its Bernstein coefficients, from below with the square of the part's
-  /// size.
+  /// A lower bound of |D|^2 on the part: the least of its Bernstein coefficients, which converges from below
+  /// with the square of the part's size.
   [[nodiscard]] double lower_bound() const;
-  /// Whether |D|^2 is convex on the part for certain: all Bernstein coefficients of its Hessian are positive
-  /// semidefinite.
+  /// Whether |D|^2 is certain to be convex on the part: all Bernstein coefficients of its Hessian are
+  /// positive semidefinite.
   [[nodiscard]] bool is_convex() const;
-  /// Where |D|^2 is least, in the coordinates of the part: for certain if is_convex(). Coordinates on the
-  /// boundary are 0 exactly.
+  /// Where |D|^2 is least, in the coordinates of the part; certain if is_convex(). Coordinates on the
+  /// boundary are exactly 0.
   [[nodiscard]] Barycentric minimiser() const;
 
   static constexpr int n_children = dim == 2 ? 2 : 4;
-  /// Cut at the middles of its edges.
+  /// The parts cut at the middles of its edges.
   [[nodiscard]] std::array<QuadraticPiece, n_children> children() const;
 
  private:
@@ -51,7 +51,7 @@ struct QuadraticPiece
   QuadraticPiece() = default;
 
   void find_coefficients();
-  /// That of |D|^2 with these corners, in any order.
+  /// The coefficient of |D|^2 with these corners, in any order.
   [[nodiscard]] double coefficient(int i, int j, int k, int l) const;
   [[nodiscard]] double minimiser_on_edge(int from, int to) const;
   [[nodiscard]] Barycentric minimiser_inside() const;

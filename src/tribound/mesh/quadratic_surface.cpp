@@ -44,7 +44,7 @@ std::array<double, dim> node_place(int a)
   return place;
 }
 
-/// Of the facet at a node with these tangents: 1 in 2D and, as every facet has the same there, on edges.
+/// Weight of a facet at a node with these tangents: 1 in 2D and on edges, where every facet has the same.
 template <int dim>
 double weight(int node, const std::array<Point<dim>, dim - 1>& tangents)
 {
@@ -57,7 +57,7 @@ double weight(int node, const std::array<Point<dim>, dim - 1>& tangents)
   return std::acos(std::clamp(a.dot(b) / (a.norm() * b.norm()), -1.0, 1.0));
 }
 
-/// Whether the polynomial with these nodes is nowhere perpendicular to `direction`: by Bernstein's
+/// Whether the polynomial with these nodes is nowhere perpendicular to `direction`, by its Bernstein
 /// coefficients.
 template <int dim>
 bool stays_along(const std::array<Point<dim>, n_facet_nodes<dim>>& q, const Point<dim>& direction)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quadratic_surface.h
-/// The surface made of second-order facets: as a map from the straight facets with their vertices, and its
+/// The surface made of second-order facets: as a map from the straight facets with the same vertices, and its
 /// distance from any point.
 
 #include <array>
@@ -20,8 +20,8 @@ namespace tribound::mesh
 {
 
 /// X(x) = sum_a N_a(lambda(x)) X_a, lambda the barycentric coordinates of x in the straight facet, X_a its
-/// nodes, N_a Lagrange's functions of degree 2: continuous from the polygon onto the curve or surface. Use of
-/// one object by several threads at once is safe.
+/// nodes, N_a the Lagrange basis functions of degree 2: continuous from the polygon onto the curve or
+/// surface. Several threads may use one object at once.
 template <int dim>
 class QuadraticSurface
 {
@@ -34,8 +34,8 @@ class QuadraticSurface
             ///< angles
   };
 
-  /// Of the facets of the groups `tags`. Throws InputError at `where`: no facet, nodes so far off that a
-  /// facet folds, normals that turn so far on a facet that n might be 0.
+  /// The facets of the groups `tags`. Throws InputError at `where`: no facet, nodes so far off that a facet
+  /// folds, normals that turn so far on a facet that n might be 0.
   QuadraticSurface(const QuadraticFacets& facets, std::span<const int> tags, const Where& where);
 
   /// X or n, of the straight facet that is nearest to x.
@@ -50,15 +50,15 @@ class QuadraticSurface
     double distance;    ///< signed: > 0 outside of the body
     Point<dim> normal;  ///< n / |n| there
   };
-  /// The point y of the facets, curved as they are, that is nearest to x: of all of them, up to rounding, by
-  /// bounds that rule out the others. The distance is |x - y|, its sign that of (x - y).m, m the normal of
-  /// the facet, n where facets meet; on the rim, where x - y need not be along a normal, it is (x - y).m
-  /// itself: the distance from the plane that goes on there. Continuous where y is and does not pass a corner
-  /// of the rim.
+  /// The point y of the curved facets that is nearest to x: among all points, up to rounding, by bounds that
+  /// rule out the others. The distance is |x - y| with the sign of (x - y).m, m the normal of the facet, or n
+  /// where facets meet. On the rim, where x - y need not be along a normal, it is (x - y).m itself, the
+  /// distance from the plane that continues the facet. Continuous where y is and does not pass a corner of
+  /// the rim.
   [[nodiscard]] Foot foot(const Point<dim>& x) const;
 
-  /// Of each component what problem::Formula::enclose gives of a formula over the convex hull of `vertices`
-  /// (dim coordinates each), which is part of one straight facet; further coefficients are 0.
+  /// For each component, what problem::Formula::enclose gives for a formula over the convex hull of
+  /// `vertices` (dim coordinates each), which is part of one straight facet; further coefficients are 0.
   [[nodiscard]] std::array<std::array<problem::Enclosure, 3>, dim> enclose(
       Nodal what, std::span<const double> vertices) const;
 
@@ -70,14 +70,14 @@ class QuadraticSurface
   struct Facet
   {
     std::array<Values, 2> nodal;  ///< by Nodal
-    /// lambda_1, ... = inverse (x - first vertex)
+    /// lambda_1, ... = inverse (x - first vertex).
     Eigen::Matrix<double, dim - 1, dim> inverse;
     double size;                       ///< the longest edge
     std::array<bool, n_nodes> is_rim;  ///< nodes, those on edges for the edge: no facet on the other side
 
     [[nodiscard]] const Point<dim>& vertex(int i) const { return nodal[0][i]; }
     [[nodiscard]] Barycentric barycentric(const Point<dim>& x) const;
-    /// The square of a distance that is at least that of x.
+    /// An upper bound of the squared distance of x.
     [[nodiscard]] double square_distance(const Point<dim>& x) const;
     [[nodiscard]] std::array<Point<dim>, dim - 1> tangents(const Barycentric& at) const;
     [[nodiscard]] Point<dim> at(Nodal what, const Barycentric& lambda) const;

@@ -31,8 +31,8 @@ Index middle_between(const EdgeMiddles<dim>& middles, int a, int b)
   return middles[edge - local_edges<dim>.begin()];
 }
 
-/// The children of a cell, or of one of its facets, that sit at its vertices: each is the whole, halved
-/// towards the vertex. `corners`: local vertices.
+/// The children of a cell, or of one of its facets, at its vertices: each is the whole, halved towards the
+/// vertex. `corners`: local vertices.
 template <int dim, std::size_t n, class Visit>
 void for_each_corner_child(const Cell<dim>& cell, const EdgeMiddles<dim>& middles,
                            const std::array<int, n>& corners, const Visit& visit)
@@ -55,8 +55,8 @@ std::array<Index, 3> middle_triangle(const EdgeMiddles<dim>& middles, const std:
           middle_between<dim>(middles, a, b)};
 }
 
-/// The shortest diagonal of the octahedron; of equal ones that with the end that comes first in space, which
-/// makes Kuhn's tetrahedra again of those of a box. Neither round-off nor the numbering must choose.
+/// The shortest diagonal of the octahedron; among equal ones that with the end that comes first in space,
+/// which makes Kuhn's tetrahedra again of those of a box. Neither round-off nor the numbering may decide.
 const std::array<int, 6>& shortest_diagonal(std::span<const Point<3>> vertices, const EdgeMiddles<3>& middles)
 {
   constexpr double clearly_shorter = 1 - 1e-12;

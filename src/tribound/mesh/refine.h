@@ -9,7 +9,7 @@ namespace tribound::mesh
 {
 
 /// A mesh refined uniformly. Child i of cell c has number 2^dim c + i after each refinement; its first dim +
-/// 1 children sit at the vertices of the cell, in their order, the others in the middle.
+/// 1 children are at the vertices of the cell, in their order, the others in the middle.
 template <int dim>
 struct Refined
 {
@@ -20,7 +20,7 @@ struct Refined
   [[nodiscard]] Index ancestor(Index cell) const { return cell >> (dim * times); }
 };
 
-/// How many of each a mesh has.
+/// Numbers of the entities of a mesh.
 struct EntityCounts
 {
   double vertices = 0;

@@ -19,7 +19,7 @@ struct Interface
   std::array<std::vector<std::string>, 2> sides;
 };
 
-/// What a mesh is given before it is verified.
+/// What is applied to a mesh before it is verified.
 struct Seams
 {
   std::vector<Interface> interfaces;

@@ -19,7 +19,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// Where each cell is to be.
+/// The new rank of each cell.
 template <int dim>
 std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
                               std::span<const CellRecord<dim>> cells, Move move)
@@ -32,7 +32,7 @@ std::vector<int> destinations(const Ranks& ranks, const Cube<dim>& cube,
   return balanced_ranks(ranks, centre_keys<dim>(cube, cells), std::vector<std::int64_t>(cells.size(), 1));
 }
 
-/// Where names are in a list of them, which ascends.
+/// The positions of names in an ascending list of them.
 std::vector<Index> numbers_in(std::span<const CellName> all, std::span<const CellName> names)
 {
   std::vector<Index> numbers;
@@ -127,7 +127,7 @@ void in_batches(Index n_cells, Index batch, const Work& work)
   for (Index first = 0; first < n_cells; first += batch) work(first, std::min(n_cells, first + batch));
 }
 
-/// The cells of one box or several that a rank makes.
+/// The cells of one or several boxes that a rank makes.
 template <int dim, class Source>
 std::vector<CellRecord<dim>> share_of_boxes(const Ranks& ranks, const Source& source)
 {
@@ -142,7 +142,7 @@ std::shared_ptr<const QuadraticFacets> facets_of_cells(const Ranks& ranks,
   return std::make_shared<const QuadraticFacets>(QuadraticFacets{.first = first_facets<dim>(ranks, cells)});
 }
 
-/// `source`: one box or several, which are `all`.
+/// `source`: one or several boxes, listed in `all`.
 template <int dim, class Source>
 Mesh<dim> share_out_boxes(const Ranks& ranks, const Source& source, std::span<const BoxMesh> all)
 {
@@ -153,7 +153,7 @@ Mesh<dim> share_out_boxes(const Ranks& ranks, const Source& source, std::span<co
   const Cube<dim> cube = cube_around<dim>(corners);
   std::vector<CellRecord<dim>> cells = share_of_boxes<dim>(ranks, source);
   labels.quadratic_facets = facets_of_cells<dim>(ranks, cells);
-  // They come in stretches of the last axis: along the curve they have few neighbours.
+  // They come in stretches of the last axis; sorted along the curve they have few neighbours.
   const std::vector<int> rank_of = destinations<dim>(ranks, cube, cells, Move::always);
   cells = ranks.send_to<CellRecord<dim>>(rank_of, cells);
   return make_part<dim>(ranks, cube, std::move(cells), std::move(labels));

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file share_out.h
-/// Meshes on several ranks: the first one from the rank that has it, and each later one where its cells
-/// balance.
+/// Meshes on several ranks: the first one comes from the rank that has it, and the cells of each later one go
+/// where they balance.
 
 #include <cstdint>
 #include <memory>
@@ -18,18 +18,18 @@
 namespace tribound::mesh
 {
 
-/// The part of each rank of a mesh that the first one has; elsewhere `whole` is null. All ranks have as many
-/// cells, up to one. Cells have their vertices in the order in which bisect() takes them, and travel in
-/// batches of so many.
+/// The parts of a mesh that the first rank has; elsewhere `whole` is null. All ranks get equally many cells,
+/// up to one. Cells have their vertices in the order in which bisect() takes them, and are sent in batches of
+/// `batch`.
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const Mesh<dim>* whole, Index batch = 1'000'000);
 
-/// The same of a box, of which each rank makes its own cells.
+/// The same for a box, of which each rank makes its own cells.
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const BoxMesh& box);
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const Boxes& boxes);
-/// The same of boxes, or of a mesh of another source, which is `whole`.
+/// The same for boxes, or for a mesh of another source, which is `whole`.
 template <int dim>
 [[nodiscard]] Mesh<dim> share_out(const Ranks& ranks, const MeshSource& source, const Mesh<dim>* whole)
 {
@@ -38,26 +38,26 @@ template <int dim>
   return share_out<dim>(ranks, whole);
 }
 
-/// When cells go where all ranks have as many, along the curve.
+/// When cells are moved along the curve such that all ranks have equally many.
 enum class Move
 {
   never,
-  where_unbalanced,  ///< if they are many on one rank
+  where_unbalanced,  ///< if one rank has too many
   always
 };
 
-/// The part of a rank, and values that have come with the cells.
+/// The part of a rank, and the values that have come with the cells.
 template <int dim>
 struct Balanced
 {
   Mesh<dim> mesh;
   std::vector<Index> cells;    ///< own cells in the order of their values
-  std::vector<double> values;  ///< as many for each of them
+  std::vector<double> values;  ///< equally many for each of them
 };
 
-/// A mesh of these cells, on each rank those that it has now, with `n_values` values each, which may be 0.
+/// The mesh of these cells, on each rank those that it has now, with `n_values` values each, which may be 0.
 /// `before`: an earlier mesh that they come from. All ranks call it together. Throws InputError, on all
-/// ranks, where the cells do not make a mesh.
+/// ranks, if the cells do not form a mesh.
 template <int dim>
 [[nodiscard]] Balanced<dim> balance(const Mesh<dim>& before, std::vector<CellRecord<dim>> cells,
                                     std::span<const double> values, int n_values,
@@ -67,20 +67,20 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::shared_ptr<const QuadraticFacets> box_facets(const Ranks& ranks, const MeshSource& source);
 
-/// A mesh of cells that a rank has from somewhere else, for example a file; `first`: the mesh they come from,
-/// on the first rank, elsewhere null. `facets`: of that mesh, where `first` is one of the same boxes with
-/// fewer cells. On one rank it is a whole mesh, that comes from bisect().
+/// The mesh of cells that a rank has from somewhere else, for example a file. `first`: the mesh they come
+/// from, on the first rank; null elsewhere. `facets`: of that mesh, where `first` is one of the same boxes
+/// with fewer cells. On one rank it is a whole mesh that comes from bisect().
 template <int dim>
 [[nodiscard]] Balanced<dim> restore(const Ranks& ranks, const Mesh<dim>* first,
                                     std::vector<CellRecord<dim>> cells, std::span<const double> values,
                                     int n_values, const std::shared_ptr<const QuadraticFacets>& facets = {});
 
-/// Own cells as they travel.
+/// Own cells as records to be sent.
 template <int dim>
 [[nodiscard]] std::vector<CellRecord<dim>> records_of(const Mesh<dim>& mesh, std::span<const Index> cells);
 
-/// The mesh with these cells of others as ghosts, too, as far as they are none yet. Own cells keep their
-/// numbers. Ranks may call it alone.
+/// The mesh with these cells of other ranks as additional ghosts, unless they are ghosts already. Own cells
+/// keep their numbers. Ranks may call it alone.
 template <int dim>
 [[nodiscard]] Mesh<dim> with_more_ghosts(Mesh<dim> mesh, std::vector<Ghost<dim>> more);
 
@@ -92,8 +92,8 @@ struct PickedOut
   std::vector<Index> number;  ///< in the mesh, per cell given
 };
 
-/// A mesh of cells that have been picked out of another, with the bodies that they belong to: facets inside
-/// may have one cell, and no vertex has its patch.
+/// The mesh of cells that have been picked out of another, with the bodies that they belong to. Inner facets
+/// may have one cell only, and no vertex has its patch.
 template <int dim>
 [[nodiscard]] PickedOut<dim> pick_out(const Mesh<dim>& from, std::span<const CellRecord<dim>> cells,
                                       std::span<const int> bodies);

@@ -11,7 +11,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// A facet as ranks call it.
+/// A facet by the name that ranks share.
 struct FacetName
 {
   CellName cell;  ///< on the side of the lower rank

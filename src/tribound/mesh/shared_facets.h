@@ -11,7 +11,7 @@
 namespace tribound::mesh
 {
 
-/// The facets between own cells and others'.
+/// The facets between own cells and those of other ranks.
 struct SharedFacets
 {
   /// A facet of an own cell.
@@ -26,7 +26,7 @@ struct SharedFacets
   GhostUpdate update;             ///< of values per facet: from the lower rank to the higher
 };
 
-/// Of a mesh that is shared out. All ranks call it together.
+/// For a mesh that is shared out. All ranks call it together.
 template <int dim>
 [[nodiscard]] SharedFacets shared_facets(const Mesh<dim>& mesh);
 

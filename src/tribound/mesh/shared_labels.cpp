@@ -14,7 +14,7 @@ namespace tribound::mesh
 namespace
 {
 
-/// Texts of the first rank, on all.
+/// Copies texts of the first rank to all.
 void copy_texts(const Ranks& ranks, std::vector<std::string>& texts)
 {
   std::vector<char> bytes;
@@ -30,7 +30,7 @@ void copy_texts(const Ranks& ranks, std::vector<std::string>& texts)
   }
 }
 
-/// Each side with its length in front.
+/// Each side is preceded by its length.
 void copy_interfaces(const Ranks& ranks, std::vector<Interface>& interfaces)
 {
   std::vector<std::string> texts;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file shared_labels.h
-/// What a mesh calls its parts, on all ranks.
+/// The names of a mesh's parts, on all ranks.
 
 #include "tribound/base/ranks.h"
 #include "tribound/mesh/mesh.h"
@@ -9,7 +9,7 @@
 namespace tribound::mesh
 {
 
-/// Sets the labels on all ranks to those that the first has. All ranks call it together.
+/// Sets the labels on all ranks to those of the first. All ranks call it together.
 void copy_labels(const Ranks& ranks, MeshLabels& labels);
 
 }  // namespace tribound::mesh

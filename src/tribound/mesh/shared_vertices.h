@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file shared_vertices.h
-/// What bisection on several ranks has to tell: edges halved on the common surface of their cells.
+/// What bisection on several ranks has to communicate: edges halved on the common surface of their cells.
 
 #include <array>
 #include <functional>
@@ -16,9 +16,9 @@
 namespace tribound::mesh
 {
 
-/// The names of the vertices of a part and of the middles that bisection adds, and which other ranks have
-/// them: a middle those that have both ends. They know of it, or are told. The owner of a ghost with one of
-/// the twins counts as having its vertices.
+/// The names of the vertices of a part and of the middles that bisection adds, and the other ranks that have
+/// them. A middle is on the ranks that have both ends; they know of it, or are told. The owner of a ghost
+/// with one of the twins counts as having its vertices.
 template <int dim>
 class SharedVertices
 {
@@ -26,9 +26,9 @@ class SharedVertices
   SharedVertices(const Partition<dim>& partition, std::span<const TwinFacets<dim>> twins);
 
   [[nodiscard]] const VertexName<dim>& name(Index v) const { return names_[v]; }
-  /// The next vertex is the middle of a and b. `is_news`: the other ranks that have it do not know.
+  /// The next vertex is the middle of a and b. `is_news`: the other ranks that have it do not know of it.
   void add_middle(Index a, Index b, bool is_news);
-  /// Tells the others of the middles that are news, and calls halve(a, b) for each edge that they have
+  /// Tells the other ranks of the middles that are news, and calls halve(a, b) for each edge that they have
   /// halved. False if no rank had any. All ranks call it together.
   bool exchange(const std::function<void(Index, Index)>& halve);
 

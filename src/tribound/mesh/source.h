@@ -20,8 +20,8 @@ struct MeshFile
   Where where = {};  ///< for messages
 };
 
-/// The structured box mesh; its length tells the dimension. Boundaries: left right (x), bottom top (y), back
-/// front (z) in 3D, where back is z = lower and front is z = upper; region: "box".
+/// The structured mesh of a box; the length of the lists is the dimension. Boundaries: left right (x), bottom
+/// top (y), back front (z) in 3D, where back is z = lower and front is z = upper; region: "box".
 struct BoxMesh
 {
   std::vector<double> lower;

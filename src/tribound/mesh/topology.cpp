@@ -22,7 +22,7 @@ constexpr auto local_facets = []
   return facets;
 }();
 
-/// An entity as one cell sees it: its vertices but the lowest, and where it stands.
+/// An entity as one cell sees it: its vertices but the lowest, and its place in the cell.
 template <int n_corners>
 struct Slot
 {

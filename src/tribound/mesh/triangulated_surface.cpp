@@ -121,7 +121,7 @@ void TriangulatedSurface::find_neighbours(const Where& where)
   is_closed_ = n_open == 0;
 }
 
-/// By the sign of the volume.
+/// Decides by the sign of the volume.
 void TriangulatedSurface::turn_outward()
 {
   double volume = 0;
@@ -215,7 +215,7 @@ std::vector<Point<3>> binary_corners(std::string_view bytes)
   return corners;
 }
 
-/// Empty if it is no ASCII file.
+/// Empty if it is not an ASCII file.
 std::vector<Point<3>> ascii_corners(const std::string& bytes)
 {
   std::istringstream stream(bytes);

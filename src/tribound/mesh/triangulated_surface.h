@@ -16,13 +16,13 @@
 namespace tribound::mesh
 {
 
-/// Triangles in space. Copies are expensive; use of one object by several threads at once is safe.
+/// Triangles in space. Copies are expensive; several threads may use one object at once.
 class TriangulatedSurface
 {
  public:
   using Triangle = std::array<Index, 3>;
 
-  /// Vertices in one place, to the last bit, become one, and triangles without area are left out. A closed
+  /// Vertices in one place, to the last bit, are merged, and triangles without area are left out. A closed
   /// surface is turned so that the normals point out of what it encloses. Throws InputError: no triangle, an
   /// edge in more than two triangles, neighbours whose normals point to different sides.
   TriangulatedSurface(std::span<const Point<3>> vertices, std::span<const Triangle> triangles,
@@ -38,8 +38,8 @@ class TriangulatedSurface
     double distance;  ///< positive on the side into which the normals point
     Point<3> normal;  ///< a unit vector: normals of the vertices interpolated on the triangle
   };
-  /// The nearest point of the surface, its side by the pseudonormal of the triangle, edge or vertex it is on,
-  /// the normals around it weighted by angles (Baerentzen and Aanaes 2005).
+  /// The nearest point of the surface. Its side follows from the pseudonormal of the triangle, edge or vertex
+  /// it is on: the normals around it weighted by angles (Baerentzen and Aanaes 2005).
   [[nodiscard]] Nearest nearest(const Point<3>& x) const;
 
  private:
@@ -59,7 +59,7 @@ class TriangulatedSurface
   BoxTree<3> tree_{{}};
 };
 
-/// Reads an STL file, ASCII or binary. Throws InputError naming `where` if it is none.
+/// Reads an STL file, ASCII or binary. Throws InputError naming `where` if it is not one.
 [[nodiscard]] TriangulatedSurface read_stl(const std::filesystem::path& file, const Where& where);
 
 }  // namespace tribound::mesh

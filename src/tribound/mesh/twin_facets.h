@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file twin_facets.h
-/// Facets of two bodies that match, and how bisection keeps them so.
+/// Matching facets of two bodies, and how bisection keeps them matching.
 
 #include <array>
 #include <span>
@@ -21,14 +21,14 @@ struct TwinFacets
   std::array<std::array<Index, dim>, 2> vertices;  ///< number i of one opposite number i of the other
 };
 
-/// The edges opposite edges of twins while these are bisected. In 3D twins count whose marked edges lie
-/// opposite one another (mesh/marked_cell.h): both are then cut the same way as long as the same edges are
-/// halved.
+/// The edges opposite to edges of twins while these are bisected. In 3D only twins count whose marked edges
+/// are opposite to one another (mesh/marked_cell.h): both are then cut the same way as long as the same edges
+/// are halved.
 template <int dim>
 class OppositeEdges
 {
  public:
-  /// Between the same vertices of the other facet.
+  /// The edge between the same vertices of the other facet.
   struct Edge
   {
     Index a, b;
@@ -37,9 +37,9 @@ class OppositeEdges
 
   OppositeEdges(const Mesh<dim>& mesh, std::span<const TwinFacets<dim>> twins);
 
-  /// Those opposite the edge that joins a and b, from the twins with both ends on them.
+  /// The edges opposite to that between a and b, over the twins that have both ends.
   [[nodiscard]] std::vector<Edge> of(Index a, Index b) const;
-  /// Two middles lie opposite one another, that of an edge of this side and that of the edge opposite.
+  /// Declares two middles opposite: that of an edge of this side and that of the opposite edge.
   void link(Index middle, int side, Index opposite);
 
  private:

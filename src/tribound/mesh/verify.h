@@ -2,7 +2,7 @@
 
 /// @file verify.h
 /// The steps of the verification of a mesh, in the order in which Mesh's constructor takes them: each relies
-/// on what the ones before it found in order. All throw InputError naming the place with its coordinates.
+/// on what the steps before have verified. All throw InputError naming the place with its coordinates.
 
 #include <span>
 #include <vector>
@@ -28,29 +28,29 @@ void check_shapes(const MeshData<dim>& data);
 template <int dim>
 void check_facets(const MeshData<dim>& data, const Topology<dim>& topology);
 
-/// The cells meet in whole facets: no vertex and, in 3D, no face centre on a facet of the topological
-/// boundary that it does not belong to, and no two boundary vertices at one place, but on interfaces; no two
-/// facets overlap that are not opposite there. Only facets with one cell are looked at, because a hanging
-/// vertex leaves such facets on both sides.
+/// The cells meet in whole facets. Except on interfaces, no vertex and, in 3D, no face centre lies on a facet
+/// of the topological boundary that it does not belong to, and no two boundary vertices are at one place. No
+/// two facets overlap unless they are opposite there. Only facets with one cell are looked at, because a
+/// hanging vertex leaves such facets on both sides.
 template <int dim>
 void check_conformity(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                       const Interfaces<dim>& interfaces);
 
-/// No two cells overlap, but those of bodies that an interface joins: the boundary does not cross itself, and
-/// no part of it lies inside other cells. O(n log n) in the facets of the boundary.
+/// No two cells overlap, except those of bodies that an interface joins: the boundary does not cross itself,
+/// and no part of it lies inside other cells. O(n log n) in the facets of the boundary.
 template <int dim>
 void check_overlap(const MeshData<dim>& data, std::span<const OuterFacet<dim>> facets,
                    const Interfaces<dim>& interfaces);
 
 /// The facets with one cell, in the order of their numbers, with the tags of data.facets. Every tagged facet
-/// must be one of them, in one group only.
+/// must be one of them, in only one group.
 template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology);
 
-/// The same of a part of a mesh, by the tags of its cells, those of the first `n_owned` cells in front.
-/// Facets inside with a vertex that has its patch here must have two cells, and those of the boundary one:
-/// else the mesh does not conform, or a ghost is missing.
+/// The same for a part of a mesh, by the tags of its cells, those of the first `n_owned` cells first. Inner
+/// facets with a vertex that has its patch here must have two cells, and boundary facets one: else the mesh
+/// does not conform, or a ghost is missing.
 template <int dim>
 [[nodiscard]] std::vector<BoundaryFacet> find_boundary(const MeshData<dim>& data,
                                                        const Topology<dim>& topology,
