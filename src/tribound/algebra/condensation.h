@@ -14,9 +14,10 @@
 namespace tribound::algebra
 {
 
-/// K u = b + f with symmetric K and forces f that act on the trace unknowns alone, reduced to them: S x = g +
-/// f for x = u on the trace, S = K_GG - K_GR K_RR^{-1} K_RG (R: the rest, G: the trace), and u = u_0 - W x on
-/// a layer of unknowns beside the trace. K may be singular where only the trace holds a body.
+/// K u = b + f with symmetric K and forces f that act on the trace unknowns alone, reduced to them:
+/// S x = g + f for x = u on the trace, S = K_GG - K_GR K_RR^{-1} K_RG (R: the rest, G: the trace), and
+/// u = u_0 - W x on a layer of unknowns beside the trace. K may be singular where only the trace holds a
+/// body.
 ///
 /// MUMPS factorises K without layer and trace and leaves the Schur complement C on these. Dense factors by
 /// LAPACK then give S = C_GG - C_GL C_LL^{-1} C_LG and W = C_LL^{-1} C_LG. Elsewhere u follows from its

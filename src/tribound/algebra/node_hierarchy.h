@@ -24,8 +24,8 @@ struct NodeInterpolation
   Sharing coarse;
 };
 
-/// Spaces from that of a matrix down to one that is small or left to aggregation. Degree of freedom dim *
-/// node + component in all of them.
+/// Spaces from that of a matrix down to one that is small or left to aggregation. Degree of freedom
+/// dim * node + component in all of them.
 struct NodeHierarchy
 {
   int dim = 0;

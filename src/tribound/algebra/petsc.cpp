@@ -144,8 +144,9 @@ void configure_mumps(Mat factors, int dim)
   check(MatMumpsSetIcntl(factors, 6, 0), "creating a solver");  // the diagonal is good: no column permutation
   check(MatMumpsSetIcntl(factors, 14, 40), "creating a solver");  // room for pivoting, percent
   // In 2D approximate minimum fill takes a quarter of the time of PORD, the ordering that MUMPS chooses; the
-  // factorisation then takes 25 % less to 15 % more (p = 1, 2, 4, 100k to 900k degrees of freedom), in 3D 30
-  // % more. PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option: see Options.
+  // factorisation then takes 25 % less to 15 % more (p = 1, 2, 4, 100k to 900k degrees of freedom), in 3D
+  // 30 % more. PETSc 3.18 overwrites ICNTL(7) when it starts MUMPS, unless it comes as an option: see
+  // Options.
   if (dim == 2) check(MatSetOptionsPrefix(factors, "tribound_2d_"), "creating a solver");
 }
 

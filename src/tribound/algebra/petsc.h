@@ -90,7 +90,7 @@ class SparseMatrix
 
  private:
   SparseMatrix() = default;
-  /// On one rank: a matrix like this one with these rows.
+  /// On one rank: a matrix like the given one, with these rows.
   SparseMatrix(const SparseMatrix& like, SparseRows rows);
   void create();
   void take(SparseRows rows);

@@ -41,9 +41,9 @@ struct ApartOutcome
 [[nodiscard]] ApartOutcome run_apart(const std::function<std::string()>& work,
                                      const ApartLimits& limits = {});
 
-/// For `work` that knows how much it needs: from now on this process can allocate at most `memory` bytes
-/// more, and ends as ApartEnd::out_of_time after `seconds` more of CPU time. Infinity: no limit. Lower limits
-/// already in force stay.
+/// For `work` that knows how much it needs: from now on this process gets at most `memory` bytes more,
+/// beyond which allocations fail, and ends as ApartEnd::out_of_time after `seconds` more of CPU time.
+/// Infinity: no limit. Lower limits already in force stay.
 void limit_from_here(double memory, double seconds);
 
 /// "was ended by signal 11 (Segmentation fault)", "ended with exit code 1"; empty for success.

@@ -30,9 +30,9 @@ template <int dim>
                                                      std::span<const double> u, std::span<const Index> parent,
                                                      const LagrangeSpace<dim>& fine);
 
-/// The values of u at the nodes of cells nested in own cells of a mesh, cell by cell, [(cell n_nodes + i) dim
-/// + component]. The nodes are those of the basis of the space on the vertices of the record; cells[c] lies
-/// in cell parent[c]. The values can travel with the cells.
+/// The values of u at the nodes of cells nested in own cells of a mesh, cell by cell,
+/// [(cell n_nodes + i) dim + component]. The nodes are those of the basis of the space on the vertices of the
+/// record; cells[c] lies in cell parent[c]. The values can travel with the cells.
 template <int dim>
 [[nodiscard]] std::vector<double> nested_values(const LagrangeSpace<dim>& coarse, std::span<const double> u,
                                                 std::span<const mesh::CellRecord<dim>> cells,

@@ -14,8 +14,8 @@
 namespace tribound::mesh
 {
 
-/// Throws InputError for a box that is not of 2 or 3 dimensions, has no volume or no cells, or has more cells
-/// than allow Index to number the edges.
+/// Throws InputError for a box that is not of 2 or 3 dimensions, has no volume or no cells, or has so many
+/// cells that an Index cannot number their edges.
 void require_valid(const BoxMesh& box);
 
 /// Vertex (i, j) has number j (nx+1) + i; square (i, j) is cut from lower left to upper right into

@@ -130,7 +130,7 @@ GmshSession::GmshSession(const std::filesystem::path& file)
     check_points(file);
     if (dim >= 2 && gmsh::element_types(dim).empty())
     {
-      // Errors go to the log: thrown in a team of threads, nobody would catch them.
+      // Errors go to the log: nobody would catch exceptions in a team of threads.
       gmsh::set_number("General.AbortOnError", 0);
       attempt(
           file, "mesh the geometry",

@@ -34,7 +34,7 @@ constexpr bool in_plane(std::uint8_t type)
   return marked_opposite_to(type, 0) == marked_opposite_to(type, 1) && marked_opposite_to(type, 0) != 0;
 }
 
-/// The squared distance, computed in the same way by every compiler, since lengths are compared.
+/// The squared distance, computed in one way only, whatever the compiler does, since lengths are compared.
 template <int dim>
 double squared_distance(const Point<dim>& x, const Point<dim>& y)
 {

@@ -184,7 +184,7 @@ class Mesh
   [[nodiscard]] bool has_patch(Index v) const { return has_patch_.empty() || has_patch_[v] != 0; }
   /// How the mesh is shared out; null for a whole mesh.
   [[nodiscard]] const Partition<dim>* partition() const { return partition_.get(); }
-  /// Numbers of the whole mesh.
+  /// Counts for the whole mesh.
   [[nodiscard]] std::int64_t n_global_cells() const;
   [[nodiscard]] std::int64_t n_global_vertices() const;
   /// The ranks that have a part; for a whole mesh this one alone.

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file partition.h
-/// How a mesh is shared out between ranks: every rank has its own cells and ghosts, which are one layer of
+/// How a mesh is shared out between ranks: every rank has its own cells and, as ghosts, one layer of
 /// other ranks' cells around them and whatever else it needs.
 
 #include <array>
@@ -102,7 +102,7 @@ struct MeshPart
 };
 
 /// The part of a rank that owns the cells `owned`, in any order, with its ghosts. All ranks call it together.
-/// Cells around a vertex must be connected through inner facets that contain it. Ranks exchange only what
+/// Cells around a vertex are connected through inner facets that contain it. Ranks exchange only what
 /// lies along their common surface.
 template <int dim>
 [[nodiscard]] MeshPart<dim> with_ghosts(const Ranks& ranks, const Cube<dim>& cube,

@@ -34,7 +34,7 @@ std::optional<int> node_of(const std::array<double, dim>& l)
 
 }  // namespace
 
-/// A node is on the rim if only one facet has it, in 3D on an edge; a vertex there if one of its edges is.
+/// The rim has the nodes of one facet only, in 3D those on edges; a vertex is on it if one of its edges is.
 template <int dim>
 void QuadraticSurface<dim>::find_rim(std::span<const Index> nodes)
 {

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file contact_law.h
-/// The laws of contact at one point, method section 2: the traction T as a function of P = sigma n - gamma (u
-/// - g n), so that P^n = P.n and P^t = P - P^n n.
+/// The laws of contact at one point, method section 2: the traction T as a function of
+/// P = sigma n - gamma (u - g n), so that P^n = P.n and P^t = P - P^n n.
 ///
 /// A law is a struct that satisfies `Law`, with its functions in contact_law.cpp or, where it has a bond, in
 /// interface_law.h, and a place in the variant ContactLaw. Everything else (form, bound, statics, case file,

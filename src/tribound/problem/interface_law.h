@@ -126,8 +126,8 @@ struct Mixed
 };
 
 /// "endo": elastic-plastic joint with damage [R70125, JOINT_MECA_ENDO]. With S(a) = (1-a)^3 / a^{1/2} its
-/// energy is 1/2 K_n (delta^n - p^n)^2 + 1/2 K_t |delta^t - p^t|^2 + 1/2 S(alpha) (B_n p_n^2 + B_t |p_t|^2) +
-/// D_1 alpha; plastic flow is along the normals of |X^t| + mu X^n <= 0, X = sigma - S B p.
+/// energy is 1/2 K_n (delta^n - p^n)^2 + 1/2 K_t |delta^t - p^t|^2 + 1/2 S(alpha) (B_n p_n^2 + B_t |p_t|^2)
+/// + D_1 alpha; plastic flow is along the normals of |X^t| + mu X^n <= 0, X = sigma - S B p.
 struct Endo
 {
   double normal_stiffness;      ///< K_n > 0, stress per length, as K_t, B_n and B_t

@@ -44,7 +44,7 @@ enum class Positive
                                Positive side);
 
 /// The zeros of `formula`, of `dim` coordinates: phi = formula / |grad formula|, which is the distance to
-/// first order, and exactly where |grad formula| = 1. Throws as Formula does.
+/// first order, and the exact one where |grad formula| = 1. Throws as Formula does.
 [[nodiscard]] Surface implicit(const std::string& formula, int dim, const Where& where);
 
 /// The surface moved by `by`.
