@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file algebraic.h
-/// What the linear solver has left of the equilibrium, method section 8: in the cells, and its share of the
-/// bound.
+/// What the linear solver has left of the equilibrium, method section 8: the remainder on each cell, and its
+/// share of the bound.
 
 #include <array>
 #include <span>
@@ -15,7 +15,7 @@
 namespace tribound::certify
 {
 
-/// An affine field on each own cell: its values at the vertices of the cell.
+/// An affine field on each own cell, given by its values at the vertices of the cell.
 template <int dim>
 using AffineFields = std::vector<std::array<Point<dim>, dim + 1>>;
 
@@ -27,18 +27,18 @@ class AlgebraicResidual
   /// The form must outlive the object.
   explicit AlgebraicResidual(const contact::NitscheForm<dim>& form);
 
-  /// <R_lin, phi_i> = L(phi_i) - a(u, phi_i) + (t, [phi_i])_C for every degree of freedom, 0 at fixed ones;
-  /// not for all of ghosts. t is the running traction at the contact points of the form.
+  /// <R_lin, phi_i> = L(phi_i) - a(u, phi_i) + (t, [phi_i])_C for every degree of freedom; 0 at fixed ones,
+  /// incomplete at ghosts. t is the running traction at the contact points of the form.
   [[nodiscard]] std::vector<double> residual(std::span<const double> u, std::span<const Point<dim>> t) const;
 
   /// rho = sum_a rho_a on the own cells, rho_a in Z_a (constants for p = 1) with
   ///     (rho_a, z)_{omega_a} = <R_lin, psi_a z> for all z in Z_a:
-  /// for the stress of u and t, div sigma_h + Pi^{p-1} f = rho. `residual`: <R_lin, phi_i>; psi_a z is in
-  /// V_h, for p = 1 with constant z. What fixed degrees of freedom and ghosts have in it is not used.
+  /// With the stress of u and t, div sigma_h + Pi^{p-1} f = rho. `residual`: <R_lin, phi_i>; psi_a z is in
+  /// V_h (p = 1: for constant z). Its entries at fixed degrees of freedom and at ghosts are not used.
   [[nodiscard]] AffineFields<dim> body_force(std::span<const double> residual) const;
 
  private:
-  /// sum_i psi_a(x_i) r_i, and that times x_i - a.
+  /// sum_i psi_a(x_i) r_i, and its moment with x_i - a.
   struct Forces
   {
     Point<dim> sum = Point<dim>::Zero();
@@ -59,8 +59,8 @@ template <int dim>
 /// eta_alg with (rho, v) <= eta_alg ||v||_{C,h}: the smaller of C_F ||rho|| and
 ///     C_F ||Pi_0 rho|| + sum_{j=1}^J (sum_{K in T_{j-1}} (h_K/pi)^2 ||(Pi_j - Pi_{j-1}) rho||_K^2)^{1/2}
 ///     + (sum_T (h_T/pi)^2 ||rho - Pi_J rho||_T^2)^{1/2},
-/// Pi_j the means on T_j, T_J the mesh and T_{j-1} with simplices of T_j put together again that bisection
-/// has made of one. Over all ranks, each of which puts together its own cells.
+/// Pi_j is the mean on the simplices of T_j. T_J is the mesh; T_{j-1} is T_j with bisections undone. Over all
+/// ranks, each of which undoes bisections among its own cells.
 template <int dim>
 [[nodiscard]] double algebraic_error(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho,
                                      double friedrichs);

@@ -14,7 +14,7 @@ namespace tribound::certify
 namespace
 {
 
-/// A union of cells that is a simplex, with what the tree bound needs of it.
+/// A simplex that is a union of cells, with what the tree bound needs of it.
 template <int dim>
 struct TreeNode
 {
@@ -25,8 +25,8 @@ struct TreeNode
   std::array<int, 2> children;  ///< -1: a cell of the mesh
 };
 
-/// The union of two simplices with a common facet, where it is a simplex again: a vertex that both have is
-/// exactly in the middle of the edge between the other two, as bisection puts it.
+/// The union of two simplices with a common facet, if it is a simplex again: one shared vertex is exactly the
+/// midpoint of the edge between the two others, as bisection puts it.
 template <int dim>
 std::optional<mesh::Cell<dim>> united(const mesh::Mesh<dim>& mesh, const mesh::Cell<dim>& first,
                                       const mesh::Cell<dim>& second)
@@ -53,8 +53,8 @@ std::optional<mesh::Cell<dim>> united(const mesh::Mesh<dim>& mesh, const mesh::C
   return std::nullopt;
 }
 
-/// The own cells with the simplices that bisection has made them of: siblings follow each other. Roots are
-/// those that nothing continues.
+/// The own cells with the simplices from which bisection made them; siblings follow each other. Roots are the
+/// nodes without a parent.
 template <int dim>
 struct Forest
 {
@@ -112,7 +112,7 @@ class TreeSums
   [[nodiscard]] std::vector<double>& squares() { return squares_; }
 
  private:
-  /// What T_{level + 1} has of a simplex of T_level.
+  /// The simplices of T_{level + 1} inside a simplex of T_level.
   void collect(int node, int bisections, std::vector<int>& parts) const
   {
     const TreeNode<dim>& of = forest_.nodes[node];

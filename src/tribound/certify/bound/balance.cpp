@@ -91,7 +91,7 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   return loads;
 }
 
-/// The facet rule on all facets of the reference cell, facet by facet.
+/// The points of the facet rule on all facets of the reference cell, facet by facet.
 template <int dim>
 std::vector<Point<dim>> points_on_facets(const fem::Quadrature<dim - 1>& rule)
 {
@@ -104,7 +104,7 @@ std::vector<Point<dim>> points_on_facets(const fem::Quadrature<dim - 1>& rule)
   return points;
 }
 
-/// The integral of sigma_h n over every boundary, free components left out where a displacement is given.
+/// The integral of sigma_h n over every boundary, without the free components where a displacement is given.
 template <int dim>
 std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>& form,
                                                 const Stress<dim>& stress, const Point<dim>& about)
@@ -156,7 +156,7 @@ BalanceRow row(BalanceKind kind, const std::string& name, const std::string& sou
   return result;
 }
 
-/// Adds the sum of all rows; its moment is known where all are.
+/// Adds the sum of all rows; its moment is known if all moments are.
 void add_sum(std::vector<BalanceRow>& rows, std::size_t dim, std::size_t n_moments)
 {
   BalanceRow sum{BalanceKind::sum, {}, {}, std::vector<double>(dim), std::vector<double>(n_moments)};
@@ -189,7 +189,7 @@ std::string moment_note(const Balance& balance)
 template <int dim>
 Point<dim> centroid(const mesh::Mesh<dim>& mesh)
 {
-  Point<dim + 1> sum = Point<dim + 1>::Zero();  // the last: the volume
+  Point<dim + 1> sum = Point<dim + 1>::Zero();  // the last entry: the volume
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);

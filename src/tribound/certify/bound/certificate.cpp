@@ -68,7 +68,7 @@ Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
 namespace
 {
 
-/// What is known of the continuous problem under the friction laws in use.
+/// What is known about the continuous problem with the friction laws in use.
 template <int dim>
 std::string describe_law(const problem::Problem<dim>& problem)
 {
@@ -90,7 +90,7 @@ std::string describe_law(const problem::Problem<dim>& problem)
          "but for motions without stress of bodies that contact alone holds";
 }
 
-/// What was done about data that are no polynomials.
+/// How data that are not polynomials were treated.
 std::string describe_data(const contact::DataEffort& effort, int degree)
 {
   std::string exact = fmt::format(
@@ -119,10 +119,10 @@ std::vector<std::string> outside_of_pairs(const problem::Problem<dim>& problem)
   return outside;
 }
 
-/// What is known of the polygon in place of a curve.
+/// What is known about the polygon that replaces a curve.
 std::string describe_geometry(const ContactGeometryFacts& facts)
 {
-  constexpr double round_off = 0.01;  // of coordinates in a file, degrees
+  constexpr double round_off = 0.01;  // of coordinates in a file, in degrees
   std::string text = "facets are straight";
   if (facts.turn > round_off)
     text += fmt::format(
@@ -156,7 +156,7 @@ std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRu
                 "traction, in 3D also on those that slip (certify.contact_rule = \"reference\")");
 }
 
-/// C_F with what it was proved by, or what there is in the place of alg.
+/// C_F and the proof of it, or what replaces alg.
 template <int dim>
 void add_friedrichs(const std::optional<FriedrichsConstant>& c, Statements& statements)
 {

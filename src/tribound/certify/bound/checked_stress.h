@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file checked_stress.h
-/// The stress of a cell as check_identities() evaluates it: by tables of its own.
+/// The stress of a cell as check_identities() evaluates it, with tables of its own.
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -81,7 +81,7 @@ class CheckedStress
   {
     fem::orthonormal_values<dim>(degree_ - 1, inverse_ * (x - origin_), values);
   }
-  /// Which of the ascending vertices lies opposite to the facet, the cell's vertex `opposite` being that one.
+  /// Which of the ascending vertices is opposite to the facet; `opposite` is that vertex of the cell.
   [[nodiscard]] int facet_opposite(Index opposite) const
   {
     return static_cast<int>(std::ranges::find(vertices_, opposite) - vertices_.begin());

@@ -24,8 +24,8 @@ double IdentityDefects::largest(int degree) const
 namespace
 {
 
-/// ||div sigma_h + Pi^{p-1} f - rho||_T^2: div sigma_h is of degree p-1 itself, and so is rho. The points of
-/// the rule come in the numbering of the cell, in which f is given; rho by its values at the vertices.
+/// ||div sigma_h + Pi^{p-1} f - rho||_T^2; div sigma_h and rho are of degree p-1. The points of the rule
+/// follow the numbering of the cell, in which f is given; rho is given by its values at the vertices.
 template <int dim>
 double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index cell,
                                  const CheckTables<dim>& tables, const CheckedStress<dim>& sigma,
@@ -52,7 +52,7 @@ double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index c
   return sum;
 }
 
-/// Sums of squares on the cells, and the square of the norm of sigma_h.
+/// Sums of squares over the cells, and the square of the norm of sigma_h.
 template <int dim>
 double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
                    const CheckTables<dim>& tables, const AffineFields<dim>& rho, IdentityDefects& squares)
@@ -75,8 +75,8 @@ double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& str
   return sums[0];
 }
 
-/// sigma_h n at the points of the rule for jumps, n outward from the cell. Seen from both cells of a facet,
-/// its vertices come in the same, ascending order, also on different ranks.
+/// sigma_h n at the points of the rule for jumps, n outward from the cell. From both cells of a facet its
+/// vertices come in the same ascending order, also on different ranks.
 template <int dim>
 void normal_traces(const mesh::Mesh<dim>& mesh, const Stress<dim>& stress, const CheckTables<dim>& tables,
                    Index cell, int local, std::span<Point<dim>> traces)
@@ -174,7 +174,8 @@ class FacetMoments
   std::vector<double> theta_;
 };
 
-/// The moments of what acts on each boundary facet: g_N, t^k on slaves, -t^k on masters; empty: nothing.
+/// The moments of the traction on each boundary facet: g_N, t^k on slaves, -t^k on masters. Empty: no
+/// traction.
 template <int dim>
 std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheForm<dim>& form,
                                                         std::span<const Point<dim>> t, int degree)

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file checks.h
-/// The identities that make the bound a bound, method section 4, checked from the stress alone: nothing here
-/// is shared with the code that builds it.
+/// The identities on which the bound rests, method section 4, checked from the stress alone: nothing here is
+/// shared with the code that builds it.
 
 #include <span>
 
@@ -13,7 +13,7 @@
 namespace tribound::certify
 {
 
-/// Norms of what should vanish, each relative to ||sigma_h||, with powers of h_T or h_F that make it a
+/// Norms that should vanish, each relative to ||sigma_h||. Powers of h_T or h_F give them the unit of a
 /// stress.
 struct IdentityDefects
 {
@@ -23,12 +23,12 @@ struct IdentityDefects
   double contact = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
   double symmetry = 0;    ///< ||Pi^{p-1} skew sigma_h|| (does not hold for p = 1, see the method)
 
-  /// The largest of those that hold at this degree; nan where one is.
+  /// The largest of the defects that apply at this degree; nan if one of them is.
   [[nodiscard]] double largest(int degree) const;
 };
 
-/// t: the running traction t^k at the contact points of the form; rho: what the linear solver has left, where
-/// it is part of the bound, empty: 0. All ranks call it together: facets between them count, too.
+/// t: the running traction t^k at the contact points of the form. rho: what the linear solver has left, if it
+/// is part of the bound; empty: 0. All ranks call it together, because facets between them count, too.
 template <int dim>
 [[nodiscard]] IdentityDefects check_identities(const contact::NitscheForm<dim>& form,
                                                std::span<const Point<dim>> t, const Stress<dim>& stress,

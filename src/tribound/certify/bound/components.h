@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file components.h
-/// The components of the bound, method section 5: their values, and the table of what is said of them
-/// wherever they are summed, tabulated or shown.
+/// The components of the bound, method section 5: their values, and one table that describes them wherever
+/// they are summed, tabulated or shown.
 
 #include <array>
 #include <span>
@@ -24,60 +24,60 @@ struct BoundComponents
   double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
   double quad =
       0;           ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
-  double alg = 0;  ///< what the linear solver has left, see algebraic_error(); of no single cell
-  double reg1 = 0;     ///< ||sigma_reg||; as the next two 0 unless T is regularised, method section 7
+  double alg = 0;  ///< what the linear solver has left, see algebraic_error(); not attributed to cells
+  double reg1 = 0;     ///< ||sigma_reg||; like the next two, 0 unless T is regularised, method section 7
   double reg2n = 0;    ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
   double reg2t = 0;    ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}
-  double mor = 0;      ///< ||tau||: what tractions lose between meshes that do not match; 0 without pairs
+  double mor = 0;      ///< ||tau||: traction lost between non-matching meshes; 0 without pairs
   double str_mor = 0;  ///< ||sigma_dis + tau - sigma(u)|| <= str + mor, in total_sharp() in their place; 0
                        ///< where mor is
 
-  /// ||sigma_dis + tau - sigma(u)||: str where nothing is lost between meshes.
+  /// ||sigma_dis + tau - sigma(u)||; equals str if nothing is lost between meshes.
   [[nodiscard]] double stress() const { return mor > 0 ? str_mor : str; }
-  /// osc + stress() + neu + lin1 + reg1: what belongs to the body.
+  /// osc + stress() + neu + lin1 + reg1: the part of the body.
   [[nodiscard]] double body() const;
-  /// ((cnt + lin2n + reg2n)^2 + (frc + lin2t + reg2t)^2)^{1/2}: what belongs to the contact conditions.
+  /// ((cnt + lin2n + reg2n)^2 + (frc + lin2t + reg2t)^2)^{1/2}: the part of the contact conditions.
   [[nodiscard]] double contact() const;
   /// (a^2 + b^2)^{1/2} with a = osc + str + mor + neu + lin1 + reg1 and b = cnt + frc + lin2n + lin2t + reg2n
   /// + reg2t [FD24].
   [[nodiscard]] double total() const;
-  /// The same with a = body() and b = contact(): normal and tangential part are orthogonal.
+  /// The same with a = body() and b = contact(): the normal and the tangential part are orthogonal.
   [[nodiscard]] double total_sharp() const;
-  /// osc + str + mor + neu + cnt + frc + quad: neither Newton's method nor the regularisation, nor what it is
-  /// solved with.
+  /// osc + str + mor + neu + cnt + frc + quad: without the parts of Newton's method, the regularisation and
+  /// the linear solver.
   [[nodiscard]] double discretisation() const { return osc + str + mor + neu + cnt + frc + quad; }
   [[nodiscard]] double linearisation() const { return lin1 + lin2n + lin2t; }
   [[nodiscard]] double regularisation() const { return reg1 + reg2n + reg2t; }
 };
 
-/// Where a component stands in eta_tot = (sum_T (body^2 + normal^2 + tangential^2))^{1/2} + whole.
+/// The place of a component in eta_tot = (sum_T (body^2 + normal^2 + tangential^2))^{1/2} + whole.
 enum class BoundPart
 {
   body,        ///< of the cells
   normal,      ///< of the cells on Gamma_C
   tangential,  ///< of the cells on Gamma_C
-  combined,    ///< of the cells: the norm of a sum, in the place of those of its terms
-  whole        ///< of no single cell
+  combined,    ///< of the cells: the norm of a sum, in place of the norms of its terms
+  whole        ///< not attributed to cells
 };
 
-/// What would have to change for a component to vanish.
+/// What has to change for a component to vanish.
 enum class BoundCause
 {
   discretisation,  ///< the mesh, with the data on it
   linearisation,   ///< the number of Newton steps
   regularisation,  ///< delta, method section 7
-  algebra          ///< how far linear systems are solved
+  algebra          ///< the accuracy of the linear solver
 };
 
 [[nodiscard]] const char* to_string(BoundPart part);
 [[nodiscard]] const char* to_string(BoundCause cause);
 
-/// What is said of a component.
+/// The description of a component.
 struct Component
 {
   const char* name;  ///< in files and tables
   double BoundComponents::*value;
-  const char* meaning;  ///< what it measures, for people
+  const char* meaning;  ///< what it measures, for users
   BoundPart part;
   BoundCause cause;
 
@@ -113,23 +113,23 @@ inline constexpr std::array<Component, 15> all_components = {{
      BoundCause::discretisation},
 }};
 
-/// Those of every run.
+/// The components of every run.
 inline constexpr std::span plain_components = std::span(all_components).first<10>();
 
-/// Those that a regularised run has beside them.
+/// The additional components of a regularised run.
 inline constexpr std::span regularisation_components = std::span(all_components).subspan<10, 3>();
 
-/// Those that a run with pairs of bodies has behind all others.
+/// The additional components of a run with pairs of bodies; they come last.
 inline constexpr std::span transfer_components = std::span(all_components).subspan<13, 2>();
 
-/// What a run is beside the plain method and contact with obstacles.
+/// How a run differs from the plain method and contact with obstacles.
 struct RunKind
 {
   bool regularised = false;  ///< method section 7
   bool paired = false;       ///< bodies touch each other
 };
 
-/// The components that it has.
+/// The components of such a run.
 [[nodiscard]] std::vector<Component> components_of_run(const RunKind& kind);
 
 }  // namespace tribound::certify

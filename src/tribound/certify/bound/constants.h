@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file constants.h
-/// The constants of the inequalities on a simplex T of diameter h_T that the bound rests on, method
-/// section 5.
+/// The constants of the inequalities on a simplex T of diameter h_T on which the bound rests, method section
+/// 5.
 
 #include <cmath>
 #include <numbers>
@@ -10,13 +10,13 @@
 namespace tribound::certify
 {
 
-/// h_T / pi: ||v - mean_T(v)||_T <= h_T / pi ||grad v||_T, T being convex.
+/// h_T / pi: ||v - mean_T(v)||_T <= h_T / pi ||grad v||_T, since T is convex.
 [[nodiscard]] inline double poincare_constant(double h)
 {
   return h / std::numbers::pi;
 }
 
-inline constexpr double bessel_zero = 3.8317059702;  ///< j_{1,1}, the first of J_1; rounded down
+inline constexpr double bessel_zero = 3.8317059702;  ///< j_{1,1}, the first zero of J_1 > 0; rounded down
 
 /// h_T / j_{1,1}: the same where T is a triangle [LS10].
 [[nodiscard]] constexpr double poincare_constant_of_triangle(double h)

@@ -1,5 +1,5 @@
-/// What a direction of contact that varies, and is no polynomial, adds to the contact terms (method
-/// section 5.6).
+/// What a varying direction of contact that is not a polynomial adds to the contact terms (method section
+/// 5.6).
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +76,7 @@ void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Po
 template <int dim>
 void ContactTerms<dim>::resolve_normal(int k, std::vector<Part>& parts) const
 {
-  // A jump of N is a point in 2D, where halving costs little, and a curve in 3D.
+  // A jump of N is a point in 2D, where halving is cheap, and a curve in 3D.
   constexpr int deepest = dim == 2 ? 30 : 3;
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure;

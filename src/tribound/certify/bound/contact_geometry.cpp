@@ -35,7 +35,7 @@ struct AtVertex
   Point<dim> direction;
 };
 
-/// Of the boundaries that have segments here.
+/// The largest sagitta of the boundaries that have segments on this rank.
 template <int dim>
 double straightened(const contact::NitscheForm<dim>& form)
 {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file contact_pieces.h
-/// Pieces of contact segments, as ContactTerms divides them. Internal to it.
+/// Pieces of contact segments, into which ContactTerms divides them. Internal to it.
 
 #include <algorithm>
 #include <array>
@@ -15,13 +15,13 @@
 namespace tribound::certify
 {
 
-/// More than the data ask for: so many are left where rounding makes the kinks.
+/// More pieces than the data require: so many are left only if rounding makes the kinks.
 inline constexpr std::size_t max_pieces = 4096;
-/// What a rule on a piece may miss of a norm, over the largest distance from the polynomials for which it is
-/// exact, where the projection of the values decides about kinks.
+/// What a rule on a piece may miss of a norm, divided by the largest distance from the polynomials for which
+/// it is exact, if the projection of the values decides about kinks.
 inline constexpr double misses = 3;
 
-/// The parts of a segment or triangle halved along each edge.
+/// The parts of a segment or triangle whose edges are halved.
 [[nodiscard]] inline std::array<std::array<Point<1>, 2>, 2> halves(const std::array<Point<1>, 2>& s)
 {
   const Point<1> middle = (s[0] + s[1]) / 2;
@@ -57,7 +57,7 @@ template <int dim>
   return problem::deviation(normal, vertices, dim);
 }
 
-/// Of v - v.N N from P^{p+2}, over |v|, v in P^p: in 2D along the tangent.
+/// The distance of v - v.N N from P^{p+2}, relative to |v|, for v in P^p; in 2D along the tangent.
 template <int dim>
 [[nodiscard]] double tangential_deviation(const problem::NormalDeviation& deviation)
 {

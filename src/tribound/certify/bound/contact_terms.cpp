@@ -17,19 +17,19 @@ namespace
 {
 
 /// A facet with kinks has settled when halving its pieces changes the squared components by less than this
-/// part of them. A kink is a point in 2D, where many halvings cost little, and a curve in 3D.
+/// fraction. A kink is a point in 2D, where many halvings are cheap, and a curve in 3D.
 template <int dim>
 constexpr double settled = dim == 2 ? 1e-10 : 1e-5;
 template <int dim>
 constexpr int max_depth = dim == 2 ? 40 : 10;
-/// Whether the rule may not be exact for T(u), P(u) being a polynomial.
+/// Whether the rule may be inexact for T(u), if P(u) is a polynomial.
 template <int dim>
 bool is_rough(const Kinks& kinks)
 {
   return kinks.possible || (dim == 3 && kinks.slips);
 }
 
-/// D is a polynomial through the values at the contact points: it is 0 or 1 where they all are.
+/// D is the polynomial through the values at the contact points: it is 0 or 1 if they all are.
 template <int dim>
 Bond bond_on(const contact::NitscheForm<dim>& form, int k)
 {
@@ -192,7 +192,7 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   return result;
 }
 
-/// The halves of a piece of the part with the given number.
+/// Halves a piece of the part with the given number.
 template <int dim>
 auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                               const Integrals& whole) const -> Halved
@@ -210,14 +210,14 @@ auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, con
   return result;
 }
 
-/// Halves the parts on which T is rough, and of these those again, until that changes nothing any more. What
-/// it did change last, where there is no end of it, is added.
+/// Halves the parts on which T is rough, and the rough ones of the halves again, until the change is
+/// negligible. If it does not become so, the last change is added.
 template <int dim>
 void ContactTerms<dim>::settle(int k, std::span<Part> parts) const
 {
-  double rounding = 0;  // what is left where T is a polynomial all the same never settles
+  double rounding = 0;  // where T is in fact a polynomial, the remainder never settles
   for (const Part& part : parts) rounding = std::max(rounding, std::pow(1e3 * part.integrals.round_off, 2));
-  // What a bond does between the points is not enclosed: its parts are halved twice at least.
+  // A bond is not enclosed between the points: its parts are halved at least twice.
   const int least_depth = cone(form_.segments()[k].contact->law).is_bonded ? 2 : 1;
   std::vector<Halved> active;
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -282,9 +282,9 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   return result;
 }
 
-/// Where the contact is open whatever gap and water are between the points, the gap does not matter. P^n +
-/// p_w is a polynomial up to gamma delta, the remainder of p_w and the deviation of N, with which it was seen
-/// at the points, too.
+/// Where the contact is open for any gap and water pressure between the points, the gap does not matter. P^n
+/// + p_w is a polynomial up to gamma delta, the remainder of p_w and the deviation of N; its values at the
+/// points contain these, too.
 template <int dim>
 bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment, const Part& part) const
 {
@@ -294,9 +294,9 @@ bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment, con
 }
 
 /// T is Lipschitz continuous in g, s and p_w: [.]_- and the projections on balls do not expand, neither does
-/// [x]_a in a, and [P^n + p_w]_- - p_w changes by p_w at most, where it is open, too. These data being
-/// polynomials up to their remainders, norms on the part K are those of the rule and at most 3 |K|^{1/2}
-/// times what the remainders change.
+/// [x]_a in a, and [P^n + p_w]_- - p_w changes by at most the change of p_w, also where it is open. These
+/// data are polynomials up to their remainders, so norms on the part K exceed those of the rule by at most 3
+/// |K|^{1/2} times the change that the remainders cause.
 template <int dim>
 void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment, const Part& part,
                                  ContactSquares& squares) const

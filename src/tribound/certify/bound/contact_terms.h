@@ -35,18 +35,18 @@ struct ContactSquares
   double reg2t = 0;  ///< h_k ||Pi_k (T_delta - T)^t||_k^2
 };
 
-/// Evaluates them. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed order
-/// integrates across a kink; ContactRule::resolved subdivides such facets, the pieces with a kink again and
+/// Evaluates these components. T(u) has kinks where P^n or |P^t| - S_h changes sign, and no rule of fixed
+/// order integrates across a kink. ContactRule::resolved subdivides such facets, and pieces with a kink
 /// again, until the value settles. In 3D it also subdivides where the contact slips. ContactRule::reference
-/// takes the reference rule as it is.
+/// uses the reference rule without subdivision.
 ///
 /// Where N varies, let |N - N'| <= rho on a piece K for some N' in P^2. With A = {sigma(u)} - gamma [u], P^n
 /// = A.N + gamma g and Pi_k T.N are in P^{p+2} up to (|A| + |Pi_k T|) rho. With f' in P^{p+2} and the
-/// projection Pi f of the values of f at the points, ||f - Pi f|| <= 2 ||f - f'||, where the norms are those
-/// on K or of the rule: the rule takes ||f|| for one that differs by at most 3 rho (||A||_K + ||Pi_k T||_K),
-/// both exact. In 2D the same holds along the tangent; in 3D P^t = A - A.N N is in P^{p+2} up to rho (2 +
-/// rho) |A| with rho for N' in P^1. Pieces are halved until that is negligible. The kinks are those of Pi f,
-/// which differs from f by no more.
+/// projection Pi f of the values of f at the points, ||f - Pi f|| <= 2 ||f - f'|| in the norms on K and of
+/// the rule. So the rule computes ||f|| up to 3 rho (||A||_K + ||Pi_k T||_K), where both norms are exact. In
+/// 2D the same holds along the tangent; in 3D P^t = A - A.N N is in P^{p+2} up to rho (2 + rho) |A| with rho
+/// for N' in P^1. Pieces are halved until that is negligible. The kinks are those of Pi f, which differs from
+/// f by no more.
 template <int dim>
 class ContactTerms
 {
@@ -55,7 +55,7 @@ class ContactTerms
 
   using Tractions = typename Stress<dim>::Tractions;
 
-  /// On segment k of the form for the iterate u.
+  /// The components on segment k of the form for the iterate u.
   [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Tractions& t) const;
   /// lin2n and lin2t alone; the others are 0.
   [[nodiscard]] ContactSquares linearisation(int k, const Tractions& t) const;
@@ -77,7 +77,7 @@ class ContactTerms
     std::array<Point<dim>, max_n> augmented;  ///< {sigma(u)} - gamma [u]: P(u) without the gap
     std::array<Point<dim>, max_n> dis;        ///< Pi_k T
   };
-  /// Squares of what norms may be larger by where N is no polynomial.
+  /// Squares of the possible increase of norms where N is not a polynomial.
   struct Missed
   {
     double normal = 0;
@@ -90,9 +90,9 @@ class ContactTerms
     double tangential = 0;  ///< of |[P^t]_S - Pi_k [P^t]_S|^2
     Missed missed{};
     Missed missed_open{};  ///< where P^n > 0 all over
-    Kinks kinks{};         ///< up to what gap, threshold and N leave out
-    double round_off = 0;  ///< of P, at most
-    double deviation = 0;  ///< of P^n from P^{p+2}, as far as N is the cause
+    Kinks kinks{};         ///< up to the remainders of gap, threshold and N
+    double round_off = 0;  ///< upper bound of that of P
+    double deviation = 0;  ///< of P^n from P^{p+2}, as far as N causes it
     problem::NormalDeviation of_normal{};
 
     Integrals& operator+=(const Integrals& other)
@@ -115,17 +115,17 @@ class ContactTerms
     Integrals integrals;
   };
 
-  /// A piece halved along each edge.
+  /// A piece whose edges are halved.
   struct Halved
   {
     std::size_t part;  ///< number of the part of the segment
     std::array<Piece, n_halves> pieces;
     std::array<Fields, n_halves> fields;
     std::array<Integrals, n_halves> values;
-    double change;  ///< of the integrals, and what no point has seen
+    double change;  ///< of the integrals, plus what no point has seen
   };
 
-  /// Those at the points of segment k.
+  /// The values at the points of segment k.
   [[nodiscard]] std::span<const Point<dim>> on_segment(std::span<const Point<dim>> t, int k) const
   {
     const auto n = static_cast<std::size_t>(form_.n_segment_points());
@@ -133,28 +133,28 @@ class ContactTerms
   }
   /// Adds h_k ||(Pi_k t)^n||_k^2 and h_k ||(Pi_k t)^t||_k^2.
   void add_traction(int k, std::span<const Point<dim>> t, double& normal, double& tangential) const;
-  /// The same where N varies, from the coefficients of Pi_k t: upper bounds.
+  /// Upper bounds of the same where N varies, from the coefficients of Pi_k t.
   void add_varying_traction(int k, std::span<const Point<dim>> coefficients, double& normal_part,
                             double& tangential_part) const;
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Tractions& t) const;
   [[nodiscard]] std::vector<double> coefficients_on(const Piece& part) const;
-  /// Those with other coefficients: [i * n + j] takes i to j.
+  /// The fields with other coefficients: [i * n + j] takes i to j.
   [[nodiscard]] Fields changed(const Fields& fields, std::span<const double> coefficients) const;
-  /// Those on a piece in the coordinates of one of its halves.
+  /// The fields of a piece in the coordinates of one of its halves.
   [[nodiscard]] Fields on_half(const Fields& whole, std::size_t half) const
   {
     const std::size_t size = to_half_.size() / n_halves;
     return changed(whole, std::span(to_half_).subspan(half * size, size));
   }
-  /// `known`: the deviation of N on a larger piece; absent: it is looked for.
+  /// `known`: the deviation of N on a larger piece; computed if absent.
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece,
                                     const std::optional<problem::NormalDeviation>& known = {}) const;
-  /// Sets what N being no polynomial on the piece leaves out, from A, Pi_k T and the kinks there.
+  /// Sets what is missed if N is not a polynomial on the piece, from A, Pi_k T and the kinks there.
   void add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
                   std::span<const Point<dim>> dis, Integrals& integrals) const;
-  /// Halves parts until N is a polynomial on each but for something negligible.
+  /// Halves parts until the deviation of N from polynomials is negligible on each.
   void resolve_normal(int k, std::vector<Part>& parts) const;
-  /// Whether P^n > 0 on a part, whatever gap and N are between the points.
+  /// Whether P^n > 0 on a part for any gap and N between the points.
   [[nodiscard]] bool is_open(const contact::ContactSegment<dim>& segment, const Part& part) const;
   void add_part(const contact::ContactSegment<dim>& segment, const Part& part, ContactSquares& squares) const;
   [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
@@ -166,7 +166,7 @@ class ContactTerms
   std::vector<double> theta_;    ///< basis at the points of the rule, [q * n + i]
   int n_;                        ///< dim P^p(k)
   std::vector<double> to_half_;  ///< coefficients_on() the halves of the reference simplex
-  KinkFinder<dim> kinks_;        ///< for P^{p+2}, in which P^n is up to the remainder of the gap
+  KinkFinder<dim> kinks_;        ///< for P^{p+2}, which contains P^n up to the remainder of the gap
 };
 
 }  // namespace tribound::certify

@@ -7,9 +7,9 @@
 namespace tribound::certify
 {
 
-/// A mean value m of the error of g_N on F goes into the cell: with div((x - P) v) = d v + (x - P) . grad v,
-/// P the vertex opposite to F, (m, v)_F = |F|/|T| (m, v + (x - P) . grad v / d)_T, the first term like that
-/// of a body force and the second at most |m| |F|/|T| h_T |T|^{1/2} / d ||grad v||_T.
+/// The mean m of the error of g_N on F is moved into the cell: div((x - P) v) = d v + (x - P) . grad v, with
+/// P the vertex opposite to F, gives (m, v)_F = |F|/|T| (m, v + (x - P) . grad v / d)_T. The first term is
+/// like that of a body force, the second at most |m| |F|/|T| h_T |T|^{1/2} / d ||grad v||_T.
 template <int dim>
 DataTerms data_terms(const contact::NitscheForm<dim>& form)
 {

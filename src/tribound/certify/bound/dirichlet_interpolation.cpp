@@ -35,8 +35,8 @@ double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form)
 namespace
 {
 
-/// How far the value at a node of a facet may be from what the formula is on any side of it: more than
-/// rounding where the formula jumps there.
+/// How far the value at a node of a facet may be from those of the formula around the node: more than
+/// rounding if the formula jumps there.
 template <int dim>
 double jump_at_nodes(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& facet, int component)
 {
@@ -56,14 +56,14 @@ double jump_at_nodes(const contact::NitscheForm<dim>& form, const mesh::Boundary
   return largest;
 }
 
-/// Let |u_D - P| <= delta inside of the facet and |v - P| <= delta' for the values v at the nodes, P of
-/// degree p. Then the interpolant is nowhere farther than delta + Lambda delta' from u_D. If delta is that on
-/// the closed facet, delta' = delta; otherwise delta' is larger by what v differs from the values inside.
+/// Let |u_D - P| <= delta inside the facet and |v - P| <= delta' for the values v at the nodes, P of degree
+/// p. Then the interpolant differs from u_D by at most delta + Lambda delta'. If delta holds on the closed
+/// facet, delta' = delta; otherwise delta' exceeds delta by the difference of v from the values inside.
 template <int dim>
 double interpolation_bound(const contact::NitscheForm<dim>& form, const mesh::BoundaryFacet& facet,
                            int component)
 {
-  // Of equispaced nodes on triangles, p = 1, ..., 4, rounded up; those on segments have smaller ones.
+  // For equispaced nodes on triangles, p = 1, ..., 4, rounded up; those on segments have smaller constants.
   constexpr std::array<double, 5> lebesgue = {1, 1, 1.67, 2.28, 3.48};
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const int p = form.space().degree();

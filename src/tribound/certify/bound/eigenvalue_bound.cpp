@@ -37,7 +37,7 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
   std::vector<double> mv = m.multiply(v);
   std::vector<double> w(n);
   std::vector<double> diagonal;
-  std::vector<double> off_diagonal;  // entry i couples i and i + 1, the last one a step not yet made
+  std::vector<double> off_diagonal;  // entry i couples i and i + 1, the last one is for the next step
   double beta = std::sqrt(dot(v, mv));
   double largest = 0;
   for (int k = 0; k < max_steps; ++k)
@@ -60,14 +60,15 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
     std::swap(v, w);
     mv = m.multiply(v);
     beta = std::sqrt(std::max(0.0, dot(v, mv)));
-    if (beta <= accuracy * largest) break;  // v spans an invariant space
+    if (beta <= accuracy * largest) break;  // v spans an invariant subspace
     off_diagonal.push_back(beta);
   }
   return 1 / largest;
 }
 
 /// Rounding in the factors of A - theta M, of the order of eps a_ii on the diagonal, changes the smallest
-/// eigenvalue by this part of it, if its vector is spread over the body; times 100, to be sure.
+/// eigenvalue by this fraction if its eigenvector is spread over the body; a safety factor of 100 is
+/// included.
 double rounding_of(const Pencil& pencil, double lambda)
 {
   double trace = 0;

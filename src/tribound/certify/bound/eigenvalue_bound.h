@@ -11,7 +11,7 @@
 namespace tribound::certify
 {
 
-/// A and M over the facet means that are not fixed, with the same sparsity pattern.
+/// A and M for the facet means that are not fixed, with the same sparsity pattern.
 struct Pencil
 {
   Index n = 0;
@@ -21,10 +21,10 @@ struct Pencil
 };
 
 /// A theta for which A - theta M is proved to be positive definite, as close below the smallest eigenvalue as
-/// possible; 0 if there is none. What the proof needs is the factorisation alone, not the eigenvalue.
+/// possible; 0 if there is none. The proof needs only the factorisation, not the eigenvalue.
 [[nodiscard]] double proved_theta(Pencil pencil, int dim);
 
-/// Facet means of phi with A phi = M 1, roughly: conjugate gradients, preconditioned by the diagonal.
+/// Approximate facet means of phi with A phi = M 1, by conjugate gradients with diagonal preconditioning.
 [[nodiscard]] std::vector<double> potential_means(Pencil pencil);
 
 }  // namespace tribound::certify

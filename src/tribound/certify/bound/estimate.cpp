@@ -17,8 +17,8 @@ namespace tribound::certify
 namespace
 {
 
-/// Component by component the root of the sum of squares over all ranks, and both totals with what no cell
-/// has.
+/// The root of the sum of squares over all ranks for each component, and both totals, with the components
+/// that are not attributed to cells.
 void add_up(Estimate& estimate, double quad, double alg, const Ranks& ranks)
 {
   std::array<double, std::size(all_components) + 3> sums{};
@@ -111,7 +111,7 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
   return result;
 }
 
-/// sigma_dis - sigma(u) at quadrature points, which shares nothing with the way sigma_dis is made.
+/// sigma_dis - sigma(u) at quadrature points; shares nothing with the construction of sigma_dis.
 template <int dim>
 void Estimator<dim>::evaluate(std::span<const double> u, const Stress<dim>& stress, Index cell,
                               CellFields& fields) const
@@ -174,8 +174,8 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
   in_threads(n_threads, on_thread);
 }
 
-/// A cell with several liftings, by facets and groups: the largest is added to the stress, the norms of the
-/// others after that.
+/// For a cell with several liftings (facets and groups), the largest is added to the stress; the norms of the
+/// others are added after that.
 template <int dim>
 void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>& stress,
                                     Estimate& result) const
@@ -197,7 +197,7 @@ void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>
   }
 }
 
-/// sigma_dis - sigma(u) on a cell, of reference points.
+/// sigma_dis - sigma(u) on a cell, as a function of reference points.
 template <int dim>
 std::function<Tensor<dim>(const Point<dim>&)> Estimator<dim>::difference(std::span<const double> u,
                                                                          const Stress<dim>& stress,
@@ -223,7 +223,7 @@ std::function<Tensor<dim>(const Point<dim>&)> Estimator<dim>::difference(std::sp
   };
 }
 
-/// Half of the square of a segment between bodies belongs to either cell, which may be that of another rank.
+/// A segment between bodies gives half of its square to each of its two cells, which may be on another rank.
 template <int dim>
 void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>& stress,
                                    Estimate& result) const
@@ -231,7 +231,7 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
   std::vector<Index> touched;
   const auto is_own = [&](const contact::SegmentSide<dim>& side)
   { return side.facet.cell < static_cast<Index>(result.cells.size()); };
-  const auto add = [&](Index cell, double share, const ContactSquares& squares)  // of which it may have more
+  const auto add = [&](Index cell, double share, const ContactSquares& squares)  // a cell may get several
   {
     BoundComponents& eta = result.cells[cell];
     eta.cnt += share * squares.cnt;

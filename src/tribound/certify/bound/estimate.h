@@ -19,7 +19,7 @@
 namespace tribound::certify
 {
 
-/// What the cells add up to.
+/// The sums over the cells.
 struct Bound
 {
   BoundComponents global;  ///< (sum of squares over the cells)^{1/2}, component by component
@@ -29,7 +29,7 @@ struct Bound
 
 struct Estimate : Bound
 {
-  std::vector<BoundComponents> cells;  ///< that the rank owns
+  std::vector<BoundComponents> cells;  ///< the cells that the rank owns
 
   /// Without the cells.
   [[nodiscard]] const Bound& bound() const { return *this; }
@@ -41,29 +41,29 @@ template <int dim>
 class Estimator
 {
  public:
-  /// Evaluates what depends on the data alone. C_F may be `known` from a mesh of which the form's is a
-  /// refinement; it is computed if it is not.
+  /// Evaluates what depends on the data alone. C_F may be `known` from a mesh that the form's mesh refines;
+  /// otherwise it is computed.
   explicit Estimator(const contact::NitscheForm<dim>& form, ContactRule rule = ContactRule::resolved,
                      const std::optional<FriedrichsConstant>& known = {});
 
-  /// Where it is infinite the bound has no alg: then div sigma_h + Pi^{p-1} f = 0 is required of the stress.
+  /// If it is infinite, the bound has no alg; then the stress must satisfy div sigma_h + Pi^{p-1} f = 0.
   [[nodiscard]] const FriedrichsConstant& friedrichs() const { return friedrichs_; }
 
   /// rho of the iterate u with the running traction t; empty where C_F is infinite.
   [[nodiscard]] AffineFields<dim> algebraic_remainder(std::span<const double> u,
                                                       std::span<const Point<dim>> t) const;
-  /// C_F ||rho||, rho of <R_lin, phi_i>: no less than the alg of the bound.
+  /// C_F ||rho|| with rho from <R_lin, phi_i>: not less than alg in the bound.
   [[nodiscard]] double algebraic_bound(std::span<const double> residual) const
   {
     return friedrichs_.value * field_norm<dim>(form_.space().mesh(), algebraic_.body_force(residual));
   }
 
-  /// The components of the iterate u with its equilibrated stress. Cells are shared out to `n_threads`
+  /// The components of the iterate u with its equilibrated stress. Cells are distributed over `n_threads`
   /// threads (0: as many as OpenMP offers).
   [[nodiscard]] Estimate operator()(std::span<const double> u, const Stress<dim>& stress,
                                     int n_threads = 0) const;
 
-  /// lin1, lin2n and lin2t of an iterate, global values, from its sigma_lin alone; the others are 0.
+  /// The global lin1, lin2n and lin2t of an iterate, from its sigma_lin alone; the others are 0.
   [[nodiscard]] BoundComponents linearisation(const Stress<dim>& stress) const;
 
  private:
@@ -71,7 +71,7 @@ class Estimator
   struct CellFields
   {
     std::vector<double> dis;              ///< sigma_dis, [(a dim + k) n_points + q]
-    std::vector<double> derivative;       ///< d_k u_a in reference coordinates, the same way
+    std::vector<double> derivative;       ///< d_k u_a in reference coordinates, same layout
     std::vector<Tensor<dim>> difference;  ///< sigma_dis - sigma(u) at the points
   };
 

@@ -34,20 +34,20 @@ struct Piece
   int part;
 };
 
-/// By numbers of vertices, with those on its edges.
+/// By vertex numbers, including the vertices on its edges.
 struct Loop
 {
   std::vector<int> corners;
   int part;
 };
 
-using Edges = std::set<std::pair<int, int>>;  ///< from vertex to vertex, the piece on their left
+using Edges = std::set<std::pair<int, int>>;  ///< directed, with the piece on the left
 
 class Triangulation
 {
  public:
-  /// The loops of the pieces with the vertices of all of them. False where two pieces lie on one side of an
-  /// edge.
+  /// Makes the loops of the pieces, with the vertices of all of them. False if two pieces lie on the same
+  /// side of an edge.
   [[nodiscard]] bool make_loops(std::span<const Piece> pieces)
   {
     vertices_.clear();
@@ -60,7 +60,7 @@ class Triangulation
           loop.corners.push_back(v);
     }
     for (Loop& loop : loops_) insert_vertices(loop);
-    // what has no area but rounding has a corner on the edge opposite: its sides lie on each other
+    // a piece whose area is only rounding has a corner on the opposite edge: its sides coincide
     std::erase_if(loops_,
                   [](const Loop& loop)
                   {
@@ -76,7 +76,7 @@ class Triangulation
     return true;
   }
 
-  /// Calls visit(a, b) for the ends of the edges inside the facet that have a piece on one side only.
+  /// Calls visit(a, b) for the end points of the inner edges that have a piece on one side only.
   template <class Visit>
   void for_each_open_edge(const Visit& visit) const
   {
@@ -84,7 +84,7 @@ class Triangulation
       if (!edges_.contains({b, a}) && !on_rim(vertices_[a], vertices_[b])) visit(vertices_[a], vertices_[b]);
   }
 
-  /// Convex loops are divided from their centres where they have more than three corners.
+  /// Convex loops with more than three corners are divided from their centres.
   [[nodiscard]] FacetCover triangles() const
   {
     FacetCover cover{vertices_, {}};
@@ -157,7 +157,7 @@ class Triangulation
   Edges edges_;
 };
 
-/// Or almost: x may lie between two pieces.
+/// Up to rounding: x may lie between two pieces.
 bool contains(const Piece& piece, const Point<2>& x)
 {
   for (std::size_t i = 0; i < piece.corners.size(); ++i)
@@ -165,8 +165,8 @@ bool contains(const Piece& piece, const Point<2>& x)
   return true;
 }
 
-/// What the pieces leave of the facet. Their open edges bound it: cut along the lines through these, the
-/// facet falls into polygons that are covered or not.
+/// The part of the facet that the pieces leave uncovered. Their open edges bound it. Cutting the facet along
+/// the lines through these edges gives polygons that are either covered or not.
 std::vector<Piece> uncovered(const Triangulation& triangulation, std::span<const Piece> pieces)
 {
   contact::Polygon<3> facet;

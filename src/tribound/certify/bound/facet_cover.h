@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file facet_cover.h
-/// A triangulation of a facet that goes with the parts of it below contact segments.
+/// A triangulation of a facet that conforms to its parts below contact segments.
 
 #include <array>
 #include <optional>
@@ -20,14 +20,14 @@ struct FacetCover
   struct Triangle
   {
     std::array<int, 3> corners;  ///< anticlockwise
-    int part;                    ///< in which it lies, -1 where there is none
+    int part;                    ///< that contains it; -1 if none does
   };
   std::vector<Point<2>> vertices;
   std::vector<Triangle> triangles;
 };
 
-/// Of parts that do not overlap; they need not conform, nor cover the facet. Corners are one where they are
-/// closer than 1e-11. Nothing where parts overlap, or leave gaps too narrow to tell from rounding.
+/// For parts that do not overlap; they need not conform, nor cover the facet. Corners closer than 1e-11 are
+/// identified. Nothing if parts overlap, or leave gaps too narrow to distinguish from rounding.
 [[nodiscard]] std::optional<FacetCover> conforming_cover(std::span<const fem::Part<2>> parts);
 
 }  // namespace tribound::certify

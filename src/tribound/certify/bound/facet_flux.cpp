@@ -54,7 +54,7 @@ struct ReferenceMoments
   std::array<Eigen::MatrixXd, 3> edge;        ///< int l_j theta_i from corner k to the next, l_j of Legendre
 };
 
-/// Numbers for the edges, whichever way they are gone.
+/// Numbers of the edges, independent of their direction.
 class EdgeNumbers
 {
  public:
@@ -120,8 +120,9 @@ FacetFlux::FacetFlux(const FacetCover& cover, std::span<const Point<2>> vertices
   conditions_.resize(n_moments_ + edges.size() * (degree + 2), 2 * n * n_triangles);
   conditions_.setFromTriplets(entries.begin(), entries.end());
   Eigen::SparseMatrix<double> square = conditions_ * conditions_.transpose();
-  // The integral of a divergence is the flux through the rim: one condition follows from the others. With
-  // more on the diagonal its multiplier is 0, and the solution the same. The largest triangle takes it best.
+  // The integral of a divergence is the flux through the rim, so one condition follows from the others. With
+  // a larger diagonal entry its multiplier is 0, and the solution the same. The largest triangle is the best
+  // choice.
   square.coeffRef(largest * n_div, largest * n_div) *= 2;
   factors_.compute(square);
 }
@@ -138,7 +139,7 @@ std::optional<Eigen::MatrixXd> FacetFlux::without_circulation(const Eigen::Matri
   return smallest(conditions_ * field, size);
 }
 
-/// With iterative refinement: narrow triangles spoil the factors.
+/// Uses iterative refinement: narrow triangles spoil the factors.
 std::optional<Eigen::MatrixXd> FacetFlux::smallest(const Eigen::MatrixXd& conditions, double size) const
 {
   constexpr double rounding = 1e-10;

@@ -24,9 +24,9 @@ namespace tribound::certify
 namespace
 {
 
-/// kappa with ||e||_T <= kappa h_T ||grad e||_T for every e whose means over the facets of T vanish. The mean
-/// of e over T: |T| mean^2 <= h_T^2 / (2 d (d+1) (d+2)) ||grad e||^2, from div((x - g) e) = d e + (x -
-/// g).grad e with the barycentre g; the rest: h_T / j_{1,1} in triangles [LS10], h_T / pi in convex cells
+/// kappa with ||e||_T <= kappa h_T ||grad e||_T for every e with zero means over the facets of T. For the
+/// mean of e over T, |T| mean^2 <= h_T^2 / (2 d (d+1) (d+2)) ||grad e||^2, from div((x - g) e) = d e + (x -
+/// g).grad e with the barycentre g. For the rest, h_T / j_{1,1} in triangles [LS10], h_T / pi in convex cells
 /// [PW60]. In 2D this is the constant of [CGR12].
 template <int dim>
 constexpr double kappa_squared()
@@ -35,13 +35,13 @@ constexpr double kappa_squared()
   return 1.0 / (2 * dim * (dim + 1) * (dim + 2)) + 1 / (root * root);
 }
 
-/// The mesh of the proof. Refined uniformly, all facets are similar to those they are parts of.
+/// The mesh of the proof. After uniform refinement, all facets are similar to their parents.
 template <int dim>
 struct ProofMesh
 {
   const mesh::Mesh<dim>& mesh;
   double facet_scale;  ///< h_F of the facet of the given mesh / diameter of its part here
-  PairTerms pairs{};   ///< empty where no body needs the others
+  PairTerms pairs{};   ///< empty if no body needs the others
 };
 
 /// 1 for each facet on which Gamma_D fixes the component.
@@ -56,8 +56,8 @@ std::vector<char> fixed_facets(const problem::Problem<dim>& problem, const mesh:
   return fixed;
 }
 
-/// A = sum_T w_T (grad ., grad .)_T + sum_{F in C} (|F|/h_F) mean_F(.) mean_F(.) + the couplings of pairs,
-/// M = sum_T (., .)_T of the Crouzeix-Raviart functions phi_i = 1 - d lambda_i, which have mean 1 on facet i
+/// A = sum_T w_T (grad ., grad .)_T + sum_{F in C} (|F|/h_F) mean_F(.) mean_F(.) + the couplings of pairs, M
+/// = sum_T (., .)_T for the Crouzeix-Raviart functions phi_i = 1 - d lambda_i, which have mean 1 on facet i
 /// and 0 on the others; C the obstacles.
 template <int dim>
 Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof,
@@ -112,8 +112,8 @@ Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proo
   return pencil;
 }
 
-/// The smallest theta(fixed facets, pencil) of all components. Components that are fixed on the same facets
-/// have the same.
+/// The smallest theta(fixed facets, pencil) of all components. Components fixed on the same facets have the
+/// same theta.
 template <int dim, class Theta>
 double theta_of_components(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof, Theta theta)
 {
@@ -129,9 +129,9 @@ double theta_of_components(const problem::Problem<dim>& problem, const ProofMesh
 }
 
 /// C^2 <= 1/theta + kappa^2 H^2 [CG14, Liu15], without separation of eigenvalues since only the supremum is
-/// needed: the interpolant I w with the facet means of w has ||w - I w|| <= kappa H ||grad(w - I w)||, grad I
-/// w is the cell means of grad w, and ||w||_F^2 >= |F| mean_F(w)^2. Of the gradients there may be no more
-/// than w_T.
+/// needed. The interpolant I w with the facet means of w satisfies ||w - I w|| <= kappa H ||grad(w - I w)||,
+/// grad I w is the cell means of grad w, and ||w||_F^2 >= |F| mean_F(w)^2. Only the fraction w_T of the
+/// gradients may be available.
 template <int dim>
 FriedrichsConstant constant_on(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof)
 {
@@ -148,7 +148,7 @@ FriedrichsConstant constant_on(const problem::Problem<dim>& problem, const Proof
   return result;
 }
 
-/// What holds the bodies in every component: Gamma_D and obstacles, or only by way of pairs.
+/// What fixes the bodies in every component: Gamma_D and obstacles, or only pairs.
 enum class Held
 {
   not_all,
@@ -195,7 +195,7 @@ FriedrichsConstant with_factors(const problem::Problem<dim>& problem, const mesh
 {
   const FriedrichsConstant here = constant_on<dim>(problem, {mesh, 1, pairs});
   if (here.value * here.value <= 2 / here.theta) return here;
-  // kappa^2 H^2 > 1/theta: a finer mesh, for the proof alone. The norm keeps the h_F of the given mesh.
+  // kappa^2 H^2 > 1/theta: refine, for the proof alone. The norm keeps the h_F of the given mesh.
   if (mesh::count_after_refinement(mesh, 1).cells > most_cells) return here;
   const mesh::Refined<dim> refined = mesh::refine_uniformly(mesh);
   const PairTerms finer_pairs =

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file friedrichs.h
-/// The Friedrichs constant of a mesh and its boundary conditions, guaranteed from above: what bounds a
+/// A guaranteed upper bound of the Friedrichs constant of a mesh and its boundary conditions: it bounds a
 /// function by its gradient and its trace on Gamma_C.
 
 #include <limits>
@@ -17,8 +17,8 @@ namespace tribound::certify
 struct FriedrichsConstant
 {
   double value;      ///< C_F, a length
-  double theta;      ///< the smallest of all components
-  double mesh_size;  ///< H, the largest h_T of the mesh of the proof; 0 for a proof that needs none
+  double theta;      ///< the smallest over all components
+  double mesh_size;  ///< H, the largest h_T of the mesh of the proof; 0 if the proof needs none
   Index cells;       ///< of the mesh of the proof
 };
 
@@ -26,19 +26,19 @@ struct FriedrichsConstant
 template <int dim>
 [[nodiscard]] double friedrichs_kappa();
 
-/// With more cells than this in 3D the proof needs no factorisation. A cube of Kuhn's tetrahedra, one
-/// component, seconds of a core with factors and without: 105 000 cells 10 and 1.4, 304 000 cells 40 and 6,
+/// With more cells than this in 3D the proof uses no factorisation. For a cube of Kuhn's tetrahedra, one
+/// component, seconds of a core with factors and without: 105 000 cells 10 and 1.4; 304 000 cells 40 and 6,
 /// where the factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large.
 inline constexpr Index most_cells_factorised_3d = 100'000;
 
 /// C_F with ||v|| <= C_F ||v||_{C,h} for all v that vanish in the components that Gamma_D fixes,
 ///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2 + sum_k (1/h_k) ||[v]||_k^2,
-/// C the obstacles, k the segments of pairs, on this mesh and on all its refinements, whose h_F and h_k are
-/// not larger. Pairs count where a body needs them (friedrichs_pairs.h). Infinite (and theta = 0) where
-/// bodies that are joined have a component with neither Gamma_D nor C, which check_rigid_motions() refuses as
-/// a free translation, and where no theta could be proved. Where the factorisation fails, for example for
-/// lack of memory, the proof does without it, too. Infinite for a mesh that is shared out: that of the whole
-/// mesh which it was made of is known before.
+/// where C are the obstacles and k the segments of pairs; on this mesh and on all its refinements, whose h_F
+/// and h_k are not larger. Pairs count if a body needs them (friedrichs_pairs.h). Infinite (and theta = 0) if
+/// joined bodies have a component with neither Gamma_D nor C, which check_rigid_motions() refuses as a free
+/// translation, and if no theta could be proved. If the factorisation fails, for example for lack of memory,
+/// the proof without it is used, too. Infinite for a distributed mesh: the constant of the undistributed mesh
+/// is known before.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(
     const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,

@@ -43,7 +43,7 @@ std::vector<double> potential_fluxes(const mesh::Mesh<dim>& mesh, std::span<cons
   return fluxes;
 }
 
-/// What the flux of q through each facet may not exceed: infinity but for the boundary.
+/// Upper limits of the flux of q through each facet: infinity except on the boundary.
 template <int dim>
 std::vector<double> largest_fluxes(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                    std::span<const char> fixed)

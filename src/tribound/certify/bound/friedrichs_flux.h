@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file friedrichs_flux.h
-/// The eigenvalue bound on which the Friedrichs constant rests, without factorisation and less sharp: for
-/// large meshes in 3D.
+/// The eigenvalue bound for the Friedrichs constant without factorisation; less sharp, for large meshes in
+/// 3D.
 
 #include <span>
 
@@ -12,13 +12,13 @@
 namespace tribound::certify
 {
 
-/// theta > 0 with theta ||w||^2 <= ||grad w||^2 + sum_{F in C} (1/h_F) ||w||_F^2 for all w that vanish where
-/// the facets are fixed; 0 if none is found. `means`, one for each facet of the topology, are the facet means
-/// of an approximation of phi, -Laplace phi = 1, d_n phi + phi / h_F = 0 on Gamma_C, phi = 0 where fixed: the
-/// better they are the larger theta; it is a bound whatever they are.
+/// theta > 0 with theta ||w||^2 <= ||grad w||^2 + sum_{F in C} (1/h_F) ||w||_F^2 for all w that vanish on the
+/// fixed facets; 0 if none is found. `means`, one for each facet of the topology, are the facet means of an
+/// approximation of phi, -Laplace phi = 1, d_n phi + phi / h_F = 0 on Gamma_C, phi = 0 where fixed. Better
+/// means give a larger theta; it is a bound for any means.
 ///
-/// Every field q in H(div) with q.n <= 0 on the boundary, but <= 1/h_F on Gamma_C and any where w vanishes,
-/// has
+/// Let q be a field in H(div) with q.n <= 1/h_F on Gamma_C and q.n <= 0 on the rest of the boundary, except
+/// where w vanishes. Then
 ///     0 <= ||grad w + q w||^2 <= ||w||_{C,h}^2 - (div q - |q|^2, w^2),
 /// so theta = min(div q - |q|^2) [Protter60]. q = -grad(phi) / (phi + c) in the lowest-order
 /// Raviart-Thomas space, with the best of several constants c.

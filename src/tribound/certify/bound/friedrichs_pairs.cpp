@@ -22,7 +22,7 @@ struct OnFacet
   double most = 0;  ///< the largest s_k / h_k
 };
 
-/// So many of the parts at most have a point in common.
+/// An upper bound of the number of parts that have a point in common.
 template <int dim>
 int multiplicity(const std::vector<fem::Part<dim - 1>>& parts)
 {

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file friedrichs_pairs.h
-/// What contact between bodies does for the Friedrichs constant: a body that only others hold has one, too.
+/// What contact between bodies contributes to the Friedrichs constant: a body that only others hold has one,
+/// too.
 
 #include <span>
 #include <vector>
@@ -30,10 +31,10 @@ struct PairTerms
   std::vector<Coupling> couplings;
 };
 
-/// Of the segments of the mesh, with h_k `facet_scale` times what it is on this mesh. The mean of [v] over k
-/// differs from that of the facet means by at most what v differs from these, ||v - mean_F(v)||_F <= C_{T,F}
-/// ||grad v||_T; so much of the gradients is spent on it. From (a + b)^2 >= a^2/2 - b^2, t in (0, 1], and m_G
-/// segments at most over one point of G:
+/// For the segments of the mesh, with h_k `facet_scale` times its value on this mesh. The mean of [v] over k
+/// differs from that of the facet means by at most the differences of v from these, ||v - mean_F(v)||_F <=
+/// C_{T,F} ||grad v||_T; this uses up a part of the gradients. From (a + b)^2 >= a^2/2 - b^2, t in (0, 1],
+/// and at most m_G segments over one point of G:
 ///     w_T = 1 - 2 t sum_{F in T} C_{T,F}^2 m_F max_{k in F} (s_k / h_k),      c_k = t |k| / (2 h_k),
 /// s_k = 1 on slaves, |k| / |Pi(k)| on masters.
 template <int dim>

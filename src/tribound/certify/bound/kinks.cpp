@@ -12,14 +12,14 @@ namespace tribound::certify
 namespace
 {
 
-/// A function between its enclosure, and between its smallest and largest values seen.
+/// The enclosure of a function, and its smallest and largest values at the points.
 struct Range
 {
   double lowest, highest;
   double seen_lowest, seen_highest;
 
   [[nodiscard]] bool changes_sign(double noise) const { return lowest < -noise && highest > noise; }
-  /// The square of the values of the other sign that was not seen.
+  /// The square of the possible values of the sign that was not seen.
   [[nodiscard]] double hidden() const
   {
     if (seen_lowest > 0) return std::pow(std::min(lowest, 0.0), 2);
@@ -28,7 +28,8 @@ struct Range
   }
 };
 
-/// P^n, P^t and S_h, where that is polynomial, in columns: at the points, or their coefficients in rows.
+/// P^n, P^t and S_h (if it is polynomial) in columns; rows are their values at the points or their
+/// coefficients.
 template <int dim>
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, dim + 2>;
 
@@ -39,7 +40,7 @@ auto matrix(const std::vector<double>& entries, Eigen::Index n_columns)
                                     n_columns);
 }
 
-/// P^t in a frame in which it is a polynomial: that of space, in 2D that of a varying N.
+/// P^t in a frame in which it is a polynomial: that of space, or in 2D that of a varying N.
 template <int dim>
 Point<dim> tangential_part(const Point<dim>& p, double p_n, const Point<dim>& n, bool turns)
 {
@@ -62,7 +63,7 @@ Range slip_range(const Columns<dim>& at_points, const Columns<dim>& coefficients
           excess(coefficients).maxCoeff(), seen.minCoeff(), seen.maxCoeff()};
 }
 
-/// Whether an undamaged bond holds everything: T = P.
+/// Whether an undamaged bond carries everything: T = P.
 template <int dim>
 bool bond_holds(const problem::ContactLaw& law, const Columns<dim>& at_points,
                 const Columns<dim>& coefficients)

@@ -33,7 +33,7 @@ int argmin(const Square& square)
   return best;
 }
 
-/// int |r|^2 and int |xi - a_F|^2 |r|^2; int |Pi_F q|^2 over what is covered.
+/// int |r|^2 and int |xi - a_F|^2 |r|^2; int |Pi_F q|^2 over the covered part.
 struct Squares
 {
   double plain = 0;
@@ -49,10 +49,10 @@ struct Squares
 
 Squares squares(const LoadedFacet<3>& facet, std::span<const TractionPiece<3>> pieces)
 {
-  constexpr double rounding = 1e-11;  // of what is covered
+  constexpr double rounding = 1e-11;  // of the covered part
   const fem::Quadrature<2> rule = fem::quadrature<2>(2 * facet.degree() + 2);
   Squares sums;
-  Squares rest;  // where nothing covers F, r = -Pi_F q: what the parts leave of the integrals over F
+  Squares rest;  // where F is not covered, r = -Pi_F q: the integrals over F less those over the parts
   double uncovered = 1;
   for (const TractionPiece<3>& piece : pieces)
   {
@@ -101,7 +101,7 @@ TransferLifting<dim>::TransferLifting(const mesh::Mesh<dim>& mesh, const mesh::B
   normal_ = loaded.normal();
   if constexpr (dim == 3)
   {
-    constexpr double rounding = 1e-24;  // in the squares of what is lost, where nothing is
+    constexpr double rounding = 1e-24;  // relative, in the squares, if nothing is lost
     const Squares sums = squares(loaded, pieces);
     norm_ = closed_form(loaded, sums);
     if (sums.plain <= rounding * sums.carried) return;
@@ -131,7 +131,7 @@ double TransferLifting<dim>::change(const std::function<Tensor<dim>(const Point<
   const fem::Quadrature<1> rule = fem::quadrature<1>(2 * degree_);
   const Point<dim> apex = fem::reference_simplex<dim>()[local_];
   std::vector<double> theta(degree_ + 1);
-  std::vector<double> fixed(degree_ + 1);     // g_0 by its coefficients
+  std::vector<double> fixed(degree_ + 1);     // coefficients of g_0
   std::vector<double> with_rho(degree_ + 1);  // g_0 - g_1
   for (int q = 0; q < rule.size(); ++q)
   {

@@ -60,7 +60,7 @@ template class LoadedFacet<3>;
 namespace
 {
 
-/// The ends of all parts between those of the facet.
+/// The ends of all parts, and those of the facet.
 std::vector<double> ends_of(std::span<const TractionPiece<2>> pieces)
 {
   std::vector<double> ends = {0, 1};
@@ -70,7 +70,7 @@ std::vector<double> ends_of(std::span<const TractionPiece<2>> pieces)
   return ends;
 }
 
-/// q at s, in the interval with the given middle, on which it is one polynomial.
+/// q at s, in the interval with the given middle, on which it is a polynomial.
 Point<2> sum_of_tractions(const LoadedFacet<2>& facet, std::span<const TractionPiece<2>> pieces,
                           double middle, double s)
 {
@@ -85,13 +85,13 @@ Point<2> sum_of_tractions(const LoadedFacet<2>& facet, std::span<const TractionP
   return sum;
 }
 
-/// A triangle of the cover, with what is needed to evaluate r there.
+/// A triangle of the cover, with the data to evaluate r there.
 struct CoveredTriangle
 {
   fem::Part<2> part;  ///< of the reference facet
   double det;         ///< of the map onto the facet from the reference triangle
   const TractionPiece<3>* piece;
-  Eigen::Matrix2d to_piece;  ///< inverse of the edges of its part
+  Eigen::Matrix2d to_piece;  ///< inverse of the edge matrix of its part
 
   [[nodiscard]] Point<3> loss(const LoadedFacet<3>& facet, const Point<2>& s) const
   {
@@ -120,7 +120,7 @@ std::vector<CoveredTriangle> covered_triangles(const LoadedFacet<3>& facet, cons
   return result;
 }
 
-/// Orthonormal tangents, in whose coordinates the facet is not turned over.
+/// Orthonormal tangents in whose coordinates the facet keeps its orientation.
 Eigen::Matrix<double, 3, 2> tangents(const LoadedFacet<3>& facet)
 {
   Eigen::Matrix<double, 3, 2> result;

@@ -29,7 +29,7 @@ class LoadedFacet
   [[nodiscard]] const Eigen::Matrix<double, dim, dim - 1>& edges() const { return map_.jacobian; }
   /// xi - a_F.
   [[nodiscard]] Point<dim> from_foot(const Point<dim - 1>& s) const { return map_(s) - foot_; }
-  /// Of a piece, by its own coordinates.
+  /// The traction of a piece at a point in its own coordinates.
   [[nodiscard]] Point<dim> traction(const TractionPiece<dim>& piece, const Point<dim - 1>& s) const
   {
     return value(piece.coefficients, s);
@@ -51,8 +51,8 @@ class LoadedFacet
   std::vector<Point<dim>> projection_;
 };
 
-/// With a rule that is exact for the products of two of r, moved and rho. In 3D none where there is no
-/// triangulation or rounding spoils rho.
+/// Uses a rule that is exact for products of any two of r, moved and rho. In 3D empty without a
+/// triangulation, or if rounding spoils rho.
 [[nodiscard]] std::vector<TransferLoss<2>> transfer_losses(const LoadedFacet<2>& facet,
                                                            std::span<const TractionPiece<2>> pieces);
 [[nodiscard]] std::vector<TransferLoss<3>> transfer_losses(const LoadedFacet<3>& facet,

@@ -12,7 +12,7 @@ namespace tribound::certify
 namespace
 {
 
-/// The parts that one slave facet covers of a facet: they do not overlap.
+/// The parts of a facet that one slave facet covers; they do not overlap.
 template <int dim>
 struct Covered
 {
@@ -20,7 +20,7 @@ struct Covered
   std::vector<TractionPiece<dim>> pieces;
 };
 
-/// The centre of a boundary facet: the order of numbers is another one on another rank.
+/// The centre of a boundary facet, for sorting: the order of numbers differs between ranks.
 template <int dim>
 std::array<double, dim> place(const mesh::Mesh<dim>& mesh, std::size_t number)
 {

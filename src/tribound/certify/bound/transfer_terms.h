@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file transfer_terms.h
-/// mor of the cells below contact between bodies, method section 5.
+/// mor of the cells at contact between bodies, method section 5.
 
 #include <map>
 #include <span>
@@ -18,12 +18,12 @@ template <int dim>
 struct FacetTransfer
 {
   mesh::BoundaryFacet facet;
-  /// q = Pi_k t^k on the slave, -q |k| / |Pi(k)| on the master, by the parts that the segments k cover. Each
-  /// group has parts that do not overlap; in 2D there is one.
+  /// q = Pi_k t^k on the slave, -q |k| / |Pi(k)| on the master, by the parts that the segments k cover. The
+  /// parts of a group do not overlap; in 2D there is one group.
   std::vector<std::vector<TractionPiece<dim>>> groups;
 };
 
-/// Of the own cells with segments of pairs, by cell.
+/// For the own cells with segments of pairs, by cell.
 template <int dim>
 [[nodiscard]] std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(
     const contact::NitscheForm<dim>& form, const ContactTerms<dim>& terms,

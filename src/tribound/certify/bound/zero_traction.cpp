@@ -9,7 +9,7 @@ namespace tribound::certify
 namespace
 {
 
-/// Whether the formula of the gap is enclosed from below by 0 on a part of a segment.
+/// Whether the formula of the gap is proved to be nonnegative on a part of a segment.
 template <int dim>
 bool is_gap(const problem::Field& gap, const contact::SimplexMap<dim - 1, dim>& map,
             const fem::Part<dim - 1>& part)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file zero_traction.h
-/// Where contact does nothing to a body at rest.
+/// Where contact exerts no traction on a body at rest.
 
 #include <cstddef>
 
@@ -10,8 +10,8 @@
 namespace tribound::certify
 {
 
-/// Whether T(0) = 0 on all of segment k, whatever the threshold: the gap is enclosed from below by 0, there
-/// is neither water nor a bond, and nothing has slipped.
+/// Whether T(0) = 0 on all of segment k for any threshold: the gap is proved to be nonnegative, there is
+/// neither water nor a bond, and nothing has slipped.
 template <int dim>
 [[nodiscard]] bool has_no_traction_at_rest(const contact::NitscheForm<dim>& form, std::size_t k);
 
