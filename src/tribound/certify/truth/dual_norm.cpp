@@ -42,7 +42,7 @@ fem::Quadrature<k> composite_rule(int degree, int cuts)
   return composite;
 }
 
-/// Adds the entries of a block that lie between free nodes, and all diagonal ones.
+/// Adds the entries of a block between free nodes, and all diagonal entries.
 void add_block(std::span<const Index> nodes, const std::vector<char>& fixed, std::span<const double> block,
                algebra::Triplets& entries)
 {
@@ -208,7 +208,7 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u, std::span
   return r;
 }
 
-/// With z from an inexact solver <R, z> / ||z|| is still below the dual norm, ||z|| might not be.
+/// With z from an inexact solver, <R, z> / ||z|| is still below the dual norm; ||z|| might not be.
 template <int dim>
 double DualNorm<dim>::of(std::span<const double> r)
 {

@@ -17,7 +17,7 @@ using contact::Polygon;
 using contact::SegmentSide;
 using contact::SimplexMap;
 
-/// The coordinates of a point of the plane of a facet.
+/// The coordinates of a point in the plane of a facet.
 template <int dim>
 Point<dim - 1> coordinates(const SimplexMap<dim - 1, dim>& map, const Point<dim>& x)
 {
@@ -35,8 +35,8 @@ fem::Part<dim - 1> carried(const fem::Part<dim - 1>& corners, const SimplexMap<d
   return result;
 }
 
-/// The numbers of the boundary facets of the refined mesh inside those of the mesh itself. A facet lies on
-/// the one of its ancestor on which its centre does.
+/// The numbers of the boundary facets of the refined mesh inside those of the original mesh. The parent of a
+/// facet is the one that contains its centre.
 template <int dim>
 class Children
 {
@@ -74,7 +74,7 @@ class Refinement
   {
   }
 
-  /// Against an obstacle.
+  /// Adds those of a segment against an obstacle.
   void add_facets(std::size_t k, const contact::ContactSegment<dim>& segment)
   {
     const SimplexMap<dim - 1, dim> map = contact::simplex_map(mesh_, segment.slave);
@@ -86,7 +86,7 @@ class Refinement
     }
   }
 
-  /// Between bodies.
+  /// Adds those of a segment between bodies.
   void add_pieces(std::size_t k, const contact::ContactSegment<dim>& segment)
   {
     Polygon<dim> whole;
@@ -105,9 +105,9 @@ class Refinement
   [[nodiscard]] std::vector<RefinedSegment<dim>> take() { return std::move(segments_); }
 
  private:
-  static constexpr double negligible = 1e-14;  ///< of a segment
+  static constexpr double negligible = 1e-14;  ///< fraction of a segment
 
-  /// What of a polygon in a segment lies in a facet of the refined mesh on this side of it.
+  /// The part of a polygon in a segment that lies in a facet of the refined mesh on this side.
   [[nodiscard]] Polygon<dim> inside(Polygon<dim> polygon, const SegmentSide<dim>& of_segment,
                                     std::size_t number) const
   {

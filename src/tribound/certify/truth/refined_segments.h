@@ -13,14 +13,14 @@
 namespace tribound::certify
 {
 
-/// A part of a contact segment that lies in one facet of the refined mesh on either side.
+/// A part of a contact segment that lies in one facet of the refined mesh on each side.
 template <int dim>
 struct RefinedSegment
 {
-  std::size_t whole;                                     ///< number of the segment that it is a part of
+  std::size_t whole;                                     ///< number of the segment that contains it
   fem::Part<dim - 1> part;                               ///< its corners in the coordinates of that segment
-  double measure;                                        ///< of it on the slave
-  contact::SegmentSide<dim> slave;                       ///< facet of the refined mesh, and part of that
+  double measure;                                        ///< on the slave
+  contact::SegmentSide<dim> slave;                       ///< facet of the refined mesh, and the part in it
   std::optional<contact::SegmentSide<dim>> master = {};  ///< the same
 
   /// |part| / |reference facet|.
@@ -34,9 +34,9 @@ struct RefinedSegment
   }
 };
 
-/// The segments of a mesh, cut at the facets of its refinement and at their images: against an obstacle,
-/// where segments are whole facets, these facets, between bodies simplices. What is left out is below 1e-14
-/// of a segment.
+/// The segments of a mesh, cut at the facets of its refinement and at their images. Against an obstacle,
+/// where segments are whole facets, the parts are facets; between bodies they are simplices. Parts below
+/// 1e-14 of a segment are left out.
 template <int dim>
 [[nodiscard]] std::vector<RefinedSegment<dim>> refined_segments(
     const mesh::Mesh<dim>& mesh, std::span<const contact::ContactSegment<dim>> segments,

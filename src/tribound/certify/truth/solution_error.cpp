@@ -26,8 +26,8 @@ class CellGradients
   {
   }
 
-  /// In the cell with the map `map`, at the `points` of the rule on the cell with the map `inside`, which
-  /// lies in it. Valid until the next call.
+  /// The values in the cell with the map `map`, at the `points` of the rule on the cell with the map
+  /// `inside`, which is part of it. Valid until the next call.
   std::span<const Tensor<dim>> at(Index cell, const mesh::CellMap<dim>& map, const mesh::CellMap<dim>& inside,
                                   std::span<const Point<dim>> points)
   {
@@ -54,7 +54,7 @@ class CellGradients
   std::vector<Tensor<dim>> values_;
 };
 
-/// Turns squares into their roots and returns the root of their sum.
+/// Replaces squares by their roots and returns the root of their sum.
 double take_roots(std::vector<double>& squares)
 {
   double sum = 0;

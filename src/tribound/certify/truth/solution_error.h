@@ -13,7 +13,7 @@
 namespace tribound::certify
 {
 
-/// The distance of u from a reference, and its share of every cell of the mesh of u: the squares of the
+/// The distance of u from a reference, with the share of every cell of the mesh of u: the squares of the
 /// shares add up to the square of the whole.
 struct LocalError
 {
@@ -22,8 +22,8 @@ struct LocalError
   std::vector<double> stress;  ///< per cell: ||sigma(e)||_T
 };
 
-/// Integrated exactly over the common refinement of the meshes, which come from one mesh by bisect(). Either
-/// degree may be the higher one. Throws std::invalid_argument for other meshes.
+/// Integrated exactly over the common refinement of the two meshes, which bisect() makes from one mesh.
+/// Either degree may be the higher one. Throws std::invalid_argument for other meshes.
 template <int dim>
 [[nodiscard]] LocalError solution_error(const problem::Problem<dim>& problem,
                                         const fem::LagrangeSpace<dim>& space, std::span<const double> u,

@@ -37,7 +37,7 @@ std::optional<double> energy_effectivity(const EnergyBound& bound, double error,
 namespace
 {
 
-/// Newton's method from `start`; a singular matrix is one more reason for having no solution.
+/// Newton's method from `start`; a singular matrix is one more reason for no solution.
 template <int dim>
 solve::NewtonResult<dim> solve_richer(const contact::NitscheForm<dim>& form, std::span<const double> start,
                                       const solve::NewtonOptions& newton,

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file true_error.h
-/// What the bound bounds, computed: the dual norm of the residual from below, and errors against a much
-/// richer solution; method section 9. Far more expensive than the bound: for verification.
+/// Computes what the bound bounds: the dual norm of the residual from below, and errors against a much richer
+/// solution; method section 9. Far more expensive than the bound: for verification.
 
 #include <functional>
 #include <memory>
@@ -23,14 +23,14 @@
 namespace tribound::certify
 {
 
-/// How rich a space the truth is looked for in.
+/// The richer space in which the truth is approximated.
 struct RicherSpace
 {
-  int refinements = 2;  ///< uniform ones of the mesh, >= 1
+  int refinements = 2;  ///< number of uniform refinements of the mesh, >= 1
   int degree = 0;       ///< polynomial degree, not below that of the solution
 };
 
-/// Degrees of freedom of the vector-valued space on the mesh refined so, fixed ones included.
+/// Degrees of freedom of the vector-valued space on the refined mesh, fixed ones included.
 template <int dim>
 [[nodiscard]] double count_dofs(const mesh::Mesh<dim>& mesh, const RicherSpace& space);
 
@@ -39,12 +39,12 @@ template <int dim>
 /// For z in W = P^q on the refined mesh, 0 in the components that Gamma_D fixes, with
 ///     (grad z, grad v) + sum_k (1/h_k) ([z], [v])_k = <R(u), v>   for all v in W, k the segments of C,
 ///     <R(u), v> = L(v) - a(u, v) + (T(u), [v])_C,
-/// ||z||_{C,h} <= ||R(u)||_*, with equality as W grows. h_k, and gamma in T(u), are those of the original
-/// mesh. The operator couples bodies but no components: one scalar matrix for each set of fixed nodes,
-/// factored once. a(u, v) is exact; f and g_N are integrated as in a form of degree q on the refined mesh
-/// (DiscreteData, up to 1e-5 of their effect, and what it names in its remainders where its parts run out),
-/// T(u) with the rule on segments cut further, because it has kinks: from below up to these. Keeps a
-/// reference to the form.
+/// ||z||_{C,h} <= ||R(u)||_*, with equality in the limit as W grows. h_k, and gamma in T(u), are those of the
+/// original mesh. The operator couples bodies but no components: one scalar matrix for each set of fixed
+/// nodes, factored once. a(u, v) is exact. f and g_N are integrated as in a form of degree q on the refined
+/// mesh (DiscreteData, up to 1e-5 of their effect, and up to its remainders if its parts run out). T(u) is
+/// integrated with the rule on further divided segments, because it has kinks. Up to these errors the result
+/// is a lower bound. Keeps a reference to the form.
 template <int dim>
 class DualNorm
 {
@@ -75,7 +75,7 @@ class DualNorm
     std::unique_ptr<algebra::SparseMatrix> matrix;
     std::unique_ptr<algebra::LinearSolver> solver;
   };
-  /// The basis of W at the points of a rule on the sides of segments; those of whole facets are known.
+  /// The basis of W at the points of a rule on the sides of segments; tables of whole facets are shared.
   class SideTables;
 
   void find_operators();
@@ -85,18 +85,18 @@ class DualNorm
   const contact::NitscheForm<dim>& form_;
   mesh::Refined<dim> refined_;
   fem::LagrangeSpace<dim> space_;
-  std::vector<double> load_;  ///< L(phi_i), when it has been needed
+  std::vector<double> load_;  ///< L(phi_i); computed when first needed
   std::vector<RefinedSegment<dim>> segments_;
   std::vector<Operator> operators_;
 };
 
-/// bound / dual_norm, which the theorem says is at least 1; nothing where both are below norms.round_off or
-/// 1e-10 ||sigma(u)||, the size of the round-off to which the identities of the bound hold.
+/// bound / dual_norm, at least 1 by the theorem; nothing if both are below norms.round_off or 1e-10
+/// ||sigma(u)||, the size of the round-off to which the identities of the bound hold.
 [[nodiscard]] std::optional<double> effectivity(double bound, double dual_norm,
                                                 const contact::StressNorms& norms);
 
-/// bound / error in the energy norm, `energy` = a(u_h, u_h); nothing where both are of different solutions
-/// (Coulomb), without a bound, and where the error is rounding, below 1e-10 ||u_h||_en.
+/// bound / error in the energy norm, with `energy` = a(u_h, u_h); nothing if the two refer to different
+/// solutions (Coulomb), without a bound, and if the error is rounding, below 1e-10 ||u_h||_en.
 [[nodiscard]] std::optional<double> energy_effectivity(const EnergyBound& bound, double error, double energy);
 
 /// The distance of a discrete solution from a much richer one.
@@ -116,12 +116,12 @@ struct RicherSolution
   std::optional<SolutionError> error;  ///< absent where the richer problem was not solved
 };
 
-/// What else is done with a richer solution, of this form.
+/// Further use of a richer solution of this form.
 template <int dim>
 using UseOfRicher = std::function<void(const contact::NitscheForm<dim>&, std::span<const double>)>;
 
-/// Solves the form's problem in the richer space with Nitsche's parameter gamma0, data evaluated anew,
-/// starting from u, and measures u against the result, which `use` gets, too, if there is one.
+/// Solves the form's problem in the richer space with Nitsche's parameter gamma0 and data evaluated anew,
+/// starting from u, and measures u against the result. If there is one, `use` gets it, too.
 template <int dim>
 [[nodiscard]] RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form,
                                                  std::span<const double> u, const RicherSpace& richer,
