@@ -26,9 +26,8 @@ struct Kinks
 {
   bool possible = false;  ///< P^n or |P^t| - S_h may change sign
   bool slips = false;     ///< |P^t| may exceed S_h: in 3D T is then no polynomial, because P^t/|P^t| is none
-  double hidden =
-      0;  ///< upper bound of the square of their values of the sign that no point of the rule has seen
-  double lowest = 0;  ///< lower bound of P^n
+  double hidden = 0;      ///< upper bound of the square of their values of the sign that no point has seen
+  double lowest = 0;      ///< lower bound of P^n
 };
 
 /// Encloses P^n and |P^t| - S_h, given at the points of a rule, between Bernstein coefficients: P and the

@@ -15,7 +15,7 @@ namespace tribound::certify
 namespace
 {
 
-/// What holds at all contact points of a facet, at none of them, or at some.
+/// Whether something holds at all contact points of a facet, at none of them, or at some.
 enum class Extent
 {
   nowhere,
@@ -23,7 +23,7 @@ enum class Extent
   everywhere
 };
 
-/// What T(u) says of a facet.
+/// The state of a facet according to T(u).
 struct FacetState
 {
   Extent closed = Extent::nowhere;
@@ -50,7 +50,7 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   const problem::FrictionCone cone = problem::cone(form.segments()[k].contact->law);
   FacetState state;
   if (cone.is_tied) return {Extent::everywhere, Extent::everywhere, 1, 1};
-  constexpr double rounding = 1e-12;  // of T^n where that is 0, and of |T^t| where that is the limit
+  constexpr double rounding = 1e-12;  // of T^n where it is 0, and of |T^t| where it is at the limit
   int n_closed = 0;
   int n_sticking = 0;
   for (int q = 0; q < n; ++q)
@@ -71,8 +71,8 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   return state;
 }
 
-/// Those of the slaves of all facets; facets in transition are taken for what they are at all, or only
-/// everywhere.
+/// The control points of the slaves of all facets. What a facet in transition does at some points counts as
+/// done everywhere, or not at all.
 template <int dim>
 class ControlPoints
 {
@@ -92,7 +92,7 @@ class ControlPoints
     }
   }
 
-  /// By node what is to be added to the control points, at ghosts what their owners say. Masters move where
+  /// The increments of the control points by node; ghosts get those of their owners. Masters move where
   /// slaves are fixed.
   [[nodiscard]] std::vector<double> corrections(bool transition_is_closed) const
   {
@@ -129,7 +129,7 @@ class ControlPoints
     Point<dim> position = Point<dim>::Zero();
     std::vector<Place> places;
 
-    /// The position is that of the first facet; all have the same up to rounding.
+    /// The position is taken from the first facet; the others agree up to rounding.
     void add(const Point<dim>& c, const Place& place)
     {
       if (places.empty()) position = c;
@@ -141,7 +141,8 @@ class ControlPoints
   {
     return form_.constraints().fixed[dim * node + a] != 0;
   }
-  /// On the distance from the control point opposite on the first facet. Facets of the same normal together.
+  /// Conditions on the distance from the opposite control point of the first facet. Facets with the same
+  /// normal share one condition.
   [[nodiscard]] std::vector<ControlCondition<dim>> conditions(const ControlPoint& at,
                                                               bool transition_is_closed) const
   {
@@ -192,7 +193,7 @@ std::vector<double> with_corrections(const fem::LagrangeSpace<dim>& space, const
   return v;
 }
 
-/// The largest coefficient of [v]^n - g_h, or between bodies that are tied of |[v]|.
+/// The largest coefficient of [v]^n - g_h; between tied bodies that of |[v]|.
 template <int dim>
 double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
               std::span<const double> v)
@@ -210,7 +211,7 @@ double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& 
   return form.space().mesh().ranks().max(largest);
 }
 
-/// max |u|, |g|.
+/// The maximum of |u| and |g|.
 template <int dim>
 double size_on(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
                std::span<const double> u)
@@ -243,7 +244,7 @@ AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>
   const double most = 1e-14 * size_on(form, facets, u);  // rounding
   const auto make = [&](bool transition_is_closed, double& beyond) -> std::optional<std::vector<double>>
   {
-    // Where a slave is the master of another one the other has to follow.
+    // If a slave is the master of another one, the other has to follow.
     constexpr int most_sweeps = 5;
     std::vector<double> v(u.begin(), u.end());
     for (int sweep = 0; sweep < most_sweeps; ++sweep)

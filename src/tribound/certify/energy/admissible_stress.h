@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file admissible_stress.h
-/// The statically admissible symmetric stress of a cell: the one nearest to a given discrete stress.
+/// The statically admissible symmetric stress of a cell that is nearest to a given discrete stress.
 
 #include <array>
 #include <span>
@@ -13,9 +13,9 @@ namespace tribound::certify
 {
 
 /// tau: symmetric, of degree q on the pieces of the cell, tau n continuous between them, div tau = div
-/// sigma_h and tau n = (sigma_h - w_0) n on the facets, w_0 the mean of the skew part of sigma_h; among all
-/// of these the nearest to sigma(v) in the norm of C^{-1}. w_0 = 0 is what the traction and the divergence of
-/// a symmetric stress need: that they do no work in rotations of the cell.
+/// sigma_h and tau n = (sigma_h - w_0) n on the facets, with w_0 the mean of the skew part of sigma_h. Of all
+/// these stresses it is nearest to sigma(v) in the norm of C^{-1}. The traction and the divergence of a
+/// symmetric stress do no work in rotations of the cell, which requires w_0 = 0.
 template <int dim, int q>
 struct AdmissibleStress
 {
@@ -24,16 +24,17 @@ struct AdmissibleStress
   double unbalanced = 0;               ///< ||w_0||_T, to be compared with ||sigma_h||_T
 };
 
-/// With rho = tau - sym sigma_h: rho has the traction and the divergence of the skew part w - w_0, of mean 0,
-/// and what is free in it has none. Both are known on the reference cell (certify/energy/alfeld_reference.h):
+/// Let rho = tau - sym sigma_h. Its traction and divergence are those of the skew part w - w_0, of mean 0;
+/// the free part of rho has none. Both parts are known on the reference cell
+/// (certify/energy/alfeld_reference.h):
 ///
 ///     rho^ = sum_j w^_j L_j + sum_k alpha_k K_k,      (C^{-1} J K_k J^T, sym sigma_h + rho - sigma(v))_T =
 ///     0,
 ///
-/// alpha by Cholesky from the products of the K_k in the metric of the cell. Whatever alpha is, tau is
-/// admissible: should rounding keep the matrix from being positive definite, alpha is 0 and tau not the
-/// nearest (cells a million times as long as high were not enough). One object per thread: it keeps the
-/// matrix. Compiled for each dimension and degree by certify/energy/kernel.cpp.in.
+/// alpha follows by Cholesky factorisation from the products of the K_k in the metric of the cell. tau is
+/// admissible for any alpha. If rounding keeps the matrix from being positive definite, alpha is 0 and tau
+/// not the nearest (cells a million times as long as high were not enough). One object per thread: it keeps
+/// the matrix. Compiled for each dimension and degree by certify/energy/kernel.cpp.in.
 template <int dim, int q>
 class AdmissibleStressSolver
 {
@@ -49,7 +50,7 @@ class AdmissibleStressSolver
  private:
   using Metric = Eigen::Matrix<double, S::components, S::components>;
 
-  /// Makes the difference as small as it can be, `map` being that of components to those of J tau^ J^T.
+  /// Makes the difference as small as possible; `map` maps the components of tau^ to those of J tau^ J^T.
   void minimise(const Metric& map, const Metric& compliance, PiecewiseStress<dim, q>& difference);
   /// The products of the functions of the kernel in a metric of tau^.
   void form_gram(const Metric& metric);

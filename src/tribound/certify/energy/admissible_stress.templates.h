@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file admissible_stress.templates.h
-/// The definitions of admissible_stress.h and of on_pieces(), for the kernels alone
+/// The definitions of admissible_stress.h and of on_pieces(), only for the kernels
 /// (certify/energy/kernel.cpp.in).
 
 #include <cassert>
@@ -49,7 +49,7 @@ template <int dim, int q>
   return result;
 }
 
-/// sum += A x, A acting on the components.
+/// sum += A x, where A acts on the components.
 template <class Matrix, int rows, int cols>
 void add_mapped(Dense<rows, cols>& sum, const Matrix& a, const Dense<rows, cols>& x)
 {
@@ -62,8 +62,8 @@ void add_mapped(Dense<rows, cols>& sum, const Matrix& a, const Dense<rows, cols>
     }
 }
 
-/// -w^ with w^ = J^{-1} w J^{-T}, w the skew part of a stress without its mean; by pairs and functions as in
-/// alfeld_factors().
+/// -w^ with w^ = J^{-1} w J^{-T}, w the skew part of a stress without its mean; ordered by pairs and
+/// functions as in alfeld_factors().
 template <int dim, int q>
 [[nodiscard]] DenseVector<AlfeldSizes<dim, q>::rotation> minus_skew_part(const Tensor<dim>& inverse,
                                                                          std::span<const double> stress)

@@ -54,7 +54,7 @@ namespace
 
 using Matrix = Eigen::MatrixXd;
 
-/// The reference simplex cut at the middles of its edges.
+/// The reference simplex cut at the midpoints of its edges.
 template <int k>
 std::vector<fem::Part<k>> equal_parts()
 {
@@ -69,7 +69,8 @@ std::vector<fem::Part<k>> equal_parts()
             {middle(1, 2), middle(0, 2), middle(0, 1)}};
 }
 
-/// int s |v|, s = sum s_j B_j >= 0, from above by |v| <= sum |v_j| B_j, on a facet halved until it settles.
+/// An upper bound of int s |v|, s = sum s_j B_j >= 0, by |v| <= sum |v_j| B_j on a facet halved until it
+/// settles.
 template <int dim>
 class SlipIntegral
 {
@@ -92,7 +93,7 @@ class SlipIntegral
     }
   }
 
-  /// Relative to the measure of the reference facet as the weights of the rule are.
+  /// Relative to the measure of the reference facet, like the weights of the rule.
   [[nodiscard]] double operator()(const Eigen::VectorXd& s, const Columns& v, int depth = 0) const
   {
     constexpr int deepest = dim == 2 ? 12 : 5;
@@ -118,7 +119,7 @@ class SlipIntegral
   fem::Quadrature<dim - 1> rule_;
   Matrix at_points_;
   Matrix from_values_;
-  std::vector<Matrix> to_parts_;  ///< coefficients on the parts of a facet from those on it
+  std::vector<Matrix> to_parts_;  ///< maps coefficients on a facet to those on its parts
 };
 
 }  // namespace

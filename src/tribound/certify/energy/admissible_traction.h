@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file admissible_traction.h
-/// Contact tractions that obey the law everywhere on a facet: the nearest ones to T(u).
+/// Contact tractions that obey the law everywhere on a facet: those nearest to T(u).
 
 #include <memory>
 #include <span>
@@ -17,7 +17,7 @@ namespace tribound::certify
 /// t_h = sum_j t_j B_j on every facet of ObstacleFacets, of the degree of the space, with
 ///     t_j^n <= 0,   |t_j^t| <= s_j,   s_h = sum_j s_j B_j >= 0,
 /// so that t_h^n <= 0 and |t_h^t| <= s_h at every point. s_h interpolates the threshold of Tresca's law, with
-/// negative s_j cut off; for Coulomb's law it is -mu_F t_h^n, for none 0.
+/// negative s_j set to 0; for Coulomb's law it is -mu_F t_h^n, without friction 0.
 template <int dim>
 struct AdmissibleTraction
 {
@@ -27,12 +27,12 @@ struct AdmissibleTraction
   double threshold_remainder = 0;        ///< largest |s - s_h| at the contact points of this rank
 };
 
-/// The nearest to t, given at the contact points of the form, in L2 of each facet.
+/// The nearest to t, given at the contact points of the form, in L2 on each facet.
 template <int dim>
 [[nodiscard]] AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& form,
                                                           std::span<const Point<dim>> t);
 
-/// What is missing in complementarity and slip on facet k, from above:
+/// An upper bound of what is missing in complementarity and slip on facet k:
 ///     G_F = int_F (t_h^n (v^n - g_h) + s_h |v^t| + t_h^t . v^t) >= 0   for v admissible for g_h.
 /// Keeps references.
 template <int dim>

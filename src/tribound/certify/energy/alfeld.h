@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file alfeld.h
-/// Symmetric stresses on the barycentric (Alfeld) split of a cell: dim + 1 pieces, piece i having the
-/// barycentre in place of vertex i. Vertices are those of a sorted cell (certify/equilibrate/sorted_cell.h).
+/// Symmetric stresses on the barycentric (Alfeld) split of a cell: dim + 1 pieces; piece i has the barycentre
+/// in place of vertex i. Vertices are those of a sorted cell (certify/equilibrate/sorted_cell.h).
 
 #include <array>
 #include <cmath>
@@ -28,11 +28,11 @@ struct AlfeldSizes
   static constexpr int facet = fem::polynomial_dimension(dim - 1, q);  ///< dim P^q(F)
   static constexpr int functions = pieces * scalar;                    ///< of one component
   static constexpr int unknowns = components * functions;
-  static constexpr int facets = pieces + components;  ///< outer, and one inside between every two pieces
+  static constexpr int facets = pieces + components;  ///< outer ones, and one inside between any two pieces
   static constexpr int rigid = components;            ///< rigid motions
   static constexpr int rows = dim * (facets * facet + pieces * less);  ///< tractions and divergence
-  /// Stresses without divergence, jumps and traction: 0, 3, 9, 18 (2D) and 0, 18, 66, 156 (3D) for q = 1, 2,
-  /// 3, 4. All rows are independent but for the rigid motions.
+  /// Dimension of the stresses without divergence, jumps and traction: 0, 3, 9, 18 (2D) and 0, 18, 66, 156
+  /// (3D) for q = 1, 2, 3, 4. All rows are independent except for the rigid motions.
   static constexpr int kernel = unknowns - rows + rigid;
   static constexpr int pairs = dim * (dim - 1) / 2;            ///< entries of a skew tensor
   static constexpr int rotation = pairs * (scalar - 1);        ///< skew tensors of P^q(T) of mean 0
@@ -42,15 +42,15 @@ struct AlfeldSizes
 /// Entry (a, i * n + j), n = dim P^q, is the coefficient of component a on the j-th function of piece i. The
 /// functions are the orthonormal basis of P^q(piece), in the order of fem/polynomials.h and with the vertices
 /// of the piece as described above; components are those of symmetric_vector(). So the sum of the squares of
-/// all entries is the squared norm in L2.
+/// all entries is the square of the L2 norm.
 template <int dim, int q>
 using PiecewiseStress = Dense<AlfeldSizes<dim, q>::components, AlfeldSizes<dim, q>::functions>;
 
-/// A symmetric tensor as a vector of the same norm: diagonal, then root 2 times what is above it.
+/// A symmetric tensor as a vector of the same norm: the diagonal, then root 2 times the entries above it.
 template <int dim>
 using SymmetricVector = Eigen::Matrix<double, dim*(dim + 1) / 2, 1>;
 
-/// Rows and columns of these components.
+/// The row and the column of each of these components.
 template <int dim>
 inline constexpr auto symmetric_pairs = []
 {
@@ -74,7 +74,7 @@ template <int dim>
   return result;
 }
 
-/// Its inverse.
+/// The inverse of symmetric_vector().
 template <int dim>
 [[nodiscard]] Tensor<dim> symmetric_tensor(const SymmetricVector<dim>& components)
 {
@@ -99,7 +99,7 @@ template <int dim>
   return result;
 }
 
-/// (C^{-1} a, b)_T of two symmetric stresses; both a sum of products of deviators and of traces, so that the
+/// (C^{-1} a, b)_T of two symmetric stresses, a sum of products of deviators and of traces, so that the
 /// square of a stress is not negative. In plane stress with the lambda that the material has there.
 template <int rows, int cols>
 [[nodiscard]] double compliance_product(const problem::Material& material, const Dense<rows, cols>& a,
@@ -152,9 +152,8 @@ template <int dim, int q>
   return symmetric_tensor<dim>(std::sqrt((dim + 1) / cell.det) * sum);
 }
 
-/// The symmetric part of a polynomial stress on the cell, piece by piece; coefficient j of entry (r, c) at
-/// (dim * r
-/// + c) * n + j in the orthonormal basis of P^m(T), n = dim P^m, m <= q, as those of Stress and
+/// The symmetric part of a polynomial stress on the cell, piece by piece. Coefficient j of entry (r, c) is at
+/// (dim * r + c) * n + j in the orthonormal basis of P^m(T), n = dim P^m, m <= q, as in Stress and
 /// DiscreteStress. Compiled for each dimension and degree by certify/energy/kernel.cpp.in.
 template <int dim, int q>
 [[nodiscard]] PiecewiseStress<dim, q> on_pieces(std::span<const double> stress);

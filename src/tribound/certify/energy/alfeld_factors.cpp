@@ -1,5 +1,5 @@
 /// @file alfeld_factors.cpp
-/// The constraints on the reference cell, and what solves them.
+/// The constraints on the reference cell, and their solution.
 
 #include <Eigen/LU>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace tribound::certify
 namespace
 {
 
-/// The reference cell in pieces, with the functions psi_ij = root(dim + 1) phi_j on piece i.
+/// The pieces of the reference cell, with the functions psi_ij = root(dim + 1) phi_j on piece i.
 template <int dim>
 class Pieces
 {
@@ -40,7 +40,7 @@ class Pieces
     result[i] = barycentre();
     return result;
   }
-  /// psi_ij, j = 0, ..., n - 1, at a point of the cell, or the first of them, which span P^degree.
+  /// psi_ij, j = 0, ..., n - 1, at a point of the cell, or only the first of them, which span P^degree.
   [[nodiscard]] Eigen::VectorXd values(int i, const Point<dim>& x, int degree) const
   {
     Eigen::VectorXd result(fem::polynomial_dimension(dim, degree));
@@ -104,7 +104,7 @@ class RowConstraints
  private:
   [[nodiscard]] int column(int c, int i) const { return (c * Pieces<dim>::count + i) * pieces_.n(); }
 
-  /// Row by row (sign tau n, theta)_F of the stress in piece i.
+  /// The rows (sign tau n, theta)_F of the stress in piece i.
   void add_normal_components(int row, const std::array<Point<dim>, dim>& facet, int i, double sign)
   {
     const Point<dim> normal = mesh::facet_geometry<dim>(facet, 0).normal;
@@ -121,7 +121,7 @@ class RowConstraints
     }
   }
 
-  /// Row by row (div tau, psi_il) of the stress in piece i.
+  /// The rows (div tau, psi_il) of the stress in piece i.
   void add_divergence(int row, int i)
   {
     const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * degree_);
@@ -205,10 +205,10 @@ std::vector<double> column_by_column(const Eigen::MatrixXd& matrix)
 
 }  // namespace
 
-// B^T = Q R P^T: the last columns of Q span the kernel of B, and with the independent rows of B first, x =
-// Q_1 R_1^{-T} (P^T c)_1 solves B x = c. These rows are all but the rigid motions. Large products are left to
-// vector instructions: Eigen's would start threads, and a program that was compiled without OpenMP has its
-// own version of what they call, which the linker may take for both.
+// B^T = Q R P^T: the last columns of Q span the kernel of B. With the independent rows of B first, x = Q_1
+// R_1^{-T} (P^T c)_1 solves B x = c; all rows but the rigid motions are independent. Large products use
+// vector instructions: Eigen's would start threads, and a program compiled without OpenMP has its own version
+// of the functions that they call, which the linker may take for both.
 template <int dim>
 AlfeldFactors alfeld_factors(int q)
 {

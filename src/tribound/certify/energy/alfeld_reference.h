@@ -2,8 +2,8 @@
 
 /// @file alfeld_reference.h
 /// The constraints of a symmetric stress on the pieces of a cell, solved once on the reference cell. With tau
-/// = J tau^ J^T / det the traction and the divergence of tau follow from those of tau^, so that tau has
-/// neither jumps nor traction nor divergence if tau^ has none.
+/// = J tau^ J^T / det, the traction and the divergence of tau follow from those of tau^, so tau has neither
+/// jumps nor traction nor divergence if tau^ has none.
 
 #include <vector>
 
@@ -12,27 +12,27 @@
 namespace tribound::certify
 {
 
-/// What alfeld_factors() returns; component a, function (i, j) of a stress as in PiecewiseStress, but without
-/// gaps: at (a * (dim + 1) + i) * n + j.
+/// The result of alfeld_factors(). Component a, function (i, j) of a stress as in PiecewiseStress, but
+/// without padding: at (a * (dim + 1) + i) * n + j.
 struct AlfeldFactors
 {
   std::vector<double> restriction;  ///< [j * (dim + 1) n + i * n + l]: (phi_j, psi_l) in piece i
   std::vector<double> kernel;   ///< an orthonormal basis of the stresses without jump, traction, divergence
   std::vector<double> lifting;  ///< one stress for each skew function, with the same traction and divergence
-  /// Diagonal of the triangular factor of the constraints, beside the rank and beyond: the smallest of those
-  /// that count, the largest of those that are rounding.
+  /// From the triangular factor of the constraints: the smallest diagonal entry within the rank, and the
+  /// largest entry beyond it, which is rounding.
   double smallest_pivot = 0;
   double largest_rest = 0;
 };
 
 /// On the reference cell. Skew functions: pair (r, c), r < c, in the order of skew_pairs, function j = 1,
-/// ..., n - 1 of the orthonormal basis phi of P^q(T): at pair * (n - 1) + j - 1 the stress of least norm with
-/// the traction and the divergence of phi_j (e_r e_c^T - e_c e_r^T). There is one because the function, of
+/// ..., n - 1 of the orthonormal basis phi of P^q(T). At pair * (n - 1) + j - 1 is the stress of least norm
+/// with the traction and the divergence of phi_j (e_r e_c^T - e_c e_r^T). It exists because the function, of
 /// mean 0, does no work in rotations.
 template <int dim>
 [[nodiscard]] AlfeldFactors alfeld_factors(int q);
 
-/// The same where the kernels want it, with products of the basis of the kernel.
+/// The same in the layout of the kernels, with products of the basis of the kernel.
 template <int dim, int q>
 struct AlfeldReference
 {
@@ -49,7 +49,7 @@ struct AlfeldReference
   AlfeldReference();
 };
 
-/// That of this dimension and degree, made once.
+/// The factors of this dimension and degree, computed once.
 template <int dim, int q>
 [[nodiscard]] const AlfeldReference<dim, q>& alfeld_reference();
 

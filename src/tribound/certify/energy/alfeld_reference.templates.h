@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file alfeld_reference.templates.h
-/// The definitions of alfeld_reference.h, for the kernels alone (certify/energy/kernel.cpp.in).
+/// The definitions of alfeld_reference.h, only for the kernels (certify/energy/kernel.cpp.in).
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace tribound::certify
 namespace detail
 {
 
-/// Copies a stress into a row, each component to where a vector of the kernels starts.
+/// Copies a stress into a row; each component starts at a vector boundary of the kernels.
 template <int dim, int q>
 void spread(const double* stress, double* row)
 {

@@ -18,10 +18,10 @@ template <int dim>
 [[nodiscard]] std::vector<double> raised(const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                                          const fem::LagrangeSpace<dim>& richer);
 
-/// u~ of `space` with a(u~, v) = L(v) + (t, [v])_C for all v of it, load and contact points being those of
-/// `rich`, whose space contains it: as degrees of freedom of that. The residual is 1e-12 of the forces, up to
-/// rounding; from `start`, whose fixed degrees of freedom have their values. Load and t have to do no work in
-/// the free motions: of the solutions, which these tell apart, that is taken which leaves
+/// u~ in `space` with a(u~, v) = L(v) + (t, [v])_C for all v of it, as degrees of freedom of the space of
+/// `rich`, which contains it and has the load and the contact points. The residual is 1e-12 of the forces, up
+/// to rounding. Starts from `start`, which has the values of the fixed degrees of freedom. Load and t must do
+/// no work in the free motions. Of the solutions, which differ by these, the one is taken that leaves
 /// FreeMotions::supports() as they are in `start`.
 template <int dim>
 [[nodiscard]] std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,

@@ -23,13 +23,13 @@ template <int dim>
 class BalanceConditions
 {
  public:
-  /// t_h(lambda) and what is left.
+  /// t_h(lambda) and its imbalance.
   struct State
   {
     Vector lambda;
     AdmissibleTraction<dim> t_h;
     Vector rest;
-    Vector size;  ///< the sum of |force| |z_i| in it
+    Vector size;  ///< the sum of |force| |z_i| in the rest
 
     [[nodiscard]] bool is_balanced() const { return (rest.array().abs() <= rounding * size.array()).all(); }
   };
@@ -65,14 +65,14 @@ class BalanceConditions
     int motion;
     Columns values;
   };
-  /// Those of the motions of the bodies on its sides; twice where both are one.
+  /// The jumps of the motions of the bodies on its sides; twice if both sides are one body.
   [[nodiscard]] std::vector<Jump> jumps(std::size_t k) const;
   /// t + sum_i lambda_i [z_i] at the contact points.
   [[nodiscard]] std::vector<Point<dim>> shifted(const Vector& lambda) const;
   /// J and G side by side.
   [[nodiscard]] Matrix tangents(const State& state) const;
 
-  /// force . z, and from n() on |force| |z|.
+  /// Adds force . z; from n() on, |force| |z|.
   void add_work(int i, const Point<dim>& z, const Point<dim>& force, Vector& sums) const
   {
     sums[i] += force.dot(z);
@@ -83,7 +83,7 @@ class BalanceConditions
   const FreeMotions<dim>& motions_;
   std::span<const Point<dim>> t_;
   TractionFit<dim> fit_;
-  Vector load_;  ///< what this rank has of L(z_i), then of size
+  Vector load_;  ///< this rank's part of L(z_i), then of size
 };
 
 template <int dim>
@@ -174,7 +174,7 @@ Matrix BalanceConditions<dim>::tangents(const State& state) const
 template <int dim>
 Vector BalanceConditions<dim>::step(const State& state) const
 {
-  constexpr double share = 1e-2;  // of the rest in the shift
+  constexpr double share = 1e-2;  // of the relative rest, in the shift
   const Matrix sums = tangents(state);
   const double shift =
       std::max(1e-14, share * state.rest.template lpNorm<1>() / std::max(state.size.sum(), 1e-300));
@@ -183,8 +183,8 @@ Vector BalanceConditions<dim>::step(const State& state) const
   return -factors.solve(state.rest);
 }
 
-/// Goes along d to where the slope of the convex function, rest . d, which grows, has lost half of its size;
-/// absent where it goes on falling.
+/// Goes along d until the slope rest . d of the convex function has lost half of its size; the slope grows
+/// along d. Absent if the function decreases without end.
 template <int dim>
 auto search(const BalanceConditions<dim>& conditions, const typename BalanceConditions<dim>::State& from,
             const Vector& d) -> std::optional<typename BalanceConditions<dim>::State>

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file cell_distances.templates.h
-/// The definition of cell_distances.h, for the kernels alone (certify/energy/kernel.cpp.in).
+/// The definition of cell_distances.h, only for the kernels (certify/energy/kernel.cpp.in).
 
 #include <algorithm>
 #include <cmath>

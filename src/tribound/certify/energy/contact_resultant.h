@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file contact_resultant.h
-/// Forces and moments of contact: as rigid motions with which tractions are multiplied, and what statics say
-/// of them.
+/// Contact forces and moments, as rigid motions by which tractions are multiplied, and what statics says
+/// about them.
 
 #include <optional>
 
@@ -28,7 +28,7 @@ struct RigidMotion
 template <int dim>
 [[nodiscard]] RigidMotion<dim> rotation(const Point<dim>& point, const Point<dim>& axis);
 
-/// integral of sigma(u) n . m over the facets against obstacles and the slaves of one boundary, or of all.
+/// integral of sigma(u) n . m over the facets of one boundary, or of all, that are slaves or face obstacles.
 template <int dim>
 struct ContactResultant
 {
@@ -38,16 +38,16 @@ struct ContactResultant
   [[nodiscard]] bool has(int boundary) const { return tag < 0 || boundary == tag; }
 };
 
-/// A number up to rounding and what quadrature may miss.
+/// A number known up to rounding and what quadrature may miss.
 struct KnownNumber
 {
   double value = 0;
   double uncertainty = 0;
 };
 
-/// The resultant where it follows from equilibrium: where the motion of the bodies on whose contact
-/// boundaries it is taken is stopped by nothing else. Then it is -(f, m) - (g_N, m)_N over these bodies, of
-/// every solution, whatever the laws of contact are. All ranks together.
+/// The resultant if it follows from equilibrium: nothing else may stop the motion of the bodies on whose
+/// contact boundaries it is taken. Then every solution has -(f, m) - (g_N, m)_N over these bodies, for any
+/// contact law. All ranks together.
 template <int dim>
 [[nodiscard]] std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                                           const ContactResultant<dim>& resultant);

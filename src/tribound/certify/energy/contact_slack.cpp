@@ -11,7 +11,7 @@ namespace tribound::certify
 namespace
 {
 
-/// c with its normal and tangential parts made no longer than so.
+/// c with its normal and tangential parts cut to these lengths.
 template <int dim>
 Point<dim> limited(const Point<dim>& c, const Point<dim>& n, double normal, double tangential)
 {
@@ -21,7 +21,7 @@ Point<dim> limited(const Point<dim>& c, const Point<dim>& n, double normal, doub
   return std::clamp(along, -normal, normal) * n + (length > tangential ? tangential / length : 1.0) * across;
 }
 
-/// What `slack` allows with m.
+/// What `slack` allows for the factor m.
 double times(double m, double slack)
 {
   return std::isinf(slack) ? slack : m * slack;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file contact_slack.h
-/// What dual pairs may do on the contact boundary where the state of contact is nearly known.
+/// What is allowed of dual pairs on the contact boundary where the state of contact is nearly known.
 
 #include <span>
 #include <vector>
@@ -11,8 +11,8 @@
 namespace tribound::certify
 {
 
-/// How large |y^n|, |y^t|, |r^n| and |r^t| may be at one coefficient of a facet in Bernstein's basis, times
-/// m; infinite: they may be anything.
+/// Limits of |y^n|, |y^t|, |r^n| and |r^t| for one coefficient of a facet in Bernstein's basis, to be
+/// multiplied by m; infinite: no limit.
 struct Slack
 {
   double normal_y = 0;
@@ -21,12 +21,12 @@ struct Slack
   double tangential_r = 0;
 };
 
-/// Of every facet, with m the factor of linear_bound():
+/// For every facet, with m the factor of linear_bound():
 ///     closed, v^n = g_h:   |r^n| <= m (-t^n);       open, t^n = 0:            |y^n| <= m (g_h - v^n);
 ///     stick, v^t = 0:      |r^t| <= m (s - |t^t|);  slip, t^t = -s v^t/|v^t|: |y^t| <= m |v^t| (2D: v^t of
-///     one sign); without friction y^t is free, where bodies are tied r;
-/// everything else is 0, [v] between bodies in the place of v. What holds for coefficients holds at every
-/// point, since both sides are in the same basis, which is not negative.
+///     one sign); without friction y^t is free, between tied bodies r;
+/// everything else is 0; between bodies [v] takes the place of v. The limits for coefficients hold at every
+/// point, since both sides are in the same nonnegative basis.
 template <int dim>
 class ContactSlack
 {
@@ -34,14 +34,14 @@ class ContactSlack
   explicit ContactSlack(const BoundedState<dim>& state);
 
   [[nodiscard]] const Slack& at(std::size_t k, std::size_t j) const { return slack_[k * n_ + j]; }
-  /// On the facets that are closed, or stick: where r^n, or r^t, need not vanish.
+  /// For facets that are closed, or stick: r^n, or r^t, may be nonzero there.
   [[nodiscard]] bool is_pressed(std::size_t k) const { return is_pressed_[k] != 0; }
   [[nodiscard]] bool is_held(std::size_t k) const { return is_held_[k] != 0; }
 
-  /// The coefficients of r on facet k, made small enough.
+  /// Cuts the coefficients of r on facet k to the limits.
   void limit_r(std::size_t k, double m, std::span<Point<dim>> r) const;
-  /// The same of y, by nodes of the slaves, where facets share them. Where facets of different normals or
-  /// three bodies meet and where a component is fixed y is 0. All ranks together.
+  /// The same for y, by nodes of the slaves, which facets share. y is 0 where facets with different normals
+  /// or three bodies meet, and where a component is fixed. All ranks together.
   void limit_y(double m, std::span<double> y) const;
 
  private:

@@ -24,12 +24,12 @@ void mark_on_all_ranks(const Ranks& ranks, std::span<const Index> named, std::ve
   for (const Index v : all) marks[v] = 1;
 }
 
-/// The points and edges of the facets of a resultant in the first mesh along which its motion would jump.
+/// The vertices and edges in the first mesh, on the facets of a resultant, along which its motion would jump.
 template <int dim>
 class JumpParts
 {
  public:
-  /// Of a facet of the first mesh.
+  /// Adds those of a facet of the first mesh.
   void add(const mesh::FirstFacets& first, std::size_t facet, std::span<const char> jumps)
   {
     const auto vertices = first.vertices_of<dim>(facet);
@@ -55,7 +55,7 @@ class JumpParts
   }
 
  private:
-  std::vector<std::array<Point<dim>, 2>> parts_;  ///< their ends
+  std::vector<std::array<Point<dim>, 2>> parts_;  ///< their end points
 };
 
 /// A field of degree 1 on a boundary facet.
@@ -100,7 +100,7 @@ ContactWeights<dim>::ContactWeights(const contact::NitscheForm<dim>& form, std::
   for (std::size_t tag = 0; tag < is_contact_.size(); ++tag)
     is_contact_[tag] = form.problem().contact(static_cast<int>(tag)) != nullptr ? 1 : 0;
   const mesh::FirstFacetFinder<dim> find(first_, [this](int tag) { return is_contact_[tag] != 0; });
-  std::vector<Index> around;  // a junction; a linear function vanishes there if it does at these vertices
+  std::vector<Index> around;  // a junction, where a linear function vanishes if it does at these vertices
   for (const contact::ContactSegment<dim>& segment : form.segments())
   {
     const mesh::BoundaryFacet& facet = segment.slave.facet;
@@ -129,7 +129,7 @@ std::vector<char> ContactWeights<dim>::jumps(const contact::NitscheForm<dim>& fo
             (form.problem().boundary(tag).fixes(a) && resultant.motion(first_.point<dim>(v))[a] != 0))
           result[v] = 1;
   }
-  // Of slaves that lie opposite nothing elsewhere these vertices matter.
+  // If slaves are partly without an opposite facet, only these vertices matter.
   std::vector<Index> named;
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     for (int i = 0; i < dim; ++i)

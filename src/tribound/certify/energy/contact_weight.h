@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file contact_weight.h
-/// Rigid motions as weights of contact tractions where displacements are fixed beside them.
+/// Rigid motions as weights of contact tractions, also beside fixed displacements.
 
 #include <array>
 #include <cstddef>
@@ -17,29 +17,29 @@
 namespace tribound::certify
 {
 
-/// A motion as a weight on the facets of a resultant that is a jump of functions in H^1_D: 0 on other contact
-/// facets, along directions that Gamma_D fixes and where three bodies meet.
+/// A motion as a weight on the facets of a resultant. The weight is the jump of functions in H^1_D: 0 on
+/// other contact facets, along directions that Gamma_D fixes, and where three bodies meet.
 template <int dim>
 struct ContactWeight
 {
   std::vector<double> at_nodes;       ///< degrees of freedom of the slaves; 0 off these facets
   std::vector<Point<dim>> at_points;  ///< at the contact points of the form
-  std::string note{};                 ///< where the weight is not the motion itself
-  std::string reason{};               ///< why there is no weight; empty: there is
+  std::string note{};                 ///< where the weight differs from the motion
+  std::string reason{};               ///< why there is no weight; empty: there is one
 };
 
-/// Weights that are linear on the facets of the first mesh: the same functions on all meshes that come from
-/// it. All ranks construct and call it together.
+/// Weights that are linear on the facets of the first mesh, so that they are the same functions on all meshes
+/// made from it. All ranks construct and call it together.
 template <int dim>
 class ContactWeights
 {
  public:
-  /// For forms with these segments, of which obstacles_unfit() says nothing. `junctions`: of ObstacleFacets,
-  /// of one of them.
+  /// For forms with these segments, to which obstacles_unfit() has no objection. `junctions`: from
+  /// ObstacleFacets of one of them.
   ContactWeights(const contact::NitscheForm<dim>& form, std::span<const char> junctions);
 
-  /// The motion times min(1, d / ramp) at the vertices of the first mesh, d the distance from where it would
-  /// jump; ramp = 0: a tenth of the diagonal of the box around the boundary.
+  /// The motion times min(1, d / ramp) at the vertices of the first mesh, with d the distance from where it
+  /// would jump. ramp = 0: a tenth of the diagonal of the bounding box of the boundary.
   [[nodiscard]] ContactWeight<dim> operator()(const contact::NitscheForm<dim>& form,
                                               const ContactResultant<dim>& resultant, double ramp) const;
 

@@ -33,7 +33,7 @@ class FreeComponents
 
   [[nodiscard]] Eigen::Index size() const { return std::ssize(axes_); }
   [[nodiscard]] Eigen::VectorXd values() const { return c_(axes_); }
-  /// normal.c compared with b, as a row for the free components.
+  /// The comparison of normal.c with b, as a row for the free components.
   [[nodiscard]] Row row(const Point<dim>& normal, double b) const
   {
     Point<dim> still = c_;
@@ -52,7 +52,7 @@ class FreeComponents
   std::vector<int> axes_;
 };
 
-/// An orthonormal basis of the directions across a normal.
+/// An orthonormal basis of the directions orthogonal to a normal.
 template <int dim>
 std::array<Point<dim>, dim - 1> tangents(const Point<dim>& normal)
 {
@@ -63,14 +63,14 @@ std::array<Point<dim>, dim - 1> tangents(const Point<dim>& normal)
     return {first, normal.cross(first)};
 }
 
-/// In a.x, where data are of this size.
+/// The rounding error of a.x for data of this size.
 double rounding(const Eigen::VectorXd& x, double size)
 {
   return 4e-15 * std::max(size, x.cwiseAbs().maxCoeff());
 }
 
-/// The point nearest to `target` in the norm |L^T x| on the intersection of hyperplanes; absent if they do
-/// not meet.
+/// The point of an intersection of hyperplanes nearest to `target` in the norm |L^T x|; absent if they do not
+/// meet.
 std::optional<Eigen::VectorXd> nearest_on(const std::vector<Row>& planes, const Eigen::MatrixXd& root,
                                           const Eigen::VectorXd& target, double size)
 {
@@ -83,16 +83,16 @@ std::optional<Eigen::VectorXd> nearest_on(const std::vector<Row>& planes, const 
     b[i] = planes[i].b;
   }
   const Eigen::MatrixXd scaled = solve_lower(root, a.transpose()).transpose();
-  constexpr double threshold = 1e-12;  // rows that depend on others do so up to rounding
+  constexpr double threshold = 1e-12;  // for rows that depend on others up to rounding
   Eigen::VectorXd x = target;
-  for (int step = 0; step < 2; ++step)  // the second removes the rounding of the first, which may be long
+  for (int step = 0; step < 2; ++step)  // the second removes the rounding error of the first
     x += solve_lower_transposed(root, least_norm_solution(scaled, b - a * x, threshold));
   if ((a * x - b).cwiseAbs().maxCoeff() > rounding(x, size)) return {};
   return x;
 }
 
-/// The same where also a.x <= b for all `halves`: as there are no more than three components, three or fewer
-/// of these hold with equality; all choices are tried.
+/// The same with a.x <= b for all `halves`. At most as many of these as there are components, three or fewer,
+/// hold with equality; all choices are tried.
 std::optional<Eigen::VectorXd> nearest_in(const std::vector<Row>& planes, const std::vector<Row>& halves,
                                           const Eigen::MatrixXd& root, const Eigen::VectorXd& target,
                                           double size)
@@ -103,9 +103,9 @@ std::optional<Eigen::VectorXd> nearest_in(const std::vector<Row>& planes, const 
   const auto search = [&](const auto& self, std::size_t first, Eigen::Index depth) -> void
   {
     const auto x = nearest_on(chosen, root, target, size);
-    if (!x) return;  // nor do they meet with others
+    if (!x) return;  // with more planes they do not meet, either
     const double distance = (root.transpose() * (*x - target)).norm();
-    if (best && distance >= least) return;  // others come no nearer
+    if (best && distance >= least) return;  // with more planes the point is no nearer
     if (std::ranges::all_of(halves,
                             [&](const Row& row) { return row.a.dot(*x) <= row.b + rounding(*x, size); }))
     {
@@ -125,7 +125,7 @@ std::optional<Eigen::VectorXd> nearest_in(const std::vector<Row>& planes, const 
   return best;
 }
 
-/// What is wanted, with equality; everything else.
+/// The conditions of closed and sticking facets as equalities, the others as inequalities.
 template <int dim>
 std::optional<Point<dim>> as_wanted(const FreeComponents<dim>& components,
                                     std::span<const ControlCondition<dim>> conditions, double size)
@@ -146,7 +146,7 @@ std::optional<Point<dim>> as_wanted(const FreeComponents<dim>& components,
   return components.with(*x);
 }
 
-/// The compromise: (c - target)^T H (c - target) + constant is the sum to be made least.
+/// The compromise: the sum to be minimised is (c - target)^T H (c - target) + constant.
 template <int dim>
 std::optional<Point<dim>> compromise(const FreeComponents<dim>& components,
                                      std::span<const ControlCondition<dim>> conditions, double size)
@@ -168,7 +168,7 @@ std::optional<Point<dim>> compromise(const FreeComponents<dim>& components,
       for (const Point<dim>& along : tangents<dim>(condition.normal))
         add(components.row(along, 0), condition.friction);
   }
-  constexpr double small = 1e-6;  // beside the weights
+  constexpr double small = 1e-6;  // relative to the weights
   const double eps = matrix.trace() > 0 ? small * matrix.trace() : 1;
   matrix.diagonal().array() += eps;
   vector += eps * components.values();

@@ -38,7 +38,7 @@ Stress<dim> DualProblem<dim>::balanced(std::span<const double> z, std::span<cons
 namespace
 {
 
-/// The problem with u_D = 0 and without contact, its boundaries and regions changed further.
+/// The problem with u_D = 0 and without contact, with further changes of its boundaries and regions.
 template <int dim, class ChangeBoundary, class ChangeRegion>
 problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                               const ChangeBoundary& change_boundary, const ChangeRegion& change_region)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file dual_problem.h
-/// Problems of linear elasticity whose solutions tell what the error means for a number.
+/// Problems of linear elasticity whose solutions give the effect of the error on a number.
 
 #include <memory>
 #include <optional>
@@ -18,9 +18,9 @@
 namespace tribound::certify
 {
 
-/// The bodies of a problem with u_D = 0 and other loads, also on contact boundaries; what contact exerts is
-/// given. Its form has the space and the segments of the given one, to which it keeps references, and is one
-/// for tractions alone. All ranks construct and call it together.
+/// The bodies of a problem with u_D = 0 and other loads, also on contact boundaries; the contact tractions
+/// are given. Its form has the space and the segments of the given one, keeps references to them, and is only
+/// for given tractions. All ranks construct and call it together.
 template <int dim>
 class DualProblem
 {
@@ -30,9 +30,10 @@ class DualProblem
   DualProblem& operator=(const DualProblem&) = delete;
 
   [[nodiscard]] const contact::NitscheForm<dim>& form() const { return form_; }
-  /// (load, phi_i) + (t, [phi_i])_C, t at the contact points.
+  /// (load, phi_i) + (t, [phi_i])_C with t at the contact points.
   [[nodiscard]] std::vector<double> load(std::span<const Point<dim>> t) const;
-  /// Of z, which is in equilibrium with these loads; `reason` says what is wrong with it, if anything.
+  /// The stress of z, which is in equilibrium with these loads; `reason` says what is wrong with it, if
+  /// anything.
   [[nodiscard]] Stress<dim> balanced(std::span<const double> z, std::span<const Point<dim>> t,
                                      std::string& reason) const;
 
@@ -42,7 +43,7 @@ class DualProblem
   std::unique_ptr<Equilibrator<dim>> equilibrator_;
 };
 
-/// Without loads, with those of the problem, or with the traction q on one boundary; without contact.
+/// Without loads, with those of the problem, or with the traction q on one boundary; always without contact.
 template <int dim>
 [[nodiscard]] problem::Problem<dim> without_loads(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh);
@@ -53,7 +54,7 @@ template <int dim>
 [[nodiscard]] problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem,
                                                  const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q);
 
-/// a(z, w) = ... with Gamma_C free, or held on both sides as well as Gamma_D; made when first needed.
+/// The systems a(z, w) = ... with Gamma_C free, or held on both sides like Gamma_D; made when first needed.
 template <int dim>
 class DualSystems
 {

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file dual_products.h
-/// What the error means for a number of the solution, cell by cell, by displacements and stresses that are
-/// dual to it.
+/// The effect of the error on a number of the solution, cell by cell, from displacements and stresses that
+/// are dual to it.
 
 #include <optional>
 #include <span>
@@ -20,22 +20,22 @@ struct DualPair
 {
   std::vector<double> z;  ///< degrees of freedom of the form's space
   /// zeta is the admissible stress nearest to sigma(target) with the divergence and the tractions of this
-  /// one; absent: 0.
+  /// stress; absent: 0.
   std::optional<Stress<dim>> stress{};
   std::vector<double> target{};
 };
 
-/// Per own cell, tau the admissible stress nearest to sigma(v), products those of C^{-1}.
+/// Per own cell; tau is the admissible stress nearest to sigma(v), products are those of C^{-1}.
 struct DualProducts
 {
   std::vector<double> centre;  ///< 1/2 (zeta + sigma(z), tau - sigma(v))
   std::vector<double> square;  ///< ||zeta - sigma(z)||^2
   std::vector<double> work;    ///< (tau, sigma(z))
   std::vector<double> energy;  ///< ||sigma(z)||^2
-  double unbalanced = 0;  ///< largest part of the dual stress that a cell cannot balance, of its norm there
+  double unbalanced = 0;       ///< largest part of the dual stress not balanced by a cell, of its norm there
 };
 
-/// `stress` and v as for cell_distances(); stresses of the form's degree.
+/// `stress` and v as for cell_distances(); stresses have the form's degree.
 template <int dim, int q>
 [[nodiscard]] DualProducts dual_products(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
                                          std::span<const double> v, const DualPair<dim>& pair);

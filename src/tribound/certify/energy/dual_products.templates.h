@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file dual_products.templates.h
-/// The definition of dual_products.h, for the kernels alone (certify/energy/kernel.cpp.in).
+/// The definition of dual_products.h, only for the kernels (certify/energy/kernel.cpp.in).
 
 #include <algorithm>
 #include <memory>
@@ -18,7 +18,7 @@ namespace tribound::certify
 namespace detail
 {
 
-/// One cell after another, for one thread.
+/// Treats one cell after another; one object per thread.
 template <int dim, int q>
 class DualCell
 {
@@ -38,7 +38,7 @@ class DualCell
     add_multiple(tau_, 1, error_);
   }
 
-  /// Sets the products of the cell; returns the part of its dual stress that is not balanced.
+  /// Sets the products of the cell; returns the unbalanced part of its dual stress.
   [[nodiscard]] double add(const DualPair<dim>& pair, DualProducts& products)
   {
     double unbalanced = 0;

@@ -18,7 +18,7 @@ using Spin = Eigen::Matrix<double, n_spins<dim>, 1>;
 template <int dim>
 using SpinGram = Eigen::Matrix<double, n_spins<dim>, n_spins<dim>>;
 
-/// The skew tensor with these entries above the diagonal.
+/// The skew tensor with the given entries above the diagonal.
 template <int dim>
 Tensor<dim> skew_tensor(const Spin<dim>& entries)
 {
@@ -42,7 +42,7 @@ Spin<dim> tested(const Tensor<dim>& a)
   return result;
 }
 
-/// w_T: with M = ((x - x_T)_i, (x - x_T)_j)_T it is W M : W'.
+/// w_T as a matrix: w_T(W, W') = W M : W' with M = ((x - x_T)_i, (x - x_T)_j)_T.
 template <int dim>
 SpinGram<dim> spin_gram(const mesh::Mesh<dim>& mesh, Index cell)
 {

@@ -19,8 +19,8 @@ struct ElasticSystem<dim>::Factors
 namespace
 {
 
-/// A spring at each degree of freedom, given as a row, as stiff as the body is there. As many as there are
-/// free motions to stop: when the load does no work in these, neither does any spring.
+/// A spring at each degree of freedom that is given as a row, as stiff as the body there. There are as many
+/// springs as free motions to stop: if the load does no work in these, no spring does.
 template <int dim>
 void add_springs(algebra::SparseRows& rows, const fem::LagrangeSpace<dim>& space,
                  std::span<const Index> supports)

@@ -15,14 +15,14 @@
 namespace tribound::certify
 {
 
-/// a(u, w) + s(u, w) = b(w) for all w of the space that vanish at fixed degrees of freedom, s springs on the
-/// boundary. Keeps references and factors. All ranks construct and call it together.
+/// a(u, w) + s(u, w) = b(w) for all w of the space that vanish at fixed degrees of freedom; s are springs on
+/// the boundary. Keeps references and factors. All ranks construct and call it together.
 template <int dim>
 class ElasticSystem
 {
  public:
-  /// `springs`: entries of s between free degrees of freedom; `supports`: degrees of freedom of own nodes at
-  /// each of which a spring is as stiff as the body. With these the fixed ones are to hold every body.
+  /// `springs`: entries of s between free degrees of freedom. `supports`: degrees of freedom of own nodes,
+  /// each with a spring as stiff as the body. Together with the fixed ones they must hold every body.
   ElasticSystem(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                 std::vector<char> fixed, const algebra::SolverOptions& solver, algebra::Triplets springs = {},
                 std::span<const Index> supports = {});

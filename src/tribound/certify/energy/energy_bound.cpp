@@ -28,10 +28,10 @@ namespace tribound::certify
 namespace
 {
 
-/// The stress of degree 2 is the lowest that can be symmetric and in equilibrium with any affine load.
+/// Degree 2 is the lowest in which a stress can be symmetric and in equilibrium with any affine load.
 constexpr int lowest_degree = 2;
 
-/// R(psi_a psi_b e_i) for each edge: a quarter of what the function of the node in its middle sees.
+/// R(psi_a psi_b e_i) for each edge: a quarter of R at the basis function of its midpoint node.
 template <int dim>
 std::vector<Point<dim>> edge_forces(const fem::LagrangeSpace<dim>& space, std::span<const double> residual)
 {
@@ -64,7 +64,7 @@ double korn_constant(const mesh::Mesh<2>& mesh, Index cell)
   return std::numbers::sqrt2 / std::sin(smallest / 4);
 }
 
-/// O_T of the cells; in 3D, where no constant is known, 0.
+/// O_T of the cells; 0 in 3D, where no constant is known.
 template <int dim>
 std::vector<double> oscillation(const contact::NitscheForm<dim>& form, const DataTerms& data)
 {
@@ -100,7 +100,7 @@ EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<con
   return {.reason = reason, .quantities = QuantityBounds<dim>(form, quantities).from_equilibrium(u, reason)};
 }
 
-/// What the functions on a mesh share. For p = 1 the form is that of degree 2.
+/// What the functions on a mesh share. For p = 1 the form has degree 2.
 template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
@@ -154,7 +154,7 @@ EnergyEstimator<dim>::~EnergyEstimator() = default;
 namespace
 {
 
-/// E of v and the stress that carries t_h, and what follows from it.
+/// E of v and the stress that carries t_h, and the bounds that follow.
 template <int dim, class Parts>
 EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
                        std::span<const double> u, std::span<const double> v)

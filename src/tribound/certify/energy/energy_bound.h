@@ -17,7 +17,7 @@
 namespace tribound::certify
 {
 
-/// What the bound is one of.
+/// The solution whose distance from u_h is bounded.
 enum class EnergyTarget
 {
   solution,          ///< the exact solution
@@ -34,33 +34,32 @@ struct EnergyBound
   EnergyTarget target = EnergyTarget::solution;
   double b_v = 0;                  ///< bounds ||u - v||_en
   double mid = 0;                  ///< bounds the distance of sigma(u) from (tau + sigma(v))/2
-  double dist = 0;                 ///< that of sigma(u_h) from it
+  double dist = 0;                 ///< the distance of sigma(u_h) from the same
   double gap = 0;                  ///< E, the duality gap of v and tau
   double correction = 0;           ///< ||u_h - v||_en
   double contact = 0;              ///< G_c
-  double oscillation = 0;          ///< ||O||, what data that are no polynomials contribute
+  double oscillation = 0;          ///< ||O||, the contribution of data that are not polynomials
   double cell_balance = 0;         ///< largest part of the data of a cell that it cannot balance
   double gap_remainder = 0;        ///< largest |g - g_h| at the contact points; length
   double threshold_remainder = 0;  ///< largest |s - s_h| there; stress
   double loads_remainder =
       0;  ///< 3D: ||f - Pi f|| and ||g_N - Pi g_N||, weighted; the bound is for the projected loads
-  bool is_open = true;  ///< which v is the better: facets in transition taken for open and slipping
+  bool is_open = true;  ///< whether v with facets in transition taken as open and slipping is the better one
   /// Per own cell ||tau - sigma(v)||^2 + 4 G_F of its facets, for marking.
   std::vector<double> cells{};
-  /// Intervals of the numbers that were asked for. Those that follow from equilibrium are there without a
-  /// bound, too.
+  /// Intervals of the requested numbers. Those that follow from equilibrium exist even without a bound.
   std::vector<QuantityInterval> quantities{};
 };
 
-/// Above this share of the stress a cell does not balance: there is no bound.
+/// If a cell leaves more than this fraction of the stress unbalanced, there is no bound.
 inline constexpr double cell_balance_limit = 1e-8;
 
-/// Why functions on the mesh of a form can have no bound, in words; empty: nothing of contact speaks against
-/// it. The same on all ranks, which call it together.
+/// Why functions on the mesh of a form can have no bound, in words; empty: contact gives no objection. The
+/// same on all ranks, which call it together.
 template <int dim>
 [[nodiscard]] std::string why_no_energy_bound(const contact::NitscheForm<dim>& form);
 
-/// No bound of u, for this reason, with the values of the quantities and what follows of them from
+/// No bound of u, for this reason, but the values of the quantities and the intervals that follow from
 /// equilibrium alone. Throws InputError for quantities that the problem does not have. All ranks together.
 template <int dim>
 [[nodiscard]] EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<const double> u,
@@ -70,10 +69,10 @@ template <int dim>
 template <int dim>
 class QuantityBounds;
 
-/// Bounds the error of functions on one mesh. A statically admissible stress tau has the contact traction
+/// Bounds the error of functions on one mesh. tau is a statically admissible stress with the contact traction
 /// t_h, the nearest to T(u) that obeys the law everywhere: u~ with a(u~, v) = L(v) + (t_h, v)_C is
-/// equilibrated on vertex patches, and made symmetric cell by cell. A kinematically admissible v is next to
-/// u. Then with
+/// equilibrated on vertex patches, then made symmetric cell by cell. v is a kinematically admissible
+/// displacement near u. Then with
 ///     E = 1/2 ||tau - sigma(v)||^2 + G_c,
 /// E >= 1/2 ||u - v||_en^2 + 1/2 ||sigma(u) - tau||^2, norms of stresses in C^{-1}. Any function u_h of the
 /// space has a bound, converged or not. All ranks construct and call it together.
@@ -81,9 +80,9 @@ template <int dim>
 class EnergyEstimator
 {
  public:
-  /// The form must outlive the object; `solver`: for u~, which is solved for to 1e-12. With the other norm
-  /// for its patches the bound is one, too, but not as sharp near incompressibility. Throws InputError for
-  /// quantities that the problem does not have, and SolveError where their dual problems cannot be solved.
+  /// The form must outlive the object. `solver` is for u~, which is solved to 1e-12. The other norm for its
+  /// patches also gives a bound, but a less sharp one near incompressibility. Throws InputError for
+  /// quantities that the problem does not have, and SolveError if their dual problems cannot be solved.
   EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver,
                   const std::vector<problem::Quantity<dim>>& quantities = {},
                   PatchNorm norm = PatchNorm::compliance);
@@ -91,7 +90,7 @@ class EnergyEstimator
   EnergyEstimator(const EnergyEstimator&) = delete;
   EnergyEstimator& operator=(const EnergyEstimator&) = delete;
 
-  /// Why there can be no bound for this form; empty: there can.
+  /// Why there can be no bound for this form; empty: there can be one.
   [[nodiscard]] const std::string& reason() const { return reason_; }
   /// Throws SolveError as the equilibration does.
   [[nodiscard]] EnergyBound operator()(std::span<const double> u) const;
@@ -99,7 +98,7 @@ class EnergyEstimator
  private:
   struct Parts;
 
-  /// The bound without quantities, for which `use` is called with what it was made of.
+  /// The bound without quantities; calls `use` with what it was computed from.
   template <class Use>
   [[nodiscard]] EnergyBound bound(std::span<const double> u, const Use& use) const;
 

@@ -25,7 +25,7 @@ std::vector<double> moved_bodies(const contact::NitscheForm<dim>& form, const me
   return moved;
 }
 
-/// Whether something else than the facets of the resultant acts on the bodies when they move.
+/// Whether anything but the facets of the resultant acts on the bodies in the motion.
 template <int dim>
 bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
                 std::span<const double> moved, const ContactResultant<dim>& resultant)
@@ -48,14 +48,14 @@ bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodie
   return mesh.ranks().any(by_contact || by_conditions);
 }
 
-/// Sums of what loads do in the motion, of absolute values and of what quadrature may miss.
+/// Sums of the work of loads in the motion, of its absolute values and of what quadrature may miss.
 template <int dim>
 class LoadSums
 {
  public:
   explicit LoadSums(const RigidMotion<dim>& motion) : motion_(motion) {}
 
-  /// Of a cell or facet with these vertices.
+  /// Adds a cell or facet with these vertices.
   template <class Points, std::size_t n>
   void add(const Points& points, std::span<const Point<dim>> load, const std::array<Point<dim>, n>& vertices,
            double missed)

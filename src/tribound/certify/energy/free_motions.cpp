@@ -16,7 +16,7 @@ namespace
 template <int dim>
 constexpr int n_modes = contact::RigidModes<dim>::n_modes;
 
-/// The rigid modes of each body, about the middle of the box around it and scaled by its diagonal.
+/// The rigid modes of each body, about the centre of its bounding box and scaled by its diagonal.
 template <int dim>
 std::vector<contact::RigidModes<dim>> modes_of(const mesh::Mesh<dim>& mesh, const mesh::Bodies& bodies)
 {
@@ -43,7 +43,8 @@ std::vector<contact::RigidModes<dim>> modes_of(const mesh::Mesh<dim>& mesh, cons
   return modes;
 }
 
-/// Per body the sum of r r^T over the rows r of the modes in components that a boundary fixes at a vertex.
+/// Per body the sum of r r^T over the rows r of the modes, for each component that a boundary fixes at a
+/// vertex.
 template <int dim>
 std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                 const mesh::Bodies& bodies, std::span<const contact::RigidModes<dim>> modes)
@@ -75,7 +76,7 @@ FreeMotions<dim>::FreeMotions(const problem::Problem<dim>& problem, const mesh::
 {
   constexpr int n = n_modes<dim>;
   constexpr double rounding = 1e-14;  // of eigenvalues, relative to the largest
-  constexpr double held = 1e-10;      // what is above is stopped
+  constexpr double held = 1e-10;      // motions with larger eigenvalues are stopped
   const std::vector<Modes> modes = modes_of(mesh, bodies_);
   const std::vector<double> grams = fixed_grams<dim>(problem, mesh, bodies_, modes);
   begin_.push_back(0);
@@ -97,12 +98,12 @@ FreeMotions<dim>::FreeMotions(const problem::Problem<dim>& problem, const mesh::
 namespace
 {
 
-/// A row of the matrix of the motions of a body, one for each degree of freedom, and what is left of it
-/// orthogonal to the rows that were chosen.
+/// A row of the matrix of the motions of a body (one row for each degree of freedom), or its part orthogonal
+/// to the rows chosen so far.
 template <int dim>
 using MotionRow = Eigen::Matrix<double, n_modes<dim>, 1>;
 
-/// Per body the best row that this rank has.
+/// The best row on this rank, for each body.
 template <int dim>
 struct Candidate
 {
@@ -111,7 +112,7 @@ struct Candidate
   Index own = -1;
 };
 
-/// The lowest of the ranks that have the largest length, for each body.
+/// Whether this rank is the lowest of those with the largest length, for each body.
 template <int dim>
 std::vector<char> is_here(const Ranks& ranks, std::span<const Candidate<dim>> candidates)
 {
@@ -127,7 +128,7 @@ std::vector<char> is_here(const Ranks& ranks, std::span<const Candidate<dim>> ca
   return here;
 }
 
-/// For each node of this rank the body that it is of.
+/// The body of each node of this rank.
 template <int dim>
 std::vector<int> bodies_of_nodes(const fem::LagrangeSpace<dim>& space, const FreeMotions<dim>& motions)
 {
@@ -137,7 +138,8 @@ std::vector<int> bodies_of_nodes(const fem::LagrangeSpace<dim>& space, const Fre
   return result;
 }
 
-/// The best rows of this rank, `chosen` those that each body has: none where it has as many as motions.
+/// The best rows of this rank; `chosen` are those that each body has. None for a body with as many as
+/// motions.
 template <int dim>
 std::vector<Candidate<dim>> best_rows(const FreeMotions<dim>& motions, const fem::LagrangeSpace<dim>& space,
                                       std::span<const Point<dim>> points, std::span<const int> bodies,
@@ -162,7 +164,7 @@ std::vector<Candidate<dim>> best_rows(const FreeMotions<dim>& motions, const fem
 
 }  // namespace
 
-/// Gram-Schmidt with the longest rest first.
+/// Gram-Schmidt orthogonalisation; takes the longest remainder first.
 template <int dim>
 std::vector<Index> FreeMotions<dim>::supports(const fem::LagrangeSpace<dim>& space) const
 {

@@ -17,22 +17,22 @@ namespace tribound::certify
 {
 
 /// The rigid motions of each body whose fixed components vanish on Gamma_D, as an orthonormal basis of their
-/// coefficients (contact::RigidModes): up to d(d+1)/2 for each body, none for those that conditions hold. All
-/// ranks, which construct it and call its members together, have those of all bodies.
+/// coefficients (contact::RigidModes): up to d(d+1)/2 for each body, none for bodies that conditions hold.
+/// All ranks construct it and call its members together, and each has the motions of all bodies.
 template <int dim>
 class FreeMotions
 {
  public:
   FreeMotions(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh);
 
-  /// Whether it cannot be told of some motion if conditions stop it: they hardly do.
+  /// Whether for some motion it is unclear if conditions stop it, because they hardly do.
   [[nodiscard]] bool is_unclear() const { return is_unclear_; }
-  /// Of all bodies.
+  /// The number of motions of all bodies.
   [[nodiscard]] std::size_t size() const { return motions_.size(); }
   [[nodiscard]] int n_bodies() const { return bodies_.n; }
   [[nodiscard]] int body_of(Index cell) const { return bodies_.of_cell[cell]; }
 
-  /// Numbers of motions.
+  /// A range of numbers of motions.
   struct Range
   {
     int begin;
@@ -48,8 +48,8 @@ class FreeMotions
     return modes_[i].at(x) * motions_[i];
   }
 
-  /// As many degrees of freedom as motions, those of each body such that no motion but 0 leaves them all at
-  /// rest, far from each other. What this rank owns of them: dim * k + component for the own node k.
+  /// As many degrees of freedom as motions, far from each other; no motion of a body except 0 leaves all of
+  /// its own at rest. Returns those that this rank owns: dim * k + component for the own node k.
   [[nodiscard]] std::vector<Index> supports(const fem::LagrangeSpace<dim>& space) const;
 
  private:

@@ -6,7 +6,7 @@ namespace tribound::certify
 namespace
 {
 
-/// Whether v and tau are admissible for the data themselves.
+/// Whether v and tau are admissible for the given data themselves.
 bool has_all_data(const EnergyBound& bound)
 {
   return bound.gap_remainder == 0 && bound.threshold_remainder == 0 && bound.loads_remainder == 0;

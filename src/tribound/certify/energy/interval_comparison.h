@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file interval_comparison.h
-/// Intervals of one number from two solutions of one problem, on meshes that come from one first mesh.
+/// Intervals of one number from two solutions of one problem, on meshes made from one first mesh.
 
 #include <optional>
 #include <string>
@@ -11,17 +11,17 @@
 namespace tribound::certify
 {
 
-/// What two intervals of a number say of each other.
+/// The result of comparing two intervals of a number.
 struct IntervalComparison
 {
-  std::optional<bool> agree{};  ///< whether they have a point in common; absent: that is not for certain
-  std::string reason{};         ///< why it is not
+  std::optional<bool> agree{};  ///< whether they have a point in common; absent: that is uncertain
+  std::string reason{};         ///< why it is uncertain
 };
 
-/// Both hold the number of the exact solution, and so have a point in common. Nothing is said where there are
-/// no two intervals and of the computed friction threshold, which differs; nor, if they have no common point,
-/// where data were interpolated, and so were not the same. What is exact is compared always. `bound` is the
-/// one that `interval` is of.
+/// Both intervals contain the number of the exact solution, so they have a point in common. Nothing is said
+/// without two intervals, nor for the computed friction threshold, which differs. If they are disjoint,
+/// nothing is said if data were interpolated and so were not the same. Exact intervals are always compared.
+/// `bound` is the one to which `interval` belongs.
 [[nodiscard]] IntervalComparison compare_intervals(const EnergyBound& bound, const QuantityInterval& interval,
                                                    const EnergyBound& other_bound,
                                                    const QuantityInterval& other);

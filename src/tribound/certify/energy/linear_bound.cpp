@@ -12,7 +12,7 @@ namespace tribound::certify
 namespace
 {
 
-/// Of the loads.
+/// The largest degree of the loads.
 template <int dim>
 int largest_degree(const problem::Problem<dim>& problem)
 {

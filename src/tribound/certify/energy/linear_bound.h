@@ -13,7 +13,7 @@
 namespace tribound::certify
 {
 
-/// What an energy bound was made of. Keeps references.
+/// What an energy bound was computed from. Keeps references.
 template <int dim>
 struct BoundedState
 {
@@ -25,25 +25,25 @@ struct BoundedState
   const EnergyBound& bound;
   std::vector<double> forces;   ///< L(phi_i) + (t_h, phi_i)_C
   std::vector<char> junctions;  ///< of the facets
-  /// Whether the solution is one for other loads, the projected ones.
+  /// Whether the solution is that for other loads, the projected ones.
   bool is_projected;
-  /// |L(z) - what quadrature makes of it| <= unresolved ||z||_en.
+  /// |L(z) - its value by quadrature| <= unresolved ||z||_en.
   double unresolved;
 
   BoundedState(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
                std::span<const double> v, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
                const EnergyBound& bound);
 
-  /// L(z) + (t_h, z)_C - (tau, eps(z)): what data that are no polynomials do, and rounding.
+  /// L(z) + (t_h, z)_C - (tau, eps(z)): the effect of data that are not polynomials, and rounding.
   [[nodiscard]] double remainder(std::span<const double> z, double work) const
   {
     return is_projected ? 0 : form.space().dot(forces, z) - work;
   }
-  /// Half the width of an interval shared out between the cells as the energy is.
+  /// Half the width of an interval, distributed over the cells in proportion to the energy.
   [[nodiscard]] std::vector<double> shares(double half_width) const;
 };
 
-/// dual_products() of the degree of the form.
+/// dual_products() for the degree of the form.
 template <int dim>
 [[nodiscard]] DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair);
 
@@ -65,14 +65,14 @@ struct LinearBound
   double centre = 0;
   double radius = 0;
   double rounding = 0;
-  std::vector<double> cells{};  ///< own cells' shares in the radius
+  std::vector<double> cells{};  ///< the shares of own cells in the radius
 };
 
-/// For l(u) + (sigma(u) n, phi)_C, `base` = l(v) + (t_h, phi)_C. With y = z + phi and r = zeta n - l on
-/// Gamma_C, and v and t_h there such that
+/// For l(u) + (sigma(u) n, phi)_C, with `base` = l(v) + (t_h, phi)_C. If y = z + phi and r = zeta n - l on
+/// Gamma_C, and v and t_h satisfy there
 ///     |(sigma(u) n - t_h) . y - r . (u - v)| <= m (the four integrands on Gamma_C of method section 13.1),
-/// the centre is base + 1/2 (zeta + sigma(z), tau - sigma(v)) + remainder(z), and the radius the largest
-/// eta x + m (mid^2 - x^2) for 0 <= x <= mid, eta = ||zeta - sigma(z)||; m = 0 where y and r vanish.
+/// the centre is base + 1/2 (zeta + sigma(z), tau - sigma(v)) + remainder(z), and the radius the largest eta
+/// x + m (mid^2 - x^2) for 0 <= x <= mid, with eta = ||zeta - sigma(z)||; m = 0 if y and r vanish.
 template <int dim>
 [[nodiscard]] LinearBound linear_bound(const BoundedState<dim>& state, double base, const DualPair<dim>& pair,
                                        const DualProducts& products, double m = 0);

@@ -19,7 +19,7 @@ LinearIntervals<dim>::LinearIntervals(const BoundedState<dim>& state, DualSystem
   double stiffest = 0;
   for (const contact::ContactSegment<dim>& segment : state.form.segments())
     stiffest = std::max(stiffest, segment.gamma);
-  constexpr double stiff = 10;  // so that springs hold as conditions do, but for a share that does not matter
+  constexpr double stiff = 10;  // so that springs hold like conditions, up to a negligible part
   stiffness_ = stiff * state.form.space().mesh().ranks().max(stiffest);
   held_ = std::make_unique<ElasticSystem<dim>>(state.form.problem(), state.form.space(),
                                                state.form.constraints().fixed, solver, springs());
@@ -39,7 +39,7 @@ Tensor<dim> LinearIntervals<dim>::holding(std::size_t k) const
 namespace
 {
 
-/// What a degree of freedom contributes to [v] on a facet: sign times its basis function, along an axis.
+/// The contribution of a degree of freedom to [v] on a facet: sign times its basis function, along an axis.
 struct JumpTerm
 {
   Index dof;
@@ -48,7 +48,7 @@ struct JumpTerm
   double sign;  ///< -1 on the master
 };
 
-/// Of all that are not fixed on facet k.
+/// The terms of all free degrees of freedom on facet k.
 template <int dim>
 std::vector<JumpTerm> jump_terms(const BoundedState<dim>& state, std::size_t k)
 {
@@ -93,7 +93,8 @@ algebra::Triplets LinearIntervals<dim>::springs() const
   return entries;
 }
 
-/// What the springs exert on slaves where Gamma_C is displaced so: coefficients in Bernstein's basis.
+/// The tractions of the springs on slaves for this displacement of Gamma_C: coefficients in Bernstein's
+/// basis.
 template <int dim>
 std::vector<Point<dim>> LinearIntervals<dim>::exerted(std::span<const double> displacement) const
 {
@@ -107,7 +108,7 @@ std::vector<Point<dim>> LinearIntervals<dim>::exerted(std::span<const double> di
   return result;
 }
 
-/// At the contact points, from coefficients in Bernstein's basis.
+/// The field at the contact points, from coefficients in Bernstein's basis.
 template <int dim>
 std::vector<Point<dim>> LinearIntervals<dim>::at_points(std::span<const Point<dim>> coefficients) const
 {
@@ -150,7 +151,8 @@ auto LinearIntervals<dim>::natural(const LinearNumber<dim>& number) const -> Nat
   return result;
 }
 
-/// Opposite slaves that cannot follow masters are at rest: fixed ones, and those that several masters share.
+/// Masters are at rest if the opposite slaves cannot follow: fixed slaves, and slaves that several masters
+/// share.
 template <int dim>
 void LinearIntervals<dim>::set_opposite(std::span<const double> z, Natural& natural) const
 {
@@ -203,7 +205,7 @@ bool LinearIntervals<dim>::fits(const LinearNumber<dim>& number, const Natural& 
 {
   const std::vector<char>& fixed = state_.form.constraints().fixed;
   std::vector<double> y(z.begin(), z.end());
-  std::array<double, 2> largest{};  // of what should be 0, of all
+  std::array<double, 2> largest{};  // of what should be 0, and of all
   for (std::size_t i = 0; i < y.size(); ++i)
   {
     if (number.weight) y[i] += number.weight->at_nodes[i];

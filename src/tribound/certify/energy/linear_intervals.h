@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file linear_intervals.h
-/// Intervals of linear numbers from dual pairs that follow the state of contact: where it is nearly known
+/// Intervals of linear numbers from dual pairs that follow the state of contact. Where that is nearly known,
 /// their width is of the order of the energy, not of its root.
 
 #include <memory>
@@ -23,29 +23,29 @@ struct LinearInterval
   double upper = 0;
   double rounding = 0;
   bool is_second_order = false;  ///< m > 0
-  std::vector<double> cells{};   ///< own cells' shares in half the width
+  std::vector<double> cells{};   ///< the shares of own cells in half the width
 };
 
-/// Of numbers from one energy bound. All ranks construct and call it together.
+/// For numbers from one energy bound. All ranks construct and call it together.
 template <int dim>
 class LinearIntervals
 {
  public:
-  /// Keeps references. `is_held`: displacement conditions hold every body by themselves; else there are no
-  /// intervals of numbers with loads, and for others m = 0 and zeta = 0.
+  /// Keeps references. `is_held`: displacement conditions alone hold every body. If not, there are no
+  /// intervals of numbers with loads; for others m = 0 and zeta = 0.
   LinearIntervals(const BoundedState<dim>& state, DualSystems<dim>& systems,
                   const algebra::SolverOptions& solver, bool is_held);
 
-  /// Of m = 0, then with m > 0 as long as the width falls. `base`: as for linear_bound().
+  /// Uses m = 0, then m > 0 as long as the width decreases. `base`: as for linear_bound().
   [[nodiscard]] LinearInterval operator()(const LinearNumber<dim>& number, double base) const;
 
  private:
-  /// z with [z] + phi held where contact holds, by stiff springs, and free elsewhere.
+  /// z with [z] + phi held by stiff springs where contact holds, and free elsewhere.
   struct Natural
   {
     std::vector<double> y;         ///< [z] + phi on Gamma_C, coefficients in Bernstein's basis by node
     std::vector<double> opposite;  ///< z at the nodes of masters
-    std::vector<Point<dim>> r;     ///< what the springs exert, coefficients facet by facet
+    std::vector<Point<dim>> r;     ///< tractions of the springs, coefficients facet by facet
   };
   [[nodiscard]] Natural natural(const LinearNumber<dim>& number) const;
   void set_opposite(std::span<const double> z, Natural& natural) const;
@@ -58,7 +58,7 @@ class LinearIntervals
                                    std::string& reason) const;
   [[nodiscard]] LinearBound bound(const LinearNumber<dim>& number, const Natural& natural, double base,
                                   double m, std::string& reason) const;
-  /// The springs of facet k.
+  /// The stiffness of the springs of facet k.
   [[nodiscard]] Tensor<dim> holding(std::size_t k) const;
   [[nodiscard]] algebra::Triplets springs() const;
   [[nodiscard]] std::vector<Point<dim>> exerted(std::span<const double> displacement) const;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file linear_number.h
-/// A number that is linear in the solution, with what bounds it on one mesh.
+/// A number that is linear in the solution, with what is needed to bound it on one mesh.
 
 #include <memory>
 #include <optional>
@@ -21,7 +21,7 @@ namespace tribound::certify
 template <int dim>
 struct LinearNumber
 {
-  std::optional<KnownNumber> known{};          ///< from equilibrium: then there is nothing else
+  std::optional<KnownNumber> known{};          ///< from equilibrium: then nothing else is needed
   std::vector<Point<dim>> phi{};               ///< at the contact points of the form of u
   std::optional<ContactWeight<dim>> weight{};  ///< phi on the form of the bounds
   std::unique_ptr<DualProblem<dim>> loads{};   ///< with the loads l; null: none
@@ -30,8 +30,8 @@ struct LinearNumber
   [[nodiscard]] double base(const BoundedState<dim>& state, const QuantityParts<dim>& parts) const;
 };
 
-/// A force or moment of contact where equilibrium does not give it, on the forms of u and of the bounds; the
-/// reason where there is no weight. All ranks together.
+/// A contact force or moment that equilibrium does not give, on the forms of u and of the bounds; returns the
+/// reason if there is no weight. All ranks together.
 template <int dim>
 [[nodiscard]] std::string set_weight(LinearNumber<dim>& number, const contact::NitscheForm<dim>& form,
                                      const contact::NitscheForm<dim>& bounded,

@@ -14,10 +14,10 @@ namespace tribound::certify
 namespace
 {
 
-/// Coordinates on reference facets agree to this where they are meant to be the same.
+/// Coordinates on reference facets that differ by less are the same.
 constexpr double same = 1e-6;
 
-/// The node of the space on the facet with the coordinates x on the reference facet; -1: there is none.
+/// The node of the space on the facet with the coordinates x on the reference facet; -1: none.
 template <int dim>
 Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& facet, const Point<dim - 1>& x)
 {
@@ -92,7 +92,7 @@ double ObstacleFacets<dim>::gap_remainder() const
 {
   const auto& points = form_.facet_rule().points;
   const fem::Tabulation<dim - 1> table = basis_.tabulate(points);
-  constexpr double rounding = 1e-14;  // of coordinates, of which gaps are made
+  constexpr double rounding = 1e-14;  // of coordinates, from which gaps are computed
   double largest = 0;
   for (std::size_t k = 0; k < size(); ++k)
     for (int q = 0; q < table.n_points; ++q)

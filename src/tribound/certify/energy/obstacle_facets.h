@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file obstacle_facets.h
-/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles or facets of
-/// other bodies that match them.
+/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles or matching
+/// facets of other bodies.
 
 #include <array>
 #include <span>
@@ -16,14 +16,15 @@
 namespace tribound::certify
 {
 
-/// Why v^n - g_h is no polynomial on some facet of Gamma_C, or contact there no matter of v^n <= g alone;
-/// empty where neither is so. The same on all ranks, which call it together.
+/// Why v^n - g_h is not a polynomial on some facet of Gamma_C, or why contact there is more than v^n <= g;
+/// empty if neither is so. The same on all ranks, which call it together.
 template <int dim>
 [[nodiscard]] std::string obstacles_unfit(const contact::NitscheForm<dim>& form);
 
-/// The facets of Gamma_C, numbered as the segments of the form. Coefficient j of a facet belongs to its node
-/// j: on vertices and edges facets share both. Between bodies to every node of the slave there is one of the
-/// master opposite. Keeps a reference to the form, of which obstacles_unfit() says nothing.
+/// The facets of Gamma_C, numbered like the segments of the form. Coefficient j of a facet belongs to its
+/// node j; facets share coefficients on common vertices and edges. Between bodies every node of the slave has
+/// one of the master opposite. Keeps a reference to the form, to which obstacles_unfit() must have no
+/// objection.
 template <int dim>
 class ObstacleFacets
 {
@@ -31,7 +32,7 @@ class ObstacleFacets
   explicit ObstacleFacets(const contact::NitscheForm<dim>& form);
 
   [[nodiscard]] std::size_t size() const { return form_.segments().size(); }
-  /// Nodes of the space on facet k, of the slave.
+  /// Nodes of the space on facet k, on the slave.
   [[nodiscard]] std::span<const Index> nodes(std::size_t k) const
   {
     return std::span(nodes_).subspan(k * n_, n_);
@@ -41,7 +42,7 @@ class ObstacleFacets
   {
     return std::span(master_nodes_).subspan(k * n_, form_.segments()[k].master ? n_ : 0);
   }
-  /// Degrees of freedom of the slaves' nodes that lie opposite more than one thing or are masters as well.
+  /// Marks degrees of freedom of slave nodes that have more than one opposite partner or are masters as well.
   /// All ranks together.
   [[nodiscard]] std::vector<char> junctions() const;
   /// Coefficients of g_h, the interpolant of g of degree p.
@@ -49,15 +50,15 @@ class ObstacleFacets
   {
     return std::span(gaps_).subspan(k * n_, n_);
   }
-  /// Of [u], u a function of the space.
+  /// Coefficients of [u] for a function u of the space.
   [[nodiscard]] std::vector<Point<dim>> coefficients(std::size_t k, std::span<const double> u) const;
-  /// Of u on the slave, and on the master: 0 against an obstacle.
+  /// Coefficients of u on the slave, and on the master: 0 against an obstacle.
   [[nodiscard]] std::vector<Point<dim>> on_slave(std::size_t k, std::span<const double> u) const
   {
     return transformed(nodes(k), from_values_, u);
   }
   [[nodiscard]] std::vector<Point<dim>> on_master(std::size_t k, std::span<const double> u) const;
-  /// Values at the nodes of the slave or of the master, from coefficients by node, as degrees of freedom.
+  /// Values at the nodes of the slave or of the master as degrees of freedom, from coefficients by node.
   [[nodiscard]] std::vector<Point<dim>> values(std::span<const Index> nodes,
                                                std::span<const double> coefficients) const
   {

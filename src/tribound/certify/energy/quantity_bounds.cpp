@@ -13,7 +13,7 @@ namespace tribound::certify
 
 using problem::QuantityKind;
 
-/// A quantity and the numbers that it is made of.
+/// A quantity and the numbers from which it is computed.
 template <int dim>
 struct QuantityBounds<dim>::Item
 {
@@ -84,7 +84,7 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, cons
     if (is_energy(item) || !item.reason.empty()) continue;
     if (item.parts.resultants.empty() && !is_held)
     {
-      item.reason = "contact alone holds a body";  // without it the load of the dual problem moves it
+      item.reason = "contact alone holds a body";  // else the load of the dual problem would move it
       continue;
     }
     if (item.parts.resultants.empty()) item.numbers.push_back(loaded_number(item.parts, bounded));
@@ -139,7 +139,7 @@ QuantityInterval known_interval(const KnownNumber& number)
   return result;
 }
 
-/// Sets the interval of a quantity, from those of its numbers.
+/// Sets the interval of a quantity from those of its numbers.
 void combine(QuantityInterval& interval, double coefficient, const std::vector<QuantityInterval>& numbers)
 {
   if (numbers.size() == 1)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantity_bounds.h
-/// Intervals of the numbers that are wanted of a solution, method section 14.
+/// Intervals of the requested numbers of a solution, method section 14.
 
 #include <memory>
 #include <span>
@@ -19,27 +19,27 @@ template <int dim>
 class QuantityBounds
 {
  public:
-  /// Of functions of the form's space; it must outlive the object. Throws as parts_of().
+  /// For functions of the form's space; the form must outlive the object. Throws like parts_of().
   QuantityBounds(const contact::NitscheForm<dim>& form, std::span<const problem::Quantity<dim>> quantities);
   ~QuantityBounds();
   QuantityBounds(const QuantityBounds&) = delete;
   QuantityBounds& operator=(const QuantityBounds&) = delete;
 
-  /// Makes what energy bounds of this form, on the same mesh and of no lower degree, need; `is_held`: whether
-  /// displacement conditions hold every body by themselves. Throws SolveError.
+  /// Prepares what energy bounds of this form, on the same mesh and of no lower degree, need. `is_held`:
+  /// whether displacement conditions alone hold every body. Throws SolveError.
   void prepare(const contact::NitscheForm<dim>& bounded, const ObstacleFacets<dim>& facets,
                const algebra::SolverOptions& solver, bool is_held);
-  /// The values of u and the intervals that follow from equilibrium alone; `reason` says why there are no
+  /// The values for u and the intervals that follow from equilibrium alone; `reason` says why there are no
   /// others.
   [[nodiscard]] std::vector<QuantityInterval> from_equilibrium(std::span<const double> u,
                                                                const std::string& reason) const;
-  /// Sets those that follow from an energy bound.
+  /// Sets the intervals that follow from an energy bound.
   void add_bounded(const BoundedState<dim>& state, std::vector<QuantityInterval>& intervals) const;
 
  private:
   struct Item;
 
-  /// Whether it is a(u, u) by itself or because the loads do as much work.
+  /// Whether the quantity is a(u, u), by itself or because the loads do the same work.
   [[nodiscard]] bool is_energy(const Item& item) const;
   [[nodiscard]] double value(const Item& item, std::span<const double> u,
                              std::span<const Point<dim>> t) const;
@@ -53,7 +53,7 @@ class QuantityBounds
   std::unique_ptr<DualSystems<dim>> systems_;
   bool is_held_ = false;         ///< by displacement conditions alone
   bool is_homogeneous_ = false;  ///< u_D = 0 and g = 0
-  bool work_is_energy_ = false;  ///< L(u) = a(u, u): there is no friction either
+  bool work_is_energy_ = false;  ///< L(u) = a(u, u): homogeneous and without friction
 };
 
 }  // namespace tribound::certify

@@ -33,7 +33,7 @@ void intersect(double& lower, double& upper, double other_lower, double other_up
 void set_safety_factor(QuantityInterval& interval, double coefficient, const QuantityInterval& normal,
                        const std::vector<QuantityInterval>& tangential)
 {
-  double least = 0;  // of H, squared
+  double least = 0;  // lower bound of H^2
   double most = 0;
   for (const QuantityInterval& component : tangential)
   {

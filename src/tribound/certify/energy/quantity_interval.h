@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantity_interval.h
-/// Intervals that are certain to contain a number of the exact solution.
+/// Intervals that are guaranteed to contain a number of the exact solution.
 
 #include <string>
 #include <vector>
@@ -16,24 +16,24 @@ struct QuantityInterval
   double value = 0;  ///< of u_h; it may lie outside
   double lower = 0;
   double upper = 0;
-  bool exact = false;    ///< but for rounding and what quadrature may miss of the loads
+  bool exact = false;    ///< except for rounding and what quadrature may miss of the loads
   std::string basis{};   ///< "equilibrium", "duality gap", "energy bound" or "second order"
-  std::string note{};    ///< what else there is to know, such as a weight beside fixed displacements
+  std::string note{};    ///< further remarks, such as a weight beside fixed displacements
   std::string reason{};  ///< why there is no interval; empty: there is one
-  /// Per own cell its share in half the width, for marking; empty where it is exact.
+  /// The share of each own cell in half the width, for marking; empty if exact.
   std::vector<double> cells{};
 
-  /// The larger distance of the value from an end: how far it can be off.
+  /// The larger distance of the value from an end: the largest possible error.
   [[nodiscard]] double bar() const;
 };
 
-/// Makes it [lower, upper], each further out by `rounding`; where they are not finite it says so.
+/// Sets [lower, upper], widened by `rounding` at both ends; if the ends are not finite, sets a reason.
 void set_ends(QuantityInterval& interval, double lower, double upper, double rounding);
 
-/// What both allow, for ends that may be off by rounding: neither is empty.
+/// The intersection, for ends that may be off by rounding: it is never empty.
 void intersect(double& lower, double& upper, double other_lower, double other_upper);
 
-/// mu N / H of numbers in [lower, upper]: N, then the components of H. Sets ends or a reason.
+/// mu N / H for numbers in intervals: N, then the components of H. Sets ends or a reason.
 void set_safety_factor(QuantityInterval& interval, double coefficient, const QuantityInterval& normal,
                        const std::vector<QuantityInterval>& tangential);
 

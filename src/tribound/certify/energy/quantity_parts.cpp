@@ -14,12 +14,12 @@ namespace
 
 using problem::QuantityKind;
 
-/// The measure and the mean outward normal of a boundary; 0 where there is none.
+/// The measure and the mean outward normal of a boundary; 0 if there is none.
 template <int dim>
 void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& parts)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  Point<dim + 1> sum = Point<dim + 1>::Zero();  // the last: the measure
+  Point<dim + 1> sum = Point<dim + 1>::Zero();  // the last entry: the measure
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     const bool counts =
@@ -53,7 +53,7 @@ bool is_plane(const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& n)
   return !mesh.ranks().any(std::ranges::any_of(mesh.owned_boundary(), differs));
 }
 
-/// Unit vectors across n, orthogonal to each other.
+/// Orthonormal vectors orthogonal to n.
 template <int dim>
 std::array<Point<dim>, dim - 1> tangents(const Point<dim>& n)
 {

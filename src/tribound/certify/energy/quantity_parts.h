@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantity_parts.h
-/// What numbers of a solution are made of.
+/// The parts from which numbers of a solution are computed.
 
 #include <span>
 #include <string>
@@ -13,7 +13,7 @@
 namespace tribound::certify
 {
 
-/// A quantity, its boundary found on the mesh, its directions known.
+/// A quantity, with its boundary found on the mesh and its directions known.
 template <int dim>
 struct QuantityParts
 {
@@ -24,11 +24,11 @@ struct QuantityParts
   double coefficient = 0;                     ///< mu_F of safety factors
   Point<dim> direction = Point<dim>::Zero();  ///< e of mean displacements, a unit vector
   double measure = 0;                         ///< of their boundary
-  std::string reason{};                       ///< why it is no number; empty: it is one
+  std::string reason{};                       ///< why it is not a number; empty: it is one
 };
 
-/// Throws InputError where a boundary does not exist or is no contact boundary where one is wanted, without
-/// Coulomb's friction alone for a safety factor, and for a direction 0. All ranks together.
+/// Throws InputError if a boundary does not exist or is not the contact boundary that is needed, for a safety
+/// factor if friction is not Coulomb's alone, and for the direction 0. All ranks together.
 template <int dim>
 [[nodiscard]] QuantityParts<dim> parts_of(const contact::NitscheForm<dim>& form,
                                           const problem::Quantity<dim>& quantity);

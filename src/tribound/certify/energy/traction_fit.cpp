@@ -144,9 +144,9 @@ auto TractionFit<dim>::operator()(const Columns& t, std::span<const TractionCone
   return b;
 }
 
-/// The coefficients are b_j = P_j(b_j + (m_j - sum_k b_k G_kj) / G_jj) with the moments m of t; so, D_j being
-/// the derivative of P_j there, (I - D_j) db_j + D_j sum_k db_k G_kj / G_jj = D_j dm_j / G_jj. Regular, since
-/// G is definite and 0 <= D_j <= I.
+/// The coefficients satisfy b_j = P_j(b_j + (m_j - sum_k b_k G_kj) / G_jj) with the moments m of t. With D_j
+/// the derivative of P_j there, (I - D_j) db_j + D_j sum_k db_k G_kj / G_jj = D_j dm_j / G_jj. This is
+/// regular, since G is definite and 0 <= D_j <= I.
 template <int dim>
 Eigen::MatrixXd TractionFit<dim>::tangent(const Columns& t, std::span<const TractionCone<dim>> cones,
                                           std::span<const Columns> z) const

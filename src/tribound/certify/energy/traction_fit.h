@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file traction_fit.h
-/// The nearest polynomial on a facet of Gamma_C whose coefficients obey the law, and how it follows what it
-/// is fitted to. For the implementation of tractions alone.
+/// On a facet of Gamma_C, the polynomial nearest to a given traction among those whose coefficients obey the
+/// law, and its derivative by that traction. Only for the implementation of tractions.
 
 #include <span>
 #include <vector>
@@ -15,8 +15,8 @@
 namespace tribound::certify
 {
 
-/// Where a coefficient of a traction may be: |t^t| <= limit - coefficient t^n, t^n <= 0; with coefficient > 0
-/// limit = 0. Between bodies that are tied anywhere.
+/// The admissible values of a traction coefficient: |t^t| <= limit - coefficient t^n, t^n <= 0; if
+/// coefficient > 0, limit = 0. Between tied bodies all values.
 template <int dim>
 struct TractionCone
 {
@@ -28,19 +28,19 @@ struct TractionCone
   [[nodiscard]] bool contains(const Point<dim>& t, double tolerance) const;
   /// The nearest point.
   [[nodiscard]] Point<dim> nearest(const Point<dim>& t) const;
-  /// Its derivative by t, symmetric with eigenvalues in [0, 1]; where there are several, one of them.
+  /// Its derivative by t, symmetric with eigenvalues in [0, 1]; if there are several, one of them.
   [[nodiscard]] Tensor<dim> derivative(const Point<dim>& t) const;
 };
 
 /// Bernstein's basis of the degree at points of the reference facet, [point, coefficient].
 template <int dim>
 [[nodiscard]] Eigen::MatrixXd bernstein_at(int degree, std::span<const Point<dim - 1>> points);
-/// Its coefficients from values at the nodes of the basis, [coefficient, node].
+/// Coefficients in the basis from values at its nodes, [coefficient, node].
 template <int k>
 [[nodiscard]] Eigen::MatrixXd bernstein_from_nodes(const fem::LagrangeBasis<k>& basis);
 
-/// Fits coefficients to tractions at the contact points of a facet. On all facets the products of the basis
-/// differ by a factor only, det of the segment: products here are without it. Keeps a reference to the form.
+/// Fits coefficients to tractions at the contact points of a facet. The products of the basis differ between
+/// facets only by the factor det of the segment; products here are without it. Keeps a reference to the form.
 template <int dim>
 class TractionFit
 {
@@ -52,14 +52,14 @@ class TractionFit
 
   /// The basis at the points, [point, coefficient].
   [[nodiscard]] const Eigen::MatrixXd& at_points() const { return at_points_; }
-  /// Of a field by contact points what facet k has.
+  /// The part on facet k of a field at the contact points.
   [[nodiscard]] Columns columns(std::size_t k, std::span<const Point<dim>> t) const;
-  /// Those of the coefficients on facet k. Limits are thresholds in Bernstein's basis, from their values at
-  /// the nodes; none is negative.
+  /// The cones of the coefficients on facet k. Limits are thresholds in Bernstein's basis, from their values
+  /// at the nodes; none is negative.
   [[nodiscard]] std::vector<TractionCone<dim>> cones(std::size_t k) const;
 
-  /// Coefficients in the cones of the nearest t_h to t, given at the points: where the projection of t on
-  /// polynomials is there, that; else coefficient after coefficient is made the best.
+  /// Coefficients in the cones of the t_h nearest to t, given at the points. If the projection of t on
+  /// polynomials is in the cones, it is taken; otherwise the coefficients are optimised one after another.
   [[nodiscard]] Columns operator()(const Columns& t, std::span<const TractionCone<dim>> cones) const;
   /// The matrix (Dt_h(t)[z_i], z_j) for polynomials z_i given at the points.
   [[nodiscard]] Eigen::MatrixXd tangent(const Columns& t, std::span<const TractionCone<dim>> cones,
@@ -72,7 +72,7 @@ class TractionFit
   fem::LagrangeBasis<dim - 1> basis_;
   Eigen::MatrixXd from_values_;
   Eigen::MatrixXd at_points_;
-  Eigen::MatrixXd weighted_;  ///< moments from values at the points
+  Eigen::MatrixXd weighted_;  ///< maps values at the points to moments
   Eigen::MatrixXd gram_;
   CholeskyFactors factors_;
 };
