@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file contact_history.h
-/// What the contact boundary remembers of the steps before (method section 12.2).
+/// What the contact boundary remembers of earlier steps (method section 12.2).
 
 #include <cstddef>
 #include <functional>
@@ -14,10 +14,10 @@
 namespace tribound::contact
 {
 
-/// States at the contact points of a form, and between them on each segment: D, q and w are there the
-/// polynomials of degree p + 2 that the rule's projection gives, in 2D through the values at its points, cut
-/// to what the law admits. So T is a function on the whole segment, and the residual of a step well defined:
-/// the history is part of its data.
+/// States at the contact points of a form, and between them on each segment. There D, q and w are the
+/// polynomials of degree p + 2 that the projection by the rule gives (in 2D, interpolation at its points),
+/// cut to what the law admits. So T is a function on the whole segment, and the residual of a step is well
+/// defined: the history is part of its data.
 template <int dim>
 class ContactHistory
 {
@@ -26,16 +26,16 @@ class ContactHistory
   ContactHistory(std::vector<problem::InterfaceState<dim>> states, const fem::Quadrature<dim - 1>& rule,
                  int degree);
   using Cut = std::function<problem::InterfaceState<dim>(std::size_t point, problem::InterfaceState<dim>)>;
-  /// From values of D, q and w that a law need not admit, such as those of the polynomials of another one:
-  /// they become the polynomials, and `cut` makes the states at the points of them.
+  /// From values of D, q and w that a law need not admit, such as those of the polynomials of another
+  /// history. They define the polynomials; `cut` makes the states at the points from them.
   ContactHistory(std::vector<problem::InterfaceState<dim>> values, const fem::Quadrature<dim - 1>& rule,
                  int degree, const Cut& cut);
 
   [[nodiscard]] std::span<const problem::InterfaceState<dim>> states() const { return states_; }
-  /// On segment k, at the point with coordinates s.
+  /// The state on segment k, at the point with coordinates s.
   [[nodiscard]] problem::InterfaceState<dim> at(const problem::ContactLaw& law, std::size_t k,
                                                 const Point<dim - 1>& s) const;
-  /// The same before it is cut: polynomials.
+  /// The same before it is cut: values of the polynomials.
   [[nodiscard]] problem::InterfaceState<dim> uncut(std::size_t k, const Point<dim - 1>& s) const;
 
  private:
@@ -45,7 +45,7 @@ class ContactHistory
   std::vector<problem::InterfaceState<dim>> states_;
   int degree_;
   std::size_t n_;                     ///< dim P^{p+2}
-  std::vector<Values> coefficients_;  ///< of segment k in the orthonormal basis: [k n_ + i]
+  std::vector<Values> coefficients_;  ///< on segment k in the orthonormal basis: [k n_ + i]
 };
 
 }  // namespace tribound::contact

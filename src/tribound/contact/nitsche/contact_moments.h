@@ -11,7 +11,7 @@
 namespace tribound::contact
 {
 
-/// arm x force; in 2D its one component, positive from x to y.
+/// arm x force; in 2D its only component, positive from x to y.
 [[nodiscard]] Point<1> moment(const Point<2>& arm, const Point<2>& force);
 [[nodiscard]] Point<3> moment(const Point<3>& arm, const Point<3>& force);
 
@@ -21,12 +21,12 @@ struct ContactMoments
 {
   using Moment = Point<dim == 2 ? 1 : 3>;
 
-  Moment slave = Moment::Zero();   ///< integral of x x t: of what acts on the slaves
-  Moment master = Moment::Zero();  ///< -integral of Pi(x) x t: of what acts on the masters; obstacles: none
+  Moment slave = Moment::Zero();   ///< integral of x x t, acting on the slaves
+  Moment master = Moment::Zero();  ///< -integral of Pi(x) x t, acting on the masters; obstacles: none
   double scale = 0;                ///< integral of |x| |t|, to which rounding is proportional
 };
 
-/// Over the segments whose slave has boundary number `tag`, or over all for tag < 0.
+/// Over the segments whose slave has boundary number `tag`; over all for tag < 0.
 template <int dim>
 [[nodiscard]] ContactMoments<dim> contact_moments(const NitscheForm<dim>& form, std::span<const Point<dim>> t,
                                                   int tag = -1);

@@ -9,7 +9,7 @@ namespace tribound::contact
 template <int dim>
 CrackMouth crack_mouth(const NitscheForm<dim>& form, int tag)
 {
-  constexpr double rounding = 1e-9;  // of the base: what is as near by symmetry
+  constexpr double rounding = 1e-9;  // of the base: points as near by symmetry
   const problem::BaseLine& line = *form.problem().contact(tag)->base;
   const Point<dim> heel(line.heel.data());
   const auto distance = [&](std::size_t i)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file crack_mouth.h
-/// Where the opening of a crack in the base of a hydraulic structure is taken (method section 12.6).
+/// Where the opening of a crack in the base of a hydraulic structure is measured (method section 12.6).
 
 #include <algorithm>
 #include <vector>
@@ -11,19 +11,19 @@
 namespace tribound::contact
 {
 
-/// The contact points nearest to the heel: one or, by symmetry, several; none where nothing lies opposite.
+/// The contact points nearest to the heel: one or, by symmetry, several; none if nothing lies opposite.
 struct CrackMouth
 {
-  std::vector<std::size_t> points;  ///< their numbers, those of ghosts included
-  double n = 0;                     ///< how many there are, each counted once on several ranks
+  std::vector<std::size_t> points;  ///< numbers of the points, including those of ghosts
+  double n = 0;                     ///< number of points over all ranks, each counted once
 };
 
-/// Of the interface whose slave has boundary number `tag`, which has a Contact::base. All ranks together.
+/// For the interface whose slave has boundary number `tag`, which has a Contact::base. All ranks together.
 template <int dim>
 [[nodiscard]] CrackMouth crack_mouth(const NitscheForm<dim>& form, int tag);
 
-/// The mean over the mouth of value(i), i the number of a contact point; 0 where it has none. All ranks
-/// together, and each has it.
+/// The mean over the mouth of value(i), with i the number of a contact point; 0 if there are no points. All
+/// ranks together; each gets it.
 template <int dim, class Value>
 [[nodiscard]] double mean_at(const CrackMouth& mouth, const NitscheForm<dim>& form, const Value& value)
 {

@@ -36,7 +36,7 @@ struct Face
   bool cracked;
 };
 
-/// What own segments of the contact have.
+/// The items of the own segments of the contact.
 std::vector<PointOnLine> own_items(const NitscheForm<2>& form, const problem::Contact& contact,
                                    std::span<const problem::InterfaceResponse<2>> responses)
 {
@@ -50,7 +50,7 @@ std::vector<PointOnLine> own_items(const NitscheForm<2>& form, const problem::Co
 std::vector<Face> own_items(const NitscheForm<3>& form, const problem::Contact& contact,
                             std::span<const problem::InterfaceResponse<3>> responses)
 {
-  std::map<std::size_t, Face> faces;  // by number of the slave facet, which may be of several segments
+  std::map<std::size_t, Face> faces;  // by number of the slave facet, which may have several segments
   const mesh::Mesh<3>& mesh = form.space().mesh();
   const std::size_t n = form.n_segment_points();
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
@@ -100,7 +100,7 @@ Point<3> point(const Corner& corner)
   return Point<3>(corner.data());
 }
 
-/// Whether the edge opposite corner i, of the rim, looks upstream.
+/// Whether the rim edge opposite corner i faces upstream.
 bool looks_upstream(const Face& face, int i, const Point<3>& downstream)
 {
   constexpr double least_cosine = 0.5;

@@ -14,7 +14,7 @@ namespace tribound::contact
 namespace
 {
 
-/// An upper bound of |f| on a cell or facet; 0 where there is none.
+/// An upper bound of |f| on a cell or facet; terms without a bound count as 0.
 template <int k, int dim, int n>
 double largest_value(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map)
 {
@@ -31,8 +31,8 @@ double largest_value(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map)
   return size.norm();
 }
 
-/// Of interferences, g < 0, at points of the segments: the stress that they cause across the body, as of
-/// prescribed displacements.
+/// The effect of interferences, g < 0, at points of the segments: the stress that they cause across the body,
+/// as prescribed displacements do.
 template <int dim>
 double effect_of_interference(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                               std::span<const ContactSegment<dim>> segments,
@@ -56,7 +56,7 @@ double effect_of_interference(const problem::Problem<dim>& problem, const mesh::
   return stiffest * interference / size * std::sqrt(volume);
 }
 
-/// Of the pressure of water, as of a traction: size^{1/2} ||p_w||.
+/// The effect of the water pressure, as of a traction: size^{1/2} ||p_w||.
 template <int dim>
 double effect_of_water(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
                        double size)
@@ -72,8 +72,8 @@ double effect_of_water(const mesh::Mesh<dim>& mesh, std::span<const ContactSegme
   return std::sqrt(size * mesh.ranks().sum(squares));
 }
 
-/// Of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; of prescribed displacements: the stress that
-/// they cause across the body.
+/// The effect of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; plus that of prescribed
+/// displacements: the stress that they cause across the body.
 template <int dim>
 double effect_of_loads(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, double size)
 {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file data_effect.h
-/// How much stress the data of a problem can cause, by their size.
+/// How large a stress the data of a problem can cause, estimated from their size.
 
 #include <span>
 
@@ -12,9 +12,9 @@
 namespace tribound::contact
 {
 
-/// The sum of what loads, prescribed displacements, interferences (g < 0 at the `points` of the segments) and
-/// water can cause in the norm of the stress: stress times length^(dim/2). `volume`: of the body. All ranks
-/// together.
+/// The sum of the effects of loads, prescribed displacements, interferences (g < 0 at the `points` of the
+/// segments) and water in the norm of the stress: stress times length^(dim/2). `volume`: of the body. All
+/// ranks together.
 template <int dim>
 [[nodiscard]] double largest_effect(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                     std::span<const ContactSegment<dim>> segments,

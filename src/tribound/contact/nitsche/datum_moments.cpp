@@ -19,18 +19,18 @@ namespace tribound::contact
 namespace
 {
 
-/// Size of an affine function, relative to its terms, that counts as 0.
+/// An affine function of this size, relative to its terms, counts as 0.
 constexpr double rounding = 1e-13;
 
-/// As many parts as a formula may need before a bound of it is seen. That is a matter of the formula and the
-/// simplex, not of how much effort all simplices together are worth.
+/// The number of parts that a formula may need before it is seen to be bounded. It depends on the formula and
+/// the simplex, not on the effort that all simplices together are worth.
 constexpr int most_unbounded_parts = 1 << 15;
 
-/// Of a part, relative to the simplex.
+/// The smallest edge of a part, relative to the simplex.
 constexpr double smallest_edge = 1e-4;
 
-/// Lengths and costs that differ by less, relatively, are equal: rounding, and with it the numbering of the
-/// mesh, decides nothing.
+/// Lengths and costs whose relative difference is smaller are equal, so that rounding, and with it the
+/// numbering of the mesh, decides nothing.
 constexpr double tie = 1e-9;
 
 /// k!: integrals over a simplex of measure |T| are k! |T| times those over the reference simplex.
@@ -43,8 +43,8 @@ double measure_of(const DatumPart<k, n>& part, const SimplexMap<k, dim>& map)
   return map.measure * fem::fraction<k>(part.part);
 }
 
-/// The whole simplex, its vertices in the order of their places in space (x, then y, then z): how it is cut
-/// and halved then does not depend on how they are numbered.
+/// The whole simplex, its vertices ordered by their coordinates (x, then y, then z): how it is cut and halved
+/// then does not depend on their numbering.
 template <int k, int dim>
 fem::Part<k> ordered_simplex(const SimplexMap<k, dim>& map)
 {
@@ -56,7 +56,7 @@ fem::Part<k> ordered_simplex(const SimplexMap<k, dim>& map)
   return whole;
 }
 
-/// The two halves of a part, cut at the middle of its longest edge, of equal ones the first.
+/// The two halves of a part, cut at the midpoint of its longest edge; of equally long ones, the first.
 template <int k, int dim>
 std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k, dim>& map)
 {
@@ -120,7 +120,7 @@ auto DatumMoments<k, dim, n>::cut_at_switches(const Datum<dim, n>& datum, const 
   for (const auto& term : datum.terms)
     for (const problem::Affine& a : term.value->switches())
     {
-      if (static_cast<int>(parts.size()) >= max_parts) break;  // what is not cut is enclosed
+      if (static_cast<int>(parts.size()) >= max_parts) break;  // parts that are not cut are enclosed
       std::vector<fem::Part<k>> finer;
       for (const fem::Part<k>& part : parts)
       {
@@ -145,7 +145,7 @@ auto DatumMoments<k, dim, n>::cut_at_switches(const Datum<dim, n>& datum, const 
   return result;
 }
 
-/// Remainders of the part.
+/// Sets the remainders of the part.
 template <int k, int dim, int n>
 void DatumMoments<k, dim, n>::enclose(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
                                       DatumPart<k, n>& part) const
@@ -177,7 +177,7 @@ void DatumMoments<k, dim, n>::enclose(const Datum<dim, n>& datum, const SimplexM
   }
 }
 
-/// Throws for a term that has no bound on a part.
+/// Throws for a term that is not seen to be bounded on a part.
 template <int k, int dim, int n>
 void DatumMoments<k, dim, n>::require_bounds(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
                                              const Parts& parts) const
@@ -211,7 +211,7 @@ void DatumMoments<k, dim, n>::refine(const Datum<dim, n>& datum, const SimplexMa
     return std::pair(weights.remainder * 2 * part.remainder.norm() * std::sqrt(measure),
                      weights.mean > 0 ? weights.mean * 2 * part.mean_remainder.norm() * measure : 0.0);
   };
-  // Smaller parts of the simplex, where roots start or poles lie, are nothing but rounding.
+  // Smaller parts, at the branch points of roots or at poles, are only rounding.
   const auto is_small = [](const DatumPart<k, n>& part)
   { return fem::fraction<k>(part.part) < std::pow(smallest_edge, k); };
   const auto is_unbounded = [](const DatumPart<k, n>& part) { return !part.remainder.allFinite(); };
@@ -264,7 +264,7 @@ std::vector<Point<n>> DatumMoments<k, dim, n>::moments(const Parts& parts) const
   return result;
 }
 
-/// ||f - Pi f|| by the rules on the parts, and (sum_K (2 delta |K|^{1/2})^2)^{1/2} for what they miss.
+/// ||f - Pi f|| by the rules on the parts, and (sum_K (2 delta |K|^{1/2})^2)^{1/2} for what the rules miss.
 template <int k, int dim, int n>
 double DatumMoments<k, dim, n>::oscillation(const Parts& parts, std::span<const Point<n>> moments,
                                             double measure) const
@@ -284,7 +284,7 @@ double DatumMoments<k, dim, n>::oscillation(const Parts& parts, std::span<const 
   }
   if (parts.size() > 1)  // the rules on the parts are exact for products of the basis: ||f||^2 - ||Pi f||^2
   {
-    // Sums of n terms, each of the squares with an error of n epsilon at most.
+    // Sums of n terms; the error in each of the squares is at most n epsilon.
     const double n_terms = static_cast<double>(parts.size()) * rule_.size();
     const double cancellation = std::max(1e-14, std::numeric_limits<double>::epsilon() * n_terms);
     const double all = squares;
@@ -302,7 +302,7 @@ DatumOnSimplex<k, n> DatumMoments<k, dim, n>::operator()(const Datum<dim, n>& da
 {
   DatumOnSimplex<k, n> result;
   Parts& parts = result.parts;
-  std::vector<Point<n>> on_whole;  // first of all: where a formula is undefined, it shows there
+  std::vector<Point<n>> on_whole;  // evaluated first: an undefined formula shows here
   for (const Point<k>& s : rule_.points) on_whole.push_back(datum(map(s)));
   parts = cut_at_switches(datum, map, max_parts);
   for (auto& part : parts) enclose(datum, map, part);

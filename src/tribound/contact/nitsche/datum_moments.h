@@ -1,13 +1,13 @@
 #pragma once
 
 /// @file datum_moments.h
-/// A datum on one simplex as the method sees it, and a bound of what that leaves out.
+/// A datum on one simplex as the method sees it, with a bound of what that leaves out.
 ///
-/// A rule sees a formula at its points alone: what lies between them may be missed. Here the simplex is cut
-/// where the formula jumps or kinks along a plane and halved elsewhere, until ENCLOSURES of the formula show
+/// A rule sees a formula only at its points and may miss what lies between them. Here the simplex is cut
+/// where the formula jumps or kinks along a plane, and halved elsewhere, until ENCLOSURES of the formula show
 /// that nothing of weight is left. On a part K, Taylor's theorem with interval coefficients gives delta with
-/// |f - P| <= delta for a polynomial P of degree n; a rule on K with positive weights, exact for what is
-/// integrated of P, then misses at most 2 delta |K| of the integral of f, and 2 delta |K|^{1/2} of its norm.
+/// |f - P| <= delta for a polynomial P of degree n. If a rule on K with positive weights is exact for the
+/// integrals of P, it misses at most 2 delta |K| of the integral of f, and 2 delta |K|^{1/2} of its norm.
 
 #include <span>
 #include <vector>
@@ -34,9 +34,9 @@ struct Datum
   std::vector<Term> terms;
 
   [[nodiscard]] Point<n> operator()(const Point<dim>& x) const;
-  /// The largest degree of a term; not_polynomial if one is none.
+  /// The largest degree of a term; not_polynomial if a term is not a polynomial.
   [[nodiscard]] int degree() const;
-  /// Whether all terms are.
+  /// Whether all terms are enclosed.
   [[nodiscard]] bool is_enclosed() const;
 };
 
@@ -45,9 +45,8 @@ template <int k, int n>
 struct DatumPart
 {
   fem::Part<k> part;
-  Point<n> remainder;  ///< per component: the largest distance of f from P^{p+2}, an upper bound; 0 where
-                       ///< nobody knows
-  Point<n> mean_remainder;       ///< the same from P^{2p+4}
+  Point<n> remainder;            ///< per component, >= the largest distance of f from P^{p+2}; 0 if unknown
+  Point<n> mean_remainder;       ///< the same for P^{2p+4}
   std::vector<Point<n>> values;  ///< f at the points of the rule on the part
 };
 
@@ -55,39 +54,39 @@ template <int k, int n>
 struct DatumOnSimplex
 {
   std::vector<DatumPart<k, n>> parts;
-  /// (f, theta_j) / |T| on P^{p+1}, theta orthonormal on the reference simplex; empty where the rule on the
+  /// (f, theta_j) / |T| on P^{p+1}, theta orthonormal on the reference simplex; empty if the rule on the
   /// whole simplex gives them.
   std::vector<Point<n>> moments;
   double oscillation = 0;  ///< >= ||f - Pi f||, Pi the projection of the moments on the smaller space
   double mean = 0;         ///< >= |integral of f - its moment|
 };
 
-/// What is left out costs: remainder * ||f - P|| + mean * |error of the integral of f|.
+/// The cost of what is left out: remainder * ||f - P|| + mean * |error of the integral of f|.
 struct DatumWeights
 {
   double remainder;
   double mean;
 };
 
-/// Takes moments of data for the degree p of a method, with the rule exact to data_quadrature_degree(p).
+/// Computes moments of data for degree p of the method, with the rule exact to data_quadrature_degree(p).
 template <int k, int dim, int n = dim>
 class DatumMoments
 {
  public:
-  /// Oscillations are those against P^projected.
+  /// Oscillations are relative to P^projected.
   DatumMoments(int p, int projected);
 
-  /// Polynomials of degree <= p + 2 are integrated by the rule as it is. Others are looked into until what
-  /// is left out costs at most `allowed`, but with no more than some `max_parts` parts, unless a bound of
-  /// the formula is not seen yet. Throws InputError
-  /// where a formula is not finite, and near where the enclosures find no bound of it.
+  /// Polynomials of degree <= p + 2 are integrated by the rule as it is. Others are subdivided until what is
+  /// left out costs at most `allowed`, but into no more than about `max_parts` parts, unless the formula is
+  /// not yet seen to be bounded. Throws InputError if a formula is not finite, and near points where the
+  /// enclosures find no bound.
   [[nodiscard]] DatumOnSimplex<k, n> operator()(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
                                                 const DatumWeights& weights, double allowed,
                                                 int max_parts) const;
 
-  /// The polynomial with the given moments at the points of the rule.
+  /// The values at the points of the rule of the polynomial with the given moments.
   void evaluate(std::span<const Point<n>> moments, std::span<Point<n>> values) const;
-  /// The same at one point of the simplex; moments that are not given are 0.
+  /// The same at one point of the simplex; missing moments are 0.
   [[nodiscard]] Point<n> evaluate(std::span<const Point<n>> moments, const Point<k>& s) const;
 
   [[nodiscard]] const fem::Quadrature<k>& rule() const { return rule_; }

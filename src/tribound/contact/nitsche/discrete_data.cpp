@@ -16,13 +16,13 @@ namespace tribound::contact
 namespace
 {
 
-/// Values of basis functions that all parts of all cells and facets may take, and bounds of the parts of
-/// each: some seconds of one core.
+/// Limit of the values of basis functions for all parts of all cells and facets, and of the bounds of the
+/// parts of each: some seconds of one core.
 constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts_of_facet = 4096;
 
-/// A lower bound of the gap on the parts of a segment; -HUGE_VAL where there is none.
+/// A lower bound of the gap on the parts of a segment; -HUGE_VAL if there is none.
 template <int dim>
 double smallest_gap(const problem::Field& gap, const SimplexMap<dim - 1, dim>& map,
                     const DatumOnSimplex<dim - 1, 3>& found)
@@ -39,9 +39,9 @@ double smallest_gap(const problem::Field& gap, const SimplexMap<dim - 1, dim>& m
   return smallest;
 }
 
-/// Beside a kink or a jump the polynomial with the moments of a gap is smaller than the gap is anywhere, and
-/// would push where nothing touches: makes it flatter, with the same mean, until it is not, at the points of
-/// the rule and the corners.
+/// Beside a kink or a jump, the polynomial with the moments of a gap can be below the smallest gap and would
+/// push where nothing touches. This makes it flatter, with the same mean, until that is no longer so at the
+/// points of the rule and the corners.
 template <int dim>
 void limit_gap(const DatumMoments<dim - 1, dim, 3>& method, double smallest, std::span<Point<3>> moments)
 {
@@ -51,7 +51,7 @@ void limit_gap(const DatumMoments<dim - 1, dim, 3>& method, double smallest, std
   for (const Point<dim - 1>& s : points) lowest = std::min(lowest, method.evaluate(moments, s)[0]);
   if (lowest >= smallest) return;
   const double mean = method.evaluate(moments.first(1), points[0])[0];
-  constexpr double inside = 1 - 1e-12;  // so that rounding does not push either
+  constexpr double inside = 1 - 1e-12;  // so that rounding does not push, either
   const double share = std::max(0.0, inside * (mean - smallest) / (mean - lowest));
   for (Point<3>& moment : moments.subspan(1)) moment[0] *= share;
 }
@@ -226,7 +226,7 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                });
 }
 
-/// Throws where the strength or the pressure of the water is negative at a point of a rule.
+/// Throws if the strength or the water pressure is negative at a point of a rule.
 template <int dim>
 void DiscreteData<dim>::check_signs(const ContactSegment<dim>& segment,
                                     const DatumOnSimplex<dim - 1, 3>& found) const
@@ -279,7 +279,7 @@ ContactData DiscreteData<dim>::contact(const ContactSegment<dim>& segment, std::
     return {gap(), problem::strength_at<dim>(segment.contact->law, x),
             problem::water_at<dim>(*segment.contact, x)};
   const Point<3> polynomial = contact_moments_.evaluate(found->second, s);
-  // In place of a jump it overshoots: thresholds are not negative, but water has the moments of a load.
+  // It overshoots at a jump: thresholds are cut to nonnegative values, but water keeps the moments of a load.
   return {segment.contact->gap ? polynomial[0] : gap(), std::max(polynomial[1], 0.0), polynomial[2]};
 }
 

@@ -2,8 +2,8 @@
 
 /// @file discrete_data.h
 /// The data of a problem as the discrete problem on a mesh sees them: loads, gaps, thresholds and water
-/// pressures at the points of the reference rules, the same for form, residual, patches and estimators, with
-/// bounds of what that leaves out.
+/// pressures at the points of the reference rules. They are the same for form, residual, patches and
+/// estimators, and come with bounds of what that leaves out.
 
 #include <cstdint>
 #include <optional>
@@ -19,14 +19,14 @@
 namespace tribound::contact
 {
 
-/// What a load loses on one cell or facet when it is replaced by its values at the points of a rule.
+/// What is lost when a load on one cell or facet is replaced by its values at the points of a rule.
 struct LoadRemainder
 {
   double oscillation = 0;  ///< >= ||f - Pi f||: P^{p-1} on cells, P^p on facets
-  double mean = 0;  ///< >= |integral of f - what the rule makes of it|, also times affine weights of size 1
+  double mean = 0;  ///< >= |integral of f - its value by the rule|, also times affine weights of size 1
 };
 
-/// A part of a contact segment on which a rule integrates gap, threshold and the pressure of water, up to the
+/// A part of a contact segment on which a rule integrates gap, threshold and water pressure, up to the
 /// remainders: upper bounds of their distances from P^{p+2}.
 template <int dim>
 struct ContactDatumPart
@@ -45,37 +45,37 @@ struct ContactData
   double water;     ///< p_w, stress; 0 without water
 };
 
-/// What the data that are no polynomials may leave out of the bound, stress times length^(dim/2).
+/// What data that are not polynomials may add to the bound, stress times length^(dim/2).
 struct DataAccuracy
 {
   double share = 1e-4;               ///< of the largest effect that the data can have
-  std::optional<double> absolute{};  ///< in its place
+  std::optional<double> absolute{};  ///< replaces the share
 };
 
-/// How far the data were looked into.
+/// How finely the data were subdivided.
 struct DataEffort
 {
-  /// Cells, boundary facets and contact segments with data that are no polynomials of degree p + 2.
+  /// Cells, boundary facets and contact segments with data that are not polynomials of degree p + 2.
   std::int64_t formulas = 0;
-  std::int64_t loads = 0;       ///< of these, those whose data are loads
-  std::int64_t subdivided = 0;  ///< of these
-  std::int64_t parts = 0;       ///< into which these were cut
-  std::int64_t unenclosed = 0;  ///< cells and facets with functions of which only values at points are known
+  std::int64_t loads = 0;       ///< those of them whose data are loads
+  std::int64_t subdivided = 0;  ///< those of them that were subdivided
+  std::int64_t parts = 0;       ///< the number of parts of these
+  std::int64_t unenclosed = 0;  ///< cells and facets with functions that are known only at points
 };
 
 /// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
-/// in the reference coordinates of Mesh::cell, on contact segments in their own. Where a formula is
-/// subdivided they are those of the polynomial of degree p + 1 with the same moments; a threshold is not
+/// in the reference coordinates of Mesh::cell; on contact segments in their own coordinates. If a formula is
+/// subdivided, they are those of the polynomial of degree p + 1 with the same moments. A threshold is not
 /// below 0, and a gap not below its smallest value: its polynomial is made flatter, with the same mean.
-/// Boundary facets have their numbers in Mesh::boundary(). Keeps references to problem and mesh. On several
-/// ranks, which construct it together, ghosts have data, too.
+/// Boundary facets have their numbers in Mesh::boundary(). Keeps references to problem and mesh. Several
+/// ranks construct it together; ghosts have data, too.
 template <int dim>
 class DiscreteData
 {
  public:
-  /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count with the
+  /// Subdivides until what is left out adds no more than about `accuracy` to the bound; gaps count as the
   /// stress gamma g. Throws InputError for a negative threshold or water pressure and for data that are not
-  /// finite, naming the place. Without segments loads alone are known.
+  /// finite, and names the place. Without segments only loads are known.
   DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
                std::span<const ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
@@ -94,7 +94,7 @@ class DiscreteData
   void body_force(Index cell, std::span<Point<dim>> values) const;
   /// g_N on a boundary facet; fixed components are 0.
   void traction(std::size_t facet, std::span<Point<dim>> values) const;
-  /// At the point with coordinates s on segment k.
+  /// The data at the point with coordinates s on segment k.
   [[nodiscard]] ContactData contact(const ContactSegment<dim>& segment, std::size_t k,
                                     const Point<dim - 1>& s) const;
 
@@ -106,10 +106,10 @@ class DiscreteData
   {
     return traction_.remainders.empty() ? LoadRemainder{} : traction_.remainders[facet];
   }
-  /// In the coordinates of the segment; empty where gap, threshold and water are integrated exactly on all of
-  /// it.
+  /// In the coordinates of the segment; empty if gap, threshold and water are integrated exactly on the whole
+  /// segment.
   [[nodiscard]] std::span<const ContactDatumPart<dim>> contact_parts(std::size_t segment) const;
-  /// What data that are no polynomials may add to the bound on a contact segment, over the root of its
+  /// What data that are not polynomials may add to the bound on a contact segment, divided by the root of its
   /// measure.
   [[nodiscard]] double contact_density() const { return contact_density_; }
   [[nodiscard]] const DataEffort& effort() const { return effort_; }
@@ -123,7 +123,7 @@ class DiscreteData
     std::unordered_map<std::size_t, std::vector<Point<n>>> moments;  ///< where a formula is subdivided
   };
 
-  /// Of the body, its boundary and the contact boundary.
+  /// The measures of the body, its boundary and the contact boundary.
   struct Measures
   {
     double body;
@@ -135,7 +135,7 @@ class DiscreteData
 
   [[nodiscard]] Measures measures(Segments segments) const;
   void count_formulas(Segments segments);
-  // A cell or facet may leave out `density` times the root of its measure.
+  // `density`: what a cell or facet may leave out, divided by the root of its measure.
   void represent_body_forces(double density);
   void represent_tractions(double density);
   void represent_contact(Segments segments, double density);
@@ -150,7 +150,7 @@ class DiscreteData
   DatumMoments<dim - 1, dim> facet_moments_;
   DatumMoments<dim - 1, dim, 3> contact_moments_;
   double size_;        ///< of the bounding box
-  int max_parts_ = 0;  ///< of a cell or facet
+  int max_parts_ = 0;  ///< for a cell or facet
   double contact_density_ = 0;
   Represented<dim> body_;
   Represented<dim> traction_;

@@ -43,7 +43,7 @@ std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     const problem::Material& material = problem.material(mesh.region(c));
     const std::span<const Index> nodes = space.cell_nodes(c);
-    if (vanishes<dim>(nodes, u)) continue;  // most cells, where u is what boundaries prescribe
+    if (vanishes<dim>(nodes, u)) continue;  // most cells, if u is only the prescribed displacement
     for (int q = 0; q < rule.size(); ++q)
     {
       // (sigma(u), grad phi_i)_T, with J^{-1} moved from the test function to sigma
@@ -76,7 +76,8 @@ double sum_of_terms(std::span<const Index> nodes, std::span<const double> u,
   return sum;
 }
 
-/// The norm of 2 mu max |u| / size over the body, mu the smallest and size that of the box around it.
+/// The norm of 2 mu max |u| / size over the body, with mu the smallest shear modulus and size that of the
+/// bounding box.
 template <int dim>
 double stress_that_matters(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                            std::span<const double> u)
@@ -106,8 +107,8 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   const mesh::Mesh<dim>& mesh = space.mesh();
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
-  // Rigid motions prescribed to boxes in 2D and 3D, p = 1 ... 4, nu = 0.3 and 0.4999, left a bound of up
-  // to 42.
+  // For rigid motions prescribed to boxes in 2D and 3D, p = 1 ... 4, nu = 0.3 and 0.4999, the bound was up to
+  // 42.
   constexpr double unit_round_offs = 1000;
   constexpr double negligible = 1e-5;
   const auto of_cell = [&](std::size_t c)

@@ -26,30 +26,31 @@ template <int dim>
   return s;
 }
 
-/// a(phi_j, phi_i) over free i and j. A fixed degree of freedom i keeps a(phi_i, phi_i) on the diagonal
-/// alone, which decouples it without spoiling the scaling; where the node has free components the rest of the
-/// row is there and 0, so that nodes are coupled by whole blocks. On several ranks the rows of the own nodes.
+/// a(phi_j, phi_i) over free i and j. The row of a fixed degree of freedom i has only a(phi_i, phi_i) on the
+/// diagonal, which decouples it without spoiling the scaling. If its node has free components, the rest of
+/// the row is stored as zeros, so that nodes are coupled by whole blocks. On several ranks: the rows of the
+/// own nodes.
 template <int dim>
 [[nodiscard]] algebra::SparseRows stiffness(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space,
                                             const fem::Constraints& constraints);
 
-/// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell; not for all of ghosts.
+/// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell; incomplete at ghosts.
 template <int dim>
 [[nodiscard]] std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
                                                   const fem::LagrangeSpace<dim>& space,
                                                   std::span<const double> u);
 
-/// What the displacement u stores in the body.
+/// The norms of the stress of a displacement u.
 struct StressNorms
 {
   double energy = 0;  ///< a(u, u), not halved
   double sigma = 0;   ///< ||sigma(u)||
-  /// Where sigma(u) is nothing but rounding, so that the exact stress is zero as far as can be known, how
-  /// large rounding may be: a multiple of the unit round-off times the norm of (2 mu + dim lambda) sum_i
-  /// |u_i| |grad phi_i|, whose terms cancel in sigma(u) when u is a rigid motion. Else 0; so under loads,
-  /// which need a stress, and where rounding might hide a stress that matters: more than 1e-5 of what a
-  /// strain of max |u| over the size of the body means in the softest material.
+  /// If sigma(u) is only rounding, so that the exact stress is zero as far as can be known: how large
+  /// rounding may be, a multiple of the unit round-off times the norm of (2 mu + dim lambda) sum_i |u_i|
+  /// |grad phi_i|, whose terms cancel in sigma(u) when u is a rigid motion. Otherwise 0; so under loads,
+  /// which need a stress, and if rounding might hide a significant stress: more than 1e-5 of that of a strain
+  /// max |u| over the size of the body in the softest material.
   double round_off = 0;
 };
 
@@ -63,7 +64,7 @@ template <int dim>
                                                 const fem::LagrangeSpace<dim>& space,
                                                 std::span<const double> u);
 
-/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included; not for all of
+/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included; incomplete at
 /// ghosts. The data are those for the degree of the space.
 template <int dim>
 [[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,

@@ -12,7 +12,7 @@ namespace tribound::contact
 namespace
 {
 
-/// Of a facet: what is shorter is rounding.
+/// Relative to a facet; anything shorter is rounding.
 constexpr double shortest = 1e-9;
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file given_data.h
-/// The data of a problem on one cell, facet or contact segment, as they are given.
+/// The data of a problem on one cell, facet or contact segment, as given.
 
 #include "tribound/contact/nitsche/datum_moments.h"
 #include "tribound/contact/nitsche/segment.h"
@@ -21,7 +21,7 @@ template <int dim>
 [[nodiscard]] Datum<dim> traction_datum(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                         const mesh::BoundaryFacet& facet);
 
-/// g in direction 0, as the stress gamma g, where it is given, s in direction 1, and p_w in direction 2.
+/// In direction 0 the stress gamma g, if g is given; in direction 1 s, in direction 2 p_w.
 template <int dim>
 [[nodiscard]] Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment);
 

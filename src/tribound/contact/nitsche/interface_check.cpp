@@ -41,7 +41,7 @@ std::string place(const NitscheForm<dim>& form, const ContactSegment<dim>& segme
 template <int dim>
 void check_gap(const NitscheForm<dim>& form, std::size_t k)
 {
-  constexpr double closed = 1e-8;  // of the size of a facet
+  constexpr double closed = 1e-8;  // relative to the size of a facet
   const ContactSegment<dim>& segment = form.segments()[k];
   for (const ContactPoint<dim>& point : form.contact_points(k))
     if (point.state.damage < 1 && point.gap > closed * segment.h)
@@ -50,7 +50,7 @@ void check_gap(const NitscheForm<dim>& form, std::size_t k)
           "a gap of 0 where it is bonded");
 }
 
-/// Constants of the law, and what its gamma_t asks for.
+/// Checks the constants of the law, and the conditions for its gamma_t.
 template <int dim>
 void check_law(const NitscheForm<dim>& form, std::size_t k)
 {
@@ -70,8 +70,8 @@ void check_law(const NitscheForm<dim>& form, std::size_t k)
     fail("the shear ratio is too small for gamma0", fmt::format("a gamma0 of {:.4g} or more", least));
 }
 
-/// T is Lipschitz continuous in gap, threshold and water pressure with the constant 1 where nothing softens:
-/// the bound takes what rules miss of them by that.
+/// Without softening, T is Lipschitz continuous in gap, threshold and water pressure with the constant 1; the
+/// bound uses that for what rules miss of them.
 template <int dim>
 void check_data(const NitscheForm<dim>& form, std::size_t k)
 {
@@ -110,14 +110,14 @@ std::shared_ptr<const ContactHistory<dim>> history_at_first(const NitscheForm<di
 namespace
 {
 
-/// Where nothing lies opposite nobody has said what the water does.
+/// Where nothing lies opposite, the effect of the water is not defined.
 template <int dim>
 void check_coverage(const NitscheForm<dim>& form)
 {
   constexpr double rounding = 1e-8;
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const auto pairs = form.problem().pairs();
-  std::vector<double> measures(2 * pairs.size(), 0.0);  // what is covered, and all, of each slave
+  std::vector<double> measures(2 * pairs.size(), 0.0);  // covered and total measure of each slave
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
     if (const int pair = form.segments()[k].pair; pair >= 0) measures[2 * pair] += form.segments()[k].measure;
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
@@ -133,7 +133,7 @@ void check_coverage(const NitscheForm<dim>& form)
           "a slave of which all lies opposite the master");
 }
 
-/// Of own segments: constants and gaps, and whether gamma exceeds the slope.
+/// Checks own segments: constants and gaps, and whether gamma exceeds the slope.
 template <int dim>
 void check_laws(const NitscheForm<dim>& form)
 {

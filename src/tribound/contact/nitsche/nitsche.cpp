@@ -246,7 +246,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
   const SimplexMap<dim - 1, dim> map = simplex_map(space_->mesh(), segment.slave);
   const SegmentValues<dim> on_segment(*problem_, *space_, segment, table);
 
-  const bool is_own = table.slave == tables_[k].slave;  // at the contact points
+  const bool is_own = table.slave == tables_[k].slave;  // the table is that of the contact points
 
   std::vector<ContactState<dim>> states;
   states.reserve(table.points.size());

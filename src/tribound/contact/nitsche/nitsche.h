@@ -3,7 +3,7 @@
 /// @file nitsche.h
 /// The discrete problem of method section 2:
 /// find u_h with a(u_h, v) - ([P^n(u_h)]_-, v^n)_C - ([P^t(u_h)]_{S_h(u_h)}, v^t)_C = L(v) for all v in V_h,
-/// normal and tangential parts being taken by the direction of contact N, by default that of the facet.
+/// where normal and tangential parts are taken by the direction of contact N, by default that of the facet.
 
 #include <memory>
 #include <span>
@@ -22,7 +22,7 @@
 namespace tribound::contact
 {
 
-/// Everything a user asks about one point of the contact boundary.
+/// The state of one point of the contact boundary, as users ask for it.
 template <int dim>
 struct ContactState
 {
@@ -30,14 +30,14 @@ struct ContactState
   Point<dim> normal;    ///< N
   double pressure;      ///< -[P^n]_- >= 0
   Point<dim> traction;  ///< T = [P^n]_- n + [P^t]_S
-  double limit;         ///< S_h: what |T^t| may reach
+  double limit;         ///< S_h: the limit of |T^t|
   problem::ContactStatus status;
-  double gap;                               ///< g - [u]^n: distance left
+  double gap;                               ///< g - [u]^n: the remaining distance
   Point<dim> slip;                          ///< [u]^t
   Point<dim> displacement;                  ///< u of the slave
   double opening = 0;                       ///< delta^n of the law's resolvent
   double water = 0;                         ///< p_w: the effective traction is T + p_w n
-  problem::InterfaceState<dim> state = {};  ///< what a step that ends here commits
+  problem::InterfaceState<dim> state = {};  ///< state that a step ending here commits
 };
 
 /// A quadrature point of a contact segment.
@@ -56,31 +56,31 @@ struct ContactPoint
 /// Which linearisation of T a Newton step uses.
 enum class Linearisation
 {
-  /// The first step from scratch: T_lin(w) = P^n(w) n + P^t(w), without P^t where nothing resists sliding;
-  /// where some points are bonded, -p_w n on broken ones.
+  /// The first step from scratch: T_lin(w) = P^n(w) n + P^t(w), without P^t if nothing resists sliding. If
+  /// some points are bonded, -p_w n at the broken ones.
   closed_sticking,
   newton  ///< T_lin(w) = T(u) + DT(u)[w - u]
 };
 
-/// Which gap, threshold and water T(u) is of.
+/// Which gap, threshold and water pressure T(u) uses.
 enum class WhichData
 {
-  discrete,  ///< as the discrete problem has them: the resultants are integrals of this T(u)
-  given      ///< between the contact points as the problem has them
+  discrete,  ///< those of the discrete problem: the resultants are integrals of this T(u)
+  given      ///< those of the problem, between the contact points
 };
 
 /// The discrete problem on one mesh. Contact integrals touch only cells on Gamma_C. Contact quantities live
-/// at the quadrature points of the contact segments: point q of segment k has number k * n_segment_points()
-/// + q. Keeps references to problem and space. Where delta > 0 (a stress) is given, the projections of T are
-/// the regularised ones of method section 7: T_delta.
+/// at the quadrature points of the contact segments: point q of segment k has number k * n_segment_points() +
+/// q. Keeps references to problem and space. If delta > 0 (a stress) is given, the projections in T are the
+/// regularised ones of method section 7: T_delta.
 ///
-/// On a mesh that is shared out, what has a value per degree of freedom has it for ghosts as well, but sums
-/// over cells lack those that are not here; all ranks construct it together.
+/// On a distributed mesh, values per degree of freedom include those of ghosts, but sums over cells lack the
+/// cells that are not on this rank. All ranks construct it together.
 template <int dim>
 class NitscheForm
 {
  public:
-  /// Contact on contact_segments(). `accuracy` and errors: as DiscreteData and contact_segments().
+  /// Contact on contact_segments(). `accuracy` and errors as for DiscreteData and contact_segments().
   NitscheForm(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, double gamma0,
               const DataAccuracy& accuracy = {});
   /// Contact on the given segments of the mesh.
@@ -90,8 +90,8 @@ class NitscheForm
   /// The same with another gamma_0; nothing is integrated again.
   [[nodiscard]] NitscheForm with_gamma0(double gamma0) const;
 
-  /// From now on what the contact points remember; without it all are as before the first step. It is of a
-  /// form on the same segments. All ranks together.
+  /// Sets what the contact points remember from now on; without it all are as before the first step. The
+  /// history must be that of a form on the same segments. All ranks together.
   void set_history(std::shared_ptr<const ContactHistory<dim>> history);
   /// Null before the first step.
   [[nodiscard]] const std::shared_ptr<const ContactHistory<dim>>& history() const { return history_; }
@@ -107,7 +107,7 @@ class NitscheForm
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
   [[nodiscard]] std::span<const ContactSegment<dim>> segments() const { return segments_; }
-  /// On several ranks: the first of them, whose slaves are facets of own cells.
+  /// On several ranks: the segments whose slaves are facets of own cells come first; this is their number.
   [[nodiscard]] std::size_t n_owned_segments() const { return n_owned_segments_; }
   [[nodiscard]] std::size_t n_owned_contact_points() const
   {
@@ -118,17 +118,17 @@ class NitscheForm
   [[nodiscard]] int n_segment_points() const { return facet_rule().size(); }
   [[nodiscard]] std::size_t n_contact_points() const { return points_.size(); }
   [[nodiscard]] std::span<const ContactPoint<dim>> contact_points() const { return points_; }
-  /// Those of segment k.
+  /// The contact points of segment k.
   [[nodiscard]] std::span<const ContactPoint<dim>> contact_points(std::size_t k) const
   {
     return contact_points().subspan(k * n_segment_points(), n_segment_points());
   }
-  /// What the law of segment k knows at the point x with coordinates s on it, where N is n.
+  /// The arguments of the law of segment k at the point x with coordinates s, where N is n.
   [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, const Point<dim - 1>& s, const Point<dim>& x,
                                                  const Point<dim>& n) const;
   /// Vectors at the contact points of a segment.
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
-  /// {sigma(u)} - gamma [u] there, P(u) without the gap.
+  /// {sigma(u)} - gamma [u] at the contact points of segment k: P(u) without the gap.
   [[nodiscard]] Columns traction_without_gap(std::span<const double> u, std::size_t k) const;
 
   /// p_w n at the contact points: T + p_w n is the effective traction.
@@ -144,12 +144,13 @@ class NitscheForm
   /// -(DT(u)[phi_j], [phi_i])_C over free i and j.
   [[nodiscard]] algebra::Triplets contact_tangent(Linearisation kind, std::span<const double> u,
                                                   double delta = 0) const;
-  /// Its entries, whose rows and columns do not depend on u; and these, with the value 0.
+  /// The values of its entries, whose rows and columns do not depend on u; and the entries themselves, with
+  /// the value 0.
   [[nodiscard]] std::vector<double> contact_tangent_values(Linearisation kind, std::span<const double> u,
                                                            double delta = 0) const;
   [[nodiscard]] algebra::Triplets contact_pattern() const;
 
-  /// States on segment k at its contact points, or at the points of `table`.
+  /// The states on segment k at its contact points, or at the points of `table`.
   [[nodiscard]] std::vector<ContactState<dim>> contact_states(std::span<const double> u, std::size_t k) const
   {
     return contact_states(u, k, tables_[k]);
@@ -163,13 +164,13 @@ class NitscheForm
  private:
   [[nodiscard]] std::vector<ContactPoint<dim>> make_points() const;
   void look_for_bonds();
-  /// At a contact point of segment k.
+  /// The arguments of the law at a contact point of segment k.
   [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, int q) const
   {
     const ContactPoint<dim>& point = contact_points(k)[q];
     return {point.normal, point.strength, segments_[k].gamma, point.state, point.water};
   }
-  /// What evaluates functions of the space at the nodes of segment k.
+  /// Evaluates functions of the space at the nodes of segment k.
   [[nodiscard]] SegmentValues<dim> at_nodes(std::size_t k) const
   {
     return {*problem_, *space_, segments_[k], node_tables_[k]};
@@ -178,33 +179,33 @@ class NitscheForm
   [[nodiscard]] Columns augmented_traction(std::span<const double> u, std::size_t k) const;
   /// T from P = `augmented` at a contact point of segment k.
   [[nodiscard]] Point<dim> respond(std::size_t k, int q, const Point<dim>& augmented, double delta) const;
-  /// Whether the first step from scratch takes the point for open: broken, while others are bonded.
+  /// Whether the first step from scratch takes the point as open: broken, while others are bonded.
   [[nodiscard]] bool starts_open(std::size_t k, int q) const;
   /// M with DT(u)[w] = M ({sigma(w)} - gamma [w]), from P(u) at point q of segment k.
   [[nodiscard]] Tensor<dim> traction_derivative(Linearisation kind, std::size_t k, int q,
                                                 const Point<dim>& augmented, double delta) const;
-  /// block(dim i + a, dim j + b) += -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, i over the nodes of all
-  /// sides that are on the facet, and j over all nodes of all sides.
+  /// block(dim i + a, dim j + b) += -(DT(u)[phi_j e_b], [phi_i e_a]) on segment k, with i over the nodes of
+  /// all sides that are on the facet, and j over all nodes of all sides.
   void add_tangent_block(Linearisation kind, std::span<const double> u, std::size_t k, double delta,
                          Eigen::Ref<Eigen::MatrixXd> block) const;
   /// -(DT(u)[v], theta_i e_a) = sum_l result(dim i + a, dim l + b) (P(v) without the gap)_b at node l of the
   /// segment.
   [[nodiscard]] Eigen::MatrixXd tested_derivative(Linearisation kind, std::span<const double> u,
                                                   std::size_t k, double delta) const;
-  /// The block of segments number first, ..., last - 1, which lie on the same facets; its entries are number
-  /// position, ... of the tangent, column by column.
+  /// The block of segments number first, ..., last - 1, which lie on the same facets. Its entries have the
+  /// numbers position, ... in the tangent, column by column.
   struct TangentBlock
   {
     std::size_t first;
     std::size_t last;
     std::size_t position;
-    Eigen::Index n_rows;  ///< of nodes on the facets
+    Eigen::Index n_rows;  ///< for nodes on the facets
     Eigen::Index n_columns;
 
     [[nodiscard]] std::size_t end() const { return position + n_rows * n_columns; }
   };
   [[nodiscard]] std::vector<TangentBlock> tangent_blocks() const;
-  /// evaluate(k, values) sets them at the contact points of every segment.
+  /// evaluate(k, values) sets the values at the contact points of every segment.
   template <class Value, class Evaluate>
   [[nodiscard]] std::vector<Value> at_contact_points(const Evaluate& evaluate) const;
 
@@ -234,7 +235,7 @@ struct ContactResultants
   double abs_tangential = 0;  ///< integral of |t^t|
 };
 
-/// Over the segments whose slave has boundary number `tag`, or over all for tag < 0.
+/// Over the segments whose slave has boundary number `tag`; over all for tag < 0.
 template <int dim>
 [[nodiscard]] ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form,
                                                         std::span<const Point<dim>> t, int tag = -1);

@@ -10,15 +10,15 @@
 namespace tribound::contact
 {
 
-/// gamma_0 where none is given, method section 2: 10 up to degree 3, above max(10, 3 p^2).
+/// The default gamma_0, method section 2: 10 up to degree 3, above max(10, 3 p^2).
 [[nodiscard]] inline double default_gamma0(int degree)
 {
   return degree <= 3 ? 10.0 : std::max(10.0, 3.0 * degree * degree);
 }
 
-/// The modulus in gamma: lambda + 2 mu, but not more than at nu = 16/33 = 0.485. Nearly incompressible
-/// materials would otherwise have a penalty of the size of lambda against everything that deforms, and
-/// Newton's method fails (docs/choosing.md).
+/// The modulus in gamma: lambda + 2 mu, but at most its value at nu = 16/33 = 0.485. Otherwise nearly
+/// incompressible materials would have a penalty of the size of lambda against all deformation, and Newton's
+/// method fails (docs/choosing.md).
 [[nodiscard]] inline double penalty_modulus(const problem::Material& material)
 {
   constexpr double largest = 34;  // of (lambda + 2 mu) / mu = (2 - 2 nu) / (1 - 2 nu)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file residual.h
-/// What is out of equilibrium in the discrete problem, on the degrees of freedom.
+/// The residual of the discrete problem at the degrees of freedom.
 
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace tribound::contact
 {
 
-/// L(phi_i) - a(u, phi_i) + (t, [phi_i])_C for every degree of freedom, 0 at fixed ones; not for all of
+/// L(phi_i) - a(u, phi_i) + (t, [phi_i])_C for every degree of freedom; 0 at fixed ones, incomplete at
 /// ghosts. t is given at the contact points of the form: T(u), or another traction.
 template <int dim>
 [[nodiscard]] std::vector<double> residual(const NitscheForm<dim>& form, std::span<const double> u,

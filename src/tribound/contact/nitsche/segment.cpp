@@ -11,7 +11,7 @@ namespace tribound::contact
 namespace
 {
 
-/// A side with what weights are made from.
+/// A side with the data for its weight.
 template <int dim>
 struct WeighedSide
 {
@@ -67,10 +67,11 @@ void ContactSegment<dim>::directions_and_gaps(std::span<const Point<dim - 1>> s,
 namespace
 {
 
-/// Coordinates on reference facets agree to this where they are meant to be the same.
+/// Coordinates on reference facets that differ by less are the same.
 constexpr double same_corner = 1e-6;
 
-/// The vertices of the facet of a side in the order of the side's corners; absent where one is inside it.
+/// The vertices of the facet of a side in the order of the side's corners; absent if a corner is not a
+/// vertex.
 template <int dim>
 std::optional<std::array<Index, dim>> vertices_at_corners(const mesh::Mesh<dim>& mesh,
                                                           const SegmentSide<dim>& side)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file segment.h
-/// The contact boundary in segments: parts of a facet of the body with what it may touch there, a rigid
+/// The contact boundary in segments: parts of a facet of the body, each with its counterpart, a rigid
 /// obstacle or one facet of a body. All contact integrals are sums over segments.
 
 #include <array>
@@ -20,14 +20,14 @@
 namespace tribound::contact
 {
 
-/// One side of a segment: a part of a boundary facet, which may be all of it.
+/// One side of a segment: a boundary facet or a part of one.
 template <int dim>
 struct SegmentSide
 {
   mesh::BoundaryFacet facet;
   std::size_t number = 0;  ///< of the facet in Mesh::boundary()
-  /// Corners in the coordinates of the reference facet, whose points in the cell are mesh::facet_to_cell();
-  /// absent: the whole facet. Corner i of the slave lies opposite corner i of the master.
+  /// Corners in the coordinates of the reference facet, which mesh::facet_to_cell() maps to the cell; absent:
+  /// the whole facet. Corner i of the slave lies opposite corner i of the master.
   std::optional<fem::Part<dim - 1>> part{};
   /// w n on the slave, -w dM/dS n on the master, n the outward normal of the facet: {sigma} is the sum of
   /// sigma * stress_direction over the sides.
@@ -50,11 +50,11 @@ struct ContactSegment
 {
   SegmentSide<dim> slave;
   std::optional<SegmentSide<dim>> master{};  ///< absent: a rigid obstacle
-  /// N where it is constant on the segment: the slave's outward normal, or what the contact says. Any unit
-  /// vector serves: P^n = P.N and P^t are the parts of P in an orthonormal frame.
+  /// N if it is constant on the segment: the slave's outward normal, or the direction that the contact gives.
+  /// Any unit vector will do: P^n = P.N and P^t are the parts of P in an orthonormal frame.
   Point<dim> normal;
-  const problem::NormalField* varying_normal = nullptr;  ///< N where it is not; else null
-  double measure;                                        ///< of the part of the slave
+  const problem::NormalField* varying_normal = nullptr;  ///< N if it varies; otherwise null
+  double measure;                                        ///< of the part of the slave facet
   double h;                                              ///< the smaller diameter of the facets
   double gamma;  ///< gamma_0 c, c the harmonic sum of modulus / diameter of the sides
   const problem::Contact* contact;
@@ -66,7 +66,7 @@ struct ContactSegment
   {
     return varying_normal == nullptr ? normal : (*varying_normal)(x);
   }
-  /// g at the point with coordinates s on the segment, which is x, where N is n.
+  /// g at the point x with coordinates s on the segment, where N is n.
   [[nodiscard]] double gap(const Point<dim - 1>& s, const Point<dim>& x, const Point<dim>& n) const
   {
     if (contact->gap) return (*contact->gap)(x);
@@ -75,7 +75,7 @@ struct ContactSegment
     for (int i = 1; i < dim; ++i) sum += s[i - 1] * (n.dot(offset[i]) - first);
     return sum;
   }
-  /// The same at many points: n[q] is N, g[q] the gap at x[q], which has the coordinates s[q].
+  /// The same at many points: n[q] is N and g[q] the gap at x[q], which has the coordinates s[q].
   void directions_and_gaps(std::span<const Point<dim - 1>> s, std::span<const Point<dim>> x,
                            std::span<Point<dim>> n, std::span<double> g) const;
 
@@ -92,11 +92,11 @@ struct ContactSegment
   [[nodiscard]] bool is_obstacle_facet() const { return !master && !slave.part; }
 };
 
-/// The facets of a segment, if it is all of both up to rounding: they match.
+/// The facets of a segment if it is the whole of both up to rounding: they match.
 template <int dim>
 [[nodiscard]] std::optional<mesh::TwinFacets<dim>> matching_facets(const mesh::Mesh<dim>& mesh,
                                                                    const ContactSegment<dim>& segment);
-/// Those of all segments.
+/// The matching facets of all segments.
 template <int dim>
 [[nodiscard]] std::vector<mesh::TwinFacets<dim>> twin_facets(const mesh::Mesh<dim>& mesh,
                                                              std::span<const ContactSegment<dim>> segments);
@@ -112,7 +112,7 @@ template <int dim>
   return segment.normal_at(simplex_map(mesh, segment.slave)(Point<dim - 1>::Constant(1.0 / dim)));
 }
 
-/// On several ranks: whether its slave is a facet of an own cell.
+/// On several ranks: whether the slave is a facet of an own cell.
 template <int dim>
 [[nodiscard]] bool is_owned(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment)
 {
@@ -129,9 +129,9 @@ template <int dim>
                                                const problem::Contact& contact, const FacetPart<dim>& slave,
                                                const std::optional<FacetPart<dim>>& master = {});
 
-/// All of Gamma_C: the facets against rigid obstacles, each a segment, then the overlays of the pairs. Of a
-/// mesh that is shared out, after with_partners(), owned ones come first; all ranks call it together. Throws
-/// InputError as overlay() does, and where nothing of a slave is covered.
+/// All of Gamma_C: the facets against rigid obstacles, each a segment, then the overlays of the pairs. On a
+/// distributed mesh, after with_partners(), owned segments come first; all ranks call it together. Throws
+/// InputError as overlay() does, and if no part of a slave is covered.
 template <int dim>
 [[nodiscard]] std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& problem,
                                                                 const mesh::Mesh<dim>& mesh, double gamma0);

@@ -37,7 +37,7 @@ class SegmentTables
   SegmentTables(const fem::LagrangeBasis<dim>& basis, std::span<const ContactSegment<dim>> segments,
                 std::span<const Point<dim - 1>> points);
 
-  /// Of segment k; valid as long as this is.
+  /// The table of segment k; valid as long as this object.
   [[nodiscard]] SegmentTable<dim> operator[](std::size_t k) const
   {
     const auto [slave, master] = tables_of_[k];
@@ -48,11 +48,11 @@ class SegmentTables
  private:
   std::vector<Point<dim - 1>> points_;
   std::vector<fem::Tabulation<dim>> tables_;   ///< of whole facets first, by their local numbers
-  std::vector<std::array<int, 2>> tables_of_;  ///< of slave and master; -1: there is none
+  std::vector<std::array<int, 2>> tables_of_;  ///< of slave and master; -1: none
 };
 
-/// P^p on a segment by values at the nodes of its Lagrange basis theta. [u], {sigma(u)} and P(u) without the
-/// gap are in it: they need be evaluated at the nodes alone, of which there are fewer than points of a rule.
+/// P^p on a segment by values at the nodes of its Lagrange basis theta. It contains [u], {sigma(u)} and P(u)
+/// without the gap, so these are evaluated only at the nodes, which are fewer than the points of a rule.
 template <int dim>
 class SegmentNodes
 {
@@ -65,7 +65,7 @@ class SegmentNodes
   {
     return {values_.data(), std::ssize(nodes_), std::ssize(values_) / std::ssize(nodes_)};
   }
-  /// (q, i n + l): theta_i theta_l there, n the number of nodes.
+  /// (q, i n + l): theta_i theta_l at point q, with n the number of nodes.
   [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> products() const
   {
     return {products_.data(), std::ssize(values_) / std::ssize(nodes_),
@@ -73,15 +73,15 @@ class SegmentNodes
   }
 
  private:
-  // No matrices of Eigen of dynamic size: how those are allocated depends on the instructions that a program
-  // is compiled for.
+  // No Eigen matrices of dynamic size: their allocation depends on the instruction set for which a program is
+  // compiled.
   std::vector<Point<dim - 1>> nodes_;
   std::vector<double> values_;
   std::vector<double> products_;
 };
 
-/// Evaluates functions of a space on one segment at the points of its table. Keeps references to all it is
-/// made from.
+/// Evaluates functions of a space on one segment at the points of its table. Keeps references to all its
+/// arguments.
 template <int dim>
 class SegmentValues
 {
@@ -103,7 +103,7 @@ class SegmentValues
   [[nodiscard]] Point<dim> jump(std::span<const double> u, int q) const;
   /// {sigma(u)} - gamma [u]^n n - gamma_t [u]^t at point q: P(u) without the gap.
   [[nodiscard]] Point<dim> augmented_traction(std::span<const double> u, int q) const;
-  /// Its derivative by node i of a side: column b belongs to component b.
+  /// Its derivative by node i of a side; column b is for component b.
   [[nodiscard]] Tensor<dim> augmented_derivative(const Side& side, int i, int q) const;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file simplex_map.h
-/// Where the points of a cell or of a part of a facet are, whatever it is a part of.
+/// The map from reference coordinates to the points of a cell, a facet or a part of a facet.
 
 #include "tribound/base/types.h"
 #include "tribound/mesh/geometry.h"
@@ -20,7 +20,7 @@ struct SimplexMap
   [[nodiscard]] Point<dim> operator()(const Point<k>& s) const { return origin + jacobian * s; }
 };
 
-/// Of a cell and of a boundary facet.
+/// The maps of a cell and of a boundary facet.
 template <int dim>
 [[nodiscard]] SimplexMap<dim, dim> simplex_map(const mesh::Mesh<dim>& mesh, Index cell)
 {

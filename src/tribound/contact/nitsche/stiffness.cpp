@@ -26,7 +26,7 @@ Tensor<dim> stiffness_block(const problem::Material& material, const mesh::CellM
   return block;
 }
 
-/// A node seen from a cell.
+/// A node in the numbering of a cell.
 struct LocalNode
 {
   Index cell;
@@ -64,7 +64,7 @@ NodeCells cells_around_nodes(const fem::LagrangeSpace<dim>& space)
   return result;
 }
 
-/// The rows of the stiffness that belong to one node, one block for each node that shares a cell with it.
+/// The rows of the stiffness matrix for one node, with one block for each node that shares a cell with it.
 template <int dim>
 class BlockRow
 {
@@ -92,7 +92,7 @@ class BlockRow
     for (const Index j : neighbours_) index_[j] = -1;
   }
 
-  /// Nodes in ascending order, and the block of each.
+  /// The neighbouring nodes in ascending order, and the block of each.
   [[nodiscard]] std::span<const Index> neighbours() const { return neighbours_; }
   [[nodiscard]] std::span<const Tensor<dim>> blocks() const { return blocks_; }
 
