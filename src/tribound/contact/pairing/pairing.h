@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file pairing.h
-/// What lies opposite what: the overlay of two boundaries whose meshes need not match.
+/// Which facets lie opposite each other: the overlay of two boundaries whose meshes need not match.
 
 #include <cstddef>
 #include <optional>
@@ -37,16 +37,17 @@ struct FacetPair
 ///     Pi(x) = x + l(x) e on the facet G of the master with the smallest |l| among those with
 ///     n_G.n_F < -0.1, n_G.e < -0.1 and |l| <= reach,
 ///
-/// F the slave facet of x, n outward normals, |e| = 1. Each F is cut into simplices that lie opposite one G
-/// each, on which Pi is affine; points without a partner are in none. |l| <= reach is asked of the centroid
-/// of what F and G have in common. Corners within 1e-12 of an edge, in barycentric coordinates, count as on
-/// it: form and certificate use the same segments, so that rounding here moves the problem by as much and
-/// harms no guarantee. In the order of the slave facets, then of the places of the master's. O(n log n).
+/// where F is the slave facet of x, n are outward normals, and |e| = 1. Each F is cut into simplices that lie
+/// opposite one G each, on which Pi is affine; points without a partner are in none. |l| <= reach is tested
+/// at the centroid of the common part of F and G. Corners within 1e-12 of an edge, in barycentric
+/// coordinates, count as on it: form and certificate use the same segments, so this rounding changes the
+/// problem slightly but not the guarantee. Ordered by slave facets, then by the places of the master facets.
+/// O(n log n).
 ///
-/// Of a mesh that is shared out, after with_partners(): what slave or master facets of cells with a patch
-/// vertex have, the same on all ranks, and parts of what others have.
+/// On a distributed mesh, after with_partners(): the complete pairs of the slave and master facets of cells
+/// with a patch vertex, the same on all ranks, and a part of the pairs of others.
 ///
-/// InputError where e.n_F <= 0.1, and where two master facets are equally far or change their order: the
+/// Throws InputError if e.n_F <= 0.1, and if two master facets are equally far or their order changes: the
 /// pairing is then ambiguous. `where` is for messages.
 template <int dim>
 [[nodiscard]] std::vector<FacetPair<dim>> overlay(const mesh::Mesh<dim>& mesh,

@@ -18,21 +18,21 @@ namespace tribound::contact
 namespace
 {
 
-/// A box around the master facets of a rank; its lower corner, then its upper one.
+/// A box around the master facets of a rank: its lower corner, then its upper one.
 template <int dim>
 using Ends = std::array<double, 2 * dim>;
 
-/// A slave facet that asks what lies opposite to it.
+/// A slave facet for which opposite facets are sought.
 template <int dim>
 struct Question
 {
   mesh::CellRecord<dim> cell;
   std::int32_t local;
   std::int32_t pair;
-  std::int32_t slave;  ///< by which the asking rank knows it
+  std::int32_t slave;  ///< its number on the asking rank
 };
 
-/// A cell with such a facet, and how many ranks need what that facet has.
+/// A cell with an opposite facet, and the number of ranks that need the pairs of this facet.
 template <int dim>
 struct Answer
 {
@@ -47,16 +47,16 @@ struct OwnSide
 {
   std::vector<mesh::BoundaryFacet> facets;
   std::vector<mesh::CellRecord<dim>> cells;
-  std::vector<FacetShape<dim>> shapes;  ///< numbered as they stand here
+  std::vector<FacetShape<dim>> shapes;  ///< numbered in this order
 };
 
-/// What is known of a slave facet.
+/// The data of a slave facet.
 template <int dim>
 struct Slave
 {
   mesh::CellRecord<dim> cell;
   std::vector<mesh::Ghost<dim>> opposite{};
-  std::vector<int> needed_by{};  ///< ranks
+  std::vector<int> needed_by{};  ///< the ranks that need it
 };
 
 template <int dim>
@@ -68,7 +68,7 @@ FacetShape<dim> shape_of(const mesh::CellRecord<dim>& cell, int local, std::size
   return {number, points, local};
 }
 
-/// Of slaves and masters of all pairs in turn: first their facets, then what is known of their cells.
+/// The sides of all pairs, slave and master in turn: first their facets, then the records of their cells.
 template <int dim>
 std::vector<OwnSide<dim>> own_sides(const mesh::Mesh<dim>& mesh,
                                     std::span<const problem::ContactPair<dim>> pairs)
@@ -112,7 +112,7 @@ std::vector<int> ranks_around(const mesh::Mesh<dim>& mesh, Index cell)
   return result;
 }
 
-/// Of each rank and pair where its masters are. All ranks call it together.
+/// For each rank and pair, a box around its masters. All ranks call it together.
 template <int dim>
 std::vector<std::vector<Ends<dim>>> boxes_of_all(const Ranks& ranks, std::span<const OwnSide<dim>> masters)
 {
@@ -147,7 +147,7 @@ class Partners
     }
   }
 
-  /// The cells of others that are needed here. All ranks call it together.
+  /// The cells of other ranks that are needed here. All ranks call it together.
   [[nodiscard]] std::vector<mesh::Ghost<dim>> find()
   {
     const std::vector<std::vector<Ends<dim>>> boxes = boxes_of_all<dim>(ranks_, master_sides_);
@@ -164,7 +164,7 @@ class Partners
   }
 
  private:
-  /// Makes the questions to each rank: from own slave facets that may see its masters.
+  /// The questions to each rank, for own slave facets that may see its masters.
   void ask(const std::vector<std::vector<Ends<dim>>>& boxes,
            std::vector<std::vector<Question<dim>>>& questions)
   {
@@ -186,7 +186,7 @@ class Partners
       }
   }
 
-  /// Own master facets that lie opposite, and who needs what they have.
+  /// Own master facets that lie opposite, and the ranks that need their pairs.
   void answer(const std::vector<std::vector<Question<dim>>>& questions,
               std::vector<std::vector<Answer<dim>>>& answers, std::vector<std::vector<int>>& needed_by) const
   {
@@ -221,7 +221,7 @@ class Partners
       }
   }
 
-  /// Slaves and what lies opposite to them, to all that need them.
+  /// Sends slaves and the cells opposite to all ranks that need them.
   [[nodiscard]] std::vector<mesh::Ghost<dim>> tell()
   {
     const auto name = [](const mesh::Ghost<dim>& ghost) -> const auto&

@@ -20,14 +20,14 @@ struct CornerPair
   Point<dim - 1> master;
 };
 
-/// Corners in their order around; in 2D the two ends. Fewer than dim: empty.
+/// Corners in cyclic order; in 2D the two ends. Fewer than dim corners: empty.
 template <int dim>
 using Polygon = std::vector<CornerPair<dim>>;
 
-inline constexpr double snapped = 1e-12;  ///< of an edge, in barycentric coordinates: on it
+inline constexpr double snapped = 1e-12;  ///< closer to an edge than this, in barycentric coordinates: on it
 
 /// The part of the polygon where an affine function of its corners is not negative. Values of size `snapped`
-/// or less count as 0 and make no new corner.
+/// or less count as 0 and create no new corner.
 template <int dim, class Function>
 [[nodiscard]] Polygon<dim> clip(const Polygon<dim>& polygon, const Function& function)
 {
@@ -40,7 +40,7 @@ template <int dim, class Function>
     const double at_a = function(a);
     const double at_b = function(b);
     if (at_a >= -snapped) result.push_back(a);
-    const bool is_edge = dim == 3 || i == 0;  // an interval has one
+    const bool is_edge = dim == 3 || i == 0;  // an interval has one edge
     const bool crosses = (at_a < -snapped && at_b > snapped) || (at_a > snapped && at_b < -snapped);
     if (!is_edge || !crosses) continue;
     const double t = at_a / (at_a - at_b);
@@ -50,7 +50,7 @@ template <int dim, class Function>
   return result;
 }
 
-/// Its simplices: those of corner 0 with the edges that it is not on.
+/// Its triangulation: simplices of corner 0 and the edges that do not contain it.
 template <int dim, class Visit>
 void for_each_simplex(const Polygon<dim>& polygon, const Visit& visit)
 {
@@ -68,7 +68,7 @@ void for_each_simplex(const Polygon<dim>& polygon, const Visit& visit)
   }
 }
 
-/// Its measure over that of the slave facet.
+/// Its measure divided by that of the slave facet.
 template <int dim>
 [[nodiscard]] double fraction(const Polygon<dim>& polygon)
 {
@@ -78,7 +78,7 @@ template <int dim>
   return sum;
 }
 
-/// Its centroid on the slave facet; the polygon has a measure.
+/// Its centroid on the slave facet; its measure must not be 0.
 template <int dim>
 [[nodiscard]] Point<dim - 1> centroid(const Polygon<dim>& polygon)
 {
@@ -94,8 +94,8 @@ template <int dim>
   return sum / measure;
 }
 
-/// Calls visit(f) for every side of the polygon, f >= 0 on the side's inner half of the plane: the distance
-/// from it, in the coordinates of the slave's reference facet. Sides of no length have none.
+/// Calls visit(f) for every side of the polygon, with f the distance from the side in the coordinates of the
+/// slave's reference facet, f >= 0 on its inner half-plane. Skips sides of length 0.
 template <int dim, class Visit>
 void for_each_side(const Polygon<dim>& polygon, const Visit& visit)
 {
@@ -120,7 +120,7 @@ void for_each_side(const Polygon<dim>& polygon, const Visit& visit)
   }
 }
 
-/// Whether two parts of one facet have more than rounding in common.
+/// Whether two parts of one facet overlap by more than rounding.
 template <int dim>
 [[nodiscard]] bool overlap(const fem::Part<dim - 1>& a, const fem::Part<dim - 1>& b)
 {

@@ -20,7 +20,7 @@ constexpr double smallest_part = 1e-14;  ///< of the slave facet
 constexpr double overlapping = 1e-9;     ///< of the slave facet: more than rounding
 constexpr double same_distance = 1e-9;   ///< of the diameter of the slave facet
 
-/// l is affine on the plane of the slave facet: from its values where the corners of the master lie.
+/// l is affine on the plane of the slave facet: computed from its values at the corners of the master.
 template <int dim>
 void set_distance(Candidate<dim>& found, const std::array<double, dim>& distances)
 {
@@ -90,9 +90,9 @@ SlaveFacet<dim>::SlaveFacet(const FacetShape<dim>& slave, const problem::Pairing
 template <int dim>
 bool SlaveFacet<dim>::may_see(const mesh::BoundingBox<dim>& box) const
 {
-  // Whatever lies opposite a point of the facet is within its diameter of the line through its centre.
+  // Anything opposite a point of the facet is within the diameter of the line through its centre.
   const double radius = slave_.geometry.diameter;
-  const double farthest = reach_ + radius / facing;  // by so much l may change on the facet
+  const double farthest = reach_ + radius / facing;  // the most that l may change on the facet
   const mesh::BoundingBox<dim> wider{box.lower.array() - radius, box.upper.array() + radius};
   const auto [first, last] = mesh::part_in_box<dim>(wider, slave_.centre(), e_, {-farthest, farthest});
   return first <= last;
@@ -144,9 +144,9 @@ void SlaveFacet<dim>::append_pairs(std::vector<FacetPair<dim>>& pairs)
     }
 }
 
-/// In 3D from the corner that is first in a direction which no mesh has, on towards the neighbour that comes
-/// next in it. What is cut then depends on places alone: not on numbers, which differ between ranks, nor on
-/// which of the sides is the slave.
+/// In 3D starts from the corner that is first in a direction along which no mesh is aligned, and goes on
+/// towards the neighbour that comes next in it. The cuts then depend only on places: not on numbers, which
+/// differ between ranks, nor on which of the sides is the slave.
 template <int dim>
 void SlaveFacet<dim>::order_corners(Polygon<dim>& polygon) const
 {
@@ -158,8 +158,8 @@ void SlaveFacet<dim>::order_corners(Polygon<dim>& polygon) const
   if (along(polygon[1]) > along(polygon.back())) std::reverse(polygon.begin() + 1, polygon.end());
 }
 
-/// What is visible of each candidate behind those before it: near ones hide what is farther away. Most have
-/// nothing before them but their neighbours, of which a tree knows.
+/// The visible part of each candidate behind those before it: near ones hide what is farther away. Most have
+/// only neighbours before them, which a tree finds.
 template <int dim>
 void SlaveFacet<dim>::hide()
 {
@@ -183,7 +183,7 @@ void SlaveFacet<dim>::hide()
   }
 }
 
-/// What is left of a candidate behind a polygon of a nearer one.
+/// What a polygon of a nearer candidate leaves visible of a candidate.
 template <int dim>
 void SlaveFacet<dim>::hide(Candidate<dim>& candidate, const Candidate<dim>& before,
                            const Polygon<dim>& cover) const

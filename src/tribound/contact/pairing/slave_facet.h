@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file slave_facet.h
-/// One slave facet and the facets of the master that lie opposite to it. Internal to the room.
+/// One slave facet and the facets of the master that lie opposite to it. Internal to contact/pairing.
 
 #include <array>
 #include <cmath>
@@ -18,18 +18,18 @@
 namespace tribound::contact
 {
 
-/// A facet as Pi needs it.
+/// The data of a facet that Pi needs.
 template <int dim>
 struct FacetShape
 {
-  /// With these vertices, in ascending local order, seen from the cell of which it is facet `local`.
+  /// From these vertices, in ascending local order; `local` is the number of the facet in its cell.
   FacetShape(std::size_t which, const std::array<Point<dim>, dim>& vertices, int local);
   /// Facet number `which` of the boundary.
   FacetShape(const mesh::Mesh<dim>& mesh, std::size_t which);
 
   [[nodiscard]] Point<dim> centre() const { return map(Point<dim - 1>::Constant(1.0 / dim)); }
 
-  std::size_t number;  ///< by which the caller knows it
+  std::size_t number;  ///< the caller's number for it
   mesh::FacetMap<dim> map;
   mesh::FacetGeometry<dim> geometry;
   mesh::BoundingBox<dim> box;
@@ -42,7 +42,7 @@ struct Candidate
   std::size_t master;             ///< FacetShape::number
   std::array<double, dim> place;  ///< the centre of the master facet
   Polygon<dim> polygon;
-  std::vector<Polygon<dim>> visible{};  ///< what nearer ones leave of it
+  std::vector<Polygon<dim>> visible{};  ///< the parts that nearer ones leave visible
   double distance;                      ///< l at s = 0
   Point<dim - 1> slope;                 ///< its gradient in s
   double nearness = 0;                  ///< |l| at the centroid
@@ -63,10 +63,10 @@ class SlaveFacet
 
   /// Whether a facet in the box may lie opposite a point of this one.
   [[nodiscard]] bool may_see(const mesh::BoundingBox<dim>& box) const;
-  /// Takes a master facet if it faces the slave and has a part of more than rounding opposite to it.
+  /// Adds a master facet if it faces the slave and more than rounding of it lies opposite.
   void add(const FacetShape<dim>& master);
   [[nodiscard]] std::span<const Candidate<dim>> candidates() const { return candidates_; }
-  /// The parts with one partner each, the nearest. Throws InputError where that is not clear.
+  /// Appends the parts, each with its nearest partner. Throws InputError if the nearest is not clear.
   void append_pairs(std::vector<FacetPair<dim>>& pairs);
 
  private:
@@ -89,7 +89,7 @@ class MasterFacets
 {
  public:
   explicit MasterFacets(std::vector<FacetShape<dim>> facets);
-  /// Gives the slave facet what lies opposite to it.
+  /// Adds to the slave facet the facets opposite to it.
   void add_to(SlaveFacet<dim>& slave) const;
 
  private:
@@ -97,7 +97,7 @@ class MasterFacets
   mesh::BoxTree<dim> tree_;
 };
 
-/// Of the boundary facets with these numbers.
+/// The shapes of the boundary facets with these numbers.
 template <int dim>
 [[nodiscard]] std::vector<FacetShape<dim>> facet_shapes(const mesh::Mesh<dim>& mesh,
                                                         std::span<const std::size_t> numbers);

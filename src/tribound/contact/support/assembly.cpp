@@ -33,7 +33,7 @@ void measure(const mesh::Mesh<dim>& mesh, Assembly<dim>& assembly)
       modes.size = std::max(modes.size, (mesh.vertex(v) - modes.centre).norm());
 }
 
-/// For each body the first that it is connected with through segments.
+/// For each body, the first body to which segments connect it.
 template <int dim>
 std::vector<int> connect(std::size_t n_bodies, std::span<const ContactSegment<dim>> segments,
                          std::span<const int> body_of)
@@ -66,8 +66,8 @@ std::vector<int> Assembly<dim>::coefficients(int b)
   return numbers;
 }
 
-// In the coordinates (z_1, z_2 - z_1, z_3 - z_1, ...) what is left after the elimination of all differences
-// moves all bodies together.
+// In the coordinates (z_1, z_2 - z_1, z_3 - z_1, ...), the motions that are left after the elimination of all
+// differences move all bodies together.
 template <int dim>
 std::vector<Eigen::VectorXd> Assembly<dim>::readable_basis(const MotionBasis& motions) const
 {

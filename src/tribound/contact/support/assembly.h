@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file assembly.h
-/// Bodies that contact joins: what moves one of them may move the others.
+/// Bodies joined by contact: a motion of one may move the others.
 
 #include <Eigen/Core>
 #include <optional>
@@ -21,13 +21,13 @@ namespace tribound::contact
 /// A contact segment of an assembly.
 struct AssemblySegment
 {
-  std::size_t number;         ///< of the segment
+  std::size_t number;         ///< number of the segment
   int slave;                  ///< number of its body in the assembly
   std::optional<int> master;  ///< absent: a rigid obstacle
 };
 
 /// Bodies that are connected through pairs; a body in no pair is an assembly of its own. Its rigid motions
-/// are one of each body, z = (z_1 ... z_nb), as vectors of the coefficients of z_1, then z_2, ...
+/// consist of one for each body, z = (z_1 ... z_nb), as vectors of the coefficients of z_1, then z_2, ...
 template <int dim>
 struct Assembly
 {
@@ -44,14 +44,14 @@ struct Assembly
     return motion.segment<RigidModes<dim>::n_modes>(RigidModes<dim>::n_modes * b);
   }
 
-  /// A basis of the same space for people to read: motions of all bodies together, then motions of fewer,
+  /// A basis of the same space for users to read: motions of all bodies together, then motions of fewer;
   /// first translations, then rotations, each along the coordinate axes where possible.
   [[nodiscard]] std::vector<Eigen::VectorXd> readable_basis(const MotionBasis& motions) const;
 
   /// `the body (region "steel")`, `the bodies around (0, 1) (region "dam") and around (0, -1) (region
   /// "rock")`.
   [[nodiscard]] std::string describe(const problem::Problem<dim>& problem, bool several) const;
-  /// `translation along x`; where bodies move differently, that of each that moves.
+  /// `translation along x`; if bodies move differently, the motion of each that moves.
   [[nodiscard]] std::string describe(const problem::Problem<dim>& problem,
                                      const Eigen::VectorXd& motion) const;
 };
@@ -76,9 +76,9 @@ class MotionJump
   std::vector<int> coefficients_;
 };
 
-/// Calls visit(entry, segment, N, coefficients, M) with the direction N of contact and [z] = M
-/// z(coefficients) at each corner of each segment of the assembly, `segments` those that its numbers refer
-/// to.
+/// Calls visit(entry, segment, N, coefficients, M) at each corner of each segment of the assembly, with the
+/// direction N of contact and [z] = M z(coefficients). The segment numbers of the assembly refer to
+/// `segments`.
 template <int dim, class Visit>
 void for_each_corner(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments,
                      const Assembly<dim>& assembly, const Visit& visit)
@@ -93,7 +93,7 @@ void for_each_corner(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment
   }
 }
 
-/// All assemblies, by the first body of each.
+/// All assemblies, ordered by the first body of each.
 template <int dim>
 [[nodiscard]] std::vector<Assembly<dim>> find_assemblies(const fem::LagrangeSpace<dim>& space,
                                                          std::span<const ContactSegment<dim>> segments);

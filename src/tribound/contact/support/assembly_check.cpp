@@ -74,7 +74,8 @@ void AssemblyCheck<dim>::check_held() const
                    fmt::format("nothing stops {} from: {}", name_, fmt::join(motions, "; ")), hint(free));
 }
 
-/// On the parts of the segments on which the rule integrates s; |[z]^t| is convex, the largest at a vertex.
+/// On the parts of the segments on which the rule integrates s; |[z]^t| is convex, so it is largest at a
+/// vertex.
 template <int dim>
 auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
                                        const fem::Quadrature<dim - 1>& rule) const -> FrictionWork
@@ -118,8 +119,7 @@ auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::
   return result;
 }
 
-/// The remainders of the integrals hold those against affine weights, the values of which are the largest at
-/// vertices.
+/// The remainders of the integrals also cover affine weights, whose values are largest at vertices.
 template <int dim>
 double AssemblyCheck<dim>::missed_work(const Eigen::VectorXd& motion) const
 {
@@ -151,14 +151,14 @@ double AssemblyCheck<dim>::missed_work(const Eigen::VectorXd& motion) const
         missed += 2 * part.water * segment.measure * fem::fraction<dim - 1>(part.part) *
                   (jump(s) * motion(jump.coefficients())).norm();
   }
-  return std::sqrt(dim) * missed;  // by components
+  return std::sqrt(dim) * missed;  // the remainders are per component
 }
 
 // Tresca friction can do work in a convex set Z, all other contact forces in the cone K. The loads c are
-// balanced if c lies in K + Z. The nearest point of it is looked for with K and those points of Z that
-// proved useful, among them 0 (fully corrective Frank-Wolfe method); that their weights add up to at most 1
-// is one more row. What is left of c is a motion r that K can do nothing against, and c is outside as soon
-// as c.r exceeds what Z can do.
+// balanced if c lies in K + Z. The point of K + Z nearest to c is sought with K and those points of Z that
+// proved useful, among them 0 (fully corrective Frank-Wolfe method); one more row makes their weights add up
+// to at most 1. The remainder of c is a motion r against which K can do nothing, and c is outside as soon as
+// c.r exceeds what Z can do.
 template <int dim>
 std::optional<Eigen::VectorXd> AssemblyCheck<dim>::beyond_tresca(const MotionBasis& motions,
                                                                  const Eigen::VectorXd& loads,
@@ -193,7 +193,7 @@ std::optional<Eigen::VectorXd> AssemblyCheck<dim>::beyond_tresca(const MotionBas
     const double driving = r.dot(loads) - missed_work(motions * r);
     if (driving > (1 + relative) * friction.most + tolerance * r.norm())
     {
-      // |z^t| has kinks: refuse only what refinement of the rule does not change.
+      // |z^t| has kinks: refuse only what still holds after refinement of the rule.
       const double finer = strength_work(motions, r, on_halves(on_halves(form_.data().facet_rule()))).most;
       const double most = std::max(friction.most, finer) + std::abs(finer - friction.most) + friction.missed;
       return driving > (1 + relative) * most + tolerance * r.norm() ? std::optional(r) : std::nullopt;
@@ -220,9 +220,9 @@ void AssemblyCheck<dim>::check_balanced(const Eigen::VectorXd& work, double roun
 {
   const auto is_bonded = [&](const AssemblySegment& entry)
   { return problem::cone(form_.segments()[entry.number].contact->law).is_bonded; };
-  if (std::ranges::any_of(assembly_.segments, is_bonded)) return;  // what a bond takes is not known here
+  if (std::ranges::any_of(assembly_.segments, is_bonded)) return;  // the strength of a bond is not known here
   constexpr double relative = 1e-8;
-  const MotionBasis motions = support_.left_by_fixing();  // what contact alone has to stop
+  const MotionBasis motions = support_.left_by_fixing();  // motions that only contact can stop
   const Eigen::VectorXd c = motions.transpose() * work;   // L(z) for each of them
   if (motions.cols() == 0 || c.norm() <= round_off) return;
 
@@ -230,7 +230,7 @@ void AssemblyCheck<dim>::check_balanced(const Eigen::VectorXd& work, double roun
   const auto left_by = [&](ConeFriction friction)
   { return ContactCone<dim>(form_, assembly_, motions, friction).project_on_polar(c); };
   const Eigen::VectorXd lifted = left_by(ConeFriction::unlimited);
-  // The work of the loads in a projection r on the polar cone is |r|^2.
+  // The work of the loads in r, their projection on the polar cone, is |r|^2.
   const auto is_free = [&](const Eigen::VectorXd& r)
   { return r.squaredNorm() > tolerance * r.norm() + missed_work(motions * r); };
   if (is_free(lifted)) fail(motions * lifted, "contact only pushes");
@@ -238,7 +238,7 @@ void AssemblyCheck<dim>::check_balanced(const Eigen::VectorXd& work, double roun
   const Eigen::VectorXd slipped = left_by(ConeFriction::strong);
   if (is_free(slipped))
   {
-    // Motions that slide along all of the contact boundary, and the one in which the loads do most work.
+    // Motions that slide along the whole contact boundary, and the one in which the loads do most work.
     const Eigen::MatrixXd pressed = support_.contact_gram(false);
     const MotionBasis sliding =
         motions * null_space(motions.transpose() * pressed * motions, pressed.trace());

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file assembly_check.h
-/// Whether the bodies of an assembly are held, and contact can balance their loads.
+/// Whether the bodies of an assembly are held, and whether contact can balance their loads.
 
 #include <Eigen/Core>
 #include <optional>
@@ -17,7 +17,7 @@
 namespace tribound::contact
 {
 
-/// An assembly with what holds and drives it.
+/// An assembly with its supports and loads.
 template <int dim>
 class AssemblyCheck
 {
@@ -39,24 +39,24 @@ class AssemblyCheck
   void check_balanced(const Eigen::VectorXd& work, double round_off) const;
 
  private:
-  /// What the strength of friction can do against a motion z at most.
+  /// The most that the strength of friction can do against a motion z.
   struct FrictionWork
   {
     Eigen::VectorXd in_motions;  ///< integral of s [z]^t/|[z]^t| . [y]^t for each motion y of a basis
     double most = 0;             ///< integral of s |[z]^t|
-    double missed = 0;           ///< what the rule may miss of it because of s
+    double missed = 0;           ///< what the rule may miss of `most` because of s
   };
 
   [[nodiscard]] FrictionWork strength_work(const MotionBasis& motions, const Eigen::VectorXd& z,
                                            const fem::Quadrature<dim - 1>& rule) const;
-  /// What the work of the loads in a motion may miss.
+  /// The possible error of the work of the loads in a motion.
   [[nodiscard]] double missed_work(const Eigen::VectorXd& motion) const;
-  /// A motion in which the loads do more work than Tresca friction can take up, and contact and Coulomb
-  /// friction none; nothing where there is none, or it is too close to tell. See check_rigid_motions().
+  /// A motion in which the loads do more work than Tresca friction can take up, while contact and Coulomb
+  /// friction do none; nothing if there is none, or if it is too close to tell. See check_rigid_motions().
   [[nodiscard]] std::optional<Eigen::VectorXd> beyond_tresca(const MotionBasis& motions,
                                                              const Eigen::VectorXd& loads,
                                                              double tolerance) const;
-  /// What to do against motions that nothing stops, with a component for each of them.
+  /// Advice against motions that nothing stops, with a component to fix for each of them.
   [[nodiscard]] std::string hint(std::span<const Eigen::VectorXd> free) const;
   [[noreturn]] void fail(const Eigen::VectorXd& motion, const std::string& reason) const;
 

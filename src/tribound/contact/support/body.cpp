@@ -13,7 +13,7 @@ namespace tribound::contact
 namespace
 {
 
-/// The label of the cell of each vertex or node, of which there are n.
+/// The label of the cell of each vertex or node; n is their number.
 template <class Numbers>
 std::vector<int> spread(std::span<const int> cell_label, Index n, Numbers numbers_of)
 {

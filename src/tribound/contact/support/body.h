@@ -14,7 +14,7 @@
 namespace tribound::contact
 {
 
-/// A part of the mesh that is connected through facets. Bodies have no vertex in common.
+/// A part of the mesh that is connected through facets. Different bodies have no vertex in common.
 template <int dim>
 struct Body
 {
@@ -31,7 +31,7 @@ struct Body
 template <int dim>
 [[nodiscard]] std::vector<Body<dim>> find_bodies(const fem::LagrangeSpace<dim>& space);
 
-/// `the body (region "steel")`; where there are several, `the body around (0.5, 1) (region "steel")`.
+/// `the body (region "steel")`; if there are several, `the body around (0.5, 1) (region "steel")`.
 template <int dim>
 [[nodiscard]] std::string describe(const Body<dim>& body, const problem::Problem<dim>& problem, bool several);
 

@@ -61,7 +61,7 @@ void solve_on_active_set(const Eigen::MatrixXd& columns, const Eigen::VectorXd& 
 Eigen::VectorXd project_on_polar_cone(const Eigen::MatrixXd& columns, const Eigen::VectorXd& b)
 {
   assert(columns.rows() == b.size());
-  constexpr int max_exchanges = 300;       // some 10 are the rule
+  constexpr int max_exchanges = 300;       // about 10 are usual
   constexpr double inside = 1e-10;         // of |b|
   constexpr double perpendicular = 1e-12;  // of |r| |C_j|
   const Eigen::VectorXd lengths = columns.colwise().norm();

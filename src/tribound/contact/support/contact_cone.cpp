@@ -43,7 +43,7 @@ ContactCone<dim>::ContactCone(const NitscheForm<dim>& form, const Assembly<dim>&
                               const std::vector<int>& coefficients, const auto& jump)
   {
     const problem::FrictionCone law = problem::cone(segment.contact->law);
-    if (law.glues()) return;  // the motions obey it
+    if (law.glues()) return;  // the motions satisfy the tie
     const Eigen::MatrixXd jumps = jump * motions(coefficients, Eigen::all);
     const auto add = [&](const Point<dim>& push)
     {
@@ -86,7 +86,7 @@ std::optional<Eigen::VectorXd> ContactCone<dim>::steepest(const Eigen::VectorXd&
 template <int dim>
 Eigen::VectorXd ContactCone<dim>::project_on_polar(const Eigen::VectorXd& b)
 {
-  constexpr int max_generators = 200;  // beside those from the beginning; some 10 are the rule
+  constexpr int max_generators = 200;  // in addition to the initial ones; about 10 are usual
   constexpr double inside = 1e-9;      // of |b|
   for (int i = 0; i < max_generators; ++i)
   {

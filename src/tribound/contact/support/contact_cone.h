@@ -13,17 +13,18 @@
 namespace tribound::contact
 {
 
-/// Which friction counts among the forces that grow with the pressure without a limit.
+/// Which friction counts among the forces that grow with the pressure without limit.
 enum class ConeFriction
 {
-  unlimited,    ///< all friction holds whatever is pressed
-  strong,       ///< where there is strength it holds, the rest obeys its coefficient
-  no_strength,  ///< what obeys a coefficient, nothing else
+  unlimited,    ///< all friction holds wherever there is pressure
+  strong,       ///< friction with strength holds, the rest obeys its coefficient
+  no_strength,  ///< only friction that obeys a coefficient
 };
 
 /// The cone K of the work (t, [z_i])_C that contact tractions t can do in motions z_i: pushes along N at the
-/// corners of the segments, and with friction forces n + mu_F t, |t| = 1, any t where friction holds. In 3D
-/// the round cones of friction begin as polyhedra inside and get generators where they matter.
+/// corners of the segments; with friction also forces n + mu_F t, |t| = 1, and any t where friction holds. In
+/// 3D the round friction cones are first approximated by polyhedra inside them, which get more generators
+/// where they matter.
 template <int dim>
 class ContactCone
 {
@@ -31,16 +32,16 @@ class ContactCone
   ContactCone(const NitscheForm<dim>& form, const Assembly<dim>& assembly, const MotionBasis& motions,
               ConeFriction friction);
 
-  /// Generators of a cone inside K, one per column; in 2D of K.
+  /// Generators of a cone inside K, one per column; in 2D of K itself.
   [[nodiscard]] const Eigen::MatrixXd& generators() const { return generators_; }
-  /// The force of K outside the cone of the generators, if there is one, that does most work in r; the
-  /// generators without one tell whether K can do any.
+  /// The force of K outside the cone of the generators that does the most work in r, if there is one; without
+  /// one, the generators tell whether K can do any.
   [[nodiscard]] std::optional<Eigen::VectorXd> steepest(const Eigen::VectorXd& r) const;
-  /// The projection of b on the polar of K (project_on_polar_cone()); 0 where it is not found.
+  /// The projection of b on the polar of K (project_on_polar_cone()); 0 if it is not found.
   [[nodiscard]] Eigen::VectorXd project_on_polar(const Eigen::VectorXd& b);
 
  private:
-  /// Where friction obeys a coefficient, in 3D: [z] = jumps times the coefficients of z.
+  /// A corner where friction obeys a coefficient, in 3D: [z] = jumps times the coefficients of z.
   struct RoundCorner
   {
     Eigen::Matrix<double, dim, Eigen::Dynamic> jumps;

@@ -15,10 +15,10 @@ namespace tribound::contact
 namespace
 {
 
-/// Parts of a motion smaller than this, relative to the whole, are round-off.
+/// Parts of a motion that are smaller than this, relative to the whole, are round-off.
 constexpr double round_off = 1e-6;
 
-/// "(0.5, 0)" with four digits; components that are small against `scale` are 0.
+/// "(0.5, 0)" with four digits; components that are small compared with `scale` are 0.
 template <int dim>
 std::string in_words(const Point<dim>& x, double scale)
 {
@@ -28,7 +28,7 @@ std::string in_words(const Point<dim>& x, double scale)
   return text + ")";
 }
 
-/// "x" or "-x" for the direction of an axis, else its components.
+/// "x" or "-x" for the direction of an axis, otherwise its components.
 template <int dim>
 std::string direction(const Point<dim>& unit)
 {
@@ -45,7 +45,7 @@ Point<2> turned(const Point<2>& v)
 }
 
 /// Gauss-Jordan elimination of the rows of `a` from row `first` on, with pivots in columns [begin, end); rows
-/// that have none end up last. Returns the pivot columns, in the order of the rows.
+/// without a pivot end up last. Returns the pivot columns, in the order of the rows.
 std::vector<Eigen::Index> eliminate(Eigen::MatrixXd& a, Eigen::Index first, Eigen::Index begin,
                                     Eigen::Index end)
 {
@@ -104,7 +104,7 @@ MotionBasis null_space(const Eigen::MatrixXd& gram, double scale)
 {
   constexpr double threshold = 1e-14;
   const SymmetricEigen eigen = symmetric_eigen(gram);
-  const auto n_null = (eigen.values.array() <= threshold * scale).count();  // they ascend
+  const auto n_null = (eigen.values.array() <= threshold * scale).count();  // eigenvalues ascend
   return eigen.vectors.leftCols(n_null);
 }
 

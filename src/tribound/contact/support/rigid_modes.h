@@ -38,9 +38,9 @@ using MotionBasis = Eigen::MatrixXd;
 /// An orthonormal basis of the null space of a Gram matrix: eigenvalues up to 1e-14 of `scale` count as 0.
 [[nodiscard]] MotionBasis null_space(const Eigen::MatrixXd& gram, double scale);
 
-/// A basis of the same space for people to read: first what moves the first body, there first translations,
-/// then rotations, each along the coordinate axes where possible; then what moves the second and not the
-/// first, and so on, where such motions span what is left.
+/// A basis of the same space for users to read. First come motions of the first body: translations, then
+/// rotations, each along the coordinate axes where possible. Then come those that move the second body and
+/// not the first, and so on, if such motions span the rest.
 template <int dim>
 [[nodiscard]] std::vector<Eigen::VectorXd> readable_basis(const MotionBasis& motions);
 

@@ -16,7 +16,7 @@ void check_rigid_motions(const NitscheForm<dim>& form, std::span<const double> l
 {
   const fem::LagrangeSpace<dim>& space = form.space();
   assert(!space.mesh().partition());
-  // What contact holds is the effective traction: water pushes like a load.
+  // What contact holds is the effective traction: water acts like a load.
   std::vector<double> pushed(load.begin(), load.end());
   std::vector<Point<dim>> water = form.water_pressure();
   for (Point<dim>& t : water) t = -t;

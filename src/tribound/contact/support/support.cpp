@@ -12,7 +12,7 @@ namespace tribound::contact
 namespace
 {
 
-/// What is known of fixing a component of a boundary against a motion z.
+/// The effect of fixing a component of a boundary against a motion z.
 struct Fixing
 {
   double into = 0;   ///< integral of (z_c n_c)^2
@@ -21,8 +21,8 @@ struct Fixing
   bool loaded = false;
 };
 
-/// Whether `a` is the better choice. A component tangential to its boundary stops a motion as well, but
-/// ranks below every normal one.
+/// Whether `a` is the better choice. A component tangential to its boundary also stops a motion, but ranks
+/// below every normal one.
 bool better(const Fixing& a, const Fixing& b)
 {
   constexpr double tie = 1e-9;
@@ -32,14 +32,14 @@ bool better(const Fixing& a, const Fixing& b)
   return a.along / a.measure - b.along / b.measure > tie;
 }
 
-/// r^T r for rows r at points of boundaries and pairs: of each of them the mean, so that one with few facets
-/// counts beside one with many.
+/// r^T r for rows r at points of boundaries and pairs, as the mean for each boundary and pair, so that one
+/// with few facets counts as much as one with many.
 class MeanGrams
 {
  public:
   using Key = std::pair<int, int>;
 
-  /// Rows with the given coefficients of motions, at one more point of `key`.
+  /// Adds rows for the given coefficients of motions, at one more point of `key`.
   template <class Rows>
   void add(const Key& key, const std::vector<int>& coefficients, const Rows& rows)
   {

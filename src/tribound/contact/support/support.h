@@ -33,28 +33,28 @@ template <int dim>
 class Support
 {
  public:
-  /// `segments` are those that the numbers in the assembly refer to.
+  /// The numbers in the assembly refer to `segments`.
   Support(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
           std::span<const ContactSegment<dim>> segments, const Assembly<dim>& assembly)
       : problem_(problem), mesh_(mesh), segments_(segments), assembly_(assembly)
   {
   }
 
-  /// Sum of r r^T over the rows r of what stops a motion z both ways, its fixed components and [z] on ties;
-  /// of each boundary and pair the mean.
+  /// Sum of r r^T over the rows r of what stops a motion z in both directions: its fixed components and [z]
+  /// on ties; the mean for each boundary and pair.
   [[nodiscard]] Eigen::MatrixXd fixed_gram() const;
-  /// The same for closed contact: [z]^n, and all of [z] where there is friction and it counts.
+  /// The same for closed contact: [z]^n, and all of [z] if there is friction and it counts.
   [[nodiscard]] Eigen::MatrixXd contact_gram(bool with_friction) const;
 
-  /// Motions that displacement conditions and ties leave.
+  /// The motions that displacement conditions and ties leave.
   [[nodiscard]] MotionBasis left_by_fixing() const;
-  /// Motions that would be left even if contact could pull as well: without friction only friction stops
-  /// them, with friction nothing does.
+  /// The motions that would be left even if contact could pull as well. Without friction: only friction stops
+  /// them; with friction: nothing does.
   [[nodiscard]] MotionBasis left_by_contact(bool with_friction) const;
 
-  /// The boundary component to fix against the motion z: the one with the largest mean of (z_c n_c)^2, that
-  /// is of the motion into a wall or a plane of symmetry; one that carries no load where there is a choice.
-  /// Nothing where every boundary that z changes is in contact or in no group.
+  /// The boundary component to fix against the motion z: the one with the largest mean of (z_c n_c)^2, the
+  /// motion into a wall or a plane of symmetry; if there is a choice, one that carries no load. Nothing if
+  /// every boundary that z changes is in contact or in no group.
   [[nodiscard]] std::optional<Remedy> remedy(const Eigen::VectorXd& motion) const;
 
  private:
