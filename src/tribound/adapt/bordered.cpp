@@ -23,14 +23,14 @@ struct Bordered<dim>::State
 
   Form form;
   std::vector<double> residual;  ///< L - a(u, phi_i) + (T, phi_i)_C, 0 at fixed degrees of freedom
-  double norm = 0;               ///< of it
+  double norm = 0;               ///< norm of the residual
   double measure = 0;            ///< C(u)
 };
 
 namespace
 {
 
-/// Tangents are unsymmetric and change: what condensation keeps is not worth its own code here.
+/// Tangents are unsymmetric and change, so condensation is not worth its own code here.
 algebra::SolverOptions of_whole_matrix(algebra::SolverOptions options)
 {
   if (options.method == algebra::LinearMethod::condensed) options.method = algebra::LinearMethod::automatic;
@@ -62,7 +62,7 @@ Bordered<dim>::State::State(Form at_t, PathPoint& point, const PathMeasure<dim>&
   measure = of_path.value(*form, point.u);
 }
 
-/// One step from `now`; `then` is the same a little later.
+/// One Newton step from `now`; `then` is the same problem at a slightly later t.
 template <int dim>
 void Bordered<dim>::move(const State& now, const State& then, const PathMeasure<dim>& measure, double target,
                          const BorderedOptions& options, PathPoint& point, solve::NewtonStep& step)

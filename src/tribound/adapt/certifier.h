@@ -15,13 +15,13 @@
 namespace tribound::adapt
 {
 
-/// The largest negligible eta_lin1 + eta_lin2n + eta_lin2t beside the other components.
+/// The largest eta_lin1 + eta_lin2n + eta_lin2t that is negligible beside the other components.
 [[nodiscard]] inline double negligible_linearisation(const certify::BoundComponents& eta, double gamma_lin)
 {
   return gamma_lin * (eta.discretisation() + eta.regularisation());
 }
 
-/// lin1, lin2n and lin2t alone.
+/// The components lin1, lin2n and lin2t alone.
 [[nodiscard]] inline certify::BoundComponents linearisation_part(const certify::BoundComponents& eta)
 {
   certify::BoundComponents part;
@@ -46,7 +46,7 @@ class Certifier
   {
   }
 
-  /// Whether sigma_lin lets the iterate be a candidate for the solution on the mesh, so that its bound is
+  /// Whether sigma_lin admits the iterate as a candidate for the solution on the mesh, so that its bound is
   /// needed.
   [[nodiscard]] bool is_candidate(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
@@ -64,17 +64,17 @@ class Certifier
     return linearisation_is_negligible(level.estimate, method_.stopping, form_.space().mesh().ranks());
   }
 
-  /// Whether <R_lin, phi_i> is negligible beside the bound that is expected; never without C_F.
+  /// Whether <R_lin, phi_i> is negligible beside the expected bound; always false without C_F.
   [[nodiscard]] bool is_balanced(std::span<const double> residual) const
   {
-    constexpr double of_stress = 0.1;  // bounds on first meshes are no smaller, as a rule
+    constexpr double of_stress = 0.1;  // as a rule, bounds on first meshes are no smaller
     const std::optional<double> eta = known_    ? known_
                                       : stress_ ? std::optional(of_stress * *stress_)
                                                 : std::nullopt;
     return eta && estimator_.algebraic_bound(residual) <= method_.solver.gamma_alg * *eta;
   }
-  /// Whether alg is in the bound that the level has. Systems that are solved to a tolerance may be out by 1
-  /// %.
+  /// Whether alg is a small enough part of the level's bound; 1 % is allowed for systems solved to a
+  /// tolerance.
   [[nodiscard]] bool is_balanced(const CertifiedLevel<dim>& level) const
   {
     const double gamma = method_.solver.gamma_alg > 0 ? method_.solver.gamma_alg : 0.01;
@@ -102,9 +102,9 @@ class Certifier
   }
 
  private:
-  /// Whether the linearisation error may be negligible, the discretisation error being that last known, or,
-  /// before any is, at most as large as the stress of the first iterate. What is negligible on every cell is
-  /// so in all but for a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
+  /// Whether the linearisation error may be negligible. The discretisation error is taken as last known or,
+  /// before any is known, as at most the stress of the first iterate. An error that is negligible on every
+  /// cell is so up to a factor: |x| + |y| + |z| <= 3^{1/2} |x + y + z| for vectors x, y, z >= 0.
   bool linearisation_may_be_negligible(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
     const double factor = method_.stopping.criterion == Stopping::adaptive_local ? std::numbers::sqrt3 : 1;
@@ -116,7 +116,7 @@ class Certifier
 
   const contact::NitscheForm<dim>& form_;
   const Method& method_;
-  std::optional<double> known_;   ///< discretisation() of the last complete bound, or what is expected
+  std::optional<double> known_;   ///< discretisation() of the last complete bound, or its expected value
   std::optional<double> stress_;  ///< ||sigma(u^1)||
   certify::Equilibrator<dim> equilibrator_;
   certify::Estimator<dim> estimator_;

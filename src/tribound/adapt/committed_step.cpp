@@ -1,5 +1,5 @@
 /// @file committed_step.cpp
-/// What a load step leaves once Newton's method has converged: verdict, history, forces and work.
+/// The results of a load step whose Newton iteration has converged: verdict, history, forces and work.
 
 #include <algorithm>
 #include <utility>
@@ -18,8 +18,8 @@ std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<c
   return forces;
 }
 
-/// A cycle comes back to no stress at all: bound and identities are relative to the stress of the path,
-/// ||sigma_h|| being at most ||sigma(u_h)|| and the bound.
+/// A load cycle returns to zero stress, so bound and identities are relative to the largest stress of the
+/// path. ||sigma_h|| is at most ||sigma(u_h)|| plus the bound.
 template <int dim>
 certify::Verdict LoadPath<dim>::judge(const CertifiedLevel<dim>& level) const
 {
@@ -73,7 +73,7 @@ void LoadPath<dim>::account(LoadStep<dim>& step)
   position_.reference_force =
       std::max(position_.reference_force, solve::external_forces(form).scale + space.norm(contact_load));
 
-  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is what is stored
+  form.add_contact_load(form.water_pressure(), contact_load);  // the effective traction is stored
   step.forces = forces_on<dim>(form, u, contact_load);
   std::vector<double> mean = step.forces;
   std::vector<double> moved = u;

@@ -16,11 +16,11 @@ namespace tribound::adapt
 namespace
 {
 
-/// How far points of a child may seem to be outside its parent, in barycentric coordinates: corners of the
+/// How far points of a child may appear to lie outside its parent, in barycentric coordinates. Corners of the
 /// segments between bodies are rounded to 1e-12.
 constexpr double rounding_outside = 1e-7;
 
-/// Numbers of a Piece: its boundary, normal, origin and edges.
+/// Number of values that describe a Piece: its boundary, normal, origin and edges.
 template <int dim>
 constexpr std::size_t n_place = 1 + dim*(dim + 1);
 
@@ -36,7 +36,7 @@ std::span<const double> basis_at(int degree, const Point<dim - 1>& s, Theta<dim>
   return values;
 }
 
-/// The coordinates of the point of the piece that is nearest to x in its plane.
+/// The coordinates of the point in the plane of the piece that is nearest to x.
 template <int dim>
 Point<dim - 1> coordinates(const Eigen::Matrix<double, dim, dim - 1>& jacobian, const Point<dim>& from_origin)
 {
@@ -115,7 +115,7 @@ std::size_t ContactFunctions<dim>::piece_of(const contact::NitscheForm<dim>& for
   const auto visit = [&](std::size_t i)
   {
     const Piece& piece = pieces_[i];
-    // Two sides of a slit may have one name: they face each other.
+    // The two sides of a slit may have the same name: they face each other.
     if (piece.tag != slave.facet.tag || piece.normal.dot(normal) < 1 - rounding_outside) return;
     const Point<dim - 1> s = coordinates<dim>(piece.jacobian, centre - piece.origin);
     const double off_plane = std::abs(piece.normal.dot(centre - piece.origin));
@@ -197,7 +197,7 @@ std::shared_ptr<const contact::ContactHistory<dim>> carried_history(
   {
     const Point<dim>& n = to.contact_points()[point].normal;
     state = problem::admissible<dim>(to.segments()[point / to.n_segment_points()].contact->law, state);
-    state.slip -= state.slip.dot(n) * n;  // where N varies polynomials leave the tangent plane
+    state.slip -= state.slip.dot(n) * n;  // where N varies, polynomials leave the tangent plane
     return state;
   };
   return std::make_shared<const contact::ContactHistory<dim>>(std::move(states), to.facet_rule(),

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file contact_functions.h
-/// Functions on the contact boundary of a mesh, such as what it remembers, on a refinement of it.
+/// Functions on the contact boundary of a mesh, such as the contact history, and their values on a
+/// refinement.
 
 #include <cstddef>
 #include <functional>
@@ -15,22 +16,23 @@
 namespace tribound::adapt
 {
 
-/// Polynomials of degree p + 2 on every contact segment, of all ranks on each. A segment of a refinement lies
-/// in one of these: a child of the facet of an obstacle does, and between bodies in 2D the part of a child
-/// with one partner. There it has the same polynomials. (Between bodies in 3D parts are cut into simplices,
-/// which do not nest.)
+/// Polynomials of degree p + 2 on every contact segment. Each rank has those of all ranks. A segment of a
+/// refinement lies in one of these segments, and has the same polynomials there: it is a child of a facet on
+/// an obstacle or, between bodies in 2D, the part of a child with one partner. (Between bodies in 3D, parts
+/// are cut into simplices, which do not nest.)
 template <int dim>
 class ContactFunctions
 {
  public:
-  /// Of n functions with such values at the owned contact points of the form: values[point n + i]. The
-  /// polynomials are the projections by the rule; in 2D they have the values. All ranks call it together.
+  /// From the values of n functions at the owned contact points of the form, values[point n + i]. The
+  /// polynomials are the projections by the quadrature rule; in 2D they interpolate the values. All ranks
+  /// call it together.
   ContactFunctions(const contact::NitscheForm<dim>& form, std::span<const double> values, std::size_t n);
 
-  /// At the contact points of one segment, [point n + i].
+  /// Sets the values at the contact points of one segment, [point n + i].
   using Fresh = std::function<void(const contact::ContactSegment<dim>&, std::span<double>)>;
-  /// Their values at all contact points of a form on a refinement, ghosts included, in the same order; on a
-  /// segment that lies in none what `fresh` sets, by default 0.
+  /// The values at all contact points of a form on a refinement, ghosts included, in the same order. On a
+  /// segment that lies in no piece, `fresh` sets them, by default to 0.
   [[nodiscard]] std::vector<double> at_points_of(const contact::NitscheForm<dim>& form,
                                                  const Fresh& fresh = {}) const;
 
@@ -47,7 +49,7 @@ class ContactFunctions
   void set_pieces(std::span<const double> places);
   void evaluate(const contact::NitscheForm<dim>& form, std::size_t k, std::size_t piece,
                 std::span<double> values) const;
-  /// The piece that the segment lies in; their number where there is none.
+  /// The index of the piece that the segment lies in; the number of pieces where there is none.
   [[nodiscard]] std::size_t piece_of(const contact::NitscheForm<dim>& form, std::size_t k) const;
 
   std::size_t n_;
@@ -57,15 +59,16 @@ class ContactFunctions
   mesh::BoxTree<dim> tree_;
 };
 
-/// The history of a form on one on a refinement of its mesh. In 2D it is the same function. In 3D it is the
-/// same between the contact points; at these the polynomials take the place of the states that were there,
-/// which they need not go through. All ranks call it together.
+/// Transfers the history of a form to a form on a refinement of its mesh. In 2D the history is the same
+/// function. In 3D polynomials replace the states at the contact points, and need not interpolate them. All
+/// ranks call it together.
 template <int dim>
 [[nodiscard]] std::shared_ptr<const contact::ContactHistory<dim>> carried_history(
     const contact::ContactHistory<dim>& history, const contact::NitscheForm<dim>& from,
     const contact::NitscheForm<dim>& to);
 
-/// Vectors at the contact points of a form, at those of one on a refinement. All ranks call it together.
+/// Transfers vectors at the contact points of a form to those of a form on a refinement. All ranks call it
+/// together.
 template <int dim>
 [[nodiscard]] std::vector<Point<dim>> carried_vectors(std::span<const Point<dim>> vectors,
                                                       const contact::NitscheForm<dim>& from,

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file contact_hold.h
-/// What contact may have to do with a failure of Newton's method, in words that follow its message.
+/// How contact may explain a failure of Newton's method, as text appended to the error message.
 
 #include <string>
 
@@ -10,13 +10,13 @@
 namespace tribound::adapt
 {
 
-/// That a body which contact alone holds may have lost it; empty where displacement conditions hold every
-/// body, or ties may. All ranks together.
+/// Says that a body held by contact alone may have lost it. Empty where displacement conditions hold every
+/// body, or ties may. All ranks call it together.
 template <int dim>
 [[nodiscard]] std::string words_of_hold(const contact::NitscheForm<dim>& form);
 
-/// That contact cannot balance the loads of the problem, which are those at t, whatever its pressures are
-/// (contact::why_not_held()); empty where it may, or nobody knows, as on several ranks.
+/// Says that contact cannot balance the loads of the problem, which are those at t, whatever its pressures
+/// are (contact::why_not_held()). Empty where it may, or where this is not known, as on several ranks.
 template <int dim>
 [[nodiscard]] std::string words_of_statics(const problem::Problem<dim>& problem,
                                            const fem::LagrangeSpace<dim>& space, double t);

@@ -1,5 +1,5 @@
 /// @file controlled_step.cpp
-/// Load steps along which not t is given.
+/// Load steps along which t is not prescribed.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 namespace tribound::adapt
 {
 
-/// The step that begins with theta times the one before.
+/// The step that begins with theta times the previous step.
 template <int dim>
 std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta,
                                        const StepObserver& observer)
@@ -68,7 +68,7 @@ std::string LoadPath<dim>::try_control(const Control<dim>& control, double theta
                      .fault = fault},
                     observer);
   }
-  catch (const InputError& error)  // data that are not valid at the t of an iterate
+  catch (const InputError& error)  // invalid data at the t of an iterate
   {
     require_all_failed(grid_->mesh.ranks(), error.what());
     return error.what();

@@ -19,8 +19,8 @@ namespace tribound::adapt
 namespace
 {
 
-/// Of cells that are too flat where the mesh is not the user's: "... times as long as high; Tribound made
-/// it".
+/// Adapts the message on cells that are too flat where the mesh is not the user's: "... times as long as
+/// high; Tribound made it".
 std::string words_of_cut_cells(std::string why)
 {
   if (!why.ends_with(certify::advice_on_flat_cells)) return why;
@@ -42,7 +42,7 @@ certify::EnergyBound attempt(const Ranks& ranks, const std::function<certify::En
   {
     why = error.what();
   }
-  catch (const InputError& error)  // of data at points where nothing else needs them
+  catch (const InputError& error)  // on data at points where nothing else needs them
   {
     why = error.what();
   }
@@ -54,7 +54,7 @@ certify::EnergyBound attempt(const Ranks& ranks, const std::function<certify::En
   return {.reason = why};
 }
 
-/// Squares of cells by the n cells that they come from.
+/// Sums the squares of cells over their n parent cells.
 void add_up(std::vector<double>& cells, std::span<const Index> parent, Index n)
 {
   if (cells.empty()) return;
@@ -63,7 +63,7 @@ void add_up(std::vector<double>& cells, std::span<const Index> parent, Index n)
   cells = std::move(sums);
 }
 
-/// The bound on a mesh that has such parents, for the mesh of these.
+/// The bound on a mesh with these parents, as one for the mesh of the parents.
 certify::EnergyBound added_up(certify::EnergyBound bound, std::span<const Index> parent, Index n)
 {
   add_up(bound.cells, parent, n);
@@ -71,7 +71,7 @@ certify::EnergyBound added_up(certify::EnergyBound bound, std::span<const Index>
   return bound;
 }
 
-/// `is_cut`: whether the mesh is one of Tribound's, in which cells are cut until facets match.
+/// `is_cut`: whether Tribound made this mesh by cutting cells until facets match.
 template <int dim>
 certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, const Method& method,
                                      std::span<const double> u,

@@ -22,7 +22,7 @@ namespace tribound::adapt
 namespace
 {
 
-/// sigma_h of cells, one behind the other.
+/// sigma_h of cells, concatenated.
 template <int dim>
 std::vector<double> stress_of(const certify::Stress<dim>& stress, std::span<const Index> cells)
 {
@@ -38,7 +38,7 @@ std::vector<double> stress_of(const certify::Stress<dim>& stress, std::span<cons
   return values;
 }
 
-/// Blocks of `size` numbers, that of cell number[k] in place number[k].
+/// Permutes blocks of `size` numbers: block k moves to place number[k].
 std::vector<double> in_order(std::span<const double> blocks, std::size_t size, std::span<const Index> number)
 {
   std::vector<double> result(blocks.size());
@@ -48,13 +48,13 @@ std::vector<double> in_order(std::span<const double> blocks, std::size_t size, s
   return result;
 }
 
-/// The bodies of cells, which may have been put together: by the cells of the first mesh that they are in.
-/// All ranks call it together.
+/// The bodies of cells, which may have been merged, found by their ancestors in the first mesh. All ranks
+/// call it together.
 template <int dim>
 std::vector<int> bodies_of(const mesh::Mesh<dim>& mesh, std::span<const mesh::CellRecord<dim>> cells)
 {
   const mesh::Bodies bodies = mesh::number_bodies(mesh);
-  std::vector<std::pair<std::int64_t, int>> of_root;  // own cells ascend by their roots
+  std::vector<std::pair<std::int64_t, int>> of_root;  // own cells are ordered by their roots
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
     if (const std::int64_t root = mesh.partition()->names[c].root;
         of_root.empty() || of_root.back().first != root)
@@ -79,7 +79,7 @@ FieldCells<dim> field_cells(const LevelView<dim>& view, std::span<const Index> c
   return fields;
 }
 
-/// Those of all ranks, on the first.
+/// The excerpts of all ranks, on the first rank.
 template <int dim>
 std::optional<Excerpt<dim>> gathered(const LevelView<dim>& view, const Method& method, FieldCells<dim> fields)
 {

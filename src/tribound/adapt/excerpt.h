@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file excerpt.h
-/// Some cells of a level on several ranks, all on the first: what is shown of a solution as one.
+/// Some cells of a level on several ranks, gathered on the first rank to display the solution.
 
 #include <cstdint>
 #include <memory>
@@ -12,20 +12,20 @@
 namespace tribound::adapt
 {
 
-/// Cells with the fields on them. Facets where others are left out are no boundary, and Dirichlet's,
-/// contact's and Neumann's conditions are those on the boundary facets that are there.
+/// Cells with the fields on them. Facets next to omitted cells are no boundary. Dirichlet, contact and
+/// Neumann conditions are those on the boundary facets present.
 template <int dim>
 struct Excerpt
 {
   std::shared_ptr<const Discretisation<dim>> discrete;
-  /// u, the stress (all of it in `dis`) and the cells of the estimate are those of the cells; no tractions,
-  /// and no equilibrium.
+  /// u, the stress (all of it in `dis`) and the estimate refer to these cells; no tractions, and no
+  /// equilibrium.
   CertifiedLevel<dim> level;
-  bool is_merged = false;  ///< whether cells were put together, see merge_cells()
+  bool is_merged = false;  ///< whether cells were merged, see merge_cells()
 };
 
-/// The cells of all ranks, merged where there are more than `most`; where that is not enough those at the
-/// boundary. Nothing elsewhere than on the first rank. All ranks call it together.
+/// The cells of all ranks, merged if there are more than `most`; if that is not enough, only those at the
+/// boundary. Empty except on the first rank. All ranks call it together.
 template <int dim>
 [[nodiscard]] std::optional<Excerpt<dim>> excerpt(const LevelView<dim>& view, const Method& method,
                                                   std::int64_t most);

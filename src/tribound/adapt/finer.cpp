@@ -51,7 +51,7 @@ Finer<dim> bisected(const fem::LagrangeSpace<dim>& from, const Functions& functi
           finer->parent};
 }
 
-/// The same of a mesh that is shared out: its cells take the values at their nodes with them.
+/// The same for a distributed mesh: cells take the values at their nodes with them.
 template <int dim>
 Finer<dim> bisected_part(const fem::LagrangeSpace<dim>& from, const Functions& functions,
                          std::span<const Index> marked, const Refinement<dim>& refinement)

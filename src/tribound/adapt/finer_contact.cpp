@@ -19,7 +19,7 @@ namespace tribound::adapt
 namespace
 {
 
-/// The local facet of a cell that contains a facet inside it; -1: none.
+/// The local facet of a cell that contains the centre of a smaller facet; -1: none.
 template <int dim>
 int facet_around(const mesh::CellMap<dim>& cell, const Point<dim>& centre)
 {
@@ -31,7 +31,7 @@ int facet_around(const mesh::CellMap<dim>& cell, const Point<dim>& centre)
   return -1;
 }
 
-/// The one of these, parts of a facet of a slave, that contains the point.
+/// The segment, among those on a facet of a slave, that contains the point.
 template <int dim>
 const contact::ContactSegment<dim>& around_point(
     const mesh::Mesh<dim>& mesh, std::span<const contact::ContactSegment<dim>* const> segments,
@@ -45,7 +45,7 @@ const contact::ContactSegment<dim>& around_point(
   return **std::ranges::min_element(segments, {}, distance);
 }
 
-/// gamma and the weights of the sides in {sigma} of each segment, from the one that contains it.
+/// Gives each segment gamma and the weights of the sides in {sigma} of the segment that contains it.
 template <int dim>
 void inherit(const contact::NitscheForm<dim>& from, const FinerContact<dim>& to,
              std::span<contact::ContactSegment<dim>> segments)
@@ -101,7 +101,7 @@ double contact_measure(const contact::NitscheForm<dim>& form)
   return form.space().mesh().ranks().sum(sum);
 }
 
-/// u and the form on a finer mesh, which is the same function; null where Gamma_C would not be the same.
+/// u and the form on a finer mesh, as the same functions; null where Gamma_C would not be the same.
 template <int dim>
 std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                            const Finer<dim>& finer)
@@ -125,8 +125,7 @@ std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form
   return result;
 }
 
-/// What rounding of u and of coordinates, between which u changes, can mean for its energy in a cell, the
-/// root of it.
+/// The effect of rounding of u and of coordinates on the energy in a cell, as its square root.
 template <int dim>
 double rounding_on(const contact::NitscheForm<dim>& form, Index cell, double largest_u)
 {
@@ -135,7 +134,7 @@ double rounding_on(const contact::NitscheForm<dim>& form, Index cell, double lar
   const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
   double farthest = 0;
   for (const Index v : mesh.cell(cell)) farthest = std::max(farthest, mesh.vertex(v).cwiseAbs().maxCoeff());
-  const double derivative = form.space().degree() * map.inverse_transpose.norm();  // over values
+  const double derivative = form.space().degree() * map.inverse_transpose.norm();  // per unit of nodal value
   constexpr double unit_round_offs = 1e-13;
   constexpr double of_places = 1e-15;
   return (unit_round_offs + of_places * farthest * derivative) * largest_u * derivative *

@@ -12,10 +12,10 @@ namespace
 template <int dim>
 using State = typename GatheredHistory<dim>::State;
 
-/// Where the points of a segment are the same as others up to rounding.
+/// Points of segments closer than this are the same up to rounding.
 constexpr double same_point = 1e-8;  // of the size of the segment
 
-/// The state at x; null where there is none. `states` ascend by their boundaries and first coordinates.
+/// The state at x; null where there is none. `states` are sorted by boundary and first coordinate.
 template <int dim>
 const State<dim>* find_state(std::span<const State<dim>> states, int tag, const Point<dim>& x, double radius)
 {

@@ -59,7 +59,7 @@ PathEnd follow_finely(const Grid<dim>& grid, const problem::Problem<dim>& proble
   {
     return follow_on_finer(grid, problem, method, program, observer, stop);
   }
-  catch (const InputError& error)  // data that are not valid at one of the t between, or on the finer mesh
+  catch (const InputError& error)  // invalid data at an intermediate t, or on the finer mesh
   {
     failure = InputError(error.where(), error.problem()).what();  // a hint would be a line of its own
   }

@@ -44,7 +44,7 @@ bool is_iterative(const solve::NewtonStep& step)
   return step.method == algebra::LinearMethod::iterative;
 }
 
-/// The steps after the one at which Stopping::adaptive would have ended, by the bound of the last.
+/// The number of steps after the one at which Stopping::adaptive would have ended, by the last bound.
 int steps_beyond_need(std::span<const CertifiedStep> steps, const certify::BoundComponents& eta,
                       double gamma_lin)
 {
@@ -83,7 +83,7 @@ void keep_solution(const contact::NitscheForm<dim>& form, solve::NewtonResult<di
   level.equilibrium = std::move(newton.equilibrium);
 }
 
-/// The level with its systems solved as far as rounding lets them be, where this mends the bound.
+/// Solves the systems of the level as accurately as rounding allows, where this repairs the bound.
 template <int dim>
 void tighten(const contact::NitscheForm<dim>& form, const Method& method, const StepObserver& observer,
              CertifiedLevel<dim>& level)
@@ -98,7 +98,7 @@ void tighten(const contact::NitscheForm<dim>& form, const Method& method, const 
     if (std::optional<CertifiedLevel<dim>> better = converge<dim>(form, level, tight, observer))
       level = std::move(*better);
   }
-  catch (const SolveError& error)  // the identities stay as they are, and the bound is refused
+  catch (const SolveError& error)  // the identities stay as they are, and the bound is rejected
   {
     require_all_failed(form.space().mesh().ranks(), error.what());
   }

@@ -23,12 +23,12 @@ namespace tribound::adapt
 namespace
 {
 
-/// Of the bound on the mesh before: what the data may leave out of the next one.
+/// The data error allowed on the next mesh, as a fraction of the bound on the previous one.
 constexpr double share_of_data = 0.01;
 
 constexpr const char* out_of_memory = "out of memory";
 
-/// Thrown out of Newton's method when the user wants the run to end.
+/// Thrown out of Newton's method when the user wants the run to stop.
 struct Interrupted
 {
 };
@@ -130,7 +130,7 @@ std::optional<CertifiedLevel<dim>> Levels<dim>::solve_to_the_end(const StepObser
                                                        expected_, level_.friedrichs);
     if (level.converged && bound_holds(level, method_.degree)) return level;
   }
-  catch (const SolveError& error)  // an iterate that the criterion accepts may come before that
+  catch (const SolveError& error)  // the criterion may accept an earlier iterate
   {
     require_all_failed(current_->mesh.ranks(), error.what());
   }
@@ -259,7 +259,7 @@ certify::EnergyBound Levels<dim>::energy_or_reason()
   if (!certify::is_bound(verdict_.status)) return without("there is no bound of the residual");
   if (interrupted()) return without("interrupted");
   const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
-  if (level_.converged) level_.equilibrium.reset();  // its factors, for finish(), take most of the memory
+  if (level_.converged) level_.equilibrium.reset();  // the factors, for finish(), take most of the memory
   return energy_bound<dim>(current_->form, method_, level_.u, quantities_);
 }
 

@@ -20,7 +20,7 @@ namespace tribound::adapt
 namespace
 {
 
-/// Steps without bound before those with one, all numbered anew.
+/// Puts steps without a bound before those with one, and numbers all anew.
 void put_before(std::span<const solve::NewtonStep> first, std::vector<CertifiedStep>& steps)
 {
   std::vector<CertifiedStep> all;
@@ -30,8 +30,8 @@ void put_before(std::span<const solve::NewtonStep> first, std::vector<CertifiedS
   steps = std::move(all);
 }
 
-/// Where a body slides away, u may become so large that its rounding is all of the residual, and this passes
-/// for a solution.
+/// Whether the displacement has diverged. Where a body slides away, u may become so large that the residual
+/// is all rounding, which would pass for a solution.
 bool has_run_away(const std::vector<CertifiedStep>& steps, const Method& method)
 {
   const double largest = std::max(1e-6, method.newton.tolerance);  // residual of a solution, over the forces
@@ -88,7 +88,7 @@ Method LoadPath<dim>::method_of_step() const
   return method;
 }
 
-/// Not empty: why Newton's method has not come to t.
+/// Returns why Newton's method has failed at t; empty on success.
 template <int dim>
 std::string LoadPath<dim>::try_step(const Attempt& attempt, const StepObserver& observer)
 {
@@ -197,7 +197,7 @@ void LoadPath<dim>::go_back(Position position, std::shared_ptr<const Grid<dim>> 
   if (position.last)
   {
     grid = position.last->at->discrete.grid;
-    if (grid != grid_) friedrichs_ = position.last->level.friedrichs;  // of a mesh that this one refines
+    if (grid != grid_) friedrichs_ = position.last->level.friedrichs;  // of a coarser mesh
   }
   position_ = std::move(position);
   if (!grid || grid == grid_) return;
@@ -258,7 +258,7 @@ std::string LoadPath<dim>::advance(double t, const Observer& observer, const Ste
   double& whole = progress.whole;
   double& size = progress.size;
   int& cuts = progress.cuts;
-  if (whole == 0 && last()) whole = size = t - last()->t;  // the first step of all is not cut
+  if (whole == 0 && last()) whole = size = t - last()->t;  // the very first step is not halved
   begin_ = Clock::now();
   for (;;)
   {

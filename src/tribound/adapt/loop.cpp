@@ -21,7 +21,7 @@ constexpr double gigabyte = 1e9;
 std::string memory_limit_reached(const AdaptOptions& options, double before, const NextMesh& next, int dim)
 {
   MemoryLimit limit = memory_limit(options);
-  limit.bytes = -next.ranks.max(-limit.bytes);  // the smallest machine, and the one with most to hold
+  limit.bytes = -next.ranks.max(-limit.bytes);  // the most restricted machine decides
   const double expected =
       next.ranks.max(next.ranks.sum_on_machine(expected_memory(before, peak_memory(), next.growth, dim)));
   if (limit.bytes == 0 || expected <= limit.bytes) return {};

@@ -18,14 +18,14 @@
 namespace tribound::adapt
 {
 
-/// Whose part on a cell tells whether to refine it.
+/// The contributions by which cells are marked.
 enum class ErrorMeasure
 {
   residual,  ///< eta_tot, unless there is a goal
   energy     ///< the bound in the energy norm, where there is one; else the residual
 };
 
-/// How far to go.
+/// When to stop, and how to mark.
 struct AdaptOptions
 {
   double tolerance = 0.01;  ///< of eta_tot / ||sigma(u_h)||
@@ -39,37 +39,37 @@ struct AdaptOptions
   std::optional<double> max_memory{};  ///< GB (1e9 bytes); nine tenths of the machine's where absent
 };
 
-/// What the loop tells while it runs; functions that are empty are not called.
+/// Callbacks of the running loop; empty functions are not called.
 template <int dim>
 struct LoopObserver
 {
   StepObserver step{};
-  /// Of the last level a second time, if Newton's method has converged or error bars have been computed on it
-  /// after the first.
+  /// Called a second time for the last level, if Newton's method has converged or error bars have been
+  /// computed after the first call.
   std::function<void(const LevelView<dim>&)> level{};
-  /// Of the next mesh, before anything is solved on it.
+  /// Called for the next mesh, before anything is solved on it.
   std::function<void(const Levels<dim>&)> refined{};
 };
 
-/// What may be exchanged in the loop; all but `mark` may be empty.
+/// The replaceable parts of the loop; all but `mark` may be empty.
 template <int dim>
 struct Strategy
 {
   Marker<dim> mark;
-  /// Why a level is the last though its bound is above the tolerance; empty: it is not.
+  /// Why a level is the last although its bound exceeds the tolerance; empty: it is not the last.
   std::function<std::string(const LevelView<dim>&)> stop;
   MeshLimit limit;
-  std::optional<int> last_level{};  ///< after which `stop` ends the loop whatever the level holds
+  std::optional<int> last_level{};  ///< the level after which `stop` ends the loop in any case
   LoopObserver<dim> observer{};
 };
 
-/// Marking and limits as the options say, and no observer. The clock of max_time starts now. `interrupt`
-/// becoming true is a limit, too.
+/// Marking and limits according to the options, and no observer. The clock of max_time starts now.
+/// `interrupt` becoming true is a limit, too.
 template <int dim>
 [[nodiscard]] Strategy<dim> make_strategy(const AdaptOptions& options,
                                           const std::atomic<bool>* interrupt = nullptr);
 
-/// What a run may take of the machine's memory.
+/// The memory limit of a run.
 struct MemoryLimit
 {
   double bytes = 0;        ///< 0: not known
@@ -78,25 +78,25 @@ struct MemoryLimit
 
 [[nodiscard]] MemoryLimit memory_limit(const AdaptOptions& options);
 
-/// The memory that a level is expected to take at most, in bytes: `before` the process had before the first
-/// level and `peak` after one with 1 / `growth` of its unknowns.
+/// The most memory that a level is expected to take, in bytes. `before`: that of the process before the first
+/// level; `peak`: the peak on a level with 1 / `growth` of its unknowns.
 [[nodiscard]] double expected_memory(double before, double peak, double growth, int dim);
 
-/// Advances and refines until a level is certified, or cannot be, or a limit is reached.
+/// Advances and refines until a level is certified, or cannot be certified, or a limit is reached.
 ///
-/// On the last level Newton's method goes on to newton.tolerance (newton.finish), which changes the
-/// displacement by less than its bound, but contact forces visibly; where it fails or the run is interrupted
-/// the level stays as it is. Error bars, if the levels are asked for any, are those of the final iterate.
+/// On the last level Newton's method goes on to newton.tolerance (newton.finish). This changes the
+/// displacement by less than its bound, but contact forces visibly. If it fails or the run is interrupted,
+/// the level stays as it is. Error bars, if requested, are those of the final iterate.
 ///
-/// The verdict is that of the last level of which the observer was told. Should a later level fail, or
-/// violate an identity or run out of memory, the one before it keeps its certificate: the verdict is then
-/// `budget` and says what happened. Throws SolveError when the first level cannot be solved, and InputError
-/// for data that are not valid on a finer mesh.
+/// The verdict is that of the last level passed to the observer. If a later level fails, violates an identity
+/// or runs out of memory, the previous one keeps its certificate; the verdict is then `budget` and says what
+/// happened. Throws SolveError when the first level cannot be solved, and InputError for data that are
+/// invalid on a finer mesh.
 template <int dim>
 [[nodiscard]] certify::Verdict adapt(Levels<dim>& levels, const Strategy<dim>& strategy);
 
-/// The same from the mesh of `first` with the strategy that the options describe. Throws InputError for a
-/// problem that is not well posed, see Levels.
+/// The same from the mesh of `first`, with the strategy given by the options. Throws InputError for a problem
+/// that is not well posed, see Levels.
 template <int dim>
 [[nodiscard]] certify::Verdict adapt(const problem::Problem<dim>& problem, const Method& method,
                                      const AdaptOptions& options, std::unique_ptr<Discretisation<dim>> first,

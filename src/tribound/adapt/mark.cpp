@@ -19,7 +19,7 @@ namespace tribound::adapt
 namespace
 {
 
-/// Values of eta_T that agree to this, relatively, count as equal.
+/// Values of eta_T that agree up to this relative difference count as equal.
 constexpr double slack = 1e-9;
 
 /// The cells with eta_T > 0 and eta_T >= bound, ascending.
@@ -32,7 +32,7 @@ std::vector<Index> cells_from(std::span<const double> eta, double bound)
   return cells;
 }
 
-/// Sums of the squares of the largest of some values >= 0.
+/// Partial sums of squares of values >= 0, from the largest down.
 class SumsFromAbove
 {
  public:
@@ -43,7 +43,7 @@ class SumsFromAbove
     for (const double x : sorted_) sums_.push_back(sums_.back() + x * x);
   }
 
-  /// Of those >= bound.
+  /// The sum over values >= bound.
   [[nodiscard]] double operator()(double bound) const
   {
     const auto end = std::ranges::partition_point(sorted_, [bound](double x) { return x >= bound; });
@@ -55,8 +55,8 @@ class SumsFromAbove
   std::vector<double> sums_{0.0};
 };
 
-/// The largest t for which what is >= t has squares with at least the sum `wanted`: by bisection on the bits
-/// of t, which ascend with it.
+/// The largest t such that the squares of the values >= t sum to at least `wanted`. Found by bisection on the
+/// bits of t, which are ordered like t.
 double threshold(const Ranks& ranks, const SumsFromAbove& sum, double largest, double wanted)
 {
   std::uint64_t low = 0;
@@ -69,8 +69,8 @@ double threshold(const Ranks& ranks, const SumsFromAbove& sum, double largest, d
   return std::bit_cast<double>(low);
 }
 
-/// How many of the cells of this rank are among the `n` of all ranks with the lowest names, n > 0: those up
-/// to the n-th name, which is found bit by bit. `cells` ascend.
+/// How many cells of this rank are among the `n` cells of all ranks with the lowest names, n > 0. The n-th
+/// name is found bit by bit. `cells` are in ascending order.
 std::size_t n_among_lowest(const Markers& markers, std::span<const Index> cells, std::int64_t n)
 {
   if (markers.ranks.size() == 1) return std::min<std::size_t>(cells.size(), n);
@@ -114,7 +114,7 @@ std::vector<double> values(std::span<const certify::BoundComponents> cells,
 std::vector<Index> mark_doerfler(std::span<const double> eta, double theta, const Markers& markers)
 {
   assert(theta > 0 && theta <= 1);
-  if (theta == 1) return cells_from(eta, 0);  // round-off must not leave a small one out
+  if (theta == 1) return cells_from(eta, 0);  // round-off must not drop a small one
   const Ranks& ranks = markers.ranks;
   const SumsFromAbove sum(eta);
   const double largest = ranks.max(eta.empty() ? 0.0 : *std::ranges::max_element(eta));
@@ -136,7 +136,7 @@ std::vector<Index> mark_doerfler(std::span<const double> eta, double theta, cons
   constexpr double rounding = 1e-6;  // of a cell
   double missing = std::ceil((wanted - ranks.sum(sum_above)) / (t * t) - rounding);
   const bool has_any = ranks.any(!cells.empty());
-  if (!(missing >= 1)) missing = has_any ? 0 : 1;  // tiny shares, and squares that underflow
+  if (!(missing >= 1)) missing = has_any ? 0 : 1;  // tiny shares, or squares that underflow
   missing = std::min(missing, static_cast<double>(ranks.sum(static_cast<std::int64_t>(ties.size()))));
   ties.resize(missing > 0 ? n_among_lowest(markers, ties, std::llround(missing)) : 0);
   std::vector<Index> both;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file mark.h
-/// Which cells to refine, from the bound of each cell.
+/// Which cells to refine, from their contributions to the bound.
 
 #include <span>
 #include <vector>
@@ -25,20 +25,20 @@ struct MarkingOptions
 {
   Marking strategy = Marking::doerfler;
   double theta = 0.6;             ///< in (0, 1]
-  bool separate_contact = false;  ///< for the body and for the contact conditions apart, each by its share
+  bool separate_contact = false;  ///< marks by the body and by the contact conditions separately
 };
 
-/// The ranks that mark together, each some of its own cells. `names` of these ascend; on one rank they may be
-/// missing, as the numbers of the cells ascend alike.
+/// The ranks that mark together, each some of its own cells. `names` of these are in ascending order. They
+/// may be omitted on one rank, where the numbers of the cells have the same order.
 struct Markers
 {
   Ranks ranks{};
   std::span<const mesh::CellName> names{};
 };
 
-/// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96], over all ranks; of
-/// cells whose eta_T agree to 1e-9, and hence up to the rounding of another number of ranks, those with the
-/// lower names. Ascending; empty where every eta_T is 0. `eta`: per own cell, finite and not negative; 0 <
+/// The smallest set of cells with sum eta_T^2 >= theta^2 sum_all eta_T^2 [Doerfler96], over all ranks. Cells
+/// whose eta_T agree to 1e-9, hence up to rounding on another number of ranks, are taken in the order of
+/// their names. Ascending; empty where every eta_T is 0. `eta`: per own cell, finite and not negative; 0 <
 /// theta <= 1. O(n log n).
 [[nodiscard]] std::vector<Index> mark_doerfler(std::span<const double> eta, double theta,
                                                const Markers& markers = {});
@@ -51,13 +51,13 @@ struct Markers
 /// All cells 0, ..., n_cells - 1, whatever their share: uniform refinement.
 [[nodiscard]] std::vector<Index> mark_all(std::size_t n_cells);
 
-/// As adapt.marking and adapt.theta ask for, by eta_T = total_sharp of every cell. With
-/// adapt.separate_contact the union of what body() and contact() mark, each for itself; a part whose square
-/// is below a hundredth of the bound's is left to the other.
+/// Marks according to adapt.marking and adapt.theta, by eta_T = total_sharp of every cell. With
+/// adapt.separate_contact it is the union of the cells marked by body() and by contact() separately. A part
+/// whose square is below a hundredth of the bound's is ignored.
 [[nodiscard]] std::vector<Index> mark(std::span<const certify::BoundComponents> cells,
                                       const MarkingOptions& options, const Markers& markers = {});
 
-/// The same by one number per cell, eta_T^2, without parts that could be separate.
+/// The same by one number per cell, eta_T^2, without separate parts.
 [[nodiscard]] std::vector<Index> mark(std::span<const double> squares, const MarkingOptions& options,
                                       const Markers& markers = {});
 

@@ -20,8 +20,8 @@ bool is_inside(const mesh::CellRecord<dim>& cell)
   return std::ranges::all_of(cell.tags, [](std::int32_t tag) { return tag == mesh::facet_inside; });
 }
 
-/// The local vertices of two cells whose union is one, each in the order of that: its own end of the edge
-/// that was halved, the middle of the edge, then what they have in common.
+/// The local vertices of two cells whose union is a cell, each in the order of the union: the cell's end of
+/// the bisected edge, the midpoint of the edge, then the common vertices.
 template <int dim>
 struct Pair
 {
@@ -49,7 +49,7 @@ struct Pair
   }
 };
 
-/// Puts pairs together, one after the other.
+/// Merges successive pairs.
 template <int dim>
 class Merger
 {
@@ -62,7 +62,7 @@ class Merger
   {
   }
 
-  /// Those of cells `depth` bisections deep.
+  /// Merges pairs of cells `depth` bisections deep.
   void merge(int depth)
   {
     std::size_t n = 0;
@@ -94,7 +94,7 @@ class Merger
     if (!fields_.components.empty()) fields_.components[to] = fields_.components[from];
   }
 
-  /// Cell `n` becomes the union with cell `other`.
+  /// Replaces cell `n` by its union with cell `other`.
   void unite(std::size_t n, std::size_t other)
   {
     mesh::CellRecord<dim>& cell = fields_.cells[n];
@@ -137,15 +137,16 @@ class Merger
     std::ranges::copy(whole, first.begin());
   }
 
-  /// Nodes of the whole in a half, and the basis of the half there.
+  /// Nodes of the union in one half, and the basis of the half at these.
   struct HalfNodes
   {
     std::vector<int> nodes;
     fem::Tabulation<dim> table;
   };
 
-  /// The whole has the ends of the edge as vertices 0 and 1. Its point with barycentric coordinates l is in
-  /// the half of the end with the larger one, there with l_own - l_other, 2 l_other, l_2, ...
+  /// Vertices 0 and 1 of the union are the ends of the edge. Its point with barycentric coordinates l lies in
+  /// the half at the end with the larger one; there it has the coordinates l_own - l_other, 2 l_other, l_2,
+  /// ...
   const HalfNodes& values_in(int half, const std::array<int, dim + 1>& order)
   {
     const auto [entry, is_new] = tables_.try_emplace({half, order});
@@ -184,7 +185,7 @@ class Merger
   const fem::LagrangeBasis<dim>& basis_;
   FieldCells<dim>& fields_;
   std::size_t n_u_;       ///< numbers per cell
-  std::size_t n_stress_;  ///< likewise
+  std::size_t n_stress_;  ///< numbers per cell
   std::map<std::pair<int, std::array<int, dim + 1>>, HalfNodes> tables_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file merged_cells.h
-/// Cells that are put together again where there are too many to be shown.
+/// Merging of cells where there are too many to display.
 
 #include <cstdint>
 #include <vector>
@@ -14,20 +14,20 @@
 namespace tribound::adapt
 {
 
-/// Cells with the fields on them, as they travel: in ascending order of their names, one behind the other.
+/// Cells with the fields on them, as they are sent: in ascending order of their names, concatenated.
 template <int dim>
 struct FieldCells
 {
   std::vector<mesh::CellRecord<dim>> cells;
-  std::vector<double> u;       ///< at the nodes of the cells, as fem::cell_values() has it
-  std::vector<double> stress;  ///< coefficients, as certify::Stress has them; empty: none
+  std::vector<double> u;                             ///< at the nodes of the cells, as in fem::cell_values()
+  std::vector<double> stress;                        ///< coefficients, as in certify::Stress; empty: none
   std::vector<certify::BoundComponents> components;  ///< empty: none
 };
 
-/// Puts pairs of cells together that bisection has made of one, the smallest first, until all ranks together
-/// have at most `most`; whether they come to that. Cells at the boundary stay, and pairs of which a rank has
-/// one. Of u the interpolant remains, of the stress its mean, of the components the root of the sum of their
-/// squares. All ranks call it together.
+/// Merges pairs of cells that come from the bisection of one cell, the smallest first, until all ranks
+/// together have at most `most`; returns whether they do. Cells at the boundary stay, and so do pairs shared
+/// by two ranks. Of u the interpolant remains, of the stress its mean, of the components the root of the sum
+/// of squares. All ranks call it together.
 template <int dim>
 [[nodiscard]] bool merge_cells(const Ranks& ranks, const fem::LagrangeBasis<dim>& basis, std::int64_t most,
                                FieldCells<dim>& fields);

@@ -40,10 +40,12 @@ struct Method
   algebra::SolverOptions solver{};
   certify::ContactRule contact_rule = certify::ContactRule::resolved;
 
-  /// With newton.damping: so many steps are tried full before it begins anew with halved ones. Where a front
-  /// moves full steps are half as many; pressed shut or sliding back they may go round in circles.
+  /// With newton.damping: the number of full steps tried before Newton's method restarts with damped ones.
+  /// Where a front moves, full steps need half as many; where bodies are pressed shut or slide back, they may
+  /// cycle.
   int full_steps = 0;
-  /// Whether Newton's method may begin anew from other starts; not along a path, whose branch it could leave.
+  /// Whether Newton's method may restart from other starts; not along a path, since it could leave the
+  /// branch.
   bool other_starts = true;
 
   /// gamma_0 of method section 2.

@@ -69,7 +69,7 @@ void add_at_mouth(const contact::NitscheForm<dim>& form, int tag, Jump jump, dou
   form.add_contact_load(t, c);
 }
 
-/// The integral over all interfaces with a bond of what value(i) is at contact point i.
+/// The integral of value(i) at contact points i over all bonded interfaces.
 template <int dim, class Value>
 double sum_over_bonds(const contact::NitscheForm<dim>& form, const Value& value)
 {

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file path_measure.h
-/// Quantities C(u) that grow along a load path, by which it is followed where the load factor is not known
-/// beforehand (method section 12.7).
+/// Quantities C(u) that grow along a load path and control it where the load factor is not known beforehand
+/// (method section 12.7).
 
 #include <array>
 #include <optional>
@@ -16,16 +16,16 @@
 namespace tribound::adapt
 {
 
-/// What is gauged of a contact boundary.
+/// The measured jump on a contact boundary.
 enum class Jump
 {
-  opening,        ///< the mean of -[u]^n, what displacement adds to the gap
+  opening,        ///< the mean of -[u]^n, the contribution of the displacement to the gap
   mouth_opening,  ///< the same at contact::crack_mouth()
   mouth_sliding   ///< [u]^t there, from heel to toe
 };
 
-/// A term of a linear functional of u: `factor` times the mean of a component over a boundary or, where there
-/// is none, a jump.
+/// A term of a linear functional of u: `factor` times the mean of a component over a boundary or, if no
+/// component is given, times a jump.
 struct Gauge
 {
   std::string boundary;
@@ -35,7 +35,7 @@ struct Gauge
   Where where{};  ///< for messages
 };
 
-/// A quantity that is told of every step.
+/// A quantity reported at every step.
 struct Watch
 {
   std::string name;
@@ -43,21 +43,21 @@ struct Watch
 };
 
 /// The number of its boundary. Throws InputError where there is no such boundary or component, where a
-/// boundary that is to open touches nothing, and where one has no heel.
+/// boundary whose opening is measured touches nothing, and where a boundary has no heel.
 template <int dim>
 [[nodiscard]] int gauged_boundary(const problem::Problem<dim>& problem, const Gauge& gauge);
 
 /// c with c.u = the sum of the gauges, complete for own degrees of freedom. Throws as gauged_boundary(). All
-/// ranks together.
+/// ranks call it together.
 template <int dim>
 [[nodiscard]] std::vector<double> functional(const contact::NitscheForm<dim>& form,
                                              std::span<const Gauge> gauges);
 
-/// Length or area of all interfaces with a bond. All ranks together.
+/// Length or area of all bonded interfaces. All ranks call it together.
 template <int dim>
 [[nodiscard]] double bonded_measure(const contact::NitscheForm<dim>& form);
 
-/// C(u), either c.u or the integral of the damage D over all interfaces with a bond (length in 2D, area).
+/// C(u): either c.u or the integral of the damage D over all bonded interfaces (length in 2D, area in 3D).
 template <int dim>
 class PathMeasure
 {
@@ -67,9 +67,10 @@ class PathMeasure
   /// c.u.
   explicit PathMeasure(std::vector<double> c) : functional_(std::move(c)) {}
 
-  /// With the damage that u leads to from the history of the form. All ranks together, as derivatives().
+  /// With the damage that u causes from the history of the form. All ranks call it together, as
+  /// derivatives().
   [[nodiscard]] double value(const contact::NitscheForm<dim>& form, std::span<const double> u) const;
-  /// C'(u)[d] for two d, with the values of ghosts.
+  /// C'(u)[d] for two directions d, which include ghost values.
   [[nodiscard]] std::array<double, 2> derivatives(const contact::NitscheForm<dim>& form,
                                                   std::span<const double> u,
                                                   const std::array<std::span<const double>, 2>& d) const;

@@ -15,8 +15,8 @@ namespace tribound::adapt
 namespace
 {
 
-constexpr double smallest = 1.0 / 1024;  ///< step of a stage, over its first
-constexpr double peak_accuracy = 1e-3;   ///< of the t of a peak, relative
+constexpr double smallest = 1.0 / 1024;  ///< step of a stage, relative to its first
+constexpr double peak_accuracy = 1e-3;   ///< of t at a peak, relative
 
 /// C at the last step of a path.
 template <int dim>
@@ -25,16 +25,16 @@ double value_at(const LoadPath<dim>& path, const PathMeasure<dim>& measure)
   return measure.value(path.last()->at->discrete.form, path.last()->level.u);
 }
 
-/// A stage: what grows, by how much, and when it is enough.
+/// A stage: the growing quantity, its increment, and when to end.
 template <int dim>
 struct Stage
 {
   const char* name;
-  const std::vector<Gauge>* gauges;  ///< null: it is the damage that grows
+  const std::vector<Gauge>* gauges;  ///< null: the damage grows
   PathMeasure<dim> measure;
   double step;
   double until;  ///< value of the measure
-  /// Integral of D at which the main stage ends; t_min ends it, too. Absent of PathProgram::then.
+  /// Integral of D at which the main stage ends; t_min ends it, too. Absent for PathProgram::then.
   std::optional<double> enough_damage{};
 };
 
@@ -119,8 +119,8 @@ class Follower
   struct Summit
   {
     double t;
-    double fall;    ///< of t to the step after it
-    Position from;  ///< the step before it, or where the search began
+    double fall;    ///< drop of t in the step after it
+    Position from;  ///< the previous step, or where the search began
   };
   void look_for_peak(const Stage<dim>& stage, double size);
   [[nodiscard]] std::optional<Summit> summit_with(const Stage<dim>& stage, double size, double end,
@@ -176,7 +176,7 @@ Stage<dim> Follower<dim>::main_stage() const
   return stage;
 }
 
-/// Whether the measure, which is `now`, has come as far as it should, or damage and t have.
+/// Whether the measure, with value `now`, has reached its target, or damage or t have.
 template <int dim>
 bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
 {
@@ -189,7 +189,7 @@ bool Follower<dim>::is_over(const Stage<dim>& stage, double now) const
   return has_fallen || value_at(path_, PathMeasure<dim>()) >= *stage.enough_damage;
 }
 
-/// Not empty: why it was not gone through.
+/// Returns why the stage failed; empty on success.
 template <int dim>
 std::string Follower<dim>::go(Stage<dim> stage)
 {
@@ -215,7 +215,7 @@ std::string Follower<dim>::go(Stage<dim> stage)
     {
       if (refine_) refine_(progress_.positions);
       if (stage.gauges != nullptr && path_.last()->at->discrete.grid != before->at->discrete.grid)
-        stage.measure = measure_of(*stage.gauges);  // its numbers are those of degrees of freedom
+        stage.measure = measure_of(*stage.gauges);  // its coefficients belong to degrees of freedom
       ++progress_.steps;
       progress_.cuts = 0;
       progress_.last_increment = value_at(path_, stage.measure) - now;
@@ -244,7 +244,7 @@ std::string Follower<dim>::go(Stage<dim> stage)
   return {};
 }
 
-/// Not empty: why there is none.
+/// Returns why there is no step; empty on success.
 template <int dim>
 std::string Follower<dim>::step(const Stage<dim>& stage, const Control<dim>& control)
 {
@@ -253,8 +253,8 @@ std::string Follower<dim>::step(const Stage<dim>& stage, const Control<dim>& con
   return follow_zone(path_, control, {}, newton_) ? std::string() : failure;
 }
 
-/// Where a structure slides as a whole there may be no state of rest nearby: beyond the peak the path then
-/// ends there, and what has been followed holds. Before the peak that is a failure.
+/// Where a structure slides as a whole, there may be no equilibrium nearby. Beyond the peak the path then
+/// ends there, and the steps so far remain valid. Before the peak this is a failure.
 template <int dim>
 void Follower<dim>::end_stage(std::string failure)
 {
@@ -271,7 +271,7 @@ void Follower<dim>::end_stage(std::string failure)
                   100 * moving_share(*path_.last()), failure));
 }
 
-/// After a step from the last of the positions.
+/// Called after a step from the last of the positions.
 template <int dim>
 void Follower<dim>::committed(const Stage<dim>& stage, double size)
 {
@@ -285,7 +285,7 @@ void Follower<dim>::committed(const Stage<dim>& stage, double size)
   if (is_highest && fall > rounding * std::max(std::abs(t), largest_change_)) look_for_peak(stage, size);
 }
 
-/// Notes the peak that the last step has left behind.
+/// Locates the peak that the last step has passed.
 template <int dim>
 void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
 {
@@ -306,7 +306,7 @@ void Follower<dim>::look_for_peak(const Stage<dim>& stage, double size)
   }
 }
 
-/// The summit on the path from `from` to the value `end` of the measure with steps of this size.
+/// The highest step on the path from `from` to the value `end` of the measure, with steps of this size.
 template <int dim>
 auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end, const Position& from)
     -> std::optional<Summit>

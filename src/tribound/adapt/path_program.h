@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file path_program.h
-/// What a load path goes through: values of t, and beyond them what damage or displacements lead to (method
-/// section 12.7).
+/// The course of a load path: prescribed values of t, then prescribed damage or displacements (method section
+/// 12.7).
 
 #include <functional>
 #include <limits>
@@ -17,7 +17,7 @@
 namespace tribound::adapt
 {
 
-/// Steps of c.u, until it has a value.
+/// Steps of c.u until it reaches a value.
 struct DisplacementStage
 {
   std::vector<Gauge> gauges{};
@@ -25,11 +25,11 @@ struct DisplacementStage
   double until = std::numeric_limits<double>::infinity();  ///< -infinity for step < 0
 };
 
-/// What is given after the values of t.
+/// The control after the prescribed values of t.
 enum class Following
 {
   load,       ///< nothing
-  automatic,  ///< damage, from the first value on that Newton's method does not come to
+  automatic,  ///< damage, from the first value of t that Newton's method does not reach
   damage,
   displacement
 };
@@ -39,72 +39,72 @@ struct PathProgram
   std::vector<double> targets{};  ///< the values of t, not empty
   Following following = Following::load;
   std::optional<double> damage_step{};      ///< of the integral of D
-  int damage_steps = 50;                    ///< all interfaces are damaged in, where `damage_step` is absent
+  int damage_steps = 50;                    ///< to damage all interfaces, where `damage_step` is absent
   DisplacementStage displacement{};         ///< of Following::displacement
   double enough_damage = 0.99;              ///< mean D of all interfaces at which a stage ends
-  std::optional<double> t_min{};            ///< a stage ends with t at or beyond it, after the peak
+  std::optional<double> t_min{};            ///< a stage ends when t reaches it after the peak
   int max_steps = 200;                      ///< of a stage
-  std::optional<DisplacementStage> then{};  ///< after all
+  std::optional<DisplacementStage> then{};  ///< after everything else
 };
 
-/// The largest t (where the list decreases, the smallest) that the path turns back from: the level at which a
-/// structure fails.
+/// The largest t (the smallest where the list decreases) before the path turns back: the load level at which
+/// a structure fails.
 struct Peak
 {
   double t = 0;
-  int number = 0;  ///< of the step with that t, before it was looked at more closely
-  /// Of t when the steps around it were halved for the last time; absent where they could not be followed.
+  int number = 0;  ///< of the step with that t, before refinement of the peak
+  /// Change of t when the steps around it were last halved; absent where they could not be followed.
   std::optional<double> change{};
-  double step = 0;  ///< their increment then
+  double step = 0;  ///< their last increment
 };
 
-/// What came of a program.
+/// The outcome of a program.
 struct PathEnd
 {
-  std::string failure{};          ///< not empty: why it was not followed to its end
-  std::vector<double> dropped{};  ///< values of t that were left out for Following::automatic
+  std::string failure{};          ///< why it was not completed; empty: it was
+  std::vector<double> dropped{};  ///< values of t omitted because of Following::automatic
   std::optional<Peak> peak{};     ///< where there was one
-  /// Stages that ended before what they were to reach: beyond the peak this is no failure.
+  /// Stages that ended before their goal; beyond the peak this is no failure.
   std::vector<std::string> notes{};
 };
 
-/// What a program is at.
+/// The current stage of a program.
 enum class PathStage
 {
   load,  ///< the values of t
-  main,  ///< what Following names
+  main,  ///< the control of Following
   then   ///< PathProgram::then
 };
 
-/// Where a program is, for one that goes on from there.
+/// The progress of a program, for a run that continues it.
 template <int dim>
 struct PathProgress
 {
   std::size_t target = 0;          ///< the next value of t
-  LoadProgress load{};             ///< on the way there
+  LoadProgress load{};             ///< towards it
   std::optional<double> failed{};  ///< the value of t that ended Following::automatic
-  double direction = 1;            ///< of t, when t was given for the last time
+  double direction = 1;            ///< of t, when t was last prescribed
   PathStage stage = PathStage::load;
-  int steps = 0;                 ///< of the stage by control, as all that follows
-  std::optional<double> size{};  ///< of the next increment; absent at its beginning
+  int steps = 0;                 ///< of the controlled stage, as are the following members
+  std::optional<double> size{};  ///< of the next increment; absent at the beginning of the stage
   double last_increment = 0;
   int cuts = 0;
   std::vector<typename LoadPath<dim>::Position>
-      positions{};  ///< before its last two steps, and the one that is looked for
-  PathEnd end{};    ///< what has come of the program so far
+      positions{};  ///< before its last two steps, and the current one
+  PathEnd end{};    ///< the outcome so far
 };
 
-/// Called after every step that is committed, before it is observed. May solve it again on a finer mesh
-/// (LoadPath::repeat); it then carries the `kept` positions there, to which the program may go back.
+/// Called after every committed step, before it is observed. May solve it again on a finer mesh
+/// (LoadPath::repeat); it then transfers the `kept` positions, to which the program may return.
 template <int dim>
 using StepRefiner = std::function<void(std::span<typename LoadPath<dim>::Position> kept)>;
 
-/// Follows the program. A step by damage that fails is tried by its process zone (follow_zone), so that the
-/// damage may grow by more or less; steps that fail are halved, down to 1/1024. At a peak the steps around it
-/// are tried again with halved increments, beside the path, until its t changes by less than 1e-3, relative.
-/// `observer` sees the committed steps of the path, those beside it not, nor does `refine`, when `progress`
-/// is that after the step: with a path at its last step then it goes on with the next one. Throws as LoadPath
-/// does, and as functional().
+/// Follows the program. If a step by damage fails, a step by its process zone is tried (follow_zone), so the
+/// damage may grow by more or less. Steps that fail are halved, down to 1/1024. At a peak the steps around it
+/// are repeated with halved increments, apart from the path, until its t changes by less than 1e-3, relative.
+/// `observer` and `refine` see only the committed steps of the path. `observer` is called when `progress` is
+/// that after the step: with a path at its last step, the program then continues with the next one. Throws as
+/// LoadPath does, and as functional().
 template <int dim>
 [[nodiscard]] PathEnd follow(LoadPath<dim>& path, const PathProgram& program,
                              const typename LoadPath<dim>::Observer& observer, const StepObserver& newton,

@@ -25,7 +25,7 @@ namespace
 
 using Record = std::function<void(const solve::NewtonStep&)>;
 
-/// The solution with a small delta, from larger ones; nothing where that fails, too.
+/// The solution with a small delta, found by reducing delta; nothing where this also fails.
 template <int dim>
 std::optional<std::vector<double>> regularised_start(const contact::NitscheForm<dim>& form,
                                                      std::span<const double> start, const Method& method,
@@ -65,7 +65,7 @@ std::optional<std::vector<double>> regularised_start(const contact::NitscheForm<
   return std::move(result.u);
 }
 
-/// The solution of another form, to start from, and what it was solved with; nothing where Newton's method
+/// The solution of another form as a start, with the equilibrium used for it; nothing where Newton's method
 /// fails.
 template <int dim>
 struct Start
@@ -75,7 +75,7 @@ struct Start
   double residual = 0;  ///< relative
 };
 
-/// When it is near enough.
+/// When the solution is accurate enough.
 struct Until
 {
   double tolerance;                            ///< of the relative residual
@@ -100,7 +100,7 @@ std::optional<Start<dim>> solution_of(const contact::NitscheForm<dim>& other, St
   return Start<dim>{std::move(result.u), std::move(result.equilibrium), result.steps.back().residual};
 }
 
-/// The solution with gamma times `factor`; nothing where that fails, too.
+/// The solution with gamma times `factor`; nothing where this also fails.
 template <int dim>
 std::optional<std::vector<double>> start_with_gamma(double factor, const contact::NitscheForm<dim>& form,
                                                     std::span<const double> start, const Method& method,
@@ -113,7 +113,8 @@ std::optional<std::vector<double>> start_with_gamma(double factor, const contact
   return std::move(found->u);
 }
 
-/// Stages of soft_start(): as many as there are factors 3 between a contact facet and the contact boundary.
+/// Number of stages of soft_start(): the number of factors 3 between the sizes of a contact facet and of the
+/// contact boundary.
 template <int dim>
 int n_soft_stages(const contact::NitscheForm<dim>& form)
 {
@@ -122,11 +123,11 @@ int n_soft_stages(const contact::NitscheForm<dim>& form)
   return static_cast<int>(std::lround(std::log(std::max(1.0, n_across)) / std::log(3.0)));
 }
 
-/// The solution with a third of gamma, found from that with a third of this, and so on up from the gamma of a
-/// mesh with a single facet on the contact boundary, all as far as a start needs it: the contact state then
-/// spreads by a share of the boundary in a step, not by a facet or two, as it does on a fine mesh. No
-/// displacement where the first step is near enough: nearly all facets are closed and sticking, and there are
-/// few steps to be saved.
+/// The solution with a third of gamma. It is found from that with a third of this, and so on, beginning with
+/// the gamma of a mesh with a single facet on the contact boundary, each only as accurately as a start needs.
+/// The contact state then spreads by a share of the boundary in a step, instead of by a facet or two as on a
+/// fine mesh. Returns no displacement where the first step is close enough: nearly all facets are then closed
+/// and sticking, and few steps can be saved.
 template <int dim>
 std::optional<Start<dim>> soft_start(const contact::NitscheForm<dim>& form, const Method& method,
                                      const Record& record)
@@ -147,14 +148,14 @@ std::optional<Start<dim>> soft_start(const contact::NitscheForm<dim>& form, cons
   return found;
 }
 
-/// A start for the first mesh in 3D: with degree 1 on a fine mesh as soft_start(), with another one the
-/// solution with half the degree, rounded up, on the same mesh, as far as a start needs it, which starts
-/// likewise. Nothing where there is none or Newton's method fails.
+/// A start for the first mesh in 3D. With degree 1, on a fine mesh, it is that of soft_start(). With a higher
+/// degree it is the solution with half the degree, rounded up, on the same mesh, as accurate as a start
+/// needs, which is found likewise. Nothing where there is none or Newton's method fails.
 template <int dim>
 std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& form, const Method& method,
                                              const Record& record)
 {
-  // Of a coarser mesh, with some 16 facets across the contact boundary, steps are not worth saving.
+  // Below some 16 facets across the contact boundary, the steps saved are not worth the effort.
   constexpr int fewest_stages = 3;
   constexpr double tolerance = 1e-4;
   try
@@ -179,7 +180,7 @@ std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& fo
   }
 }
 
-/// Whether T is affine: one step then leads to the solution.
+/// Whether T is affine: one step then gives the solution.
 template <int dim>
 bool is_linear(const contact::NitscheForm<dim>& form)
 {
@@ -200,7 +201,7 @@ solve::NewtonResult<dim> solve_persistently(const contact::NitscheForm<dim>& for
   const bool may_start_anew =
       method.other_starts && method.newton.damping && !method.regularisation && form.problem().has_contact();
   std::optional<Start<dim>> easier;
-  const Ranks& ranks = form.space().mesh().ranks();  // one without cells has no displacement
+  const Ranks& ranks = form.space().mesh().ranks();  // a rank without cells has no displacement
   if (dim == 3 && !ranks.any(!start.empty()) && may_start_anew && !is_linear(form))
     easier = start_from_scratch(form, method, record);
 

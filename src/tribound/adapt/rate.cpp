@@ -42,7 +42,7 @@ std::optional<double> rate_between(const RatePoint& before, const RatePoint& now
 
 std::optional<double> fitted_rate(std::span<const RatePoint> points)
 {
-  constexpr std::size_t fewest = 3;  // a line through two points fits whatever they are
+  constexpr std::size_t fewest = 3;  // a line fits any two points
   if (points.size() < fewest) return std::nullopt;
   return slope(points.last(std::max(fewest, (points.size() + 1) / 2)));
 }

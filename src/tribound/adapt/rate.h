@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file rate.h
-/// Rates of convergence: the exponent r of a quantity that behaves like c N^r, N being the degrees of
-/// freedom.
+/// Rates of convergence: the exponent r of a quantity that behaves like c N^r, where N is the number of
+/// degrees of freedom.
 
 #include <optional>
 #include <span>
@@ -10,23 +10,23 @@
 namespace tribound::adapt
 {
 
-/// A quantity that is known at so many degrees of freedom.
+/// A quantity at a number of degrees of freedom.
 struct RatePoint
 {
   double dofs;   ///< > 0
   double value;  ///< >= 0
 };
 
-/// log(value / value before) / log(N / N before); nothing where a value is 0 or N does not change.
+/// log(value / previous value) / log(N / previous N); nothing where a value is 0 or N does not change.
 [[nodiscard]] std::optional<double> rate_between(const RatePoint& before, const RatePoint& now);
 
-/// The slope of log value over log N by least squares over the last half of the points, at least three of
-/// them; the middle one of an odd number counts. Nothing where there are fewer than three, where a value is 0
-/// or N does not change.
+/// The slope of log value over log N by least squares over the last half of the points, including the middle
+/// one of an odd number, but at least three. Nothing where there are fewer than three, where a value is 0 or
+/// N does not change.
 [[nodiscard]] std::optional<double> fitted_rate(std::span<const RatePoint> points);
 
-/// The value at `dofs` degrees of freedom: c N^r between the two neighbouring points. `points` ascend in N.
-/// Nothing outside their range and where a value is 0.
+/// The value at `dofs` degrees of freedom: c N^r between the two neighbouring points. `points` are in
+/// ascending order of N. Nothing outside their range and where a value is 0.
 [[nodiscard]] std::optional<double> value_at(std::span<const RatePoint> points, double dofs);
 
 }  // namespace tribound::adapt

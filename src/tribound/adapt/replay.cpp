@@ -16,13 +16,13 @@ namespace tribound::adapt
 namespace
 {
 
-/// What the steps of a pass add up to.
+/// The accumulated results of the steps of a pass.
 template <int dim>
 class Pass
 {
  public:
   explicit Pass(int number) { state_.pass = number; }
-  /// One that goes on.
+  /// A pass that continues.
   Pass(const ReplayState<dim>& from, LoadPath<dim>& path) : state_(from) { state_.recall(path); }
 
   void add(const LoadStep<dim>& step)
@@ -43,14 +43,14 @@ class Pass
   }
   [[nodiscard]] PathProgress<dim>& progress() { return state_.progress; }
 
-  /// With the largest bound of every cell over all steps, for those who mark by it.
+  /// With the largest bound of every cell over all steps, for marking.
   [[nodiscard]] CertifiedLevel<dim> to_mark() const
   {
     CertifiedLevel<dim> level;
     level.estimate = {state_.worst, state_.cells};
     return level;
   }
-  /// With the path as it is now.
+  /// The state with the path as it is now.
   [[nodiscard]] const ReplayState<dim>& state(const LoadPath<dim>& path)
   {
     state_.note(path);
@@ -61,7 +61,7 @@ class Pass
   ReplayState<dim> state_;
 };
 
-/// Goes through the program, and adds its steps to the pass.
+/// Follows the program, and adds its steps to the pass.
 template <int dim>
 PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const ReplayObserver<dim>& observer,
                    Pass<dim>& pass)
@@ -86,7 +86,7 @@ PathEnd go_through(const PathProgram& program, LoadPath<dim>& path, const Replay
   return end;
 }
 
-/// The path on the next mesh, or why there is none.
+/// Moves the path to the next mesh, or says why there is none.
 template <int dim>
 std::string refine(std::unique_ptr<LoadPath<dim>>& path, const LevelView<dim>& view,
                    const Strategy<dim>& strategy)

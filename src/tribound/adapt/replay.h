@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file replay.h
-/// A load path followed again and again, from its first step, on meshes that are fine enough for all of its
-/// steps (method section 12.4): no history is ever carried from one mesh to another.
+/// A load path repeated from its first step on finer meshes until the mesh is fine enough for all its steps
+/// (method section 12.4). History is never transferred between meshes.
 
 #include <atomic>
 #include <functional>
@@ -21,60 +21,59 @@ template <int dim>
 struct PassView
 {
   int number;  ///< from 0, on the given mesh
-  /// The number of the step with the largest bound, over the path's largest ||sigma|| as all of them are.
+  /// The number of the step with the largest bound, relative to the largest ||sigma|| of the path.
   int worst;
-  const certify::Bound& bound;      ///< its
+  const certify::Bound& bound;      ///< of that step
   const certify::Verdict& verdict;  ///< the worst of its steps
   const LoadStep<dim>* step;        ///< that step; null where it was before a restart, or is not kept
 };
 
-/// Where a run over a path is after a load step.
+/// The state of a run over a path after a load step.
 template <int dim>
 struct ReplayState
 {
   int pass = 0;
   PathProgress<dim> progress;  ///< without its positions
-  SavedPath<dim> path;         ///< the last step, and before it the positions of `progress`
+  SavedPath<dim> path;         ///< the last step, and the positions of `progress` before it
   std::optional<certify::FriedrichsConstant> friedrichs;
-  // Of the steps of the pass so far.
+  // Over the steps of the pass so far:
   std::vector<certify::BoundComponents> cells;  ///< of own cells, from the step with the largest bound there
   certify::Bound worst;                         ///< the largest
-  int worst_step = 0;                           ///< its number
+  int worst_step = 0;                           ///< the number of its step
   certify::Verdict verdict{certify::RunStatus::certified, {}};
 
-  /// A step of the pass: whether it has the largest bound so far, and the worst verdict.
+  /// Notes the bound of a step if it is the largest so far, and the worst verdict.
   bool note_worst(const LoadStep<dim>& step);
   void note_verdict(const LoadStep<dim>& step);
-  /// Notes where the path is, for a state that is told.
+  /// Notes the position of the path, before the state is reported.
   void note(const LoadPath<dim>& of);
-  /// Brings a path on the same mesh there, for a run that goes on. Throws as LoadPath::recall().
+  /// Takes a path on the same mesh to this state, for a run that continues. Throws as LoadPath::recall().
   void recall(LoadPath<dim>& on);
 };
 
-/// What replay() and transfer() tell; functions that are empty are not called.
+/// Callbacks of replay() and transfer(); empty functions are not called.
 template <int dim>
 struct ReplayObserver
 {
   StepObserver newton{};
   std::function<void(int pass, const Grid<dim>&)> begins{};  ///< before anything is solved on the mesh
   std::function<void(const LoadStep<dim>&)> step{};
-  std::function<void(const ReplayState<dim>&)> state{};  ///< after each step; costs copies
-  std::function<void(const PathEnd&)> path_end{};        ///< of a pass, whatever came of it
+  std::function<void(const ReplayState<dim>&)> state{};  ///< after each step; needs copies
+  std::function<void(const PathEnd&)> path_end{};        ///< of a pass, whatever its outcome
   std::function<void(const PassView<dim>&)> complete{};
-  /// Of a pass after the first; false where the one before does not hold any more, as after a restart.
+  /// Called for a pass after the first; false where the previous one is no longer valid, as after a restart.
   std::function<bool()> given_up{};
-  /// Of transfer(), in the place of another pass: the last step solved on `left` has been solved again on the
-  /// finer mesh, on which the path goes on.
+  /// Called by transfer() instead of another pass: the last step solved on `left` has been solved again on
+  /// the finer mesh, on which the path continues.
   std::function<void(const PassView<dim>& left, const Grid<dim>& finer)> finer{};
 };
 
-/// Follows the program on the mesh that `first` begins with, and again, with its own steps, on finer
-/// ones while the bound of any step is above `options.tolerance` of the path's largest ||sigma(u_h)||: cells
-/// are marked by the largest of their bounds over the steps, by strategy.mark, within strategy.stop and
-/// strategy.limit; the rest of `strategy` is not used. A pass that cannot be followed to its end leaves the
-/// one before as the last; the first one leaves the steps that it has come to, and the verdict says where it
-/// ended. Throws as LoadPath does. With `from` it goes on after the load step where another run was, and
-/// `first` is a path on its mesh.
+/// Follows the program on the mesh of `first`. While the bound of any step exceeds `options.tolerance` of the
+/// path's largest ||sigma(u_h)||, follows it again, with its own steps, on a finer mesh. Cells are marked by
+/// the largest of their bounds over the steps, with strategy.mark, within strategy.stop and strategy.limit;
+/// the rest of `strategy` is not used. If a pass cannot be completed, the previous one is the last; if this
+/// is the first pass, its steps so far remain, and the verdict says where it ended. Throws as LoadPath does.
+/// With `from` it continues after the load step of another run, and `first` is a path on its mesh.
 template <int dim>
 [[nodiscard]] certify::Verdict replay(std::unique_ptr<LoadPath<dim>> first, const PathProgram& program,
                                       const Strategy<dim>& strategy, const ReplayObserver<dim>& observer,

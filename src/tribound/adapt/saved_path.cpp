@@ -1,5 +1,5 @@
 /// @file saved_path.cpp
-/// Load paths that are left, and gone on with.
+/// Saving load paths and continuing them.
 
 #include "tribound/adapt/saved_path.h"
 

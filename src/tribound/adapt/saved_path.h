@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file saved_path.h
-/// What is left of a load path for a run that goes on with it later.
+/// The saved part of a load path, for a run that continues it later.
 
 #include <span>
 #include <string>
@@ -13,26 +13,26 @@
 namespace tribound::adapt
 {
 
-/// A committed load step, as far as the steps after it need it.
+/// A committed load step, as far as later steps need it.
 template <int dim>
 struct SavedStep
 {
   int number = 0;
   double t = 0;
   std::string control{};              ///< LoadStep::control
-  double reference_force = 0;         ///< as those of LoadPath::Position after the step
+  double reference_force = 0;         ///< this and the next two as in LoadPath::Position after the step
   double largest_sigma = 0;           ///<
   std::vector<double> tips{};         ///<
   std::vector<double> u{};            ///< of the space
-  GatheredHistory<dim> history = {};  ///< that the step began with
+  GatheredHistory<dim> history = {};  ///< at the beginning of the step
 };
 
-/// Steps one after the other, the newest first; not empty.
+/// Successive steps, the newest first; not empty.
 template <int dim>
 struct SavedPath
 {
   std::vector<SavedStep<dim>> steps{};
-  PathPoint before{};  ///< the step before the oldest of them; u is empty where there is none
+  PathPoint before{};  ///< the step before the oldest of them; u is empty if there is none
 };
 
 }  // namespace tribound::adapt

@@ -19,7 +19,7 @@ namespace
 template <int dim>
 using Position = typename LoadPath<dim>::Position;
 
-/// Positions of a path on a finer mesh.
+/// Transfers positions of a path to a finer mesh.
 template <int dim>
 class Carrier
 {
@@ -29,7 +29,7 @@ class Carrier
   {
   }
 
-  /// The functions that carry() takes, in their order.
+  /// Appends the functions that carry() takes, in their order.
   static void append(const Position<dim>& position, std::vector<std::span<const double>>& functions)
   {
     if (!position.last) return;
@@ -37,7 +37,7 @@ class Carrier
     if (!position.before_last.u.empty()) functions.emplace_back(position.before_last.u);
   }
 
-  /// `functions`: on the finer mesh, of which it takes the first.
+  /// `functions`: those on the finer mesh; carry() consumes the first ones.
   [[nodiscard]] Position<dim> carry(const Position<dim>& position,
                                     std::span<std::vector<double>>& functions) const
   {
@@ -57,8 +57,8 @@ class Carrier
   }
 
  private:
-  /// What the path, and a further carry(), ask of a step that others come after: t, displacement, history
-  /// before it, tractions and forces.
+  /// What the path and a further carry() need of an earlier step: t, displacement, history before it,
+  /// tractions and forces.
   [[nodiscard]] std::shared_ptr<const LoadStep<dim>> carried_step(const LoadStep<dim>& step,
                                                                   std::vector<double>&& u) const
   {
@@ -81,9 +81,9 @@ class Carrier
     return carried;
   }
 
-  /// Tractions, and LoadStep::forces for displacements of the finer space: a(u, phi_i) is exact, and so is
-  /// (t + p_w n, phi_i)_C in 2D. On functions that the coarser space has not they are out of balance by the
-  /// residual of the step.
+  /// Sets tractions, and LoadStep::forces for displacements of the finer space. a(u, phi_i) is exact, and so
+  /// is (t + p_w n, phi_i)_C in 2D. On functions outside the coarser space, the forces are out of balance by
+  /// the residual of the step.
   static void set_forces(const LoadStep<dim>& step, const contact::NitscheForm<dim>& form,
                          LoadStep<dim>& carried)
   {
@@ -149,7 +149,7 @@ class Transfer
     if (observer_.step) observer_.step(step);
     if (!observer_.state) return;
     state_.note(path_);
-    state_.cells.assign(path_.grid().mesh.n_owned_cells(), {});  // no other pass is marked by them
+    state_.cells.assign(path_.grid().mesh.n_owned_cells(), {});  // no other pass marks by them
     observer_.state(state_);
   }
 
@@ -158,7 +158,7 @@ class Transfer
     return {state_.pass, state_.worst_step, state_.worst, state_.verdict, worst_.get()};
   }
 
-  /// The last step is on the mesh.
+  /// Records the last step as one on the current mesh.
   void compare()
   {
     const std::shared_ptr<const LoadStep<dim>>& step = path_.last();
@@ -181,7 +181,7 @@ class Transfer
     state_.note_verdict(*path_.last());
   }
 
-  /// Not empty: why the last step stays as it is; so does all else.
+  /// Returns why the last step stays as it is, like everything else; empty on success.
   [[nodiscard]] std::string solve_on_finer(std::span<Position<dim>> kept)
   {
     const std::shared_ptr<const LoadStep<dim>> step = path_.last();
@@ -235,7 +235,7 @@ class Transfer
     return {};
   }
 
-  /// Makes the grid, unless it is beyond a limit: then it says which.
+  /// Makes the grid, unless it exceeds a limit; then says which.
   [[nodiscard]] std::string limit(const Finer<dim>& finer, const fem::LagrangeSpace<dim>& space,
                                   const problem::Problem<dim>& problem,
                                   std::shared_ptr<const Grid<dim>>& grid) const
@@ -256,7 +256,7 @@ class Transfer
   const Strategy<dim>& strategy_;
   const ReplayObserver<dim>& observer_;
   Position<dim> before_;                        ///< the last step
-  std::string end_;                             ///< why no mesh will be refined any more
+  std::string end_;                             ///< why no further mesh will be refined
   ReplayState<dim> state_;                      ///< `pass` is the number of the mesh, `worst` the step there
   std::shared_ptr<const LoadStep<dim>> worst_;  ///< that step, unless it was before a restart
 };
