@@ -112,7 +112,7 @@ problem::Units read_units(const Node& node)
   return {name("length"), name("force")};
 }
 
-/// The document as a case file in the output directory: paths lead from there.
+/// The document as a case file in the output directory; paths are relative to that directory.
 io::EffectiveCase effective_case(Node document, const Config& config, std::span<const std::string> overrides)
 {
   auto& tables = std::get<Node::Table>(document.value);
@@ -232,7 +232,7 @@ Config parse_config(std::string_view text, std::string name, std::span<const std
 {
   Node document = parse_toml(text, name);
   for (const std::string& assignment : overrides) apply_override(document, assignment);
-  // The document itself stands nowhere in particular.
+  // The document itself has no position.
   document.where.line = document.where.column = 0;
   Config config = read_document(document, std::move(name));
   config.effective = effective_case(std::move(document), config, overrides);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file config.h
-/// The case file as plain data: what the user wrote, checked for form (keys, types, ranges) but not yet
-/// against a mesh. The format is described in docs/case-format.md.
+/// The case file as plain data: the user's input, checked for form (keys, types, ranges) but not yet against
+/// a mesh. The format is described in docs/case-format.md.
 
 #include <filesystem>
 #include <limits>
@@ -27,7 +27,7 @@
 namespace tribound::case_file
 {
 
-/// Linear elastic material of a region; an empty region name means every region without one of its own.
+/// Linear elastic material of a region; an empty name means every region without its own entry.
 struct MaterialConfig
 {
   std::string region;
@@ -37,7 +37,7 @@ struct MaterialConfig
   Where where;
 };
 
-/// Body force of a region; an empty name means every region without one of its own.
+/// Body force of a region; an empty name means every region without its own entry.
 struct LoadConfig
 {
   std::string region;
@@ -60,8 +60,8 @@ struct BoundaryConfig
 /// One [[contact]] table.
 struct ContactConfig
 {
-  std::vector<std::string> slave;   ///< of a joint, its name
-  std::vector<std::string> master;  ///< of a joint, the name of its other side
+  std::vector<std::string> slave;   ///< name; of the joint if this is one
+  std::vector<std::string> master;  ///< name; of the other side of the joint if this is one
   std::string joint;                ///< empty: none
   problem::Contact contact{problem::Frictionless()};
   GeometryConfig geometry;
@@ -86,25 +86,25 @@ struct QuantityConfig
 struct StudyConfig
 {
   std::optional<int> reference_degree;  ///< of the reference solution; min(p + 1, 4) where absent
-  double reference_factor = 0.2;        ///< its relative bound is at most so much of the smallest one studied
+  double reference_factor = 0.2;        ///< largest relative bound, over the smallest one studied
   long max_reference_dofs = 500'000;
-  long dual_norm_dofs = 100'000;  ///< of the spaces in which dual norms are looked for; 0: none
+  long dual_norm_dofs = 100'000;  ///< of the spaces in which dual norms are computed; 0: none
   bool figures = true;            ///< whether to draw them
 };
 
-/// Levels of which a run writes fields.
+/// The levels whose fields a run writes.
 enum class FieldLevels
 {
   last,  ///< when the run ends
   all    ///< each as soon as it is complete
 };
 
-/// After what a run leaves a checkpoint.
+/// When a run writes a checkpoint.
 enum class Checkpoints
 {
   none,
-  last,  ///< each refinement, or each load step in the place of the one before
-  all    ///< each load step in a file of its own
+  last,  ///< after each refinement, or after each load step, replacing the previous one
+  all    ///< after each load step, in a separate file
 };
 
 struct OutputConfig
@@ -119,7 +119,7 @@ struct OutputConfig
   Where moment_about_where;
 };
 
-/// Where results go if the case does not say: out/block for block.toml.
+/// The default output directory: out/block for block.toml.
 [[nodiscard]] std::filesystem::path default_directory(const std::filesystem::path& case_file);
 
 struct Config
@@ -135,7 +135,7 @@ struct Config
   std::vector<SurfaceConfig> obstacles;
   std::vector<SurfaceConfig> shapes;
   std::vector<QuantityConfig> quantities;
-  std::optional<HistoryConfig> history;  ///< absent: one step without memory, t = 1
+  std::optional<HistoryConfig> history;  ///< absent: one step without history, t = 1
   adapt::Method method;
   adapt::AdaptOptions adapt;
   StudyConfig study;
@@ -143,8 +143,8 @@ struct Config
   io::EffectiveCase effective;
 };
 
-/// Tells where the contacts of the case separate the bodies of a mesh, and throws InputError for a boundary
-/// that the mesh does not have. Keeps a reference.
+/// Finds where the contacts of the case separate the bodies of a mesh. Throws InputError for a boundary that
+/// the mesh does not have. Keeps a reference.
 [[nodiscard]] mesh::FindSeams find_seams(const Config& config);
 
 /// The names of the friction laws in use, such as "tresca", "none+coulomb", or "" without contact.
@@ -155,7 +155,7 @@ struct Config
 [[nodiscard]] Config read_config(const std::filesystem::path& file,
                                  std::span<const std::string> overrides = {});
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; messages give `name` for the file.
 [[nodiscard]] Config parse_config(std::string_view text, std::string name = "case",
                                   std::span<const std::string> overrides = {});
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file dimension.h
-/// Vectors of a case against the dimension of its mesh.
+/// Checks vectors of a case against the dimension of its mesh.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 namespace tribound::case_file
 {
 
-/// The key of a table.
+/// The position of a key in a table.
 [[nodiscard]] inline Where inside(const Where& table, std::string_view key)
 {
   Where where = table;
@@ -21,7 +21,7 @@ namespace tribound::case_file
   return where;
 }
 
-/// Throws InputError for a vector that has not dim components.
+/// Throws InputError for a vector that does not have dim components.
 template <int dim>
 void check_length(std::size_t size, const Where& where)
 {

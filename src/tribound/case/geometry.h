@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file geometry.h
-/// [obstacle.NAME], [shape.NAME], and what a contact makes of them: plain data, as the rest of config.h.
+/// [obstacle.NAME], [shape.NAME], and how a contact uses them: plain data, like the rest of config.h.
 
 #include <filesystem>
 #include <string>
@@ -21,13 +21,13 @@ struct SurfaceConfig
     circle,
     sphere,
     cylinder,
-    distance,  ///< by a formula; obstacles alone
+    distance,  ///< by a formula; obstacles only
     surface,   ///< triangles from an STL file
-    mesh       ///< the second-order facets of the mesh; shapes alone
+    mesh       ///< the second-order facets of the mesh; shapes only
   };
 
-  /// Where the body is: of a closed surface outside or inside, of an open one on the side into which the
-  /// normals point, or on the other.
+  /// The side of the body: outside or inside a closed surface; in front of an open one, where its normals
+  /// point, or behind it.
   enum class Side
   {
     outside,
@@ -47,10 +47,10 @@ struct SurfaceConfig
   Side side = Side::outside;        ///< of `surface`
   std::vector<double> translate{};  ///< empty: none
   Where where{};                    ///< of the table
-  Where kind_where{};               ///< of the key that says what it is
+  Where kind_where{};               ///< of the key that gives the kind
 };
 
-/// What a contact says of obstacle, shapes and direction.
+/// The obstacle, shapes and direction of a contact.
 struct GeometryConfig
 {
   enum class Normal
@@ -64,7 +64,7 @@ struct GeometryConfig
 
   std::string obstacle{};      ///< name; empty: none
   std::string shape{};         ///< of the boundary or the slave
-  std::string master_shape{};  ///< the same name as `shape`: both sides lie on it
+  std::string master_shape{};  ///< same name as `shape`: both sides lie on it
   Normal normal = Normal::standard;
   std::vector<std::string> direction{};  ///< formulas of `given`, of any length
   Where where{};                         ///< of the contact

@@ -18,7 +18,7 @@ std::string number_text(const Node& node)
   return fmt::format("{}", to_number(node));
 }
 
-/// What the words of `normal` mean, of a contact with an obstacle and of a pair.
+/// The meanings of the words of `normal`, for a contact with an obstacle and for a pair.
 constexpr std::array obstacle_normals = {GeometryConfig::Normal::obstacle, GeometryConfig::Normal::facet,
                                          GeometryConfig::Normal::shape};
 constexpr std::array pair_normals = {GeometryConfig::Normal::facet, GeometryConfig::Normal::shape,

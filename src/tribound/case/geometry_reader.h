@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file geometry_reader.h
-/// What contacts say of obstacles and shapes.
+/// Reads the obstacles and shapes of contacts.
 
 #include <vector>
 
@@ -16,11 +16,11 @@ namespace tribound::case_file
 [[nodiscard]] std::vector<Key> obstacle_geometry_keys();
 [[nodiscard]] std::vector<Key> pair_geometry_keys();
 
-/// What these keys say.
+/// Reads these keys.
 [[nodiscard]] GeometryConfig read_obstacle_geometry(const TableReader& table);
 [[nodiscard]] GeometryConfig read_pair_geometry(const TableReader& table);
 
-/// Throws for names that there are not, and for obstacles and shapes that nothing uses.
+/// Throws for unknown names, and for obstacles and shapes that are not used.
 void check_surfaces(const Config& config);
 
 }  // namespace tribound::case_file

@@ -53,7 +53,7 @@ void check_dimension(const SurfaceConfig& surface)
         fmt::format("give {}", dim));
 }
 
-/// phi > 0 where the body is, for an obstacle; outside of the body, for a shape.
+/// For an obstacle, phi > 0 on the side of the body; for a shape, phi > 0 outside the body.
 template <int dim>
 problem::Surface make_surface(const SurfaceConfig& config, bool is_obstacle)
 {
@@ -76,7 +76,7 @@ problem::Surface make_surface(const SurfaceConfig& config, bool is_obstacle)
     case Kind::distance:
       surface = problem::implicit(config.distance, dim, config.kind_where);
       break;
-    case Kind::surface:  // they have no formulas
+    case Kind::surface:  // these have no formulas
     case Kind::mesh:
       break;
   }
@@ -104,7 +104,7 @@ SurfacePoints<3> make_triangles(const SurfaceConfig& config, bool is_obstacle)
   return points_of(std::move(triangles), along_normals == is_obstacle ? 1.0 : -1.0, shift);
 }
 
-/// The same of any surface but facets of the mesh.
+/// The same for any surface except facets of the mesh.
 template <int dim>
 SurfacePoints<dim> make_points(const SurfaceConfig& config, bool is_obstacle)
 {
@@ -118,7 +118,7 @@ const SurfaceConfig& named(const std::vector<SurfaceConfig>& surfaces, const std
   return *std::ranges::find(surfaces, name, &SurfaceConfig::name);
 }
 
-/// In words, for the certificate.
+/// A description for the certificate.
 std::string words(const GeometryConfig& geometry)
 {
   std::string text;
@@ -180,8 +180,8 @@ enum class Role
   master
 };
 
-/// The surfaces of a contact: make(surface, role). A master is to its slave what an obstacle is, with the
-/// same normal.
+/// The surfaces of a contact: make(surface, role). A master is to its slave like an obstacle, with the same
+/// normal.
 template <class Geometry, class Make>
 Geometry gather(const Config& config, const GeometryConfig& geometry, const Make& make)
 {
@@ -221,7 +221,7 @@ auto make_quadratic(const SurfaceConfig& shape, const mesh::QuadraticFacets* fac
   return std::make_shared<const mesh::QuadraticSurface<dim>>(*facets, tags, shape.kind_where);
 }
 
-/// The same by points.
+/// Gap and direction by points.
 template <int dim>
 void apply_points(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
                   problem::Contact& contact)
@@ -236,7 +236,7 @@ void apply_points(const Config& config, const GeometryConfig& geometry, const Co
   apply<dim>(geometry, gather<PointGeometry<dim>>(config, geometry, make), contact);
 }
 
-/// The same with the shape of the mesh and formulas for what it touches.
+/// Gap and direction by the shape of the mesh, and formulas for the opposite surface.
 template <int dim>
 void apply_quadratic(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
                      problem::Contact& contact)

@@ -12,16 +12,16 @@
 namespace tribound::case_file
 {
 
-/// What the mesh knows of the facets of a contact.
+/// The mesh data for the facets of a contact.
 struct ContactFacets
 {
-  const mesh::QuadraticFacets* quadratic;  ///< null, or without any: the mesh has order 1
-  std::vector<int> tags;                   ///< their groups, of a pair those of the slave
-  std::vector<int> master_tags{};          ///< of a pair those of the master
+  const mesh::QuadraticFacets* quadratic;  ///< null, or empty: the mesh has order 1
+  std::vector<int> tags;                   ///< groups of the facets; of a pair, those of the slave
+  std::vector<int> master_tags{};          ///< of a pair, groups of the master
 };
 
-/// Sets what `geometry` says of a contact with a rigid obstacle, or with a master. Throws InputError for
-/// surfaces of another dimension, and for second-order facets that there are not.
+/// Sets the contact with a rigid obstacle, or with a master, as given by `geometry`. Throws InputError for
+/// surfaces of another dimension, and for missing second-order facets.
 template <int dim>
 void apply_geometry(const Config& config, const GeometryConfig& geometry, const ContactFacets& facets,
                     problem::Contact& contact);

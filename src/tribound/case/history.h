@@ -12,7 +12,7 @@
 namespace tribound::case_file
 {
 
-/// Where the meshes of a path come from.
+/// The origin of the meshes of a path.
 enum class Refine
 {
   replay,
@@ -20,7 +20,7 @@ enum class Refine
   none
 };
 
-/// [history]: the values of t that are gone through, one after the other, and what comes after them.
+/// [history]: the sequence of values of t, and what follows them.
 struct HistoryConfig
 {
   adapt::PathProgram program{.targets = {1.0}};

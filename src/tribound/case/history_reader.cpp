@@ -60,7 +60,7 @@ constexpr std::array<NamedJump, 4> named_jumps = {{{"opening", adapt::Jump::open
                                                    {"cmod", adapt::Jump::mouth_opening},
                                                    {"csd", adapt::Jump::mouth_sliding}}};
 
-/// "crest.x", "base.opening", "base.cmod"; names of boundaries may have dots.
+/// "crest.x", "base.opening", "base.cmod"; names of boundaries may contain dots.
 adapt::Gauge to_gauge(const std::string& text, double factor, const Where& where)
 {
   const std::size_t dot = text.rfind('.');
@@ -94,7 +94,7 @@ std::vector<adapt::Gauge> to_gauges(const Node& node)
   return gauges;
 }
 
-/// A displacement that is given; `until` has to be there unless something else ends the stage.
+/// A prescribed displacement; `until` is required unless something else ends the stage.
 const Table& displacement_table(bool needs_end)
 {
   constexpr auto until = "the value at which the path ends";
@@ -200,14 +200,14 @@ bool is_endo(const std::optional<problem::Contact>& contact)
   return contact && std::holds_alternative<problem::EndoLaw>(contact->law);
 }
 
-/// Whether any contact of the case is so.
+/// Whether the condition holds for any contact of the case.
 bool any_contact(const Config& config, bool (*is_so)(const std::optional<problem::Contact>&))
 {
   return std::ranges::any_of(config.boundaries, is_so, &BoundaryConfig::contact) ||
          std::ranges::any_of(config.contacts, is_so, &ContactConfig::contact);
 }
 
-/// Throws where the path cannot be followed beyond its values of t as the table says.
+/// Throws where the path cannot be continued beyond its values of t as the table requires.
 void check_control(const TableReader& table, const Config& config)
 {
   const adapt::PathProgram& program = config.history->program;
@@ -260,7 +260,7 @@ void read_load_steps(const TableReader& root, Config& config)
 {
   if (const Node* history = root.find("history")) config.history = read_history(*history);
   if (!config.history && any_contact(config, remembers)) config.history.emplace();
-  // What a step leaves to the next ones is not in their bounds: all of it is solved for.
+  // The bounds do not cover errors in the history left by earlier steps: steps are solved to the end.
   if (config.history) config.method.stopping.criterion = adapt::Stopping::last_bounded;
 }
 

@@ -12,11 +12,11 @@ namespace tribound::case_file
 /// [history].
 [[nodiscard]] const Table& history_table();
 
-/// Reads [history] of a case whose contacts are read already, and how its steps are solved unless [newton]
-/// says otherwise. An interface alone is a history of one step.
+/// Reads [history] of a case whose contacts have already been read, and how its steps are solved unless
+/// [newton] says otherwise. An interface alone implies a history of one step.
 void read_load_steps(const TableReader& root, Config& config);
 
-/// Throws InputError for what does not go with load steps, once all of the case is read.
+/// Throws InputError for options incompatible with load steps, once the whole case has been read.
 void check_load_steps(const TableReader& root, Config& config);
 
 }  // namespace tribound::case_file

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file interface_reader.h
-/// Interfaces with a memory, as the case file has them.
+/// Reads interfaces with history.
 
 #include <optional>
 #include <vector>
@@ -13,10 +13,10 @@
 namespace tribound::case_file
 {
 
-/// `interface = { law = ... }`, with the given keys beside its own.
+/// `interface = { law = ... }`, with the given keys in addition to its own.
 [[nodiscard]] Table interface_table(const std::vector<Key>& others = {});
 
-/// The contact that an interface table describes, with `gap` as it is before the table is read.
+/// The contact described by an interface table, with `gap` as it is before the table is read.
 [[nodiscard]] problem::Contact read_interface(const TableReader& table, std::optional<problem::Field> gap);
 
 }  // namespace tribound::case_file

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file keys.h
-/// The keys of a case file as data: what each takes, which go together. The readers check what they read
-/// against them, and `tribound schema` prints them.
+/// The keys of a case file as data: which values each accepts, and which go together. The readers check their
+/// input against them, and `tribound schema` prints them.
 
 #include <cstddef>
 #include <limits>
@@ -14,7 +14,7 @@
 namespace tribound::case_file
 {
 
-/// Numbers between two ends, which belong to it or not.
+/// Numbers between two ends, each of which may be included.
 struct Interval
 {
   double lower = -std::numeric_limits<double>::infinity();
@@ -31,7 +31,7 @@ inline constexpr Interval reasonable{
 
 struct Table;
 
-/// What a key takes: any of the forms that are set.
+/// The values a key accepts: any of the forms that are set.
 struct Value
 {
   bool truth = false;                ///< true or false
@@ -39,11 +39,11 @@ struct Value
   std::vector<std::string> words{};  ///< strings with a meaning of their own
   std::optional<Interval> number{};
   bool is_integer = false;     ///< the number
-  std::vector<Value> items{};  ///< of an array: what each entry takes; empty: no array
+  std::vector<Value> items{};  ///< of an array: what each entry accepts; empty: no array
   const Table* table = nullptr;
   std::size_t least = 0;  ///< characters or entries
   std::size_t most = std::numeric_limits<std::size_t>::max();
-  bool has_length = false;  ///< whether an array of zeros alone is refused
+  bool has_length = false;  ///< whether an array of zeros is refused
   std::string hint{};       ///< what would be right, for messages
 };
 
@@ -52,7 +52,7 @@ struct Key
 {
   std::string name;
   Value value;
-  std::string missing{};  ///< what would be right where it is not given; empty: it need not be given
+  std::string missing{};  ///< what would be right where the key is missing; empty: it is optional
 };
 
 /// Keys that go with one of several words.
@@ -63,7 +63,7 @@ struct KeyGroup
   std::vector<std::string> required{};
 };
 
-/// What a key asks of the others.
+/// Requirements of a key on other keys.
 struct Relation
 {
   std::string key;
@@ -74,16 +74,16 @@ struct Relation
 /// The keys of a table.
 struct Table
 {
-  std::string name;  ///< as docs/case-format.md has it, with NAME for what the user names; empty: the case
+  std::string name;  ///< as in docs/case-format.md, with NAME for names chosen by the user; empty: the case
   std::vector<Key> keys{};
-  std::optional<Value> named{};       ///< what a key takes whose name is the user's; then none is missing
+  std::optional<Value> named{};       ///< what keys named by the user accept; then none is missing
   std::vector<std::string> one_of{};  ///< exactly one of these is given; empty: any
   std::vector<Relation> relations{};
   std::string choice{};            ///< the key whose word chooses a group; empty: none
-  std::vector<KeyGroup> groups{};  ///< the first one holds where the key need not be given
+  std::vector<KeyGroup> groups{};  ///< the first one applies where the key is optional
 };
 
-/// Makers of values; `hint` is a sentence about what would be right.
+/// Make values; `hint` is a sentence about what would be right.
 [[nodiscard]] Value truth();
 [[nodiscard]] Value text(std::string hint = {}, std::size_t least = 0);
 [[nodiscard]] Value one_of(std::vector<std::string> words);
@@ -93,20 +93,20 @@ struct Table
 /// A number or a formula.
 [[nodiscard]] Value datum();
 [[nodiscard]] Value nonnegative_datum(std::string hint = {});
-/// An array of 2 or 3.
+/// An array of 2 or 3 items.
 [[nodiscard]] Value vector_of(Value item, std::string hint);
 [[nodiscard]] Value numbers(std::string hint = "one number per dimension");
 [[nodiscard]] Value data(std::string hint = "one number or formula per dimension, such as [0, -1]");
 /// Numbers that are not all 0.
 [[nodiscard]] Value direction(std::string hint);
-/// An array of at least so many.
+/// An array of at least `least` items.
 [[nodiscard]] Value array_of(Value item, std::size_t least, std::string hint);
-/// A table with these keys; keeps a reference.
+/// A table with these keys. Keeps a reference.
 [[nodiscard]] Value keys_of(const Table& table);
-/// One or the other; limits and hint are those of the first where it has any.
+/// Either value; limits and hint are those of the first, if it has any.
 [[nodiscard]] Value operator|(Value one, const Value& other);
 
-/// One list behind the other.
+/// Concatenates the lists.
 [[nodiscard]] std::vector<Key> operator+(std::vector<Key> keys, const std::vector<Key>& others);
 
 /// Every key and table of a case file.

@@ -147,7 +147,7 @@ const Options<OutputConfig>& output_options()
   return options;
 }
 
-/// The degree of the reference is not below that of the case.
+/// The degree of the reference must not be below that of the case.
 void check_reference_degree(const TableReader& study, int degree)
 {
   if (const Node* reference = study.find("reference_degree"))

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file method_reader.h
-/// How a case is solved and what is written of it: [nitsche], [newton], [regularisation], [adapt], [certify],
+/// Reads how a case is solved and what is written: [nitsche], [newton], [regularisation], [adapt], [certify],
 /// [solver], [study] and [output].
 
 #include <vector>
@@ -12,13 +12,13 @@
 namespace tribound::case_file
 {
 
-/// What `output.checkpoint` says.
+/// The value of `output.checkpoint`.
 void convert(const Node& node, const Value& value, Checkpoints& target);
 
 /// These keys of a case.
 [[nodiscard]] std::vector<Key> method_keys();
 
-/// Reads them. The degree and the output directory of the case are known already.
+/// Reads them. The degree and the output directory of the case are already known.
 void read_method(const TableReader& root, Config& config);
 
 }  // namespace tribound::case_file

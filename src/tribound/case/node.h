@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file node.h
-/// A TOML document as a tree of values that know where they stand; independent of the TOML library.
+/// A TOML document as a tree of values with their positions; independent of the TOML library.
 
 #include <cstdint>
 #include <string>
@@ -17,7 +17,7 @@ namespace tribound::case_file
 
 struct Entry;
 
-/// A value and its place: line and column of the value itself, key with all tables around it.
+/// A value and its position: line and column of the value itself, key with all enclosing tables.
 struct Node
 {
   using Table = std::vector<Entry>;  ///< in the order of the document
@@ -45,29 +45,29 @@ struct Entry
 [[nodiscard]] const Entry* find(const Node::Table& table, std::string_view name);
 [[nodiscard]] Entry* find(Node::Table& table, std::string_view name);
 
-/// What stands there, for messages: "the string \"abc\"", "the integer 5", "an array of 2", "a table".
+/// A description for messages: "the string \"abc\"", "the integer 5", "an array of 2", "a table".
 [[nodiscard]] std::string describe(const Node& node);
 
-/// "table.name", the name quoted where TOML asks for it.
+/// "table.name", with the name quoted where TOML requires it.
 [[nodiscard]] std::string dotted_key(const std::string& table, std::string_view name);
 
-/// Parses a TOML document; `file` stands for it in messages. Throws InputError with line and column.
+/// Parses a TOML document; messages give `file` for it. Throws InputError with line and column.
 [[nodiscard]] Node parse_toml(std::string_view text, const std::string& file);
 
 /// The document as TOML that parse_toml() reads back to the same values: first the keys of a table, then its
-/// tables with a header each. Numbers have the fewest digits that read back as the same number.
+/// subtables, each with a header. Numbers have the fewest digits that read back as the same number.
 [[nodiscard]] std::string to_toml(const Node& document);
 
-/// A value as it stands behind "key = ".
+/// A value as written after "key = ".
 [[nodiscard]] std::string to_inline_toml(const Node& node);
 
-/// "key" and "value" of "key=value"; the first "=" outside quotes divides. Throws InputError with the hint.
+/// "key" and "value" of "key=value", split at the first "=" outside quotes. Throws InputError with the hint.
 [[nodiscard]] std::pair<std::string, std::string> split_assignment(const std::string& assignment,
                                                                    const Where& where,
                                                                    const std::string& hint);
 
-/// Carries out one "dotted.key=TOML value" on the document: adds the key or replaces its value; a bare word
-/// that is no TOML value counts as a string. Throws InputError.
+/// Applies one "dotted.key=TOML value" to the document: adds the key or replaces its value. A bare word that
+/// is no TOML value counts as a string. Throws InputError.
 void apply_override(Node& document, const std::string& assignment);
 
 }  // namespace tribound::case_file

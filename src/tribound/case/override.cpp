@@ -14,7 +14,7 @@ namespace tribound::case_file
 namespace
 {
 
-/// The entry a document of the form "a.b.c = value" sets, and the number of tables around it.
+/// The entry set by a document of the form "a.b.c = value", and the number of enclosing tables.
 std::pair<Entry*, int> leaf(Node& document, int max_depth)
 {
   auto* table = &std::get<Node::Table>(document.value);
@@ -27,7 +27,7 @@ std::pair<Entry*, int> leaf(Node& document, int max_depth)
   }
 }
 
-/// The file is the override itself, where lines and columns say nothing.
+/// Sets the override itself as the file; line and column are meaningless there.
 void set_place(Node& node, const std::string& file)
 {
   const auto move_to_file = [&](Where& where)
@@ -46,7 +46,7 @@ void set_place(Node& node, const std::string& file)
     }
 }
 
-/// Whether the text can be meant as a string without quotes.
+/// Whether the text may be an unquoted string.
 bool is_bare_word(std::string_view text)
 {
   return !text.empty() && std::string_view("\"'[{").find(text.front()) == std::string_view::npos;
@@ -59,7 +59,7 @@ std::string_view trimmed(std::string_view text)
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-/// A document with the one key, and the number of tables around it.
+/// A document with only this key, and the number of enclosing tables.
 std::pair<Node, int> parse_assignment(const std::string& assignment, const Where& where)
 {
   if (assignment.find_first_of("\r\n") != std::string::npos)
@@ -94,7 +94,7 @@ std::pair<Node, int> parse_assignment(const std::string& assignment, const Where
   return {std::move(with_zero), depth};
 }
 
-/// The item of the array that a key such as 0 names.
+/// The array item named by a key such as 0.
 Node& item_of(Node::Array& items, const Entry& entry, const Where& array)
 {
   std::size_t number = 0;
@@ -108,7 +108,7 @@ Node& item_of(Node::Array& items, const Entry& entry, const Where& array)
   return items[number];
 }
 
-/// Puts `entry`, which is one table per level with one key each down to `depth`, into `table`.
+/// Merges `entry`, which has one table per level with one key each down to `depth`, into `table`.
 void merge(Node::Table& table, Entry& entry, int depth)
 {
   Entry* existing = find(table, entry.name);

@@ -16,7 +16,7 @@ namespace tribound::case_file
 namespace
 {
 
-/// `friction`, the keys of its laws, and the given ones.
+/// `friction`, the keys of its laws, and the given keys.
 Table with_friction(std::string name, std::span<const problem::LawKind> kinds, const std::vector<Key>& others)
 {
   Table table{.name = std::move(name), .choice = "friction"};
@@ -39,7 +39,7 @@ Table with_friction(std::string name, std::span<const problem::LawKind> kinds, c
   return table;
 }
 
-/// `friction` and the keys that belong to the law it names.
+/// `friction` and the keys of the law it names.
 problem::ContactLaw read_law(const TableReader& table, std::span<const problem::LawKind> kinds)
 {
   const std::size_t chosen = table.choose();
@@ -58,7 +58,7 @@ problem::ContactLaw read_law(const TableReader& table, std::span<const problem::
   return kind.make(values);
 }
 
-/// What everything that touches an obstacle has beside its law.
+/// The keys common to all contact with an obstacle, besides the law.
 std::vector<Key> obstacle_keys()
 {
   return std::vector<Key>{{"gap", datum()}} + obstacle_geometry_keys();
@@ -93,7 +93,7 @@ const Table& boundary_table()
   return table;
 }
 
-/// Sets what touches an obstacle, with the keys that all of these have beside their law.
+/// Sets contact with an obstacle, with the common keys besides the law.
 void set_obstacle(const TableReader& table, problem::Contact contact, BoundaryConfig& boundary)
 {
   table.read("gap", *contact.gap);
@@ -110,7 +110,7 @@ void read_obstacle(const Node& node, BoundaryConfig& boundary)
       boundary);
 }
 
-/// `interface`: what touches an obstacle and remembers.
+/// `interface`: contact with an obstacle with history.
 void read_memory(const Node& node, BoundaryConfig& boundary)
 {
   const TableReader table(node, obstacle_interface_table());
@@ -177,7 +177,7 @@ ContactConfig read_pair(const Node& node)
   return config;
 }
 
-/// Conditions that exclude each other.
+/// Checks for mutually exclusive conditions.
 void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
 {
   const auto fail = [&](std::string_view key, const std::string& problem, const std::string& hint)

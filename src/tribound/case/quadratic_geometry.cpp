@@ -29,7 +29,7 @@ problem::Field composed(const std::string& text, typename Surface<dim>::Nodal wh
   if (plain.is_constant()) return plain;
   const problem::Formula formula(text, where);
   problem::FieldFunction field;
-  // On each facet, and nothing integrates over more than one.
+  // The degree holds on each facet, and no integral extends over more than one.
   if (formula.degree() != problem::Formula::not_polynomial) field.degree = 2 * formula.degree();
   field.values =
       [formula, what, surface](std::span<const double> x, [[maybe_unused]] int d, std::span<double> values)

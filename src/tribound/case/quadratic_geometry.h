@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quadratic_geometry.h
-/// Gaps and directions on a body whose true surface is that of the second-order facets of its mesh.
+/// Gaps and directions on a body whose true surface consists of the second-order facets of its mesh.
 
 #include <memory>
 #include <optional>
@@ -12,8 +12,8 @@
 namespace tribound::case_file
 {
 
-/// What problem::ContactGeometry is for formulas: X is no formula but, on each facet of the mesh that was
-/// read, a polynomial of degree 2. What is made of it is enclosed facet by facet: over points of one facet.
+/// The analogue of problem::ContactGeometry, which is for formulas. Here X is a polynomial of degree 2 on
+/// each facet of the mesh that was read. Enclosures of functions of X are therefore over points of one facet.
 template <int dim>
 struct QuadraticGeometry
 {
@@ -31,7 +31,7 @@ template <int dim>
 /// mesh::QuadraticSurface::normal().
 template <int dim>
 [[nodiscard]] problem::NormalField direction_of_shape(const QuadraticGeometry<dim>& geometry);
-/// (x - X(x)) . N(x): > 0 outside of the body.
+/// (x - X(x)) . N(x): > 0 outside the body.
 template <int dim>
 [[nodiscard]] problem::Field distance_of_shape(const QuadraticGeometry<dim>& geometry);
 

@@ -16,7 +16,7 @@ namespace
 
 using problem::QuantityKind;
 
-/// In the order of QuantityKind, with the keys that go with each beside `name` and `kind`.
+/// In the order of QuantityKind, with the keys of each besides `name` and `kind`.
 const std::array kinds = {
     KeyGroup{to_string(QuantityKind::energy)},
     KeyGroup{to_string(QuantityKind::load_work)},
@@ -25,7 +25,7 @@ const std::array kinds = {
     KeyGroup{to_string(QuantityKind::safety_factor), {"boundary", "ramp"}, {"boundary"}},
     KeyGroup{to_string(QuantityKind::mean_displacement), {"boundary", "direction"}, {"boundary"}}};
 
-/// Where a quantity is no number without a key.
+/// Throws where a quantity is not defined without a key.
 void require_keys(const TableReader& table, const QuantityConfig& quantity)
 {
   table.require_group(static_cast<std::size_t>(quantity.kind));

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantity_reader.h
-/// [[quantity]]: numbers that are wanted with error bars, and what the case does with them.
+/// [[quantity]]: numbers requested with error bars, and their use in the case.
 
 #include <span>
 #include <string>
@@ -21,11 +21,11 @@ namespace tribound::case_file
 /// One entry for each [[quantity]].
 [[nodiscard]] std::vector<QuantityConfig> read_quantities(const Node& array);
 
-/// certify.energy where the case does not say, as [adapt] needs it. Throws InputError where the case says
-/// less than that, and for a goal that is no quantity of it.
+/// Sets certify.energy, if not given, to what [adapt] requires. Throws InputError where the given value is
+/// insufficient, and for a goal that is not a quantity of the case.
 void check_error_bars(const TableReader& root, Config& config);
 
-/// The quantities of the case, of its problem on a mesh with these names of boundaries. Throws InputError as
+/// The quantities of the case, for its problem on a mesh with these names of boundaries. Throws InputError as
 /// problem::boundary_number() does, and for vectors of wrong length.
 template <int dim>
 [[nodiscard]] std::vector<problem::Quantity<dim>> resolve_quantities(

@@ -46,7 +46,7 @@ LoadConfig read_load(const TableReader& table, std::string region)
   return load;
 }
 
-/// The table that also has one of the same keys for each region.
+/// Adds to the table a subtable with the same keys for each region.
 Table of_regions(const Table& table)
 {
   return {.name = table.name, .keys = table.keys, .named = keys_of(table)};

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file region_reader.h
-/// [material] and [load], of the whole body or of its regions.
+/// [material] and [load], of the whole body or by region.
 
 #include <vector>
 
@@ -14,10 +14,11 @@ namespace tribound::case_file
 [[nodiscard]] const Table& material_table();
 [[nodiscard]] const Table& load_table();
 
-/// E, nu, plane directly or in [material.<region>]; `plane` given directly is the default of the regions.
+/// Reads E, nu, plane, directly or in [material.<region>]; `plane` given directly is the default of the
+/// regions.
 [[nodiscard]] std::vector<MaterialConfig> read_materials(const Node& table);
 
-/// body directly or in [load.<region>].
+/// Reads body, directly or in [load.<region>].
 [[nodiscard]] std::vector<LoadConfig> read_loads(const Node& table);
 
 }  // namespace tribound::case_file

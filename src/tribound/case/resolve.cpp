@@ -116,8 +116,8 @@ std::vector<problem::Region<dim>> regions_of(const Config& config, std::span<con
   return regions;
 }
 
-/// Boundaries of a mesh file are named by its author for a purpose: one that the case forgets is a mistake.
-/// The sides of a box have names whether they are needed or not.
+/// The author of a mesh file names boundaries for a purpose, so omitting one from the case is a mistake. The
+/// sides of a box have names whether they are needed or not.
 template <int dim>
 void check_all_mentioned(const Config& config, std::span<const std::string> groups)
 {
@@ -145,7 +145,8 @@ void check_all_mentioned(const Config& config, std::span<const std::string> grou
                     dotted_key("boundary", forgotten.front()), dim == 2 ? "[0, 0]" : "[0, 0, 0]"));
 }
 
-/// Throws where what is watched or given is none of the problem, or meshes cannot be refined so.
+/// Throws for watched or prescribed quantities that the problem does not have, and where meshes cannot be
+/// refined as requested.
 template <int dim>
 void check_history(const HistoryConfig& history, const problem::Problem<dim>& problem)
 {
@@ -160,7 +161,7 @@ void check_history(const HistoryConfig& history, const problem::Problem<dim>& pr
   for (const adapt::Watch& watch : history.watch) check(watch.gauges);
 }
 
-/// The positions of those names that there are.
+/// The indices of those names that exist.
 std::vector<int> tags_of(std::span<const std::string> groups, std::span<const std::string> boundary_names)
 {
   std::vector<int> tags;

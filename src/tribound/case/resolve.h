@@ -15,9 +15,9 @@ namespace tribound::case_file
 {
 
 /// The problem of the case on a mesh with these names of regions and boundaries, and second-order facets.
-/// Throws InputError for a group that does not exist (listing those that do), for a region without material,
-/// for a boundary group of a mesh file that the case forgets, for vectors of wrong length. Sides of a box
-/// that are not mentioned are traction-free.
+/// Throws InputError for a group that does not exist (listing the existing ones), for a region without
+/// material, for a boundary group of a mesh file that the case omits, and for vectors of wrong length. Sides
+/// of a box that are not mentioned are traction-free.
 template <int dim>
 [[nodiscard]] problem::Problem<dim> resolve(const Config& config, std::span<const std::string> region_names,
                                             std::span<const std::string> boundary_names,
@@ -30,11 +30,11 @@ template <int dim>
                       mesh.labels().quadratic_facets.get());
 }
 
-/// output.moment_about, by default the centroid. Throws InputError where it has not one number per dimension.
+/// output.moment_about, by default the centroid. Throws InputError unless it has one number per dimension.
 template <int dim>
 [[nodiscard]] Point<dim> moment_point(const OutputConfig& output, const mesh::Mesh<dim>& mesh);
 
-/// What the case is, for reports.
+/// A summary of the case for reports.
 [[nodiscard]] io::CaseFacts case_facts(const Config& config, int dimension);
 
 }  // namespace tribound::case_file

@@ -58,15 +58,16 @@ Point<dim> on_shape(const PointGeometry<dim>& geometry, const Point<dim>& x)
   return geometry.shape ? geometry.shape->closest(x) : x;
 }
 
-/// The foot of x. Gap and components of a direction are asked for one after another, each at the same many
-/// points: every thread remembers some feet.
+/// The foot of x. Gap and components of a direction are evaluated in turn, each at the same many points, so
+/// every thread caches some feet.
 template <int dim>
 typename mesh::QuadraticSurface<dim>::Foot foot_of(
     const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape, const Point<dim>& x)
 {
   struct Known
   {
-    std::shared_ptr<const mesh::QuadraticSurface<dim>> shape{};  ///< alive, so that no other has its address
+    std::shared_ptr<const mesh::QuadraticSurface<dim>>
+        shape{};  ///< kept alive: no other can take its address
     Point<dim> x;
     typename mesh::QuadraticSurface<dim>::Foot foot;
   };

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file surface_points.h
-/// Gaps and directions from surfaces of which only points are known: at least one is made of triangles, or of
-/// second-order facets of which the nearest points are sought.
+/// Gaps and directions from surfaces known only by points: at least one consists of triangles, or of
+/// second-order facets whose nearest points are searched for.
 
 #include <functional>
 #include <memory>
@@ -15,8 +15,8 @@
 namespace tribound::case_file
 {
 
-/// A surface: phi, grad phi, of triangles and facets the smoothed normal with the sign of phi, and the
-/// nearest point.
+/// A surface: phi, grad phi and the nearest point. For triangles and facets, the smoothed normal with the
+/// sign of phi replaces grad phi.
 template <int dim>
 struct SurfacePoints
 {
@@ -27,10 +27,10 @@ struct SurfacePoints
 
 template <int dim>
 [[nodiscard]] SurfacePoints<dim> points_of(const problem::Surface& surface, const Where& where);
-/// Moved by `shift`; phi is `sign` times the distance.
+/// Translated by `shift`; phi is `sign` times the distance.
 [[nodiscard]] SurfacePoints<3> points_of(std::shared_ptr<const mesh::TriangulatedSurface> triangles,
                                          double sign, const Point<3>& shift);
-/// As the shape of the body with these facets: X in the place of the nearest point.
+/// As the shape of the body with these facets: X replaces the nearest point.
 template <int dim>
 [[nodiscard]] SurfacePoints<dim> points_on(const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape);
 /// For points of other bodies: by mesh::QuadraticSurface::foot().
@@ -38,7 +38,8 @@ template <int dim>
 [[nodiscard]] SurfacePoints<dim> points_around(
     const std::shared_ptr<const mesh::QuadraticSurface<dim>>& shape);
 
-/// What problem::ContactGeometry is for formulas. Functions without enclosures: the certificate says so.
+/// The analogue of problem::ContactGeometry, which is for formulas. These functions have no enclosures; the
+/// certificate says so.
 template <int dim>
 struct PointGeometry
 {

@@ -51,7 +51,7 @@ const Options<SurfaceConfig>& cylinder_options()
   return options;
 }
 
-/// The keys that say what a surface is, in the order of Kind.
+/// The keys that give the kind of a surface, in the order of Kind.
 constexpr std::array kind_names = {"plane", "circle", "sphere", "cylinder", "distance", "surface", "mesh"};
 
 Value kind_value(Kind kind)
@@ -101,11 +101,11 @@ const Table& one_table(bool is_obstacle)
 std::string read_formula(const Node& node)
 {
   std::string text = to_text(node);
-  (void)to_field(node);  // its mistakes are those of any formula
+  (void)to_field(node);  // checks it like any formula
   return text;
 }
 
-/// The file of a surface, and where the body is.
+/// The file of a surface, and the side of the body.
 void read_triangles(const Node& node, const TableReader& table, bool is_obstacle,
                     const std::filesystem::path& case_directory, SurfaceConfig& surface)
 {

@@ -16,7 +16,7 @@ namespace tribound::case_file
 [[nodiscard]] const Table& obstacles_table();
 [[nodiscard]] const Table& shapes_table();
 
-/// The tables of [obstacle] or [shape]; paths lead from `case_directory`.
+/// The tables of [obstacle] or [shape]; paths are relative to `case_directory`.
 [[nodiscard]] std::vector<SurfaceConfig> read_obstacles(const Node& node,
                                                         const std::filesystem::path& case_directory);
 [[nodiscard]] std::vector<SurfaceConfig> read_shapes(const Node& node,

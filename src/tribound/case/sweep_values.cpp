@@ -26,7 +26,7 @@ std::string without_blanks(std::string_view text)
   return std::string(text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1));
 }
 
-/// The number that the whole text is.
+/// The number that makes up the whole text.
 double number(const std::string& text, const Where& where)
 {
   const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-") ? 1 : 0);
@@ -38,7 +38,7 @@ double number(const std::string& text, const Where& where)
   return value;
 }
 
-/// The three parts of "0.1:0.8:8", of characters of numbers; none of another text.
+/// The three parts of "0.1:0.8:8", which contain only characters of numbers; empty for any other text.
 std::vector<std::string> parts_of_range(const std::string& text)
 {
   const std::size_t first = text.find(':');

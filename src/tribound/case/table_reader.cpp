@@ -175,7 +175,7 @@ long to_integer_in(const Node& node, long lower, long upper, const std::string& 
   if (integer == nullptr) fail_type(node, "an integer", hint);
   if (*integer < lower || *integer > upper)
   {
-    // The largest value of a type is a limit of the machine, not worth telling unless it is exceeded.
+    // The largest value of a type is a limit of the machine; it is only mentioned when exceeded.
     const std::string range = *integer < lower && upper >= std::numeric_limits<int>::max()
                                   ? fmt::format("of at least {}", lower)
                                   : fmt::format("from {} to {}", lower, upper);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file table_reader.h
-/// Typed, checked access to the tables of a case file. Every function throws InputError that says where the
-/// value stands, what is wrong with it and what would be right.
+/// Typed, checked access to the tables of a case file. Every function throws InputError that gives the
+/// position of the value, what is wrong with it and what would be right.
 
 #include <algorithm>
 #include <filesystem>
@@ -27,13 +27,13 @@ class TableReader
 {
  public:
   /// Checks that `node` is a table and that its keys are among those of `table`, or are tables named by the
-  /// user where it has such. Keeps references to both.
+  /// user where these are allowed. Keeps references to both.
   TableReader(const Node& node, const Table& table);
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
   /// The value of an allowed key, or null. Tables named by the user do not count.
   [[nodiscard]] const Node* find(std::string_view key) const;
-  /// The value of an allowed key that must be there; the hint is that of the key, or the given one.
+  /// The value of a required, allowed key; the hint is that of the key, or the given one.
   [[nodiscard]] const Node& require(std::string_view key) const { return require(key, key_of(key).missing); }
   [[nodiscard]] const Node& require(std::string_view key, const std::string& hint) const;
   /// The tables named by the user.
@@ -41,23 +41,23 @@ class TableReader
   [[nodiscard]] const Where& where() const { return where_; }
   [[nodiscard]] const Key& key_of(std::string_view key) const;
 
-  /// The key of `one_of` that is given; empty: none is. Throws where another one stands beside it, which the
-  /// message calls `beside`, or by its name.
+  /// The given key of `one_of`; empty: none. Throws where another one is also given; the message calls it
+  /// `beside`, or by its name.
   [[nodiscard]] std::string only(const std::string& hint, std::string_view beside = {}) const;
-  /// The key that stands beside `key` and is excluded by it; null: none does.
+  /// The given key that `key` excludes; null: none.
   [[nodiscard]] const Node* excluded_by(std::string_view key) const;
-  /// The group of keys that the word of `choice` chooses, by its number. Throws for keys of other groups.
+  /// The index of the group chosen by the word of `choice`. Throws for keys of other groups.
   [[nodiscard]] std::size_t choose() const;
-  /// Throws where a key is missing that the group requires.
+  /// Throws where a key required by the group is missing.
   void require_group(std::size_t chosen) const;
 
-  /// target = the value of the key, if it is given.
+  /// Sets target to the value of the key, if it is given.
   template <class T>
   void read(std::string_view key, T& target) const
   {
     if (const Node* node = find(key)) convert(*node, key_of(key).value, target);
   }
-  /// The value of a key that must be there.
+  /// The value of a required key.
   template <class T>
   [[nodiscard]] T get(std::string_view key) const
   {
@@ -74,11 +74,11 @@ class TableReader
   const Where& where_;
 };
 
-/// A value of the wrong type.
+/// Throws for a value of the wrong type.
 [[noreturn]] void fail_type(const Node& node, std::string_view expected, const std::string& hint);
 
 [[nodiscard]] std::string to_text(const Node& node);
-/// A finite number; integers count.
+/// A finite number; integers are accepted.
 [[nodiscard]] double to_number(const Node& node);
 /// A number or a formula.
 [[nodiscard]] problem::Field to_field(const Node& node);
@@ -86,16 +86,16 @@ class TableReader
 [[nodiscard]] long to_integer_in(const Node& node, long lower, long upper, const std::string& hint);
 /// A number in the interval.
 [[nodiscard]] double to_number_in(const Node& node, const Interval& interval, const std::string& hint);
-/// The position of the string in `names`; throws listing them.
+/// The position of the string in `names`; otherwise throws, listing them.
 [[nodiscard]] std::size_t to_choice(const Node& node, const std::vector<std::string>& names);
-/// The entries of an array, or the one value in its place where that is allowed.
+/// The entries of an array, or a single value where that is allowed in its place.
 [[nodiscard]] std::span<const Node> to_items(const Node& node, const Value& value);
 
-/// Whether the node is one of the words that stand for "not given", such as "free"; throws for another word
-/// where no other text is allowed.
+/// Whether the node is one of the words for "not given", such as "free". Throws for another word where no
+/// other text is allowed.
 [[nodiscard]] bool is_word(const Node& node, const Value& value);
 
-/// target = what the node says, checked against what is allowed.
+/// Sets target to the value of the node, checked against what is allowed.
 void convert(const Node& node, const Value& value, bool& target);
 void convert(const Node& node, const Value& value, double& target);
 void convert(const Node& node, const Value& value, std::string& target);
@@ -113,7 +113,7 @@ void convert(const Node& node, const Value& value, T& target)
                     upper < static_cast<double>(largest) ? static_cast<long>(upper) : largest, value.hint));
 }
 
-/// The words are those of the values 0, 1, ...
+/// The words correspond to the values 0, 1, ...
 template <class T>
 requires std::is_enum_v<T>
 void convert(const Node& node, const Value& value, T& target)
@@ -121,7 +121,7 @@ void convert(const Node& node, const Value& value, T& target)
   target = static_cast<T>(to_choice(node, value.words));
 }
 
-/// A word stands for "not given".
+/// A word means "not given".
 template <class T>
 void convert(const Node& node, const Value& value, std::optional<T>& target)
 {
@@ -167,7 +167,7 @@ template <auto member, auto... inner>
                    { table.read(key, ((target.*member).*....*inner)); }};
 }
 
-/// A table each key of which sets a member of a T.
+/// A table whose keys each set a member of a T.
 template <class T>
 class Options
 {
@@ -182,7 +182,7 @@ class Options
   }
 
   [[nodiscard]] const Table& table() const { return table_; }
-  /// Sets what is given.
+  /// Sets the given members.
   void read(const TableReader& given, T& target) const
   {
     for (std::size_t i = 0; i < readers_.size(); ++i)

@@ -30,7 +30,7 @@ Node convert(const toml::node& source, const std::string& file, const std::strin
       entries.push_back({std::string(name.str()), place(name.source().begin, file, full_key),
                          convert(value, file, full_key)});
     }
-    // toml++ sorts by name; messages and results should follow the file.
+    // toml++ sorts by name; messages and results should follow the order of the file.
     std::ranges::stable_sort(entries, {},
                              [](const Entry& e) { return std::tuple(e.where.line, e.where.column); });
     node.value = std::move(entries);
@@ -55,7 +55,7 @@ Node convert(const toml::node& source, const std::string& file, const std::strin
   return node;
 }
 
-/// toml++ says "cannot redefine existing table 'boundary.left'" in the midst of a longer sentence.
+/// Extracts the key: toml++ says "cannot redefine existing table 'boundary.left'" within a longer sentence.
 std::string redefined_key(std::string_view description)
 {
   if (description.find("cannot redefine") == std::string_view::npos) return {};
@@ -78,10 +78,10 @@ std::string redefined_key(std::string_view description)
       "strings and formulas stand in quotes, arrays in [ ], tables in { } or below a [header]; see toml.io");
 }
 
-/// Dots in a key, and brackets open at a time. toml++ recurses on both, as convert() does; a case needs 4.
+/// Limit on dots in a key and on open brackets. toml++ recurses on both, as does convert(); a case needs 4.
 constexpr int deepest = 20;
 
-/// Walks over a document without a parser: what matters is outside strings and comments.
+/// Scans a document without a parser; only text outside strings and comments counts.
 class DepthCheck
 {
  public:
@@ -125,7 +125,7 @@ class DepthCheck
     while (position_ < std::min(end, text_.size())) advance();
   }
 
-  /// A string that does not end is left to the parser.
+  /// An unterminated string is left to the parser.
   void skip_string(char quote)
   {
     const bool is_multiline = text_.substr(position_, 3) == std::string(3, quote);
@@ -144,8 +144,8 @@ class DepthCheck
   std::size_t position_ = 0;
   std::size_t line_begin_ = 0;
   int line_ = 1;
-  int open_ = 0;  ///< brackets
-  int dots_ = 0;  ///< in the key so far
+  int open_ = 0;  ///< open brackets
+  int dots_ = 0;  ///< in the current key so far
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ std::string quoted(std::string_view text)
   return result + "\"";
 }
 
-/// The name of a key, quoted where it has to be.
+/// The name of a key, quoted where necessary.
 std::string key_text(const std::string& name)
 {
   return dotted_key({}, name) == name ? name : quoted(name);
@@ -53,19 +53,19 @@ struct InlineText
   std::string operator()(bool truth) const { return truth ? "true" : "false"; }
   std::string operator()(Node::DateOrTime) const
   {
-    assert(false);  // no key of a case takes one
+    assert(false);  // no key of a case accepts one
     return {};
   }
 };
 
-/// Whether it is written as one [[name]] for each item.
+/// Whether it is written as one [[name]] per item.
 bool is_array_of_tables(const Node& node)
 {
   const auto* items = std::get_if<Node::Array>(&node.value);
   return items != nullptr && !items->empty() && std::ranges::all_of(*items, &Node::is_table);
 }
 
-/// The keys of the table with their values, then its tables.
+/// Writes the keys of the table with their values, then its subtables.
 void append(std::string& text, const Node::Table& table, const std::string& name)
 {
   for (const Entry& entry : table)

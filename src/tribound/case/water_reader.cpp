@@ -30,7 +30,7 @@ problem::BaseLine read_line(const TableReader& table)
   return line;
 }
 
-/// A height, maybe in t.
+/// A height, which may depend on t.
 problem::Field read_level(const Node& node)
 {
   problem::Field level = to_field(node);
@@ -79,7 +79,7 @@ problem::Seepage read_seepage(const TableReader& table)
   problem::Seepage seepage{
       .head = read_level(head), .weight = table.get<double>("weight"), .line = read_line(table)};
   if (const Node* tail = table.find("tail")) seepage.tail = read_level(*tail);
-  // Without water downstream that level is the height of the toe, or anything below.
+  // Without water downstream, the level is the height of the toe, or anything below.
   if (!table.has("tail")) seepage.tail = problem::Field(0.0, head.where);
   table.read("crack", seepage.crack);
   if (const Node* drain = table.find("drain")) seepage.drain = read_drain(*drain, seepage.line.length());

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file water_reader.h
-/// Water in the joint of an interface, as the case file has it.
+/// Reads water in the joint of an interface.
 
 #include "tribound/case/table_reader.h"
 #include "tribound/problem/problem.h"
@@ -9,11 +9,11 @@
 namespace tribound::case_file
 {
 
-/// `water` of an interface.
+/// The table `water` of an interface.
 [[nodiscard]] const Table& water_table();
 
-/// Reads `water`, `heel` and `toe` of an interface table. Throws InputError for keys that do not go together,
-/// a line without length, levels that vary in space and drains outside the line.
+/// Reads `water`, `heel` and `toe` of an interface table. Throws InputError for incompatible keys, a line of
+/// zero length, levels that vary in space and drains outside the line.
 void read_water(const TableReader& interface, problem::Contact& contact);
 
 }  // namespace tribound::case_file
