@@ -66,8 +66,7 @@ typename mesh::QuadraticSurface<dim>::Foot foot_of(
 {
   struct Known
   {
-    std::shared_ptr<const mesh::QuadraticSurface<dim>>
-        shape{};  ///< kept alive: no other can take its address
+    std::shared_ptr<const mesh::QuadraticSurface<dim>> shape{};  ///< kept alive: keeps its address unique
     Point<dim> x;
     typename mesh::QuadraticSurface<dim>::Foot foot;
   };

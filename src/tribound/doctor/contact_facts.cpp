@@ -92,7 +92,7 @@ class Collector
 
   void add_spread()
   {
-    constexpr double closed_surface = 1e-6;  // all normals together cancel
+    constexpr double closed_surface = 1e-6;  // the normals cancel
     if (mean_.norm() <= closed_surface * facts_.measure) return;
     const Point<dim> mean = mean_.normalized();
     facts_.normal = place<dim>(mean);
@@ -124,7 +124,7 @@ class Collector
 template <int dim>
 double degrees_between(const Point<dim>& a, const Point<dim>& b)
 {
-  // Twice the angle of half the chord: acos loses half the digits near 0.
+  // Twice the angle of half the chord, since acos loses half the digits near 0.
   return 2 * std::asin(std::min(1.0, (a - b).norm() / 2)) * 180 / std::numbers::pi;
 }
 

@@ -35,9 +35,9 @@ struct ContactBoundaryFacts
 template <int dim>
 [[nodiscard]] double degrees_between(const Point<dim>& a, const Point<dim>& b);
 
-/// The angle between the directions of contact on neighbouring facets where they meet, degrees; 0 from 45 on:
-/// that is a corner of the body, not a curved surface, and below 0.01: that is round-off of the coordinates
-/// in a file.
+/// The angle between the directions of contact on neighbouring facets where they meet, degrees. 0 from 45 on,
+/// which is a corner of the body and not a curved surface, and below 0.01, which is round-off of the
+/// coordinates in a file.
 template <int dim>
 [[nodiscard]] double kink(const mesh::Mesh<dim>& mesh, const contact::ContactSegment<dim>& a,
                           const contact::ContactSegment<dim>& b);
@@ -46,7 +46,7 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<dim>& form);
 
-/// Pairs of segments of one boundary whose facets share a vertex (2D) or an edge (3D), by their numbers in
+/// Pairs of segments of one boundary whose facets share a vertex (2D) or an edge (3D), by their indices in
 /// the form.
 template <int dim>
 [[nodiscard]] std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<dim>& form);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file cost.h
-/// What solving on a mesh may take.
+/// The expected cost of solving on a mesh.
 
 #include <vector>
 
@@ -11,7 +11,7 @@
 namespace tribound::doctor
 {
 
-/// Of the first mesh, all Newton steps and the certificate included, on one core.
+/// Cost on the first mesh, all Newton steps and the certificate included, on one core.
 struct CostEstimate
 {
   int degree = 0;
@@ -22,8 +22,8 @@ struct CostEstimate
 };
 
 /// Estimates for the degrees 1 to 4, from a model fitted to measured runs (docs/doctor.md). On other runs of
-/// the same sizes, memory was right within a factor of 1.5, mostly a quarter, and time within 2; beyond these
-/// sizes both are extrapolated.
+/// the same sizes, memory was right within a factor of 1.5, mostly within a quarter, and time within a factor
+/// of 2. Beyond these sizes both are extrapolated.
 template <int dim>
 [[nodiscard]] std::vector<CostEstimate> cost_estimates(const mesh::Mesh<dim>& mesh,
                                                        const algebra::SolverOptions& config);

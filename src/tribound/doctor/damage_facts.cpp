@@ -21,7 +21,7 @@ struct FacetDamage
   bool is_broken = true;
 };
 
-using DamageByFacet = std::map<std::pair<Index, int>, FacetDamage>;  // by cell and number in it
+using DamageByFacet = std::map<std::pair<Index, int>, FacetDamage>;  // by cell and local number
 
 template <int dim>
 DamageByFacet damage_by_facet(const contact::NitscheForm<dim>& form,
@@ -45,11 +45,11 @@ DamageByFacet damage_by_facet(const contact::NitscheForm<dim>& form,
   return facets;
 }
 
-/// Vertices (2D) or edges (3D) between facets that are broken and others.
+/// Vertices (2D) or edges (3D) between broken and other facets.
 template <int dim>
 int count_fronts(const mesh::Mesh<dim>& mesh, const DamageByFacet& facets)
 {
-  std::map<std::array<Index, dim - 1>, bool> waiting;  // whether the facet met first is broken
+  std::map<std::array<Index, dim - 1>, bool> waiting;  // whether the first adjacent facet is broken
   int fronts = 0;
   for (const auto& [number, facet] : facets)
   {

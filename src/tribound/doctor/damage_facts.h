@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file damage_facts.h
-/// Whether the facets resolve an interface that softens and breaks (method section 12.1).
+/// Whether the facets resolve an interface that softens and fails (method section 12.1).
 
 #include <optional>
 #include <span>
@@ -13,7 +13,7 @@
 namespace tribound::doctor
 {
 
-/// Where gamma comes nearest to the slope with which the law of a boundary softens.
+/// Where gamma is closest to the softening slope of a law on a boundary.
 struct Softening
 {
   double slope = 0;  ///< 0: nothing softens
@@ -27,19 +27,19 @@ struct Softening
 struct DamageFacts
 {
   Softening softening;
-  /// Rows of facets between what is broken (D = 1 all over a facet) and what is whole: with A the measure of
-  /// the points where 0 < D < 1, a the mean measure of facets that have such points and f the number of
-  /// vertices (2D) or edges (3D) between facets that are broken and others, A / (a f (dim - 1)); in 3D two
-  /// triangles make a row. Empty unless there are both broken facets and points with 0 < D < 1.
+  /// Rows of facets between the broken part (D = 1 all over a facet) and the intact one: A / (a f (dim - 1)).
+  /// A is the measure of the points where 0 < D < 1, a the mean measure of facets with such points, and f the
+  /// number of vertices (2D) or edges (3D) between broken and other facets; in 3D two triangles make a row.
+  /// Empty unless there are both broken facets and points with 0 < D < 1.
   std::optional<double> process_zone;
-  double open_cohesion = 0;  ///< of a joint without tensile strength, whose cohesion opening does not break
+  double open_cohesion = 0;  ///< of a joint without tensile strength, whose cohesion survives opening
 };
 
 /// The states at the points of a segment.
 template <int dim>
 using SegmentStates = std::vector<contact::ContactState<dim>>;
 
-/// Of the boundary `tag`, with the states on every segment of the form.
+/// The facts of the boundary `tag`, with the states on every segment of the form.
 template <int dim>
 [[nodiscard]] DamageFacts damage_facts(const contact::NitscheForm<dim>& form,
                                        std::span<const SegmentStates<dim>> states, int tag);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file diagnosis.h
-/// All that `tribound check` finds out about a case before it is solved.
+/// Everything that `tribound check` finds out about a case before it is solved.
 
 #include <optional>
 #include <string>
@@ -35,17 +35,17 @@ struct Diagnosis
   std::vector<problem::Units> guesses;  ///< plausible_units()
   MeshQuality mesh;
   std::vector<CostEstimate> costs;
-  double multigrid_bytes = 0;  ///< of the case's degree with solver.method = "iterative"
+  double multigrid_bytes = 0;  ///< for the degree of the case with solver.method = "iterative"
   adapt::MemoryLimit memory;
 
-  /// " MPa", as it stands behind a number; empty where no units are named.
+  /// " MPa", to be appended to a number; empty where no units are named.
   [[nodiscard]] std::string behind(problem::UnitOf what) const
   {
     return units.behind(what, static_cast<int>(loads.extent.size()));
   }
 };
 
-/// For a case whose bodies are held, see check_rigid_motions().
+/// For a case with supported bodies, see check_rigid_motions().
 template <int dim>
 [[nodiscard]] Diagnosis diagnose(const contact::NitscheForm<dim>& form, const adapt::Method& method,
                                  const adapt::AdaptOptions& options, const problem::Units& units = {})

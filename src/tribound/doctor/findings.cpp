@@ -15,17 +15,17 @@ using problem::UnitOf;
 namespace
 {
 
-/// Above, strains are no longer small: the quadratic terms that linear elasticity leaves out are of this
+/// Above this, strains are no longer small: the quadratic terms neglected by linear elasticity have this
 /// relative size.
 constexpr double small_strain = 0.05;
-/// Below, loads and E are hardly in the same units: Pa for MPa is a factor of 1e6 off a usual 1e-4.
+/// Below this, loads and E probably have different units: Pa for MPa is a factor of 1e6 off a usual 1e-4.
 constexpr double tiny_strain = 1e-9;
-/// Poisson's ratio from which elements of degree 1 lock.
+/// From this Poisson's ratio on, elements of degree 1 lock.
 constexpr double nearly_incompressible = 0.49;
 constexpr double large_aspect = 10;    // 1 for the regular simplex
 constexpr double large_grading = 1e4;  // largest cell over smallest
 
-/// Angles outside are poor, degrees: what mesh generators deliver without being asked is inside.
+/// Angles outside this range are poor, degrees. Mesh generators stay inside by default.
 struct GoodAngles
 {
   double smallest;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file findings.h
-/// The facts of the doctor put into words and judged.
+/// The facts of the doctor, assessed and expressed in words.
 
 #include <string>
 #include <utility>
@@ -23,37 +23,37 @@ enum class Severity
 /// "ok", "note", "warning".
 [[nodiscard]] const char* to_string(Severity severity);
 
-/// One thing found; docs/doctor.md explains every code.
+/// One finding; docs/doctor.md explains every code.
 struct Finding
 {
   std::string code;
   Severity severity = Severity::ok;
   std::string text{};                                     ///< a sentence
   std::vector<std::pair<std::string, double>> numbers{};  ///< by name
-  Place where{};                                          ///< empty: nowhere in particular
-  std::string advice{};                                   ///< empty when all is well
-  std::string boundary{};  ///< the name of the group; empty: of none in particular
+  Place where{};                                          ///< empty: no particular place
+  std::string advice{};                                   ///< empty where nothing is wrong
+  std::string boundary{};                                 ///< name of the group; empty: no particular one
 };
 
-/// What can be said before solving, in the order of the case: supports, contact, loads, mesh, cost.
+/// All findings before solving, in the order of the case: supports, contact, loads, mesh, cost.
 [[nodiscard]] std::vector<Finding> findings(const Diagnosis& diagnosis);
 
-/// The part about contact boundaries.
+/// Findings about contact boundaries.
 [[nodiscard]] std::vector<Finding> contact_findings(const Diagnosis& diagnosis);
 
-/// The part about pairs of bodies in contact.
+/// Findings about pairs of bodies in contact.
 [[nodiscard]] std::vector<Finding> pair_findings(const Diagnosis& diagnosis);
 
-/// The part about the units that the case names, or a guess at them.
+/// Findings about the units named by the case, or a guess at them.
 [[nodiscard]] std::vector<Finding> unit_findings(const Diagnosis& diagnosis);
 
-/// The part about memory and time.
+/// Findings about memory and time.
 [[nodiscard]] std::vector<Finding> cost_findings(const Diagnosis& diagnosis);
 
-/// `boundary "base" at (0.5, 1)`, as far as it is known; empty where nothing is.
+/// `boundary "base" at (0.5, 1)`, as far as known; empty if nothing is.
 [[nodiscard]] std::string location(const Finding& finding);
 
-/// "(0.5, 1)" with six digits.
+/// "(0.5, 1)", with six digits.
 [[nodiscard]] std::string describe(const Place& where);
 
 }  // namespace tribound::doctor

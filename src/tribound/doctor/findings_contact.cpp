@@ -8,13 +8,13 @@ namespace tribound::doctor
 namespace
 {
 
-/// Normals that differ by less differ by round-off of the coordinates in a file, degrees.
+/// Smaller differences of normals are round-off of the coordinates in a file, degrees.
 constexpr double flat = 0.01;
-/// Gaps beyond this part of the body are not closed by small displacements.
+/// Gaps beyond this fraction of the body size are not closed by small displacements.
 constexpr double far = 0.05;
-/// A gap may open with the curvature of the obstacle, up to the size of the body.
+/// A gap may increase with the curvature of the obstacle, up to the size of the body.
 constexpr double beyond = 1;
-/// Fewer facets do not show how the pressure is distributed.
+/// Fewer facets do not resolve the pressure distribution.
 constexpr long few_facets = 4;
 
 Finding corner_finding(const OverconstrainedCorner& corner, const std::string& unit)
@@ -92,7 +92,7 @@ std::optional<Finding> straightened_finding(const ContactBoundaryFacts& contact,
   return finding;
 }
 
-/// Nothing where contact acts nearly along the normals of the facets.
+/// Nothing where the contact direction is nearly normal to the facets.
 std::optional<Finding> direction_finding(const ContactBoundaryFacts& contact)
 {
   constexpr double oblique = 60;  // degrees

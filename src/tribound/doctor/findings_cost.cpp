@@ -12,7 +12,7 @@ namespace tribound::doctor
 namespace
 {
 
-/// Estimates of memory are right within this factor (docs/doctor.md).
+/// Memory estimates are right within this factor (docs/doctor.md).
 constexpr double memory_uncertainty = 1.5;
 
 /// "0.52", "3.4", "150": two digits, no exponent.
@@ -35,7 +35,7 @@ std::string seconds_in_words(double seconds)
   return seconds < 7200 ? two_digits(seconds / 60) + " min" : two_digits(seconds / 3600) + " h";
 }
 
-/// What else would fit.
+/// Alternatives that fit into memory.
 std::string memory_advice(const Diagnosis& diagnosis, const CostEstimate& cost)
 {
   std::vector<std::string> ways;
@@ -49,7 +49,7 @@ std::string memory_advice(const Diagnosis& diagnosis, const CostEstimate& cost)
   return fmt::format("take {}", fmt::join(ways, ", or "));
 }
 
-/// The memory of the case against what there is.
+/// Compares the memory needed by the case with the available memory.
 Finding memory_finding(const Diagnosis& diagnosis, const CostEstimate& cost)
 {
   const double limit = diagnosis.memory.bytes;

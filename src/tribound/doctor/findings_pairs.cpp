@@ -8,14 +8,15 @@ namespace tribound::doctor
 namespace
 {
 
-/// Less of a slave is covered than is meant to be.
+/// Below this, the covered share of a slave is less than intended.
 constexpr double nearly_all = 0.99;
-/// In facets: sides that small displacements do not bring together.
+/// In facets; larger gaps are not closed by small displacements.
 constexpr double far = 10;
-/// Between neighbouring facets of a slave, degrees: beyond, their normals leave gaps and overlaps opposite.
+/// Between neighbouring facets of a slave, degrees. Beyond this, gaps and overlaps between their normals on
+/// the opposite side matter.
 constexpr double turning = 15;
 constexpr double stretched = 2;
-/// Of the size of a tie: a couple of forces across it is left out.
+/// Relative to the size of a tie; beyond this, the neglected couple of forces across it matters.
 constexpr double across = 1e-3;
 
 Finding warning(const char* code, double number, const Place& where, std::string text, const char* advice)

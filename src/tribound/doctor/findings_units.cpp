@@ -56,7 +56,7 @@ Finding guess(const Diagnosis& diagnosis)
   return finding;
 }
 
-/// "GPa? ...": what E is meant to be, as far as that can be told.
+/// "GPa? ...": the intended E, as far as it can be guessed.
 std::string advice_on(double E, const problem::Units& units)
 {
   const std::optional<StressUnit> meant = meant_unit(E, units);

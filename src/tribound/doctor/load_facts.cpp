@@ -52,7 +52,7 @@ Point<dim> body_force_resultant(const contact::NitscheForm<dim>& form, LoadFacts
   return resultant;
 }
 
-/// What the boundary carries.
+/// The load on a boundary.
 struct BoundaryLoad
 {
   double magnitude = 0;  ///< integral of |g_N|
@@ -86,7 +86,7 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   return resultant;
 }
 
-/// Boundaries with a negative pressure, with the lowest.
+/// Boundaries with negative pressure somewhere, with the lowest value.
 template <int dim>
 std::vector<Suction> find_suction(const contact::NitscheForm<dim>& form)
 {
@@ -104,7 +104,7 @@ std::vector<Suction> find_suction(const contact::NitscheForm<dim>& form)
   return lowest;
 }
 
-/// The area of the boundaries that take up the loads.
+/// The area of the boundaries that support the loads.
 template <int dim>
 double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
@@ -118,7 +118,7 @@ double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh
   return measure;
 }
 
-/// The largest range of a prescribed component. An obstacle that stays where it is counts as 0.
+/// The largest range of a prescribed component. A fixed obstacle counts as 0.
 template <int dim>
 double displacement_range(const contact::NitscheForm<dim>& form)
 {
@@ -132,7 +132,7 @@ double displacement_range(const contact::NitscheForm<dim>& form)
     for (std::size_t i = component; i < constraints.fixed.size(); i += dim)
     {
       if (!constraints.fixed[i]) continue;
-      lowest = std::fmin(lowest, constraints.values[i]);  // fmin passes over NaN
+      lowest = std::fmin(lowest, constraints.values[i]);  // fmin ignores NaN
       highest = std::fmax(highest, constraints.values[i]);
     }
     range = std::fmax(range, highest - lowest);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file load_facts.h
-/// Loads against stiffness: what strain to expect, before anything is solved.
+/// Loads relative to stiffness: the strain to expect before solving.
 
 #include <string>
 #include <vector>
@@ -19,8 +19,8 @@ struct ElasticConstants
   double nu = 0;
 };
 
-/// E and nu of lambda and mu, the inverse of lame(). Plane stress, which counts in 2D only, works with
-/// lambda_ps = 2 lambda mu / (lambda + 2 mu), hence nu = lambda_ps / (lambda_ps + 2 mu).
+/// E and nu from lambda and mu, the inverse of lame(). Plane stress, considered in 2D only, uses lambda_ps =
+/// 2 lambda mu / (lambda + 2 mu), hence nu = lambda_ps / (lambda_ps + 2 mu).
 [[nodiscard]] ElasticConstants elastic_constants(const problem::Material& material, int dimension);
 
 struct RegionMaterial
@@ -31,7 +31,7 @@ struct RegionMaterial
   bool plane_stress = false;  ///< 2D only
 };
 
-/// A boundary whose pressure is negative somewhere: it pulls.
+/// A boundary with negative pressure somewhere: it pulls.
 struct Suction
 {
   std::string boundary;
@@ -39,7 +39,7 @@ struct Suction
   Place where;
 };
 
-/// Stresses and strains that an engineer would put on the back of an envelope.
+/// Stresses and strains of a back-of-the-envelope estimate.
 struct LoadFacts
 {
   std::vector<double> extent;  ///< of the bounding box of the mesh
@@ -48,7 +48,7 @@ struct LoadFacts
   double smallest_E = 0;
   double largest_body_force = 0;   ///< largest mean of |f| over a cell
   double traction_stress = 0;      ///< the largest mean of |g_N| over a boundary
-  double support_stress = 0;       ///< |int f + int g_N| over the area that contact or displacements hold
+  double support_stress = 0;       ///< |int f + int g_N| over the area held by contact or displacements
   double body_stress = 0;          ///< max |f| L
   double displacement_strain = 0;  ///< range of a prescribed component / L; with contact, it includes 0
   double interference_strain = 0;  ///< the largest interference, -g, / L

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file mesh_quality.h
-/// Shapes and sizes of the cells.
+/// Shape and size of the cells.
 
 #include <limits>
 
@@ -23,8 +23,8 @@ struct MeshQuality
   double largest_cell = 0;                                         ///< max h_T
 };
 
-/// Longest edge over inradius, 1 for the regular simplex: h / (c r) with c = 2 sqrt(3) in 2D and 2 sqrt(6) in
-/// 3D.
+/// Longest edge over inradius, scaled to 1 for the regular simplex: h / (c r) with c = 2 sqrt(3) in 2D and 2
+/// sqrt(6) in 3D.
 template <int dim>
 [[nodiscard]] double aspect_ratio(const mesh::Mesh<dim>& mesh, Index cell);
 

@@ -26,7 +26,7 @@ struct PairFacts
   Place stretch_at;
   double distance = 0;  ///< the largest |Pi(x) - x| at corners of segments
   Place distance_at;
-  double size = 0;  ///< the diagonal of the box around the part of the slave that is covered
+  double size = 0;  ///< diagonal of the bounding box of the covered part of the slave
 };
 
 /// In the order of the problem.

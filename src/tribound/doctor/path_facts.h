@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file path_facts.h
-/// What can be said of a load path before it is followed.
+/// What is known of a load path before it is followed.
 
 #include <optional>
 #include <span>
@@ -20,8 +20,8 @@ struct LoadBeyondContact
   std::string why;  ///< in the words of contact::check_rigid_motions()
 };
 
-/// The first of the load factors at which the problem is such; nothing where there is none, or a bond may
-/// take what contact cannot. The mesh is a whole one.
+/// The first of the load factors at which this happens. Nothing where there is none, or a bond may carry what
+/// contact cannot. Needs the whole mesh.
 template <int dim>
 [[nodiscard]] std::optional<LoadBeyondContact> load_beyond_contact(const problem::Problem<dim>& problem,
                                                                    const fem::LagrangeSpace<dim>& space,

@@ -9,7 +9,7 @@
 namespace tribound::doctor
 {
 
-/// A point whose dimension is known at run time only; empty: nowhere in particular.
+/// A point whose dimension is known only at run time; empty: no particular point.
 using Place = std::vector<double>;
 
 template <int dim>

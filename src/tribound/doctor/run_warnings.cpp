@@ -12,27 +12,27 @@ using problem::UnitOf;
 namespace
 {
 
-/// Share of the data in the squares of the components from which refinement goes into the data first.
+/// Share of the data in the sum of squares of the components from which refinement mainly improves the data.
 constexpr double dominant_share = 0.5;
-/// A bound below this part of the stress is round-off, whatever its causes.
+/// A bound below this fraction of the stress is round-off, whatever its causes.
 constexpr double round_off = 1e-9;
-/// The next three are between what sound results show and what bad ones do, docs/doctor.md. The first one is
+/// The next three lie between the values of good and of bad results, see docs/doctor.md. This one limits
 /// ContactOutcome::zigzag.
 constexpr double large_zigzag = 0.04;
 /// Pressure at kinks of the surface over the mean pressure. 1.27 and 1.5 are Hertz's maxima in 2D and 3D.
 constexpr double large_kink_pressure = 2;
 /// Penetration over the largest displacement.
 constexpr double large_penetration = 0.02;
-/// From here on friction can be stronger than the pressure that causes it.
+/// From this coefficient on, friction can exceed the pressure that causes it.
 constexpr double large_coefficient = 1;
 /// Fewer closed facets do not resolve a contact zone.
 constexpr long few_closed_facets = 4;
-/// The slope of a law over gamma; at 1 the law has no unique answer, and Newton's method fails before.
+/// Slope of a law over gamma; at 1 the law has no unique solution, and Newton's method fails earlier.
 constexpr double large_softening = 0.5;
 /// Rows of facets across a process zone.
 constexpr double few_rows = 3;
 
-/// With what was compared with a limit.
+/// A warning with the value that was compared with a limit.
 Finding warning(const char* code, std::string text, double value, const std::string& boundary = {},
                 const Place& where = {})
 {

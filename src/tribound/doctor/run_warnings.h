@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file run_warnings.h
-/// What a user should look at in a result before trusting it: the bound is about the discrete solution, these
-/// are about the model behind it and about reading local values.
+/// What to check in a result before trusting it. The bound is about the discrete solution; these warnings are
+/// about the underlying model and about local values.
 
 #include <optional>
 #include <span>
@@ -16,7 +16,7 @@
 namespace tribound::doctor
 {
 
-/// What is known of a solution beside its contact.
+/// What is known of a solution besides its contact.
 struct SolvedFigures
 {
   std::optional<certify::Bound> bound;
@@ -26,7 +26,7 @@ struct SolvedFigures
 };
 
 /// Warnings about the solution of a level with its contact; docs/doctor.md explains every code. The first
-/// number of a finding is what was compared with a limit.
+/// number of a finding is the value that was compared with a limit.
 [[nodiscard]] std::vector<Finding> run_warnings(const SolvedFigures& solved,
                                                 std::span<const ContactOutcome> outcomes);
 

@@ -16,7 +16,7 @@ namespace tribound::doctor
 namespace
 {
 
-/// A contact facet after the solution.
+/// A contact facet in the solution.
 template <int dim>
 struct FacetOutcome
 {
@@ -89,7 +89,7 @@ std::vector<double> zigzag_amplitudes(std::span<const FacetOutcome<dim>> facets,
     neighbours[k].push_back(l);
     neighbours[l].push_back(k);
   }
-  std::vector<double> d(facets.size(), 0);  // no sign where it is not defined
+  std::vector<double> d(facets.size(), 0);  // zero, without a sign, where it is not defined
   for (std::size_t k = 0; k < facets.size(); ++k)
     if (neighbours[k].size() == dim) d[k] = deviation(facets, static_cast<int>(k), neighbours[k]);
   std::vector<double> amplitudes(facets.size(), 0);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file solution_facts.h
-/// What a computed contact looks like: penetration, zigzags and peaks of the pressure, sliding, damage.
+/// Properties of a computed contact: penetration, zigzags and peaks of the pressure, sliding, damage.
 
 #include <optional>
 #include <span>
@@ -21,9 +21,9 @@ struct ContactOutcome
   bool has_master = false;  ///< a body is on the other side
   long facets = 0;
   long closed_facets = 0;  ///< with pressure at every quadrature point
-  double closed = 0;       ///< measure at which there is pressure
+  double closed = 0;       ///< measure of the part under pressure
   double slipping = 0;     ///< part of it that slips
-  bool carries = false;    ///< anything, a bond in tension included
+  bool carries = false;    ///< any traction, including a bond in tension
   bool has_friction = false;
   std::optional<double> coefficient;  ///< Coulomb's
   double force = 0;                   ///< integral of the pressure
@@ -31,12 +31,12 @@ struct ContactOutcome
   double penetration = 0;  ///< max (u^n - g) at the quadrature points, 0 if nowhere positive
   Place penetration_at;
 
-  /// By how much the pressure goes up and down from facet to facet, relative to itself. With p_F the mean
-  /// pressure of a closed facet and d_F what it is above the linear function through those of its neighbours
-  /// (2 in 2D, 3 in 3D, all of them closed): where two neighbours or more have a d of the other sign, p_F
-  /// zigzags by a_F, half the smaller of |d_F| and the second largest of their |d|; elsewhere a_F = 0. This
-  /// is (sum |F| a_F^2 / sum |F| p_F^2)^(1/2) over the closed facets. A steep or bent pressure has d of one
-  /// sign; smooth ones have d = O(h^2).
+  /// The relative oscillation of the pressure from facet to facet. p_F is the mean pressure of a closed
+  /// facet, and d_F its excess over the linear function through those of its neighbours (2 in 2D, 3 in 3D,
+  /// all of them closed). Where at least two neighbours have a d of the opposite sign, p_F zigzags by a_F,
+  /// half the smaller of |d_F| and the second largest of their |d|; elsewhere a_F = 0. The value is (sum |F|
+  /// a_F^2 / sum |F| p_F^2)^(1/2) over the closed facets. A steep or curved pressure has d of one sign; a
+  /// smooth one has d = O(h^2).
   double zigzag = 0;
   Place zigzag_at;  ///< where a_F is largest
 
@@ -46,7 +46,7 @@ struct ContactOutcome
 
   DamageFacts damage{};
 
-  /// Over what is closed; 0 where nothing is.
+  /// Over the closed part; 0 where there is none.
   [[nodiscard]] double mean_pressure() const { return closed > 0 ? force / closed : 0; }
 };
 

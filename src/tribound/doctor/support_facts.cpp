@@ -14,7 +14,7 @@ namespace tribound::doctor
 namespace
 {
 
-/// Motions in the span of `motions` that are orthogonal to those of `others`, a subspace of it.
+/// Motions in the span of `motions` that are orthogonal to `others`, a subspace of it.
 contact::MotionBasis complement(const contact::MotionBasis& motions, const contact::MotionBasis& others)
 {
   if (motions.cols() == 0) return motions;
@@ -37,7 +37,7 @@ FixedVertices vertices_on_displacement_boundaries(const problem::Problem<dim>& p
   return boundaries;
 }
 
-/// u_D.n at x where the condition fixes every component that n has.
+/// u_D.n at x where the condition prescribes every component in which n is nonzero.
 template <int dim>
 std::optional<double> fixed_normal_displacement(const problem::BoundaryCondition<dim>& condition,
                                                 const Point<dim>& n, const Point<dim>& x)
@@ -80,7 +80,7 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
   for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.fixes(c);
 }
 
-/// Per boundary number the mean normal of an obstacle or slave whose segments are within 10 degrees of it.
+/// Per boundary number, the mean normal of an obstacle or slave whose segments are within 10 degrees of it.
 template <int dim>
 std::vector<std::optional<Point<dim>>> normals_of_planes(
     std::size_t n_boundaries, const mesh::Mesh<dim>& mesh,
@@ -107,7 +107,7 @@ void mark_sliding(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& m
                   std::span<const std::optional<Point<dim>>> plane, const contact::Assembly<dim>& assembly,
                   std::vector<bool>& slides)
 {
-  constexpr double negligible = 1e-6;  // motions have size 1
+  constexpr double negligible = 1e-6;  // motions are normalised
   const contact::MotionBasis left = contact::Support<dim>(problem, mesh, segments, assembly).left_by_fixing();
   if (left.cols() == 0) return;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(assembly.n_motions(), assembly.n_motions());
@@ -187,7 +187,7 @@ std::vector<OverconstrainedCorner> overconstrained_corners(const contact::Nitsch
   std::map<std::pair<int, int>, std::set<Index>> seen;
   for (const contact::ContactSegment<dim>& segment : form.segments())
   {
-    if (segment.master) continue;  // the other body gives way
+    if (segment.master) continue;  // the other body yields
     const mesh::BoundaryFacet& facet = segment.slave.facet;
     for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
     {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file support_facts.h
-/// What holds the bodies, and where conditions contradict each other.
+/// How the bodies are supported, and where conditions contradict each other.
 
 #include <optional>
 #include <string>
@@ -14,14 +14,14 @@
 namespace tribound::doctor
 {
 
-/// A rigid motion that displacement conditions and ties leave and only contact stops.
+/// A rigid motion that is free under displacement conditions and ties, and is stopped only by contact.
 struct ContactHeldMotion
 {
   std::string body;                       ///< or bodies
   std::string motion;                     ///< such as "translation along x"
-  bool by_friction = false;               ///< nothing but friction stops it; else pressure, one way
+  bool by_friction = false;               ///< stopped by friction only; else by pressure, one way
   std::optional<contact::Remedy> remedy;  ///< what would stop it without contact
-  bool of_several = false;                ///< bodies that contact joins
+  bool of_several = false;                ///< of bodies joined by contact
 };
 
 /// The motions of every assembly that only contact stops: first those stopped by pressure, then by friction.
@@ -29,9 +29,10 @@ template <int dim>
 [[nodiscard]] std::vector<ContactHeldMotion> motions_held_by_contact(const contact::NitscheForm<dim>& form);
 
 /// Per boundary number, whether a body would slide along this obstacle or slave as a whole without its
-/// friction: the facets of the boundary are within 10 degrees of a plane, and a rigid motion along the plane
-/// is stopped neither by displacement conditions and ties nor by closed contact without friction. There, and
-/// only there, resultants tell how far sliding is. Refinement does not change it; the mesh is a whole one.
+/// friction. This requires that the facets of the boundary are within 10 degrees of a plane, and that neither
+/// displacement conditions and ties nor closed frictionless contact stop a rigid motion along the plane.
+/// There, and only there, resultants tell how far sliding is. Refinement does not change this. Needs the
+/// whole mesh.
 template <int dim>
 [[nodiscard]] std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh);
@@ -45,13 +46,13 @@ struct OverconstrainedCorner
   Place where;          ///< the vertex with the largest u_D^n - g
   double normal = 0;    ///< u_D^n there
   double gap = 0;       ///< g there
-  bool sticks = false;  ///< whether everything is fixed there and the contact has friction
+  bool sticks = false;  ///< whether everything is prescribed there and the contact has friction
 
-  /// Whether the body is pushed into the obstacle, which no solution allows.
+  /// Whether the body is pushed into the obstacle, so that there is no solution.
   [[nodiscard]] bool contradicts() const;
 };
 
-/// One for each pair of boundaries that meet like this.
+/// One for each such pair of boundaries.
 template <int dim>
 [[nodiscard]] std::vector<OverconstrainedCorner> overconstrained_corners(
     const contact::NitscheForm<dim>& form);

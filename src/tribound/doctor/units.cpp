@@ -48,7 +48,7 @@ bool is_plausible(const problem::Units& units, const LoadFacts& loads)
 
 std::vector<problem::Units> plausible_units(const LoadFacts& loads)
 {
-  if (loads.smallest_E == 1) return {};  // what scaled models have, and hardly any solid to the last digit
+  if (loads.smallest_E == 1) return {};  // usual in scaled models, and not exactly so in real solids
   const std::array<problem::Units, 5> known = {
       {{"m", "N"}, {"mm", "N"}, {"m", "MN"}, {"m", "kN"}, {"mm", "kN"}}};
   std::vector<problem::Units> plausible;

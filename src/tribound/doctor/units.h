@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file units.h
-/// The units that the numbers of a case look like, and whether those that it names fit them.
+/// The units suggested by the numbers of a case, and whether the named units fit them.
 
 #include <optional>
 #include <string_view>
@@ -13,22 +13,22 @@
 namespace tribound::doctor
 {
 
-/// Units in which Young's moduli are those of solids people compute with (rubber, 1 MPa, to diamond,
-/// 1200 GPa), the body is between 0.1 mm and 1 km long, and a body force, if there is one, is near the weight
-/// of something (is_weight()). The most usual first; of (m, N), (mm, N), (m, MN), (m, kN), (mm, kN). Empty
-/// for what looks like none, as a scaled model with E = 1.
+/// Units in which Young's moduli are those of common solids (rubber, 1 MPa, to diamond, 1200 GPa), the body
+/// is between 0.1 mm and 1 km long, and a body force, if there is one, is close to a weight (is_weight()).
+/// Candidates are (m, N), (mm, N), (m, MN), (m, kN), (mm, kN); the most usual come first. Empty where none
+/// fits, as for a scaled model with E = 1.
 [[nodiscard]] std::vector<problem::Units> plausible_units(const LoadFacts& loads);
 
-/// The solids of some stiffness.
+/// A class of solids by stiffness.
 struct Solids
 {
   double from;  ///< E; Pa
   double to;
   std::string_view name;
-  bool is_soft;  ///< softer than what structures are built of
+  bool is_soft;  ///< softer than structural materials
 };
 
-/// Those as stiff as E, in Pa, from gels, 10 kPa, to diamond, 1200 GPa; nothing beyond.
+/// The class with stiffness E, in Pa, from gels, 10 kPa, to diamond, 1200 GPa; nothing outside.
 [[nodiscard]] std::optional<Solids> solids_as_stiff(double E);
 
 struct StressUnit
@@ -37,12 +37,12 @@ struct StressUnit
   double pascals;
 };
 
-/// The unit in which E, which is no stiffness of a structure in `units`, would be one, 1 to 1200 GPa, if
-/// there is one: the largest of GPa, MPa, kPa and Pa; or ksi or psi where `units` have such stresses.
+/// For an E that is not structural in `units`: the unit in which it would be, 1 to 1200 GPa, if there is one.
+/// This is the largest of GPa, MPa, kPa and Pa; or ksi or psi where `units` have such stresses.
 [[nodiscard]] std::optional<StressUnit> meant_unit(double E, const problem::Units& units);
 
-/// Whether a body force, in N/m^3, is near the weight of something: 500 to 25000 kg/m^3, gravity 9.81 m/s^2,
-/// by a factor of up to 5 either way.
+/// Whether a body force, in N/m^3, is close to a weight: that of 500 to 25000 kg/m^3 with gravity 9.81 m/s^2,
+/// up to a factor of 5 either way.
 [[nodiscard]] bool is_weight(double body_force);
 
 }  // namespace tribound::doctor
