@@ -15,15 +15,15 @@ namespace tribound::io
 namespace
 {
 
-/// A facet of a chain; reversed: against its reference coordinate.
+/// A facet of a chain; reversed: opposite to its reference coordinate.
 struct FacetLink
 {
-  std::size_t facet;  ///< number in Mesh::boundary()
+  std::size_t facet;  ///< index in Mesh::boundary()
   bool reversed;
 };
 using Chain = std::vector<FacetLink>;
 
-/// The facets of one boundary group in 2D and how they hang together.
+/// The facets of one boundary group in 2D and how they are connected.
 class FacetGraph
 {
  public:
@@ -34,7 +34,7 @@ class FacetGraph
         for (const Index v : ends(k)) facets_at_[v].push_back(k);
   }
 
-  /// All chains, those with ends first looked for, since what remains then is closed.
+  /// All chains. Those with ends are found first, so the remaining ones are closed.
   [[nodiscard]] std::vector<Chain> chains()
   {
     std::vector<Index> vertices;
@@ -72,7 +72,7 @@ class FacetGraph
     return ends(link.facet)[link.reversed ? 1 : 0];
   }
 
-  /// From a vertex on, through facets not visited so far.
+  /// The chain from a vertex through facets not yet visited.
   Chain follow(Index vertex)
   {
     Chain chain;
@@ -94,7 +94,7 @@ class FacetGraph
   std::map<Index, std::vector<std::size_t>> facets_at_;
 };
 
-/// Where a segment lies on its slave facet, in reference coordinates.
+/// The position of a segment on its slave facet, in reference coordinates.
 std::array<double, 2> extent(const contact::ContactSegment<2>& segment)
 {
   return {segment.slave.on_facet(Point<1>(0.0))[0], segment.slave.on_facet(Point<1>(1.0))[0]};
@@ -122,7 +122,7 @@ void add_point(CsvTable& table, const Point<dim>& x, double round_off = 0)
   for (const double component : x) table.add(std::abs(component) > round_off ? component : 0.0);
 }
 
-/// What every row needs.
+/// The data common to all rows.
 template <int dim>
 struct Rows
 {

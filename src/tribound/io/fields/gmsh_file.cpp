@@ -24,11 +24,11 @@ namespace
 /// Gmsh's numbers for line, triangle, tetrahedron.
 constexpr std::array element_types = {1, 2, 4};
 
-/// Vertices, facets or cells whose text is in memory at a time.
+/// Number of vertices, facets or cells whose text is in memory at a time.
 constexpr std::int64_t batch = 50'000;
 
-/// Writes into the file, which the first rank has, what say(text, i) adds for the n items of each rank, rank
-/// after rank.
+/// Writes the text added by say(text, i) for the n items of each rank into the file of the first rank, rank
+/// by rank.
 template <class Say>
 void write_in_turn(const Ranks& ranks, std::optional<AtomicFile>& file, std::int64_t n, const Say& say)
 {
@@ -67,7 +67,7 @@ std::string head(const mesh::Mesh<dim>& mesh, std::span<const std::string> left_
                      n_groups, groups);
 }
 
-/// Own facets in groups that are not left out.
+/// Own facets in groups that are written.
 template <int dim>
 std::vector<mesh::BoundaryFacet> written_facets(const mesh::Mesh<dim>& mesh,
                                                 std::span<const std::string> left_out)

@@ -12,10 +12,10 @@
 namespace tribound::io
 {
 
-/// Writes the mesh as a .msh (version 2.2, ASCII): regions and boundaries as physical groups by name, but the
-/// boundaries `left_out`. read_gmsh() gives the same vertices, cells and groups. On several ranks, which call
-/// it together, the first writes what the others tell it of their cells, a batch at a time: no rank needs
-/// memory of the size of the mesh. Throws WriteError.
+/// Writes the mesh as a .msh (version 2.2, ASCII), with regions and boundaries as named physical groups,
+/// except the boundaries `left_out`. read_gmsh() returns the same vertices, cells and groups. All ranks call
+/// it together. The first one writes the cells received from the others in batches, so no rank needs memory
+/// of the size of the mesh. Throws WriteError.
 template <int dim>
 void write_gmsh(const std::filesystem::path& file, const mesh::Mesh<dim>& mesh,
                 std::span<const std::string> left_out = {});

@@ -28,7 +28,7 @@ template <int k>
 template <int k>
 [[nodiscard]] std::vector<Point<k>> vtk_points(int degree);
 
-/// For every node in VTK's order its number in `basis`.
+/// For every node in VTK's order, its index in `basis`.
 template <int k>
 [[nodiscard]] std::vector<int> vtk_order(const fem::LagrangeBasis<k>& basis);
 

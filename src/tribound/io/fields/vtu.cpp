@@ -24,7 +24,7 @@ namespace tribound::io
 namespace
 {
 
-/// What every array of a level file needs.
+/// The data common to all arrays of a level file.
 template <int dim>
 struct Level
 {

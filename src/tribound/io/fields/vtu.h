@@ -28,8 +28,8 @@ struct CellField
   std::span<const double> values;
 };
 
-/// A tensor field that may jump from cell to cell. `at_nodes(cell, values)` sets its values at the nodes of
-/// the cell, in the order of LagrangeSpace::basis(); its symmetric part is written.
+/// A tensor field that may be discontinuous between cells. `at_nodes(cell, values)` sets its values at the
+/// nodes of the cell, in the order of LagrangeSpace::basis(); its symmetric part is written.
 template <int dim>
 struct TensorField
 {
@@ -62,7 +62,7 @@ template <int dim>
 /// Its eigenvalues, the largest first; tension positive.
 [[nodiscard]] std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma);
 
-/// Where a file stands in a series: of levels, or of load steps.
+/// The position of a file in a series: of levels, or of load steps.
 struct SeriesPlace
 {
   int number = 0;
@@ -71,7 +71,8 @@ struct SeriesPlace
   [[nodiscard]] std::string_view stem() const { return load_factor ? "step" : "level"; }
 };
 
-/// The files of one level. On several ranks each writes its own cells, and the first a list of all files.
+/// The files of one level. On several ranks each writes its own cells, and the first also a list of all
+/// files.
 struct LevelFiles
 {
   std::filesystem::path own;
@@ -80,14 +81,14 @@ struct LevelFiles
 };
 
 /// level_NNN.vtu or step_NNN.vtu, or level_NNN.pvtu with level_NNN/part_RRRR.vtu on several ranks. Makes the
-/// directory. Throws WriteError where that fails.
+/// directory. Throws WriteError if this fails.
 [[nodiscard]] LevelFiles level_files(const std::filesystem::path& directory, const SeriesPlace& place,
                                      const Ranks& ranks);
 
-/// Writes the own cells of degree p with their own points each: points and `displacement` (3 components, z =
-/// 0 in 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz),
+/// Writes the own cells of degree p, each with its own points: points and `displacement` (3 components, z = 0
+/// in 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz),
 /// `principal_stresses` and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz
-/// of every tensor follows from out_of_plane_ratio(). Needs memory for one cell beside its arguments. Throws
+/// of every tensor follows from out_of_plane_ratio(). Needs memory for one cell besides its arguments. Throws
 /// WriteError when the file cannot be written.
 template <int dim>
 void write_level_vtu(const LevelFiles& files, const SeriesPlace& place, const problem::Problem<dim>& problem,
@@ -95,11 +96,11 @@ void write_level_vtu(const LevelFiles& files, const SeriesPlace& place, const pr
                      std::span<const CellField> cell_fields = {},
                      std::span<const TensorField<dim>> tensors = {});
 
-/// Writes the segments of Gamma_C as curves or triangles of degree p, in the order of form.segments():
-/// point data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick,
-/// 2 slip, 3 tied), `gap`, `slip` at the nodes of each facet, of a load step also `damage` D, `opening`
-/// delta^n, `plastic_slip` w; cell data `boundary` (number of the boundary group). Throws WriteError when the
-/// file cannot be written.
+/// Writes the segments of Gamma_C as curves or triangles of degree p, in the order of form.segments(): point
+/// data `displacement`, `contact_pressure`, `contact_traction`, `contact_status` (0 open, 1 stick, 2 slip, 3
+/// tied), `gap`, `slip` at the nodes of each facet, for a load step also `damage` D, `opening` delta^n,
+/// `plastic_slip` w; cell data `boundary` (number of the boundary group). Throws WriteError when the file
+/// cannot be written.
 template <int dim>
 void write_contact_vtu(const std::filesystem::path& path, const SeriesPlace& place,
                        const contact::NitscheForm<dim>& form, std::span<const double> u);
@@ -107,25 +108,23 @@ void write_contact_vtu(const std::filesystem::path& path, const SeriesPlace& pla
 /// The name of a numbered file, such as "level_003.vtu".
 [[nodiscard]] std::string level_file_name(std::string_view stem, int level);
 
-/// Writes series.pvd, which lists level_NNN.vtu (or step_NNN.vtu, by the stem), or .pvtu where that is there,
-/// as far as they are there from `first` to `last`, with the number as time. Throws WriteError when the file
-/// cannot be written.
+/// Writes series.pvd, which lists the existing files level_NNN.vtu (or step_NNN.vtu, by the stem), or .pvtu
+/// where present, from `first` to `last`, with the number as time. Throws WriteError when the file cannot be
+/// written.
 void write_series(const std::filesystem::path& directory, int first, int last,
                   std::string_view stem = "level");
 
-/// Removes what an earlier run left of such a series: level_NNN.vtu, level_NNN.pvtu, level_NNN/part_N.vtu,
-/// the same of steps, contact_NNN.vtu and checkpoint_NNN.h5, N a digit, at least three of NNN, and
-/// series.pvd; only those from number `first` on, and series.pvd. Other files stay. Throws InputError when
-/// one cannot be removed.
+/// Removes such a series of an earlier run, from number `first` on: level_NNN.vtu, level_NNN.pvtu,
+/// level_NNN/part_N.vtu, the same of steps, contact_NNN.vtu and checkpoint_NNN.h5, where N is a digit and NNN
+/// at least three; also series.pvd. Other files stay. Throws InputError when a file cannot be removed.
 void remove_series(const std::filesystem::path& directory, int first = 0);
 
-/// A directory for a series that is not complete, unless it is there. Throws WriteError where it cannot be
-/// made.
+/// Makes a directory for an incomplete series, unless it exists. Throws WriteError if this fails.
 void make_series_directory(const std::filesystem::path& directory);
-/// Removes it with its series; does nothing where it is not there.
+/// Removes it with its series; does nothing where it does not exist.
 void remove_series_directory(const std::filesystem::path& directory);
-/// Puts all files in `from`, which is removed, into `to`; does nothing where it is not there. Throws
-/// WriteError when one cannot be moved.
+/// Moves all files in `from`, which is removed, to `to`; does nothing where `from` does not exist. Throws
+/// WriteError when a file cannot be moved.
 void move_series(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace tribound::io

@@ -27,7 +27,7 @@ std::vector<contact::ContactState<dim>> contact_nodes(const contact::NitscheForm
   return nodes;
 }
 
-/// Point data with `n_components` numbers of type T per node, put by put_node(put, node).
+/// Point data with `n_components` numbers of type T per node, written by put_node(put, node).
 template <typename T, int dim, typename PutNode>
 VtuArray node_array(std::string name, int n_components, const std::vector<contact::ContactState<dim>>& nodes,
                     PutNode put_node)

@@ -21,7 +21,7 @@ namespace
 
 constexpr std::string_view series_name = "series.pvd";
 
-/// The number in a name that is `stem`, at least `least` digits and `extension`.
+/// The number in a name that consists of `stem`, at least `least` digits and `extension`.
 std::optional<int> number_in(std::string_view name, std::string_view stem, std::size_t least,
                              std::string_view extension)
 {
@@ -41,7 +41,7 @@ struct NamedSeries
   std::string_view extension;
 };
 
-/// Those that level_file_name(), level_files() and checkpoint_name_of() give, but directories.
+/// The names given by level_file_name(), level_files() and checkpoint_name_of(), except directories.
 constexpr std::array<NamedSeries, 6> series_names = {{{"contact_", ".vtu"},
                                                       {"level_", ".vtu"},
                                                       {"level_", ".pvtu"},
@@ -67,8 +67,8 @@ bool is_series_directory(std::string_view name, int first)
   return false;
 }
 
-/// series.pvd and the files that it lists in a directory, from number `first` on; those in directories of
-/// several ranks before these.
+/// series.pvd and the series files in a directory, from number `first` on; those in directories of several
+/// ranks come before the directories.
 std::vector<std::filesystem::path> series_files(const std::filesystem::path& directory, int first)
 {
   std::error_code error;
@@ -152,7 +152,7 @@ void remove_series_directory(const std::filesystem::path& directory)
 {
   remove_series(directory);
   std::error_code error;
-  std::filesystem::remove(directory, error);  // stays where there is anything else in it
+  std::filesystem::remove(directory, error);  // fails if it has other contents
 }
 
 void move_series(const std::filesystem::path& from, const std::filesystem::path& to)

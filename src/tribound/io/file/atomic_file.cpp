@@ -104,7 +104,7 @@ void AtomicFile::flush()
 void AtomicFile::commit()
 {
   flush();
-  // fclose reports errors of delayed writing, as network file systems have them.
+  // fclose reports errors of delayed writing, which occur on network file systems.
   const int closed = std::fclose(file_.release());
   const int error = errno;
   std::error_code renamed;

@@ -15,8 +15,8 @@
 namespace tribound::io
 {
 
-/// A file of results that cannot be written: a disk that is full, no permission. Exit code 2: what was
-/// computed before is in order.
+/// A result file that cannot be written: full disk, no permission. Exit code 2: the computed results so far
+/// are valid.
 class WriteError : public std::runtime_error
 {
  public:
@@ -30,14 +30,14 @@ class WriteError : public std::runtime_error
   std::string hint_;
 };
 
-/// What to do about an error number of the system.
+/// Advice on an error number of the system.
 [[nodiscard]] std::string hint_for_writing(int error);
 
-/// The name of a file that a process has not finished: unique among those that may write to the directory.
+/// The name of a file in progress: unique among the processes that may write to the directory.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& path, int process);
 
-/// A file written under a temporary name beside its final one and renamed by commit(). Without commit() the
-/// temporary file is removed and an older file of the final name stays as it was.
+/// A file written under a temporary name next to its final one and renamed by commit(). Without commit() the
+/// temporary file is removed, and an older file with the final name stays as it was.
 /// Every function throws WriteError naming the file and the system's reason (disk full, no permission).
 class AtomicFile
 {
@@ -51,14 +51,14 @@ class AtomicFile
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-  /// Number of bytes written so far, which is where the next write() goes.
+  /// Number of bytes written so far: the position of the next write().
   [[nodiscard]] std::uint64_t position() const { return position_; }
   /// Replaces bytes already written, from `position` on; the next write() still goes to the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes);
 
   /// Flushes, closes and renames; nothing may be written afterwards.
   void commit();
-  /// Hands all that has been written to the system, which may find the disk full. Throws WriteError.
+  /// Passes everything written so far to the system, which may find the disk full. Throws WriteError.
   void flush();
 
  private:
@@ -78,7 +78,7 @@ class AtomicFile
 /// Writes `text` to the file at `path`, completely or not at all. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-/// Removes what programs that were killed have not finished there.
+/// Removes unfinished files of killed programs from the directory.
 void remove_unfinished(const std::filesystem::path& directory);
 
 /// The text of a file; empty where it cannot be read.

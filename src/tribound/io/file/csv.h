@@ -15,7 +15,7 @@
 namespace tribound::io
 {
 
-/// A text as it stands in a cell.
+/// A text as written in a cell.
 [[nodiscard]] inline std::string csv_cell(std::string_view value)
 {
   if (value.find_first_of(",\"\n") == std::string_view::npos) return std::string(value);
@@ -28,7 +28,7 @@ namespace tribound::io
 class CsvTable
 {
  public:
-  /// Starts with the line of column names, separated by commas.
+  /// Starts with the line of column names, which are separated by commas.
   explicit CsvTable(std::string_view columns) : text_(columns) { end_row(); }
 
   void add(std::string_view value)
@@ -36,7 +36,7 @@ class CsvTable
     separate();
     text_ += csv_cell(value);
   }
-  /// -0 is written as 0: the sign of nothing is no result.
+  /// -0 is written as 0: the sign of zero is no result.
   void add(double value)
   {
     separate();
@@ -79,7 +79,7 @@ struct TableCell
 
 using TableRow = std::vector<TableCell>;
 
-/// The rows below the names of their columns, which are those of `any`: a table without rows has them, too.
+/// The rows below their column names, which are those of `any`, so that a table without rows has them, too.
 [[nodiscard]] inline std::string csv_text(const TableRow& any, std::span<const TableRow> rows)
 {
   std::string names;

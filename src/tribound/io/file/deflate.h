@@ -12,7 +12,7 @@ struct libdeflate_compressor;
 namespace tribound::io
 {
 
-/// Not to be used by two threads at once.
+/// Not thread-safe.
 class Deflate
 {
  public:
@@ -22,9 +22,9 @@ class Deflate
   /// The level is libdeflate's, from stored = 0 to 12.
   explicit Deflate(int level);
 
-  /// Bytes that n compressed ones take at most.
+  /// The maximal number of bytes of n bytes after compression.
   [[nodiscard]] std::size_t bound(std::size_t n) const;
-  /// Fills `result`, which has room for bound(bytes.size()), and returns the part that it took.
+  /// Fills `result`, which has room for bound(bytes.size()), and returns the used part.
   std::span<const std::byte> operator()(std::span<const std::byte> bytes, std::span<std::byte> result) const;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file json.h
-/// What the JSON files share; for io alone, whose programs need nlohmann-json.
+/// Common functions for JSON files; only for io, which links nlohmann-json.
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,14 +14,14 @@
 namespace tribound::io
 {
 
-/// The text of a file, or on one line for `indent` -1. Names from a case or a mesh need not be UTF-8: what is
-/// not is replaced.
+/// The text of a file; a single line for `indent` -1. Names from a case or a mesh need not be UTF-8; invalid
+/// bytes are replaced.
 [[nodiscard]] inline std::string json_text(const Json& json, int indent = 2)
 {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + (indent < 0 ? "" : "\n");
 }
 
-/// null for what is not known.
+/// null for an unknown number.
 [[nodiscard]] inline Json number_or_null(const std::optional<double>& value)
 {
   return value ? Json(*value) : Json(nullptr);

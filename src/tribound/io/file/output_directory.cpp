@@ -30,7 +30,7 @@ Where place(const std::filesystem::path& directory)
   return {.file = directory.string(), .key = "output.directory"};
 }
 
-/// The directory and those above it that do not exist, innermost first.
+/// The directory and those of its parents that do not exist, innermost first.
 std::vector<std::filesystem::path> missing_directories(std::filesystem::path directory)
 {
   std::vector<std::filesystem::path> missing;
@@ -47,8 +47,8 @@ void remove_all_of(const std::vector<std::filesystem::path>& directories)
   for (const std::filesystem::path& directory : directories) std::filesystem::remove(directory, ignored);
 }
 
-/// Creates the directory and writes a file there, which is removed again. Throws InputError, and leaves
-/// nothing behind then.
+/// Creates the directory and tries to write a file there, which is then removed. Throws InputError, leaving
+/// nothing behind.
 void create_and_try(const std::filesystem::path& directory)
 {
   std::error_code error;
@@ -82,7 +82,7 @@ std::string host_name()
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Whether the file that is open still has this name.
+/// Whether the open file still has this name.
 bool is_current(int file, const std::filesystem::path& path)
 {
   struct stat opened
@@ -105,7 +105,7 @@ bool is_current(int file, const std::filesystem::path& path)
                    "wait for its end, or choose another output.directory");
 }
 
-/// The lock of another user cannot be written to, but locked.
+/// A lock file of another user cannot be written to, but it can be locked.
 int open_lock(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
 {
   int file = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -116,7 +116,7 @@ int open_lock(const std::filesystem::path& directory, const std::filesystem::pat
                    hint_for_writing(error));
 }
 
-/// Locks the file and writes into it who has done so; -1 where the file system has no locks.
+/// Locks the file and writes the owner into it; -1 where the file system has no locks.
 int lock(const std::filesystem::path& directory, const std::filesystem::path& lock_file)
 {
   for (;;)
@@ -129,13 +129,13 @@ int lock(const std::filesystem::path& directory, const std::filesystem::path& lo
       if (reason == EWOULDBLOCK) throw_in_use(directory, lock_file);
       return -1;
     }
-    if (!is_current(file, lock_file))  // its owner has removed it in between
+    if (!is_current(file, lock_file))  // its owner has removed it in the meantime
     {
       ::close(file);
       continue;
     }
     const std::string owner = fmt::format("process {} on {}\n", ::getpid(), host_name());
-    // For a message only: the lock holds without it.
+    // Only for a message: the lock is valid without it.
     (void)!(::ftruncate(file, 0) == 0 && ::write(file, owner.data(), owner.size()) > 0);
     return file;
   }

@@ -13,14 +13,14 @@ namespace tribound::io
 namespace
 {
 
-/// Uncompressed bytes of a block, a multiple of every number's size.
+/// Uncompressed bytes of a block, a multiple of the size of every number type.
 constexpr std::size_t block_size = 1 << 18;
 
 constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
-/// Whether an array that begins with this block is compressed: a sample tells. Zeros and repeated values are;
-/// the stresses of degree 2 shrink to 0.6, in more time than all the rest takes: they are stored
-/// (bench/README.md).
+/// Whether an array that begins with this block is worth compressing, judged by a sample. Zeros and repeated
+/// values are. The stresses of degree 2 only shrink to 0.6, and this takes longer than everything else, so
+/// they are stored (bench/README.md).
 bool is_worth_compressing(std::span<const std::byte> block, const Deflate& deflate,
                           std::span<std::byte> scratch)
 {
@@ -31,7 +31,7 @@ bool is_worth_compressing(std::span<const std::byte> block, const Deflate& defla
          worth_it * static_cast<double>(sample.size());
 }
 
-/// An offset that is not known yet; replaced in place, so that the header need not be written last.
+/// An offset that is not yet known; replaced in place, so that the header need not be written last.
 struct Placeholder
 {
   std::uint64_t position;

@@ -2,7 +2,7 @@
 
 /// @file vtu_file.h
 /// The container of VTK's XML format for unstructured grids: appended raw data in zlib-compressed blocks,
-/// UInt64 headers. What the arrays mean is the business of vtu.h.
+/// UInt64 headers. vtu.h defines the meaning of the arrays.
 
 #include <concepts>
 #include <cstddef>
@@ -24,7 +24,7 @@
 namespace tribound::io
 {
 
-/// The numbers of one array on their way into the file: collected into blocks, compressed, written.
+/// Writes the numbers of one array: collected into blocks, compressed, written.
 class VtuStream
 {
  public:
@@ -40,7 +40,7 @@ class VtuStream
     used_ += sizeof(T);
   }
 
-  /// Writes what is left and the sizes of the blocks. The bytes put must be as many as announced.
+  /// Writes the rest and the sizes of the blocks. The number of bytes must be as announced.
   void close();
 
  private:
@@ -50,7 +50,7 @@ class VtuStream
   std::uint64_t header_position_;
   std::vector<std::uint64_t> header_;  ///< number of blocks, block size, size of a last partial block, sizes
   std::vector<std::byte> block_;
-  Deflate deflate_;  ///< whether it compresses or stores is decided with the first block
+  Deflate deflate_;  ///< compresses or stores, as decided with the first block
   std::vector<std::byte> compressed_;
   std::size_t used_ = 0;
   std::size_t n_flushed_ = 0;
@@ -75,8 +75,7 @@ template <typename T>
   if constexpr (std::unsigned_integral<T>) return "UInt" + std::to_string(8 * sizeof(T));
 }
 
-/// An array whose numbers are put by `fill(put)` calling put(x) for one after the other; each is converted to
-/// T.
+/// An array whose numbers are produced by `fill(put)`, which calls put(x) for each; they are converted to T.
 template <typename T, typename Fill>
 [[nodiscard]] VtuArray vtu_array(std::string name, int n_components, std::uint64_t n_tuples, Fill fill)
 {
@@ -85,15 +84,15 @@ template <typename T, typename Fill>
           { fill([&stream](auto value) { stream.put(static_cast<T>(value)); }); }};
 }
 
-/// Puts the components of v, and zeros up to 3 components.
+/// Writes the components of v, padded with zeros to 3 components.
 template <int dim>
 void put_vector(const auto& put, const Point<dim>& v)
 {
   for (int i = 0; i < 3; ++i) put(i < dim ? v[i] : 0.0);
 }
 
-/// Connectivity, offsets and types of cells that share no points: cell c has the points
-/// c n_nodes, ..., (c + 1) n_nodes - 1.
+/// Connectivity, offsets and types of cells without shared points: cell c has the points c n_nodes, ..., (c +
+/// 1) n_nodes - 1.
 [[nodiscard]] std::vector<VtuArray> disjoint_cells(std::uint64_t n_cells, std::uint64_t n_nodes,
                                                    std::uint8_t vtk_type);
 
@@ -110,11 +109,11 @@ struct VtuGrid
   std::vector<VtuArray> cell_data;
 };
 
-/// Writes the grid array by array; needs no more memory than a block. Throws WriteError when the file cannot
-/// be written.
+/// Writes the grid array by array; needs memory for one block only. Throws WriteError when the file cannot be
+/// written.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
-/// Writes a list (.pvtu) of the files `pieces` with such grids, by their paths from where the list is. Throws
+/// Writes a list (.pvtu) of the files `pieces` with such grids, by their paths relative to the list. Throws
 /// WriteError when the file cannot be written.
 void write_vtu_list(const std::filesystem::path& path, const VtuGrid& grid,
                     std::span<const std::string> pieces);

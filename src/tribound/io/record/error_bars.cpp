@@ -18,7 +18,7 @@ bool has_bound(const LevelRecord& level)
   return level.energy && level.energy->reason.empty();
 }
 
-/// What v and tau are not admissible for, in words; empty: nothing.
+/// In which respects v and tau are not admissible, in words; empty: none.
 std::string words_of_remainders(const certify::EnergyBound& bound, const CaseFacts& facts)
 {
   std::string text;

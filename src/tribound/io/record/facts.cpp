@@ -51,7 +51,7 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   return regions;
 }
 
-/// Surfaces and direction of a contact, if there are any.
+/// Surfaces and direction of a contact in words, if there are any.
 std::string geometry_words(const problem::Contact& contact)
 {
   std::string words = contact.geometry.empty() ? "" : ", " + contact.geometry;
@@ -60,7 +60,7 @@ std::string geometry_words(const problem::Contact& contact)
   return words;
 }
 
-/// What a pair does on boundary number `tag`, or nothing.
+/// The role of a pair on boundary number `tag` in words, or nothing.
 template <int dim>
 std::string pair_words(const problem::Problem<dim>& problem, int tag, const problem::Units& units)
 {

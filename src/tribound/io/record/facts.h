@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file facts.h
-/// What a case, its mesh and the program are, as plain data for the report and the console.
+/// Facts about a case, its mesh and the program, as plain data for the report and the console.
 
 #include <string>
 #include <string_view>
@@ -15,10 +15,10 @@
 namespace tribound::io
 {
 
-/// What is solved: the case file with every --set.
+/// The solved case: the case file with every --set applied.
 struct EffectiveCase
 {
-  std::string text;                    ///< TOML; a case file that stands in output.directory
+  std::string text;                    ///< TOML; a case file for output.directory
   std::vector<std::string> overrides;  ///< as given
 };
 
@@ -31,10 +31,10 @@ struct CaseFacts
   std::string friction;  ///< friction_name(); empty without contact
   double gamma0 = 0.0;
   problem::Units units{};
-  /// The units of its [[quantity]] tables, by name; empty for pure numbers, and where no units are named.
+  /// The units of the [[quantity]] tables, by name; empty for pure numbers, and where no units are named.
   std::vector<std::pair<std::string, std::string>> quantity_units{};
 
-  /// " MPa", as it stands behind a number; empty where no units are named.
+  /// " MPa", to be appended to a number; empty where no units are named.
   [[nodiscard]] std::string behind(problem::UnitOf what) const { return units.behind(what, dimension); }
   /// The unit of the [[quantity]] of this name; empty: none.
   [[nodiscard]] std::string unit_of(std::string_view quantity) const;
@@ -64,10 +64,10 @@ struct MeshFacts
   double smallest_cell = 0.0;  ///< min h_T
   double largest_cell = 0.0;   ///< max h_T
   std::vector<RegionFacts> regions;
-  std::vector<BoundaryFacts> boundaries;  ///< the groups, then the facets in no group if there are any
+  std::vector<BoundaryFacts> boundaries;  ///< the groups, then the facets without a group if there are any
 };
 
-/// Versions and features of the program and of what it stands on.
+/// Versions and features of the program and its libraries.
 struct BuildFacts
 {
   std::string version;  ///< of Tribound
@@ -78,25 +78,25 @@ struct BuildFacts
   std::string blas;
   int blas_threads = 0;  ///< 0: unknown
   int processes = 1;     ///< that compute together
-  int threads = 1;       ///< of each, beside those of the BLAS
+  int threads = 1;       ///< of each, besides those of the BLAS
   std::string mpi;
   std::string eigen;
   std::vector<std::string> features;
 };
 
-/// The mesh of `space` with what `problem` says about its parts, in words with `units`.
+/// The mesh of `space` with the data of `problem` on its parts, in words with `units`.
 template <int dim>
 [[nodiscard]] MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                    const fem::Constraints& constraints, const problem::Units& units = {});
 
-/// Of the program and of the libraries it runs with.
+/// Facts about the program and the libraries it runs with.
 [[nodiscard]] BuildFacts build_facts();
 
 /// "E = ..., nu = ...", with the plane model in 2D.
 [[nodiscard]] std::string describe(const problem::Material& material, int dimension,
                                    const problem::Units& units = {});
 
-/// What holds on a part of the boundary, in words.
+/// The conditions on a part of the boundary, in words.
 template <int dim>
 [[nodiscard]] std::string describe(const problem::BoundaryCondition<dim>& condition,
                                    const problem::Units& units = {});

@@ -33,7 +33,7 @@ struct Frame
   }
 };
 
-/// visit(point, number) for own contact points of the slave.
+/// Calls visit(point, number) for own contact points of the slave.
 template <int dim, class Visit>
 void for_each_point(const contact::NitscheForm<dim>& form, int tag, const Visit& visit)
 {
@@ -66,11 +66,11 @@ struct Forces
   double total_about_heel = 0;            ///< moments in the frame
   double water_about_heel = 0;
   double water_about_toe = 0;
-  double intact = 0;  ///< of the strength at D = 0
-  double now = 0;     ///< of that at D where it is closed
+  double intact = 0;  ///< integral of the strength at D = 0
+  double now = 0;     ///< integral of the strength at the current D, where closed
 };
 
-/// What the law holds in shear beside friction at a damage; nothing where it does not tell.
+/// The shear strength of a law besides friction at a given damage; nothing where the law has none.
 std::optional<double> strength(const problem::ContactLaw& law, double threshold, double damage)
 {
   if (const auto* joint = std::get_if<problem::JointLaw>(&law))
@@ -115,7 +115,7 @@ Forces<dim> integrate(const adapt::LoadStep<dim>& step, const problem::ContactLa
           others[4]};
 }
 
-/// Which cells are of bodies that own the slave.
+/// Marks the cells of bodies that own the slave.
 template <int dim>
 std::vector<char> cells_above(const contact::NitscheForm<dim>& form, int tag)
 {
@@ -130,8 +130,8 @@ std::vector<char> cells_above(const contact::NitscheForm<dim>& form, int tag)
   return above;
 }
 
-/// Moments about the toe, those that stabilise positive: of each region, then of each component of the load
-/// of each boundary.
+/// Moments about the toe, stabilising ones positive: of each region, then of each component of the load on
+/// each boundary.
 template <int dim>
 std::vector<double> load_moments(const contact::NitscheForm<dim>& form, const Frame<dim>& frame, int tag)
 {
@@ -180,7 +180,7 @@ std::optional<double> overturning(const contact::NitscheForm<dim>& form, const F
 template <int dim>
 std::optional<HydraulicFigures> hydraulic_figures(const adapt::LoadStep<dim>& step, int tag)
 {
-  constexpr double smallest_shear = 1e-10;  // over |N|
+  constexpr double smallest_shear = 1e-10;  // relative to |N|
   const contact::NitscheForm<dim>& form = step.at->discrete.form;
   const problem::Contact* contact = form.problem().contact(tag);
   if (contact == nullptr || !contact->base) return std::nullopt;

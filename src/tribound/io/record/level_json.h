@@ -9,13 +9,13 @@
 namespace tribound::io
 {
 
-/// One of `levels` or `steps` of certificate.json.
+/// One entry of `levels` or `steps` of certificate.json.
 [[nodiscard]] Json level_json(const LevelRecord& level);
 
-/// Adds what a load step has besides its bound and figures.
+/// Adds the data of a load step besides bound and figures.
 void add_load_step(Json& object, const LevelRecord& level);
 
-/// Adds bound and figures, which the certificate has of the last level and of each.
+/// Adds bound and figures, which the certificate has for the last level and for each.
 void add_results(Json& object, const LevelRecord& level);
 
 /// `balance` of the certificate.

@@ -14,7 +14,7 @@ StageTimes& StageTimes::operator+=(const StageTimes& other)
 namespace
 {
 
-/// What only marking needs.
+/// Drops the data that only marking needs.
 void drop_cells(certify::EnergyBound& bound)
 {
   bound.cells.clear();
@@ -39,13 +39,13 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   record.paired = !form.problem().pairs().empty();
   record.figures = solution_figures(form, level, slides);
   if (level.solved() && !certify::is_round_off(level.estimate, level.norms))
-    record.identities = level.identities;  // relative to rounding they say nothing
+    record.identities = level.identities;  // meaningless relative to rounding
   if (certify::is_bound(view.verdict.status))
   {
     record.bound = level.estimate.bound();
     record.balance = certify::balance<dim>(form, level.stress, moment_about);
   }
-  else  // what violates an identity is no bound, and is not shown as one
+  else  // a violated identity means no bound, and none is shown
     for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};
   record.energy = level.energy;
   if (record.energy) drop_cells(*record.energy);
@@ -62,7 +62,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
 
 int newton_steps(const LevelRecord& level)
 {
-  // A load step is solved to the end whatever the criterion would have asked for.
+  // A load step is solved to the end, whatever the criterion would have required.
   const int not_asked_for = level.load_step ? 0 : level.finishing_steps;
   return static_cast<int>(level.newton.size()) - not_asked_for;
 }

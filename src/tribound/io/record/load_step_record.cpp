@@ -13,7 +13,7 @@ namespace tribound::io
 namespace
 {
 
-/// What is summed over points.
+/// The figures that are sums over points.
 constexpr std::array sums = {
     &InterfaceFigures::measure,    &InterfaceFigures::opened,  &InterfaceFigures::slipping,
     &InterfaceFigures::broken,     &InterfaceFigures::process, &InterfaceFigures::damage,
@@ -67,7 +67,7 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
     figures.hydraulic = hydraulic_figures<dim>(step, static_cast<int>(tag));
   }
   const auto has_base = [](const InterfaceFigures& figures) { return figures.hydraulic.has_value(); };
-  if (std::ranges::count_if(result, has_base) > 1)  // the loads are those of all
+  if (std::ranges::count_if(result, has_base) > 1)  // the loads act on all of them together
     for (InterfaceFigures& figures : result)
       if (figures.hydraulic) figures.hydraulic->overturning.reset();
   return result;

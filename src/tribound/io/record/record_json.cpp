@@ -12,7 +12,7 @@ namespace
 
 constexpr const char* certificate_schema = "1";
 
-/// Before the first level, and the stages of all levels.
+/// Times before the first level, and of the stages summed over all levels.
 Json times_json(const RunRecord& run)
 {
   StageTimes sum;
@@ -22,7 +22,7 @@ Json times_json(const RunRecord& run)
   return object;
 }
 
-/// The results of the last of the load steps before a restart, as their texts have them.
+/// The results of the last load step before a restart, taken from its text.
 void add_results(Json& object, const std::string& earlier_steps)
 {
   Json last = Json::parse(earlier_steps).back();
@@ -37,7 +37,7 @@ void add_results(Json& object, const std::string& earlier_steps)
   object.update(last);
 }
 
-/// Behind those of a text.
+/// The levels appended to those of a text.
 Json with_levels(const std::string& earlier, const std::vector<LevelRecord>& levels)
 {
   Json array = Json::parse(earlier);

@@ -10,20 +10,20 @@
 namespace tribound::io
 {
 
-/// The `program` of certificate.json and study.json.
+/// `program` of certificate.json and study.json.
 [[nodiscard]] Json program_json(const BuildFacts& build);
 
 /// `units` of all JSON files: the label of each kind of number, and of each quantity; null where the case
 /// names no units.
 [[nodiscard]] Json units_json(const CaseFacts& facts);
 
-/// The `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
+/// `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
 [[nodiscard]] Json mesh_json(const MeshFacts& mesh);
 
 /// `case` of the certificate: the effective case by the hash of its text; null where there is none.
 [[nodiscard]] Json effective_case_json(const RunRecord& run);
 
-/// `levels` of the certificate, earlier ones included, over a history the passes; and `steps`.
+/// `levels` of the certificate, including earlier ones; for a history, the passes; and `steps`.
 [[nodiscard]] Json levels_json(const RunRecord& run);
 [[nodiscard]] Json steps_json(const RunRecord& run);
 

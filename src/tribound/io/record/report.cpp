@@ -23,7 +23,7 @@ std::string certificate_json(const RunRecord& run)
 namespace
 {
 
-/// A table without its first line, which names the columns.
+/// A table without its first line, the column names.
 std::string rows_of(const std::string& table)
 {
   return table.substr(table.find('\n') + 1);
@@ -39,13 +39,13 @@ std::int64_t first_cells(const RunRecord& run)
   return run.earlier.first_cells > 0 ? run.earlier.first_cells : run.mesh.cells;
 }
 
-/// One table after another with the same columns.
+/// Concatenates two tables with the same columns.
 std::string joined(const std::string& earlier, const std::string& table)
 {
   return rows_of(earlier).empty() ? table : earlier + rows_of(table);
 }
 
-/// The load step as the worst of a pass; nothing where it is an earlier one.
+/// The load step as the worst one of a pass; nothing where it precedes a restart.
 std::optional<LevelRecord> as_pass(const RunRecord& run, int pass, int worst_step)
 {
   const auto worst = std::ranges::find(run.levels, worst_step, &LevelRecord::level);
@@ -158,7 +158,7 @@ std::optional<LoadStepRecord> last_load_step(const RunRecord& run)
 namespace
 {
 
-/// Discarded where there is none.
+/// The certificate in the directory; a discarded value where there is none.
 Json certificate_in(const std::filesystem::path& directory)
 {
   std::ifstream file(directory / "certificate.json");

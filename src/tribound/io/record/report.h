@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file report.h
-/// What a run is reported by. Plain data in, text out; what is not known is absent, never zero.
+/// The report of a run. Plain data in, text out; what is unknown is absent, never zero.
 
 #include <filesystem>
 #include <optional>
@@ -19,8 +19,8 @@
 namespace tribound::io
 {
 
-/// The levels before a restart, as text; of a run over a history the passes that were complete, and the load
-/// steps of the pass in work.
+/// The levels before a restart, as text. For a run over a history, the completed passes and the load steps of
+/// the current pass.
 struct EarlierLevels
 {
   std::string convergence{};     ///< convergence.csv
@@ -29,13 +29,13 @@ struct EarlierLevels
   std::int64_t first_cells = 0;  ///< of the first mesh
   std::string history{};         ///< history.csv
   std::string steps{};           ///< `steps` of certificate.json; empty without a history
-  /// The worst of those steps as convergence.csv and `levels` have it when it is that of the pass.
+  /// The worst of those steps in the form of convergence.csv and `levels`, should it be that of the pass.
   std::string worst_convergence{};
   std::string worst_level{};
 };
 
-/// A load step as the tables and the certificate have it: lines of history.csv and newton.csv without the
-/// first, which names the columns, and its place in `steps`.
+/// A load step as in the tables and the certificate: lines of history.csv and newton.csv without the column
+/// names, and its entry in `steps`.
 struct StepRows
 {
   std::string history{};
@@ -51,41 +51,41 @@ struct RunRecord
   certify::RunStatus status = certify::RunStatus::uncertified;
   std::string reason;  ///< why the run is not certified, or what failed; empty when certified
   EarlierLevels earlier;
-  std::vector<LevelRecord> levels;    ///< after them; of a run over a history its load steps in the last pass
-  std::vector<LevelRecord> passes;    ///< over a history: the worst step on each mesh
-  adapt::PathEnd path;                ///< over a history: what came of it in that pass
-  std::optional<HistoryCheck> check;  ///< over a history, where it was asked for
+  std::vector<LevelRecord> levels;    ///< after them; for a history, the load steps of the last pass
+  std::vector<LevelRecord> passes;    ///< for a history: the worst step on each mesh
+  adapt::PathEnd path;                ///< for a history: its outcome in that pass
+  std::optional<HistoryCheck> check;  ///< for a history, where requested
   double tolerance = 0.0;             ///< of bound / ||sigma(u_h)||
   certify::Statements statements;
   std::vector<doctor::Finding> warnings;  ///< about the last level
-  EffectiveCase effective;                ///< empty where the run is a part of something larger
-  std::string case_file = "case.toml";    ///< where it is written in the output directory
+  EffectiveCase effective;                ///< empty where the run is part of a larger one
+  std::string case_file = "case.toml";    ///< its name in the output directory
   double setup = 0.0;                     ///< wall time before the first level; s
 };
 
-/// Whether it goes through load steps.
+/// Whether the run has load steps.
 [[nodiscard]] bool has_history(const RunRecord& run);
 
-/// All its levels as earlier ones.
+/// All levels of the run as earlier ones.
 [[nodiscard]] EarlierLevels as_earlier(const RunRecord& run);
-/// Over a history: the passes that are complete, the worst step of pass number `pass`, which is in work, and
-/// the columns of the tables without the rows of its load steps, which add_steps() adds: what is made of each
-/// load step is of the size of one.
+/// For a history: the completed passes, the worst step of the current pass number `pass`, and the tables
+/// without the rows of its load steps. add_steps() adds these, so the data stored per load step are those of
+/// one step.
 [[nodiscard]] EarlierLevels as_earlier(const RunRecord& run, int pass, int worst_step);
 /// The last load step of this run.
 [[nodiscard]] StepRows last_step_rows(const RunRecord& run);
 void add_steps(EarlierLevels& earlier, std::span<const StepRows> steps);
 
-/// Over a history, when another pass begins: the complete passes alone stay.
+/// For a history, at the start of another pass: keeps only the completed passes.
 void drop_steps(EarlierLevels& earlier);
 
-/// Over a history: that pass is complete, and this step, which may be an earlier one, its worst.
+/// For a history: the pass is complete, and this step, possibly an earlier one, is its worst.
 void complete_pass(RunRecord& run, int pass, int worst_step);
 
-/// Its last load step, of an earlier one what the steps after it add to; nothing where there is none.
+/// The last load step, if from an earlier run only what later steps build on; nothing where there is none.
 [[nodiscard]] std::optional<LoadStepRecord> last_load_step(const RunRecord& run);
 
-/// The tables with the earlier levels.
+/// The tables including the earlier levels.
 [[nodiscard]] std::string convergence_csv(const RunRecord& run);
 [[nodiscard]] std::string history_csv(const RunRecord& run);
 [[nodiscard]] std::string newton_csv(const RunRecord& run);
@@ -93,15 +93,14 @@ void complete_pass(RunRecord& run, int pass, int worst_step);
 /// The text of certificate.json, see docs/output.md; unknown numbers are null.
 [[nodiscard]] std::string certificate_json(const RunRecord& run);
 
-/// Whether the certificate in the directory has one.
+/// Whether the certificate in the directory has a history check.
 [[nodiscard]] bool has_history_check(const std::filesystem::path& directory);
-/// Adds that of the run to it; nothing else changes. Does nothing where there is no certificate. Throws
+/// Adds the check of the run to it; nothing else changes. Does nothing where there is no certificate. Throws
 /// WriteError.
 void add_history_check(const std::filesystem::path& directory, const RunRecord& run);
 
-/// Writes the effective case, convergence.csv, history.csv where there are load steps, newton.csv and
-/// certificate.json, the last one last. Throws
-/// WriteError when a file cannot be written.
+/// Writes the effective case, convergence.csv, history.csv where there are load steps, newton.csv and, last,
+/// certificate.json. Throws WriteError when a file cannot be written.
 void write_report(const std::filesystem::path& directory, const RunRecord& run);
 
 }  // namespace tribound::io

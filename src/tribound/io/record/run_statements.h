@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file run_statements.h
-/// What the certificate says of a run in words: what the bound covers, and what it rests on.
+/// The statements of the certificate on a run: what the bound covers, and which assumptions it makes.
 
 #include <span>
 #include <string>
@@ -14,17 +14,17 @@
 namespace tribound::io
 {
 
-/// "direct", "GMRES with multigrid", ...: for people.
+/// "direct", "GMRES with multigrid", ...: for human readers.
 [[nodiscard]] std::string describe_solver(algebra::LinearMethod method);
-/// The same of the steps on a mesh, at least one.
+/// The same for the steps on a mesh, at least one.
 [[nodiscard]] std::string describe_solver(std::span<const adapt::CertifiedStep> steps);
 
-/// Before anything is solved, on the first mesh. On several ranks all call it and the next together.
+/// On the first mesh, before anything is solved. All ranks call it and the next one together.
 template <int dim>
 [[nodiscard]] certify::Statements run_statements(const adapt::Discretisation<dim>& first,
                                                  const adapt::Method& method);
-/// Of a level with at least one Newton step, and its record: its data, and how its systems were solved.
-/// `carried`: of a load step whether the history goes from mesh to mesh.
+/// For a level with at least one Newton step, and its record: its data, and how its systems were solved.
+/// `carried`: for a load step, whether the history is transferred between meshes.
 template <int dim>
 [[nodiscard]] certify::Statements run_statements(const adapt::LevelView<dim>& view, const LevelRecord& record,
                                                  const CaseFacts& facts, const adapt::Method& method,

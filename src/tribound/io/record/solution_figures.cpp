@@ -21,9 +21,9 @@ namespace tribound::io
 namespace
 {
 
-constexpr double round_off = 1e-12;  // of sums over many points
+constexpr double round_off = 1e-12;  // relative, of sums over many points
 
-/// The components of a vector that is known up to `resolution`.
+/// The components of a vector with accuracy `resolution`.
 template <int n>
 std::vector<double> known_components(const Point<n>& vector, double resolution)
 {
@@ -51,7 +51,7 @@ Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Poi
   return result;
 }
 
-/// Adds the moments of T(u), with the digits that their distance from those of t^k leaves.
+/// Adds the moments of T(u), with the digits justified by their distance from those of t^k.
 template <int dim>
 void add_moments(Resultants& result, const contact::NitscheForm<dim>& form, std::span<const Point<dim>> of_u,
                  std::span<const Point<dim>> running, int tag = -1)
@@ -104,7 +104,7 @@ PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const 
   return figures;
 }
 
-/// Parts of the mesh of one name get a number each.
+/// Numbers parts of the mesh with the same name.
 void number_alike(std::vector<BodyFigures>& bodies)
 {
   std::map<std::string, std::vector<BodyFigures*>> of_name;

@@ -25,7 +25,7 @@ TableRow component_columns(std::span<const certify::Component> components,
   return row;
 }
 
-/// Those that are known of a step.
+/// The known components of a step.
 TableRow component_columns(const adapt::CertifiedStep& record)
 {
   TableRow row = component_columns(certify::plain_components, record.bound);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file tables.h
-/// What the tables say of a level and of a Newton step: columns with the names of docs/output.md.
+/// The columns of the tables for a level and for a Newton step, with the names of docs/output.md.
 
 #include <span>
 #include <string>
@@ -13,19 +13,19 @@
 namespace tribound::io
 {
 
-/// Size, Newton steps and bound: what every table of levels begins with.
+/// Size, Newton steps and bound: the first columns of every table of levels.
 [[nodiscard]] TableRow level_columns(const LevelRecord& level);
 
-/// What the tables have at the end: of a regularised run its components and delta, of one with pairs what
-/// passes between meshes.
+/// The last columns of the tables: for a regularised run its components and delta, for one with pairs the
+/// components of the transfer between meshes.
 [[nodiscard]] TableRow further_columns(const LevelRecord& level, const certify::RunKind& kind);
 
-/// A row per level; of passes over a history with the number of the step that it is of.
+/// A row per level; for passes over a history with the number of the worst step.
 [[nodiscard]] std::string convergence_csv(std::span<const LevelRecord> levels);
 /// A row per load step.
 [[nodiscard]] std::string history_csv(std::span<const LevelRecord> steps);
 
-/// A row per Newton step of every level; of a step without a bound it has the components that are known.
+/// A row per Newton step of every level; a step without a bound has the known components.
 [[nodiscard]] std::vector<TableRow> newton_rows(std::span<const LevelRecord> levels);
 [[nodiscard]] std::string newton_csv(std::span<const LevelRecord> levels);
 

@@ -25,7 +25,7 @@ namespace tribound::io
 namespace
 {
 
-/// Of the file; another one cannot be read.
+/// Version of the file format; others cannot be read.
 constexpr int format = 3;
 
 constexpr std::array<std::pair<const char*, std::string EarlierLevels::*>, 7> earlier_texts = {
@@ -97,7 +97,7 @@ CheckpointFacts facts_of(const Json& json)
   return facts;
 }
 
-/// A member of all cells, `width` numbers each.
+/// A member of all cells, with `width` numbers each.
 template <class T, int dim, class Get>
 std::vector<T> column(std::span<const mesh::CellRecord<dim>> cells, const Get& get)
 {
@@ -180,7 +180,7 @@ std::vector<mesh::CellRecord<dim>> read_cells(Hdf5File& file)
   return cells;
 }
 
-/// The numbers of own cells, one cell after the other; the records may have their vertices in another order.
+/// The values on own cells, concatenated by cell; the records may have a different order of vertices.
 template <int dim>
 std::vector<double> values_of_cells(const fem::LagrangeSpace<dim>& space, const CheckpointFacts& facts,
                                     const CheckpointFields& fields,
@@ -235,7 +235,7 @@ void copy_checkpoint(const std::filesystem::path& from, const std::filesystem::p
   std::error_code error;
   std::filesystem::remove(temporary, error);
   std::filesystem::create_hard_link(from, temporary, error);
-  if (error)  // not on this file system
+  if (error)  // not supported by this file system
     std::filesystem::copy_file(from, temporary, std::filesystem::copy_options::overwrite_existing, error);
   if (!error) std::filesystem::rename(temporary, to, error);
   if (error) throw WriteError(to, "cannot be written: " + error.message(), hint_for_writing(error.value()));

@@ -18,7 +18,7 @@ namespace tribound::io
 namespace
 {
 
-/// An identifier of HDF5, given back at the end.
+/// An HDF5 identifier, released at the end.
 class Handle
 {
  public:
@@ -53,7 +53,7 @@ bool select(const Handle& space, hsize_t first, const Shape& rows)
   return H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, begin.data(), nullptr, rows.data(), nullptr) >= 0;
 }
 
-/// Collective where there are several ranks.
+/// Collective on several ranks.
 Handle transfer_properties(const Ranks& ranks)
 {
   Handle properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
@@ -66,7 +66,7 @@ Handle transfer_properties(const Ranks& ranks)
 Hdf5File::Hdf5File(std::filesystem::path path, Mode mode, const Ranks& ranks)
     : path_(std::move(path)), actual_(path_), mode_(mode), ranks_(ranks)
 {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told by exceptions
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by exceptions
   if (mode == Mode::write) actual_ = temporary_name(path_, ranks.on_first([] { return ::getpid(); }));
   is_temporary_ = mode == Mode::write;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -79,7 +79,7 @@ Hdf5File::Hdf5File(std::filesystem::path path, Mode mode, const Ranks& ranks)
 
 Hdf5File::~Hdf5File()
 {
-  // With MPI closing waits for the other ranks, which may not be leaving by an exception.
+  // With MPI, closing waits for the other ranks, which may not be leaving by an exception.
   if (file_ >= 0 && (ranks_.size() == 1 || std::uncaught_exceptions() == 0)) H5Fclose(file_);
   std::error_code none;
   if (is_temporary_ && ranks_.is_first()) std::filesystem::remove(actual_, none);
@@ -112,7 +112,7 @@ void Hdf5File::write_bytes(const std::string& name, Type type, const void* value
                    H5Dclose);
   const auto write = [&]
   {
-    if (all[0] == 0) return true;  // has no place in the file, which ranks cannot write together
+    if (all[0] == 0) return true;  // has no space in the file, and ranks cannot write it together
     return select(space, first, own) && select(memory, 0, own) &&
            H5Dwrite(set.get(), types[static_cast<int>(type)], memory.get(), space.get(), how.get(), values) >=
                0;
@@ -125,7 +125,7 @@ std::uint64_t Hdf5File::n_own_rows(const std::string& name, int width)
   const Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   const Handle space(set.good() ? H5Dget_space(set.get()) : -1, H5Sclose);
   Shape all{};
-  hsize_t n_bytes = 0;  // of the file: a damaged number of rows must not cost their memory
+  hsize_t n_bytes = 0;  // of the file: a corrupt number of rows must not cause a huge allocation
   const bool good = H5Fget_filesize(file_, &n_bytes) >= 0 && space.good() &&
                     H5Sget_simple_extent_ndims(space.get()) == 2 &&
                     H5Sget_simple_extent_dims(space.get(), all.data(), nullptr) == 2 &&

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file hdf5_file.h
-/// Arrays in an HDF5 file of which each rank has some rows.
+/// Arrays in an HDF5 file, whose rows are distributed over the ranks.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,8 +16,8 @@ namespace tribound::io
 {
 
 /// A file open for writing, under a temporary name until commit(), or for reading. All ranks call every
-/// member together. Rows are numbered through the ranks in their order. All throw WriteError, or InputError
-/// in a file that is read, on all ranks.
+/// member together. Rows are numbered in the order of the ranks. All members throw WriteError, or InputError
+/// when reading, on all ranks.
 class Hdf5File
 {
  public:
@@ -39,7 +39,7 @@ class Hdf5File
   {
     write_bytes(name, type<T>(), values.data(), values.size() / width, width);
   }
-  /// The rows of this rank, as many on each up to one.
+  /// The rows of this rank; numbers of rows per rank differ by at most one.
   template <class T>
   requires std::is_arithmetic_v<T>
   [[nodiscard]] std::vector<T> read(const std::string& name, int width)
@@ -48,14 +48,14 @@ class Hdf5File
     read_bytes(name, type<T>(), values.data(), values.size() / width, width);
     return values;
   }
-  /// A text of the first rank, and on all of them.
+  /// Writes a text of the first rank; reading returns it on all ranks.
   void write_text(const std::string& name, const std::string& text);
   [[nodiscard]] std::string read_text(const std::string& name);
 
-  /// Throws on all ranks if something is not good on any: the file cannot be opened, written, read.
+  /// Throws on all ranks if `good` is false on any: the file cannot be opened, written, read.
   void require(bool good, const std::string& doing) const;
 
-  /// Closes the file, waits until it is on the disk and gives it its name.
+  /// Closes the file, waits until it is on disk and renames it.
   void commit();
 
  private:
@@ -84,7 +84,7 @@ class Hdf5File
   void read_bytes(const std::string& name, Type type, void* values, std::uint64_t n_rows, int width);
 
   std::filesystem::path path_;
-  std::filesystem::path actual_;  ///< the temporary name where it is written
+  std::filesystem::path actual_;  ///< the temporary name when writing
   Mode mode_;
   Ranks ranks_;
   Id file_ = -1;

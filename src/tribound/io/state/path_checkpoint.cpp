@@ -17,7 +17,7 @@ namespace
 
 constexpr int n_components = static_cast<int>(certify::all_components.size());
 
-/// Numbers of a contact point: boundary, place, D, q, w.
+/// Numbers per contact point: boundary, position, D, q, w.
 constexpr int point_width(int dim)
 {
   return 2 * dim + 3;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file path_checkpoint.h
-/// What a run over load steps needs to go on after one of them, as a checkpoint has it.
+/// The data that a run needs to continue after a load step, for a checkpoint.
 
 #include <span>
 #include <string>
@@ -13,12 +13,12 @@
 namespace tribound::io
 {
 
-/// Of `facts` it sets what belongs to the path. The result refers to the state.
+/// Sets the members of `facts` that belong to the path. The result refers to the state.
 template <int dim>
 [[nodiscard]] CheckpointFields to_checkpoint(const adapt::ReplayState<dim>& state, CheckpointFacts& facts);
 
-/// The state again on a space on its mesh; `cells`: own ones in the order of their values. All ranks call it
-/// together. Throws InputError where the checkpoint is none of load steps, or damaged.
+/// Restores the state on a space on its mesh; `cells`: own ones in the order of their values. All ranks call
+/// it together. Throws InputError where the checkpoint is not one of load steps, or is damaged.
 template <int dim>
 [[nodiscard]] adapt::ReplayState<dim> from_checkpoint(const CheckpointFacts& facts,
                                                       const fem::LagrangeSpace<dim>& space,

@@ -20,7 +20,7 @@ namespace tribound::io
 namespace
 {
 
-/// The file for a checkpoint; it need not be there.
+/// The log file of a checkpoint; it need not exist.
 std::filesystem::path log_of(const std::filesystem::path& checkpoint)
 {
   const std::filesystem::path folder = checkpoint.has_parent_path() ? checkpoint.parent_path() : ".";
@@ -29,7 +29,7 @@ std::filesystem::path log_of(const std::filesystem::path& checkpoint)
   return std::filesystem::exists(beside, error) ? beside : folder / ".." / step_log_name;
 }
 
-/// In the order of their numbers; a step that comes again takes the place of the one before.
+/// In the order of their numbers; a repeated step replaces the earlier one.
 std::vector<StepRows> steps_in(const std::filesystem::path& log, const LoggedSteps& which)
 {
   std::vector<StepRows> steps(which.last);
@@ -60,7 +60,7 @@ void append_step(const std::filesystem::path& log, const LoggedSteps& at, const 
   const std::string line =
       "\n" + json_text({at.path, at.last, rows.history, rows.newton, rows.record}, -1) + "\n";
   const int file = ::open(log.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  // A line that was cut off by a kill ends where this one begins.
+  // A line truncated by a kill ends where this one begins.
   const bool is_written = file >= 0 &&
                           ::write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
                           ::fsync(file) == 0;
